@@ -202,13 +202,13 @@ def picture_of(
 
     from ..figures import run_history
     from ..figures.weak_drive import draw
-    from ..weak_drive import averaged
+    from ..weak_drive import averaged, own_resonance
     from ..weak_drive.schedule import Ramp
 
     control = type(job.control).__name__ if job.control else ""
     title = title_of_runs(results, Path(arguments.drive).stem, control)
     if job.control or not isinstance(job.schedule, Ramp):
-        resonance = averaged.dividing_speed(structure, drive) * structure.omega
+        resonance = own_resonance.dividing_speed(structure, drive) * structure.omega
         return run_history.draw(results, resonance, title)
     Omega = np.linspace(0.3, 3.0, 20001)
     volts = averaged.no_load_speed(structure, drive, Omega) * drive.volts(structure)
@@ -226,15 +226,16 @@ def folds_crossed(branches: xr.Dataset | None, structure: Structure, drive: Driv
 
     A ramp may jump before to another motion on the same side: that fold is not meant.
     """
-    from ..weak_drive import averaged
+    from ..weak_drive import own_resonance
     from ..weak_drive.ramp_path import ramp_paths
 
     folds: Folds = {}
     if branches is None:
         return folds
     volts, speeds = (branches[f"bifurcation_{of}"].values for of in ("voltage", "speed"))
-    threshold = averaged.dividing_speed(structure, drive) * structure.omega
     for name in map(str, branches.structure.values):
+        kind = structure.as_bonded() if name == "bonded" else structure.as_delaminated()
+        threshold = own_resonance.dividing_speed(kind, drive) * structure.omega
         for jump, path in ramp_paths(branches, name).items():
             for fold, landing in zip(path.jumps, path.landings, strict=False):
                 ends = (speeds[fold], landing) if jump == "up" else (landing, speeds[fold])

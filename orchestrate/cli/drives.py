@@ -232,7 +232,7 @@ def control_of(
     arguments: argparse.Namespace, structure: Structure, drive: Drive
 ) -> Controller | None:
     """Return the controller that the options describe."""
-    from ..weak_drive import averaged
+    from ..weak_drive import own_resonance
     from ..weak_drive.controllers import SpeedControl, SpeedGradient
     from ..weak_drive.couple import require_motor
 
@@ -255,7 +255,7 @@ def control_of(
         usual = {"gain": 5.0 * constant, "reset_time": slow, "rise": math.inf}
         return SpeedControl(speed=arguments.speed_control, **{**usual, **without_none(of_pi)})
     if arguments.speed_gradient:
-        passed = averaged.dividing_speed(structure, drive) * structure.omega
+        passed = own_resonance.dividing_speed(structure, drive) * structure.omega
         swing = {"filter_time": 30.0 / structure.omega, "low": 0.6, **without_none(of_swing)}
         return SpeedGradient(passed=passed, **swing)
     return None

@@ -23,6 +23,7 @@ module                  idea
 :mod:`.capture`         whether a motor switched on from rest passes the resonance
 :mod:`.passage`         a run at full resolution, and spectra over its revolutions
 :mod:`.averaged`        the averaged theory of the bonded structure
+:mod:`.own_resonance`   where the delaminated structure resonates, and what divides its motions
 :mod:`.shooting`        stationary motions of structure and motor, by shooting
 :mod:`.grazing`         how near a stationary motion is to grazing
 :mod:`.drive_tracer`    the shooting problem as the tracer of branches needs it

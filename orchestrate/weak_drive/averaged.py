@@ -97,9 +97,19 @@ def resonance(structure: Structure, drive: Drive) -> float:
     """Return the speed over omega at which the bonded masses resonate in the box: its faster
     frequency.
     """
+    return float(np.abs(free_roots(structure, drive)).max())
+
+
+def half_width(structure: Structure, drive: Drive) -> float:
+    """Return half the width of that resonance at half its power: its decay rate over omega."""
+    roots = free_roots(structure, drive)
+    return float(-roots[np.argmax(np.abs(roots))].real)
+
+
+def free_roots(structure: Structure, drive: Drive) -> np.ndarray:
+    """Return the roots of free vibrations of bonded masses and box, over omega."""
     pull, masses, box = mechanics(structure, drive)
-    roots = (box * (pull + masses) + pull * masses).roots()
-    return float(np.abs(roots).max())
+    return np.asarray((box * (pull + masses) + pull * masses).roots())
 
 
 def folds(structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.0) -> list[Place]:

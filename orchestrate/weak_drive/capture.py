@@ -359,7 +359,8 @@ def capture(
 
     Notes
     -----
-    Beyond the resonance is half way between the speeds of the averaged theory's folds. A speed
+    Beyond the resonance is half way between the speeds of the averaged theory's folds, moved with
+    the resonance where that of the delaminated structure lies clearly apart. A speed
     that is there may swing back, and one that hardly changes may be creeping past a fold: what
     counts as settled is told in :mod:`orchestrate.weak_drive.settling`.
 

@@ -22,9 +22,9 @@ from ..running.job import Chunk, Inputs, Table
 from ..running.options import Running
 from ..structures.drive import Drive
 from ..structures.structure import Structure
-from . import averaged
+from . import averaged, own_resonance
 from .controllers import Controller
-from .held import MEANINGS, NOT_ASKED, HeldVoltageTest, Verdict, with_final_chunk
+from .held import MEANINGS, NOT_ASKED, UNDECIDED, HeldVoltageTest, Verdict, with_final_chunk
 from .jumps import Passing, SweepLeg, find_passing, stays_beyond, why_none
 from .master import Scheme
 from .revolutions import COLUMNS
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 MAX_STEPS = 1e9  # more is a typing error: it would run for weeks
 TOLERANCE = 1e-8  # of the step control: errors of the displacements are about ten times as large
 LONGEST, FIXED = 0.4, 0.1  # steps with the control and without, in 1/omega
+LAST_REVOLUTIONS = 20  # of a ramp: their mean speed is where it ends
 UPWARD = (True, False)  # ways: whether the voltage rises
 HOLD, HOLD_OF_ROTOR = 4000.0, 200.0  # usual longest hold: in 1/omega, and in the rotor's time 1/b
 
@@ -130,7 +131,8 @@ class CoupleJob(CoupledRun):
         if not any(doubts):
             return np.array(verdicts)
         structure, drive = self.structure, self.drive
-        threshold = averaged.dividing_speed(structure, drive)
+        threshold = own_resonance.dividing_speed(structure, drive)
+        resonance = own_resonance.dividing_speeds(structure, drive)
         with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
 
             def begin(schedule: Schedule) -> Run:
@@ -143,7 +145,7 @@ class CoupleJob(CoupledRun):
             test.add_checkpoints(table, every, self.steps())
             for i, doubt in enumerate(doubts):
                 if doubt is not None:
-                    verdicts[i] = test.classify(*doubt, threshold, UPWARD[i])
+                    verdicts[i] = test.classify(*doubt, threshold, UPWARD[i], resonance)
         return np.array(verdicts)
 
     def sweep_leg(self, table: Table, up: bool) -> tuple[SweepLeg, np.ndarray]:
@@ -157,7 +159,7 @@ class CoupleJob(CoupledRun):
     def passing(self, table: Table, up: bool) -> Passing | None:
         """Return how the speed passes the resonance, by rows of the table; None if it does not."""
         leg, rows = self.sweep_leg(table, up)
-        divide = averaged.dividing_speed(self.structure, self.drive)
+        divide = own_resonance.dividing_speed(self.structure, self.drive)
         rows_in_leg = find_passing(leg, self.drive.b(self.structure), up, divide)
         if rows_in_leg is None:
             return None
@@ -211,7 +213,7 @@ class CoupleJob(CoupledRun):
             ),
             "Omega": ("revolution", Omega, {"units": "1", "long_name": "mean speed over omega"}),
         }
-        divide = averaged.dividing_speed(self.structure, self.drive)
+        divide = own_resonance.dividing_speed(self.structure, self.drive)
         text = "time from which the mean speed stays beyond the resonance; NaN where it does not"
         passed = stays_beyond(table["time"], np.abs(Omega), divide)
         variables["passage_time"] = ((), passed, {"units": "s", "long_name": text})
@@ -240,7 +242,8 @@ class CoupleJob(CoupledRun):
             if passing is None:
                 reasons.append(self.why_none(table, UPWARD[i]))
             elif jumps[i] is None:
-                reasons.append(reason(passing, held[i], verdict, theory[i], self.hold))
+                ends = self.ends_within(table, UPWARD[i]) if held[i].what == UNDECIDED else ""
+                reasons.append(ends or reason(passing, held[i], verdict, theory[i], self.hold))
             else:
                 reasons.append("")
         decided = [how_decided(*pair) for pair in pairs]
@@ -271,8 +274,25 @@ class CoupleJob(CoupledRun):
         """Return why the speed does not pass the resonance for good in a direction."""
         if self.control:
             return "a controller sets the voltage"
-        resonance = averaged.resonance(self.structure, self.drive)
+        resonance = own_resonance.resonance(self.structure, self.drive)
         return why_none(self.sweep_leg(table, up)[0], up, resonance)
+
+    def ends_within(self, table: Table, up: bool) -> str:
+        """Return that the voltage ceases to go a way before the speed is beyond both the bonded
+        resonance and the structure's own; empty where it is.
+        """
+        leg, rows = self.sweep_leg(table, up)
+        low, high = own_resonance.dividing_speeds(self.structure, self.drive)
+        end = float(leg.Omega[-LAST_REVOLUTIONS:].mean())
+        if low == high or (end > high if up else end < low):
+            return ""
+        volts, beyond = float(table["voltage"][rows[-1]]), high if up else low
+        return (
+            f"undecided: the voltage goes to {volts:.5g} V only, which does not take the speed "
+            "past both resonances, the bonded structure's and the delaminated one's own; expected "
+            f"one that takes it {'above' if up else 'below'} "
+            f"{beyond * self.structure.omega:.5g} rad/s"
+        )
 
     def attributes(self, table: Table) -> dict[str, str | float]:
         """Return the title, and what the coupling has lost of the motor's work."""
@@ -382,7 +402,7 @@ def schedule_of(
     rate = 1e-4 * volts * omega if rate is None else rate
     settle = 300.0 / omega if settle is None else settle
     first, last = ends
-    low = 0.9 * averaged.resonance(structure, drive) * volts
+    low = 0.9 * own_resonance.resonances(structure, drive)[0] * volts
     if spin_up is None:  # a run up begins on the branch below the resonance
         spin_up = 600.0 / omega if last > first > low / 0.9 else 0.0
     ramp = Ramp(first, last, float(rate), float(settle), float(increment), bool(back))
@@ -555,8 +575,11 @@ def couple(
     its own error: it is undecided then.
 
     Whatever the clearance, a passage of the resonance is one past the speed that divides the
-    motions of the bonded structure, by the averaged theory. Halves that hardly touch swing freely,
-    with resonances of their own near it.
+    motions of the bonded structure, by the averaged theory, moved with the resonance where that of
+    the delaminated structure lies clearly apart
+    (:mod:`orchestrate.weak_drive.own_resonance`). Voltages are held from before both resonances to
+    beyond both; where the voltage does not go that far, the direction is undecided. Halves that
+    hardly touch swing freely, with further resonances near these.
 
     Examples
     --------

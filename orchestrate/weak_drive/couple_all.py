@@ -19,7 +19,7 @@ from ..errors import InputError
 from ..running.runner import gather
 from ..structures.drive import Drive
 from ..structures.structure import Structure
-from . import averaged
+from . import averaged, own_resonance
 from .couple import CoupleJob, couple_job, require_motor, schedule_of, scheme_of
 
 if TYPE_CHECKING:
@@ -34,13 +34,13 @@ System = tuple[Structure, Drive]
 
 
 def ends_of(structure: Structure, drive: Drive) -> tuple[float, float]:
-    """Return voltages over K omega below the resonance and past the jump up, by the averaged
-    theory.
+    """Return voltages over K omega below the resonances, bonded and delaminated, and past them and
+    the jump up, by the averaged theory.
     """
-    resonance = averaged.resonance(structure, drive)
+    low, high = own_resonance.resonances(structure, drive)
     first, last = (
-        float(averaged.no_load_speed(structure, drive, share * resonance))
-        for share in (BELOW, BEYOND)
+        float(averaged.no_load_speed(structure, drive, speed))
+        for speed in (BELOW * low, BEYOND * high)
     )
     folds = averaged.folds(structure, drive)
     return first, max([last, *(fold.eta0 + PAST for fold in folds)])

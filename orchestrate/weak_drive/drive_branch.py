@@ -28,7 +28,7 @@ from ..running.job import Inputs, Job, Table
 from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
-from . import averaged
+from . import averaged, own_resonance
 from .couple import require_motor
 from .drive_tracer import (
     ENDS,
@@ -331,8 +331,8 @@ def drive_branch(
     """
     require_motor(drive)
     omega = structure.omega
-    resonance = averaged.resonance(structure, drive) * omega
-    first, last = (0.95 * resonance, 1.25 * resonance) if speed is None else map(float, speed)
+    low, high = (speed * omega for speed in own_resonance.resonances(structure, drive))
+    first, last = (0.95 * low, 1.25 * high) if speed is None else map(float, speed)
     if not (0.0 < first < last < math.inf):
         raise InputError(f"speed = {speed} rad/s: expected (first, last) with 0 < first < last")
     check("longest", longest, "", low=1e-4, high=1.0)

@@ -25,7 +25,7 @@ from ..running.job import Inputs, Job, Table
 from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
-from . import averaged
+from . import averaged, own_resonance
 from .couple import couple_job, scheme_of
 from .master import parts_of
 from .run import Run, begin_run
@@ -121,7 +121,7 @@ class DriveSpectraJob(Job):
         resonance.
         """
         short, structure = replace(self, revolutions=8, points=4), self.structure.as_delaminated()
-        divide = averaged.dividing_speed(structure, self.drive) * structure.omega
+        divide = own_resonance.dividing_speed(structure, self.drive) * structure.omega
         return short.record(fmus, structure)[1] < divide
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:

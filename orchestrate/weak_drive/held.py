@@ -6,10 +6,11 @@ each held until the speed has settled, so that the motion stays the same as long
 the speed changes most the steps are halved: the largest change of the settled speed is bracketed,
 whatever the rate of the ramp was. Then the voltage goes back from beyond that change. Where the
 speed does not come back with it, two motions exist at one voltage, and the first one is lost on the
-way. Where it does, the steps are halved further, until the speed changes less from each of them to
-the next than it would between two motions that are told apart, and all the steps go back: so the
-speed follows the voltage. What has not settled in the time that is given, comes back another way,
-or is still steep at the shortest step, decides nothing.
+way. The course begins before the resonance and ends beyond it, of the bonded structure and of the
+delaminated one. Where the speed comes back, the steps are halved further, until the speed changes
+less from each of them to the next than it would between two motions that are told apart, and all
+the steps go back: so the speed follows the voltage. What has not settled in the time that is given,
+comes back another way, or is still steep at the shortest step, decides nothing.
 """
 
 from __future__ import annotations
@@ -114,6 +115,11 @@ class HoldSettings:
         is less than 0.866 ``two_motions``: between two folds that are close, speeds at one voltage
         differ by 2/sqrt(3) of what the speed jumps by at either, or less. So no steps find a jump
         that others rule out.
+    largest_scatter : float
+        Change of the speed between neighbours, over omega, that is never put down to the scatter of
+        irregular motions: speeds that are known no better rule out no jump.
+    again : int
+        How often the voltage of an irregular motion is held again before its end counts as a loss.
     stair : float
         Longest first step of the voltage, over K omega, and
     max_stairs : int
@@ -131,6 +137,8 @@ class HoldSettings:
     distinct: float = 2e-3
     two_motions: float = 5e-3
     smallest_jump: float = 4e-3
+    largest_scatter: float = 8e-3
+    again: int = 3
     stair: float = 4e-3
     max_stairs: int = 25
     past: float = 0.02
@@ -224,7 +232,12 @@ class HeldVoltageTest:
             run.master.close()
 
     def classify(
-        self, steps: Passing, ends: tuple[int, int], threshold: float, up: bool
+        self,
+        steps: Passing,
+        ends: tuple[int, int],
+        threshold: float,
+        up: bool,
+        resonance: tuple[float, float] | None = None,
     ) -> Verdict:
         """Say whether a motion is lost on the way through the resonance.
 
@@ -237,15 +250,19 @@ class HeldVoltageTest:
         threshold : float
             Speed over omega between the motions below and beyond the resonance.
         up : bool
+        resonance : (float, float), optional
+            Least and largest speed that may divide them: the held course begins before both and
+            ends beyond both, as far as the run goes. By default both are the threshold.
         """
         sign = 1.0 if up else -1.0
+        near, far = (resonance or (threshold, threshold))[:: 1 if up else -1]
 
-        def beyond(point: Settled) -> bool:
+        def beyond(point: Settled, threshold: float = threshold) -> bool:
             return sign * (point.speed - threshold) > 0.0
 
         step, back = steps.before, max(1, steps.row - steps.before)
         low = self.hold_step(step)
-        while math.isnan(low.speed) or beyond(low) or self.falls_back(low, sign):
+        while math.isnan(low.speed) or beyond(low, near) or self.falls_back(low, sign):
             if step <= ends[0]:
                 if math.isnan(low.speed):
                     return Verdict(UNDECIDED)
@@ -256,12 +273,32 @@ class HeldVoltageTest:
             low = self.hold_step(step)
         target = self.target(steps.after, ends[1], sign)
         points = self.stairs(low, target)
+        if not beyond(points[-1], far):
+            points += self.further(points[-1], target, ends[1], sign, far)
         if not beyond(points[-1]):
             return Verdict(UNDECIDED, points[-1].voltage, target)
         verdict = self.between(list(points), sign)
-        if verdict.what == FOLLOWS and not self.comes_back(points):
-            return Verdict(UNDECIDED, low.voltage, target)
+        if verdict.what == FOLLOWS and not (beyond(points[-1], far) and self.comes_back(points)):
+            return Verdict(UNDECIDED, low.voltage, points[-1].voltage)
         return verdict
+
+    def further(
+        self, point: Settled, voltage: float, last: int, sign: float, speed: float
+    ) -> list[Settled]:
+        """Go on from a voltage in steps until a speed is well past, but no further than the run
+        goes; those where nothing settles are left out.
+        """
+        end, points = self.voltage(last), [point]
+        step, missing = sign * self.settings.stair * self.volts, sign * (speed - point.speed)
+        left = self.settings.max_stairs + math.ceil(max(missing, 0.0) / self.settings.stair)
+        while left and sign * (end - voltage) > 0.0:
+            voltage = min(voltage + step, end) if sign > 0.0 else max(voltage + step, end)
+            held = self.step_from(points[-1], voltage)
+            points += [held] if math.isfinite(held.speed) else []
+            left -= 1
+            if sign * (points[-1].speed - speed) > 0.0:
+                left = min(left, round(self.settings.past / self.settings.stair))
+        return points[1:]
 
     def target(self, after: int, last: int, sign: float) -> float:
         """Return the voltage to go to: well past the passing, but no further than the run goes,
@@ -303,7 +340,7 @@ class HeldVoltageTest:
         """Bracket the largest rise (``sign`` -1: fall) of the settled speed, and say what it is."""
         for _ in range(self.settings.max_holds):
             i, low, high = largest_change(points, sign)
-            if sign * (high.speed - low.speed) < self.settings.smallest_jump + noise(low, high):
+            if sign * (high.speed - low.speed) < self.smallest_change(low, high):
                 return Verdict(FOLLOWS)
             if self.is_within(low, high, self.settings.width):
                 short = high.origin == low.voltage
@@ -323,18 +360,36 @@ class HeldVoltageTest:
             points.insert(i + 1, middle)
         return Verdict(UNDECIDED, low.voltage, high.voltage)
 
+    def smallest_change(self, low: Settled, high: Settled) -> float:
+        """Return the change of the speed over omega below which two neighbours show no jump."""
+        settings = self.settings
+        return min(settings.smallest_jump + noise(low, high), settings.largest_scatter)
+
     def inside(self, low: Settled, high: Settled) -> Iterator[Settled]:
         """Yield voltages between two, held: the middle first."""
         for part in (0.5, 0.25, 0.75):
             yield self.step_from(low, low.voltage + part * (high.voltage - low.voltage))
 
     def there_and_back(self, low: Settled, high: Settled) -> int:
-        """Go back to the lower voltage: a motion was lost where the speed does not come back."""
+        """Go back to the lower voltage: a motion was lost where the speed does not come back, and
+        the motion there lasts.
+        """
         back = self.step_from(high, low.voltage)
         if abs(back.speed - low.speed) > self.settings.two_motions + noise(back, low):
-            return LOST
+            return LOST if self.lasts(low) else UNDECIDED
         comes_back = math.isfinite(back.speed) and not self.differ(back, low)
         return FOLLOWS if comes_back else UNDECIDED
+
+    def lasts(self, point: Settled) -> bool:
+        """Return whether an irregular motion lasts when its voltage is held again: where it ends by
+        chance, it may have been lost before. Others have settled.
+        """
+        later, left = point, self.settings.again if point.error > self.settings.tolerance else 0
+        for _ in range(left):
+            later = self.step_from(later, point.voltage)
+            if self.differ(later, point):
+                return False
+        return True
 
     def is_within(self, low: Settled, high: Settled, width: float) -> bool:
         """Return whether two voltages are as close as is asked for, over K omega."""

@@ -19,7 +19,7 @@ import numpy as np
 
 from ..structures.drive import Drive
 from ..structures.structure import Structure
-from . import averaged
+from . import averaged, own_resonance
 from .jumps import running_mean
 
 UNDECIDED, CONVERGED, BOUNDED, NO_LOAD, NEITHER = range(5)
@@ -182,7 +182,7 @@ def settling_test(structure: Structure, drive: Drive, stay: int) -> SettlingTest
     """Return the test for a system."""
     omega = structure.omega
     return SettlingTest(
-        threshold=averaged.dividing_speed(structure, drive) * omega,
+        threshold=own_resonance.dividing_speed(structure, drive) * omega,
         omega=omega,
         slow=slowest_time(structure, drive),
         motor=motor_time(structure, drive),

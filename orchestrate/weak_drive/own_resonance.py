@@ -1,0 +1,132 @@
+"""Resonance of the delaminated structure in the box: its elastic mode with one impact a revolution.
+
+Without dampers and with e = 1 the halves and the box move freely from one impact to the next, even
+in time about the middle of the flight. With the frequencies w and modes of the free system, scaled
+to mass 1, and n the change of the gap in each mode, the impact turns all velocities round where
+each amplitude is as n / (w sin(w pi/Omega)), and the gap closes at the flight's ends where
+
+    sum n^2 cot(w pi/Omega) / w = 0.
+
+The sum rises with Omega between any two of its poles, so each root is bracketed. The mode is that
+with a positive gap between the two upper frequencies w. Its speed does not depend on the amplitude.
+It is mostly that of the bonded structure, within a few thousandths; where the halves are unlike it
+is another one. A clearance is left out: motions at the resonance are large beside it.
+
+Non-dimensional throughout: speeds over omega.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from itertools import pairwise
+
+import numpy as np
+
+from ..structures.drive import Drive
+from ..structures.structure import Structure
+from . import averaged
+
+CLOSE = 1e-9  # to a pole, in parts of it
+SLOWEST = 1e-6  # frequency over omega of a box without springs
+SAMPLES = 400  # of a flight, whose gap is positive
+
+
+@lru_cache(maxsize=64)
+def elastic_resonance(structure: Structure, drive: Drive) -> float:
+    """Return the speed over omega of the mode; the bonded resonance where there is none.
+
+    Parameters
+    ----------
+    structure : Structure
+        Taken as delaminated.
+    drive : Drive
+    """
+    from scipy.optimize import brentq
+
+    w, n = free_modes(structure, drive)
+
+    def gap_at_impact(Omega: float) -> float:
+        return float((n**2 / (w * np.tan(w * np.pi / Omega))).sum())
+
+    poles = (w[:, np.newaxis] / np.arange(1, 1 + int(w[-1] / w[-2]))).ravel()
+    poles = np.unique(poles[(poles >= w[-2]) & (poles <= w[-1])])
+    bonded, roots = averaged.resonance(structure, drive), []
+    for low, high in pairwise(poles.tolist()):
+        ends = low * (1.0 + CLOSE), high * (1.0 - CLOSE)
+        if gap_at_impact(ends[0]) < 0.0 < gap_at_impact(ends[1]):
+            root = float(brentq(gap_at_impact, *ends, xtol=1e-12))
+            if keeps_open(w, n, root):
+                roots.append(root)
+    return min(roots, key=lambda root: abs(root - bonded), default=bonded)
+
+
+def free_modes(structure: Structure, drive: Drive) -> tuple[np.ndarray, np.ndarray]:
+    """Return frequencies over omega of the halves and the box without contact, ascending, and the
+    change of the gap in each mode of mass 1.
+    """
+    from scipy.linalg import eigh
+
+    beta, mu = drive.beta(structure), structure.mu
+    masses = beta * np.array([1.0, mu])
+    inertia = np.diag([*masses, 1.0 + masses.sum()])  # displacements in the box, and its own
+    inertia[:2, 2] = inertia[2, :2] = masses
+    springs = np.diag([beta, beta * structure.kappa, drive.Omega_b(structure) ** 2])
+    squares, modes = eigh(springs, inertia)
+    return np.sqrt(np.maximum(squares, SLOWEST**2)), modes[1] - modes[0]
+
+
+def keeps_open(w: np.ndarray, n: np.ndarray, Omega: float) -> bool:
+    """Return whether the gap of a mode has one sign throughout its flight."""
+    angles = np.pi / Omega * np.linspace(-1.0, 1.0, SAMPLES + 1)[1:-1]
+    gaps = np.cos(np.outer(angles, w)) @ (n**2 / (w * np.sin(w * np.pi / Omega)))
+    return bool((gaps > 0.0).all() or (gaps < 0.0).all())
+
+
+def resonance(structure: Structure, drive: Drive) -> float:
+    """Return the speed over omega of the structure's resonance.
+
+    That of the bonded structure also serves the delaminated one, unless its own lies clearly apart:
+    by more than half the distance of the bonded folds, and half the width of its resonance.
+    """
+    return averaged.resonance(structure, drive) + clear_shift(structure, drive)
+
+
+def resonances(structure: Structure, drive: Drive) -> tuple[float, float]:
+    """Return the least and the largest speed over omega of the resonances of a structure, bonded
+    and delaminated; the same unless they lie clearly apart.
+    """
+    both = (structure.as_bonded(), structure.as_delaminated())
+    low, high = sorted(resonance(kind, drive) for kind in both)
+    return low, high
+
+
+def dividing_speed(structure: Structure, drive: Drive) -> float:
+    """Return the speed over omega between motions below and beyond the structure's resonance: as
+    :func:`.averaged.dividing_speed`, moved with the resonance.
+    """
+    return averaged.dividing_speed(structure, drive) + clear_shift(structure, drive)
+
+
+def dividing_speeds(structure: Structure, drive: Drive) -> tuple[float, float]:
+    """Return the least and the largest speed over omega that may divide motions: by the bonded
+    resonance, and by the delaminated structure's own; the same for a bonded one.
+    """
+    bonded = averaged.dividing_speed(structure, drive)
+    low, high = sorted((bonded, bonded + shift(structure, drive)))
+    return low, high
+
+
+def shift(structure: Structure, drive: Drive) -> float:
+    """Return how far the structure's resonance lies beyond that of the bonded one, over omega."""
+    if structure.bonded:
+        return 0.0
+    return elastic_resonance(structure, drive) - averaged.resonance(structure, drive)
+
+
+def clear_shift(structure: Structure, drive: Drive) -> float:
+    """Return :func:`shift` where it is clear, else 0."""
+    distance = shift(structure, drive)
+    folds = averaged.folds(structure, drive) if distance else []
+    half = 0.5 * (folds[-1].Omega - folds[0].Omega) if folds else 0.0
+    clear = abs(distance) > max(half, averaged.half_width(structure, drive))
+    return distance if clear else 0.0

@@ -1,0 +1,107 @@
+"""Where the delaminated structure resonates, and that `couple` looks there."""
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from orchestrate import Structure
+from orchestrate.weak_drive import averaged, own_resonance
+from orchestrate.weak_drive.held import FOLLOWS, LOST
+from tools.trust.verdicts import with_folds
+
+from .coupled import BEAM, QUICK, System
+from .test_couple import run
+
+APART = System(*with_folds(np.random.default_rng(86000376301191)))
+OWN_LOSSES = (1.4370, 1.4460)  # over K omega: where held voltages lose its motion, down and up
+
+
+def closure(system, Omega):
+    """How far the elastic system is from closing a revolution with one impact and no gap there.
+
+    In absolute coordinates, by the matrix exponential: the least singular value.
+    """
+    structure, drive = system
+    beta, mu, kappa = drive.beta(structure), structure.mu, structure.kappa
+    masses = np.array([beta, beta * mu, 1.0])
+    first, second, box = beta, beta * kappa, drive.Omega_b(structure) ** 2
+    springs = np.array(
+        [[first, 0.0, -first], [0.0, second, -second], [-first, -second, first + second + box]]
+    )
+    rates = np.block(
+        [[np.zeros((3, 3)), np.eye(3)], [-springs / masses[:, None], np.zeros((3, 3))]]
+    )
+    impact = np.eye(6)
+    pair, share = np.array([-1.0, 1.0]), np.array([1.0 / masses[0], 1.0 / masses[1]])
+    impact[3:5, 3:5] -= 2.0 * np.outer(share * pair, pair) / share.sum()
+    gap = np.array([[-1.0, 1.0, 0.0, 0.0, 0.0, 0.0]])
+    once = impact @ expm(rates * 2.0 * np.pi / Omega) - np.eye(6)
+    return np.linalg.svd(np.vstack([once, gap]), compute_uv=False)[-1]
+
+
+@pytest.mark.parametrize("system", [QUICK, BEAM, APART])
+def test_the_elastic_mode_repeats_after_a_revolution(system):
+    Omega = own_resonance.elastic_resonance(*system)
+    assert closure(system, Omega) < 1e-10
+    assert closure(system, Omega + 0.01) > 1e-4
+
+
+def test_it_is_mostly_that_of_the_bonded_structure():
+    """And the speed that divides motions is then that of the averaged theory, to the bit."""
+    for system in (QUICK, BEAM):
+        assert 0.0 < abs(own_resonance.shift(*system)) < 1e-3
+        assert own_resonance.dividing_speed(*system) == averaged.dividing_speed(*system)
+        assert own_resonance.resonance(*system) == averaged.resonance(*system)
+
+
+def test_where_it_lies_apart_it_divides_the_motions():
+    """Beyond both bonded folds."""
+    folds = averaged.folds(*APART)
+    assert own_resonance.elastic_resonance(*APART) > folds[-1].Omega
+    moved = own_resonance.dividing_speed(*APART) - averaged.dividing_speed(*APART)
+    assert moved == own_resonance.shift(*APART) > 0.04
+    bonded = APART.as_bonded()
+    assert own_resonance.dividing_speed(*bonded) == averaged.dividing_speed(*bonded)
+
+
+def test_halves_that_swing_alike_never_part():
+    alike = Structure.nondimensional(mu=1.3, kappa=1.3)
+    assert own_resonance.shift(alike, QUICK.drive) == 0.0
+
+
+def decided(found, way):
+    """That there is no false none; where the motion is lost, over K omega."""
+    at = found.sel(jump=way)
+    assert at.held_verdict != FOLLOWS and at.decided != "by the record"
+    if at.held_verdict == LOST:
+        place = float(at.held_jumps) / APART.drive.volts(APART.structure)
+        assert OWN_LOSSES[0] < place < OWN_LOSSES[1]
+        assert 1.42 < float(at.jump_speed) / APART.structure.omega < 1.47
+
+
+def test_a_jump_beyond_the_bonded_resonance():
+    """It was said that the speed passes the resonance without a gap."""
+    decided(run(APART, (1.37, 1.5), 2e-4, back=False, settle=100.0, step=None), "up")
+
+
+def test_a_ramp_that_ends_before_its_resonance():
+    """It was said that there is no jump."""
+    found = run(APART, (1.37, 1.43), 2e-4, back=False, settle=100.0, step=None)
+    assert "ends below the resonance" in str(found.no_jump.sel(jump="up").item())
+
+
+def test_a_ramp_that_ends_between_the_two_resonances():
+    """It has passed the one, and the jump is still ahead: the answer names the speed needed."""
+    found = run(APART, (1.48, 1.44), 2e-4, back=False, settle=100.0, step=None, hold=2000.0)
+    down = found.sel(jump="down")
+    assert down.decided == "undecided"
+    needed = averaged.dividing_speed(*APART) * APART.structure.omega
+    assert f"takes it below {needed:.5g} rad/s" in str(down.no_jump.item())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rate", [2e-4, 1e-4, 5e-5, 2e-5])
+def test_jumps_beyond_the_bonded_resonance_both_ways(rate):
+    found = run(APART, (1.3, 1.6), rate, step=None)
+    for way in ("up", "down"):
+        decided(found, way)
