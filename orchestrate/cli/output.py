@@ -229,15 +229,23 @@ class Files:
         Endings.
     fresh : bool
         Whether the result is to be computed: then what stands beside it is made anew too.
+    over : str
+        Ending of the pictures' names, where they show more than the result.
     """
 
     result: Path
     formats: tuple[str, ...]
     plots: tuple[str, ...]
     fresh: bool
+    over: str = ""
+
+    @property
+    def picture(self) -> Path:
+        """The name of the pictures, with the result's ending."""
+        return self.result.with_name("_".join(filter(None, [self.result.stem, self.over])) + ".nc")
 
     @classmethod
-    def from_options(cls, arguments: argparse.Namespace, name: str) -> Files:
+    def from_options(cls, arguments: argparse.Namespace, name: str, over: str = "") -> Files:
         """Return the files of a question, checked before anything is computed.
 
         Raises
@@ -253,7 +261,7 @@ class Files:
             raise InputError(f"--store {store}: expected a name that ends in .nc")
         result = store or arguments.output / f"{name}.nc"
         check_output(result.parent)
-        files = cls(result, formats, plots, arguments.force or not result.exists())
+        files = cls(result, formats, plots, arguments.force or not result.exists(), over)
         others = [path for path in files.beside() if existing_files(path)]
         if store is not None and others and not result.exists():
             raise InputError(
@@ -264,13 +272,17 @@ class Files:
 
     def beside(self) -> list[Path]:
         """Return the other files that this result would have, by their main names."""
-        endings = (*(ending for ending in self.formats if ending != "nc"), *self.plots)
-        return [self.result.with_suffix(f".{ending}") for ending in endings]
+        others = [ending for ending in self.formats if ending != "nc"]
+        files = [self.result.with_suffix(f".{ending}") for ending in others]
+        return [*files, *self.pictures()]
+
+    def pictures(self) -> list[Path]:
+        """Return the files of its pictures."""
+        return [self.picture.with_suffix(f".{ending}") for ending in self.plots]
 
     def lacks_pictures(self) -> bool:
         """Return whether a picture has to be drawn."""
-        places = (self.result.with_suffix(f".{ending}") for ending in self.plots)
-        return any(self.fresh or not path.exists() for path in places)
+        return any(self.fresh or not path.exists() for path in self.pictures())
 
     def write(self, data: xr.Dataset, draw: Callable[[], Any] | None) -> None:
         """Write what is missing beside the result, and print all files.
@@ -283,7 +295,7 @@ class Files:
         """
         print(f"{self.result}{'' if self.fresh else ': complete already'}")
         others = export_formats(data, self.result, self.formats, self.fresh)
-        pictures = draw_picture(self.result, self.plots, self.fresh, draw) if draw else []
+        pictures = draw_picture(self.picture, self.plots, self.fresh, draw) if draw else []
         for path in (*others, *pictures):
             print(path)
 

@@ -53,12 +53,18 @@ def along(data: xr.Dataset, parameter: str) -> Along:
     return Along(data[parameter].values, symbol(parameter))
 
 
-def gaps(data: xr.Dataset, values: xr.DataArray) -> tuple[xr.DataArray, str]:
-    """Return gaps over a eta^2 as an axis shows them, in m for a structure in SI, and their
-    label.
+def gap_unit(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
+    """Return the unit in m of an axis of gaps, with its label; 0 where it has them over a eta^2.
+
+    It is in m for a structure in SI.
     """
     if not (in_si(data) and {"amplitude", "eta"} <= set(data.coords)):
-        return values, XI_REL
-    metres = values * data.amplitude * data.eta**2
-    factor, name = prefix(float(metres.max()))
-    return metres / factor, f"gap $x_2 - x_1$ in {name}m"
+        return 0.0, XI_REL
+    factor, name = prefix(float((values * data.amplitude * data.eta**2).max()))
+    return factor, f"gap $x_2 - x_1$ in {name}m"
+
+
+def gaps(data: xr.Dataset, values: xr.DataArray) -> tuple[xr.DataArray, str]:
+    """Return gaps over a eta^2 as an axis shows them, with its label, see :func:`gap_unit`."""
+    factor, label = gap_unit(data, values)
+    return (values * data.amplitude * data.eta**2 / factor if factor else values), label
