@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ..flags import flag_words
 from .labels import symbol, title_from_attributes
 from .style import BLACK, BLUE, GREEN, ORANGE, RED, panels, styled
 
+MARKERS = ("*", "D", "o", "s", "^", "P", "v", "X", "<", ">", "h")  # by number of the point's kind
 COLOURS = {
     "fold": ORANGE,
     "period doubling": RED,
@@ -35,7 +38,24 @@ def draw(*curves: xr.Dataset, title: str = "") -> Figure:
         label = kind if kind not in shown else None
         plane.plot(curve[first], curve[second], color=COLOURS[kind], linewidth=1.2, label=label)
         shown.add(kind)
+    for curve in curves:
+        draw_points(plane, curve, first, second, shown)
     title = title or title_from_attributes(curves[0])
     plane.set(xlabel=symbol(first), ylabel=symbol(second), title=title)
-    figure.legend(loc="outside lower right", ncols=len(shown))
+    figure.legend(loc="outside lower right", ncols=min(4, len(shown)))
     return figure
+
+
+def draw_points(plane: Axes, curve: xr.Dataset, first: str, second: str, shown: set[str]) -> None:
+    """Draw a marker at each point of codimension two; each kind once in the legend."""
+    if not curve.sizes.get("codimension_two"):
+        return
+    words = flag_words(curve.codimension_two_kind.attrs)
+    x, y = (curve[f"codimension_two_{name}"].values for name in (first, second))
+    for number, kind in enumerate(curve.codimension_two_kind.values):
+        word = words[int(kind)]
+        label = word if word not in shown else None
+        plane.plot(
+            x[number], y[number], MARKERS[int(kind) % len(MARKERS)], color=BLACK, label=label
+        )
+        shown.add(word)
