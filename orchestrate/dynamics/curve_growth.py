@@ -15,6 +15,7 @@ the curve is broken there: it is connected only where the distance still falls.
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -131,8 +132,8 @@ class GrownCurve:
 
 
 def distance_of(one: CurvePoint, other: CurvePoint) -> float:
-    """Return the distance of two points."""
-    return float(np.linalg.norm(other.state - one.state))
+    """Return the distance of two points, the same on every processor."""
+    return math.dist(other.state.tolist(), one.state.tolist())
 
 
 def power_of(history: list[tuple[float, float]]) -> float:
@@ -191,11 +192,11 @@ class CurveGrower:
 
     def angle_to(self, last: CurvePoint, point: CurvePoint) -> float:
         """Return the angle of the chord to a point with the last one; 0 after a break."""
-        chord = point.state - last.state
-        size = float(np.linalg.norm(chord))
+        size = distance_of(last, point)
         if self.direction is None or size <= STILL * self.settings.size:
             return 0.0
-        return float(np.arccos(np.clip(self.direction @ chord / size, -1.0, 1.0)))
+        cosine = math.fsum((self.direction * (point.state - last.state)).tolist()) / size
+        return math.acos(max(-1.0, min(1.0, cosine)))
 
     def locate(self, low: CurvePoint, high: CurvePoint) -> Border:
         """Locate where the itinerary first differs from that of the lower point."""

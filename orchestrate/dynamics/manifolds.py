@@ -55,6 +55,7 @@ SIDES = ("+", "-")
 ENDS = {0: LENGTH, 1: POINTS, 2: CONVERGED}
 COUNTS = ("impact_count", "contact_count")
 ROUNDING = 16.0 * float(np.finfo(float).eps)  # of a state's largest number, with room
+ROUNDED = 2.0**-44, 2.0**-36  # to that a saddle's numbers are rounded, and its eigenvector
 MIN_GAP = 2.0  # starting distances: a gap at phase 0 that is smaller leaves no room for a start
 
 
@@ -96,10 +97,12 @@ class Saddle:
                 f"start: an orbit with {len(outside)} multipliers outside the unit circle; "
                 "expected a saddle with one, whose unstable manifold is a curve"
             )
-        size = float(np.abs(orbit.nodes[:, 1:]).max())
-        state = stroboscopic_states(orbit)[0]
-        direction = unstable_direction(orbit)
-        return cls(state, direction, float(outside[0].real), orbit.sequence.periods, size)
+        largest = float(np.abs(orbit.nodes[:, 1:]).max())
+        size = float(coarsened(np.array([largest]), largest)[0])
+        state = coarsened(stroboscopic_states(orbit)[0], size)
+        direction = coarsened(unstable_direction(orbit), 1.0, ROUNDED[1])
+        multiplier = float(coarsened(outside[:1].real, 1.0, ROUNDED[1])[0])
+        return cls(state, direction, multiplier, orbit.sequence.periods, size)
 
     @property
     def growth(self) -> float:
@@ -114,6 +117,15 @@ class Saddle:
     def start(self, distance: float) -> Floats:
         """Return a state on the tangent of the manifold, so far from the orbit."""
         return self.state + distance * self.direction
+
+
+def coarsened(numbers: Floats, size: float, to: float = ROUNDED[0]) -> Floats:
+    """Return numbers without their last bits, in which linear algebra differs by the processor.
+
+    All that follows from them is the FMU's, and the same everywhere.
+    """
+    unit = to * 2.0 ** math.floor(math.log2(size))
+    return np.asarray(np.round(numbers / unit) * unit)
 
 
 def unstable_direction(orbit: PeriodicOrbit) -> Floats:
