@@ -12,6 +12,7 @@ from .dynamics.borders import border as border
 from .dynamics.branches import branch as branch
 from .dynamics.impact_statistics import impact_statistics as impact_statistics
 from .dynamics.lyapunov import lyapunov as lyapunov
+from .dynamics.manifolds import manifold as manifold
 from .dynamics.orbits import orbit as orbit
 from .dynamics.parameter_map import map as map
 from .dynamics.poincare import poincare as poincare

@@ -256,7 +256,16 @@ def test_no_files_import_each_other_in_a_circle():
 
 
 def test_commands_do_not_know_each_other():
-    shared = {"__init__", "declared", "drives", "grammar", "options", "output", "question"}
+    shared = {
+        "__init__",
+        "declared",
+        "drives",
+        "grammar",
+        "options",
+        "output",
+        "overlay",
+        "question",
+    }
     commands = {path.stem for path in (ROOT / "orchestrate" / "cli").glob("*.py")} - shared
     assert {"build", "sweep", "paper"} <= commands
     for command in commands:

@@ -21,7 +21,7 @@ from orchestrate.dynamics.orbits import orbit
 from orchestrate.dynamics.stable_windows import StableWindow, kind_names, stable_windows
 from orchestrate.errors import InputError
 from orchestrate.figures import borders as borders_figure
-from orchestrate.figures import branches as branches_figure
+from orchestrate.figures import orbit_diagram
 from orchestrate.files import write_whole
 from orchestrate.response.sweep import sweep
 from orchestrate.structures import Excitation, Structure
@@ -207,7 +207,7 @@ def main() -> None:
     text = put(text, "windows", all_windows())
     write_whole(page, lambda place: place.write_text(text, "utf-8"))
     responses = sweep(PAPER, eta=FIGURE_6)
-    save_small(branches_figure.draw(*answer.values(), responses=responses), DOCS / "branches.png")
+    save_small(orbit_diagram.draw(responses, overlay=list(answer.values())), DOCS / "branches.png")
     save_small(borders_figure.draw(*windows(answer)), DOCS / "borders.png")
 
 

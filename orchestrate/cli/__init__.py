@@ -32,6 +32,7 @@ from . import (
     explore,
     jump_voltages,
     lyapunov,
+    manifold,
     map,
     orbit,
     paper,
@@ -49,7 +50,7 @@ from .process import Terminated, outputs, signals
 
 COMMANDS = (
     *(build, simulate, shake, analyse, diagnose, resonance, spectra, sweep, map),
-    *(lyapunov, poincare, attractors, basin, orbit, branch, border),
+    *(lyapunov, poincare, attractors, basin, orbit, manifold, branch, border),
     *(couple, capture, passage, jump_voltages, drive_branch),
     *(explore, report, paper),
 )

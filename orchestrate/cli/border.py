@@ -60,7 +60,9 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def report(data: xr.Dataset) -> None:
-    """Print the curve's extent, and why it ends."""
+    """Print the curve's extent, its points of codimension two, and why it ends."""
+    from ..flags import flag_words
+
     print(f"{data.attrs['kind']}: {data.sizes['point']} points")
     for name in map(str, data.attrs["over"]):
         first, last = float(data[name][0]), float(data[name][-1])
@@ -68,4 +70,12 @@ def report(data: xr.Dataset) -> None:
         ends = f"{format_parameter(data, name, first)} to {format_parameter(data, name, last)}"
         reach = f"{format_parameter(data, name, low)} to {format_parameter(data, name, high)}"
         print(f"from {ends}, within {reach}")
+    words = flag_words(data.codimension_two_kind.attrs)
+    for number, kind in enumerate(data.codimension_two_kind.values):
+        at = data.isel(codimension_two=number)
+        names = [str(name) for name in data.attrs["over"]]
+        where = [
+            format_parameter(data, name, float(at[f"codimension_two_{name}"])) for name in names
+        ]
+        print(f"{words[int(kind)]} at {', '.join(where)}")
     print(f"first end: {data.attrs['first_end']}; last end: {data.attrs['last_end']}")

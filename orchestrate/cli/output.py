@@ -261,6 +261,8 @@ class Files:
         Whether the result is to be computed: then what stands beside it is made anew too.
     units : str
         Of ``--units``: tables and pictures in these have them in their names.
+    over : str
+        Ending of the pictures' names, where they show more than the result.
     """
 
     result: Path
@@ -268,9 +270,10 @@ class Files:
     plots: tuple[str, ...]
     fresh: bool
     units: str = ""
+    over: str = ""
 
     @classmethod
-    def from_options(cls, arguments: argparse.Namespace, name: str) -> Files:
+    def from_options(cls, arguments: argparse.Namespace, name: str, over: str = "") -> Files:
         """Return the files of a question, checked before anything is computed.
 
         Raises
@@ -287,7 +290,7 @@ class Files:
         result = store or arguments.output / f"{name}.nc"
         check_output(result.parent)
         units = str(units_option(arguments)).replace(", ", "-").replace("/", "_")
-        files = cls(result, formats, plots, arguments.force or not result.exists(), units)
+        files = cls(result, formats, plots, arguments.force or not result.exists(), units, over)
         others = [path for path in files.beside() if existing_files(path)]
         if store is not None and others and not result.exists():
             raise InputError(
@@ -298,19 +301,31 @@ class Files:
 
     def beside(self) -> list[Path]:
         """Return the other files that this result would have, by their main names."""
-        endings = (*(ending for ending in self.formats if ending != "nc"), *self.plots)
-        return [self.shown.with_suffix(f".{ending}") for ending in endings]
+        others = [ending for ending in self.formats if ending != "nc"]
+        files = [self.shown.with_suffix(f".{ending}") for ending in others]
+        return [*files, *self.pictures()]
 
     @property
     def shown(self) -> Path:
-        """The result's name for tables and pictures, whose units may be others than asked in."""
-        units = f"_{self.units}" if self.units else ""
-        return self.result.with_name(f"{self.result.stem}{units}{self.result.suffix}")
+        """The result's name for tables, whose units may be others than asked in."""
+        return self._with_endings(self.units)
+
+    @property
+    def picture(self) -> Path:
+        """The same for pictures, with the result's ending."""
+        return self._with_endings(self.units, self.over)
+
+    def _with_endings(self, *endings: str) -> Path:
+        name = "_".join(filter(None, [self.result.stem, *endings]))
+        return self.result.with_name(f"{name}{self.result.suffix}")
+
+    def pictures(self) -> list[Path]:
+        """Return the files of its pictures."""
+        return [self.picture.with_suffix(f".{ending}") for ending in self.plots]
 
     def lacks_pictures(self) -> bool:
         """Return whether a picture has to be drawn."""
-        places = (self.shown.with_suffix(f".{ending}") for ending in self.plots)
-        return any(self.fresh or not path.exists() for path in places)
+        return any(self.fresh or not path.exists() for path in self.pictures())
 
     def write(self, data: xr.Dataset, draw: Callable[[], Any] | None) -> None:
         """Write what is missing beside the result, and print all files.
@@ -323,7 +338,7 @@ class Files:
         """
         print(f"{self.result}{'' if self.fresh else ': complete already'}")
         others = export_formats(data, self.shown, self.formats, self.fresh)
-        pictures = draw_picture(self.shown, self.plots, self.fresh, draw) if draw else []
+        pictures = draw_picture(self.picture, self.plots, self.fresh, draw) if draw else []
         for path in (*others, *pictures):
             print(path)
 

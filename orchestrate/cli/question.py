@@ -53,13 +53,15 @@ def carry_out(
     report: Callable[[xr.Dataset], None],
     draw: Draw | None,
     ending: str = "",
+    *,
+    function: str = "",
+    over: str = "",
 ) -> xr.Dataset:
     """Ask a question of the public API; print the result, write the files.
 
     Parameters
     ----------
     arguments : argparse.Namespace
-        ``command`` is the function's name in the public face.
     structure : Structure
     question : mapping
         All other keywords of the function.
@@ -69,6 +71,10 @@ def carry_out(
         From the result to a picture; none where there is nothing to draw.
     ending : str
         Of the files' names, where their pictures show more than this result.
+    function : str
+        Its name in the public face; by default the command's.
+    over : str
+        Ending of the pictures' names alone.
 
     Returns
     -------
@@ -77,10 +83,10 @@ def carry_out(
     """
     import orchestrate
 
-    command = arguments.command
+    command = function or arguments.command
     asked, units = asked_units(arguments, question)
     named = name_of(command, structure, question, asked.frequency)
-    files = Files.from_options(arguments, "_".join(filter(None, [named, ending])))
+    files = Files.from_options(arguments, "_".join(filter(None, [named, ending])), over)
     ask = getattr(orchestrate, command)
     print_frequency_notes(arguments, structure, question)
     with preparing_a_picture(draw is not None and files.lacks_pictures()):
@@ -132,12 +138,12 @@ def carry_out_beside(
     carry_out(arguments, structure.as_delaminated(), question, report, beside, "with_bonded")
 
 
-def picture_of(data: xr.Dataset, **beside: xr.Dataset) -> Any:
-    """Draw an answer that needs no more than the answer, or one of the bonded structure beside."""
-    from ..figures.plot import BESIDE, DRAW
+def picture_of(data: xr.Dataset, **more: Any) -> Any:
+    """Draw an answer; with one of the bonded structure beside it, or branches over it."""
+    from ..figures.plot import DRAW
 
     command = data.attrs["call"].partition("(")[0]
-    return BESIDE[command](data, **beside) if beside else DRAW[command](data)
+    return DRAW[command](data, **more)
 
 
 def is_curve(question: Question) -> bool:

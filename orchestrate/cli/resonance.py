@@ -6,9 +6,11 @@ import argparse
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
+from ..errors import InputError
 from ..units import scale_of
 from .grammar import is_one
 from .options import Commands, excitation_by_level, excitation_of, structure_of
+from .overlay import add_overlay, drawing
 from .question import carry_out, format_parameter, is_curve, parameter_of, picture_of, print_table
 
 if TYPE_CHECKING:
@@ -36,18 +38,24 @@ def add_parser(commands: Commands) -> None:
     )
     question = commands.ask("resonance", run, text, EXAMPLES)
     question.declare("direction", "transient", "samples", "prominence", "jump")
+    add_overlay(question)
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Run the command."""
     structure = structure_of(arguments)
+    keywords = arguments.question.keywords(arguments)
     if arguments.g is not None and not is_one(arguments.g):
-        arguments.command = "resonance_levels"
-        excitation, told = excitation_by_level(arguments, structure), report_levels
-    else:
-        excitation, told = excitation_of(arguments, structure, si=True), report
-    question = {**excitation, **arguments.question.keywords(arguments)}
-    carry_out(arguments, structure, question, told, picture_of if is_curve(excitation) else None)
+        if arguments.overlay:
+            raise InputError(f"--overlay: with several levels, --g {arguments.g}; expected one")
+        levels = excitation_by_level(arguments, structure)
+        draw = picture_of if is_curve(levels) else None
+        question, function = {**levels, **keywords}, "resonance_levels"
+        carry_out(arguments, structure, question, report_levels, draw, function=function)
+        return
+    excitation = excitation_of(arguments, structure, si=True)
+    picture, over = drawing(arguments, structure, excitation)
+    carry_out(arguments, structure, {**excitation, **keywords}, report, picture, over=over)
 
 
 def report(data: xr.Dataset) -> None:

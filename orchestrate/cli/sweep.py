@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING
 
 from .grammar import state_of
 from .options import Commands, add_over, structure_of, varied_arguments
+from .overlay import add_overlay, drawing
 from .question import (
     carry_out,
     format_parameter,
     format_ranges,
-    is_curve,
     is_flag,
     parameter_of,
-    picture_of,
     print_table,
     with_unit,
 )
@@ -27,6 +26,7 @@ EXAMPLES = """  {program} sweep                                           the pa
   {program} sweep --eta 1.0:1.5:0.0005 --direction both     up and down: non-unique responses
   {program} sweep --over e --values 0.05:0.95:0.003 --eta 1.2
   {program} sweep --structure beam --hz 8:20:0.05 --g 0.02 --format nc,csv
+  {program} sweep --eta 2.4:2.8:0.002 --overlay branch.nc   with what branch has written
 Interrupted, the same command goes on where it was. A finished result is left as it is."""
 PAPER_RANGE = "0.1:8.0:0.001"  # frequency ratios of Figure 6
 KINDS = {
@@ -51,6 +51,7 @@ def add_parser(commands: Commands) -> None:
     text = "state that the first value starts from, m and m/s (default: rest)"
     question.add("start", state_of, metavar="X1,X2,V1,V2", help=text)
     question.declare("transient", "samples", "tolerance")
+    add_overlay(question)
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -61,7 +62,8 @@ def run(arguments: argparse.Namespace) -> None:
     question = {**excitation, "direction": direction, **arguments.question.keywords(arguments)}
     if question["start"] is None:
         del question["start"]  # a file's name has always been without it
-    carry_out(arguments, structure, question, report, picture_of if is_curve(excitation) else None)
+    draw, over = drawing(arguments, structure, excitation)
+    carry_out(arguments, structure, question, report, draw, over=over)
 
 
 def report(data: xr.Dataset) -> None:

@@ -13,14 +13,16 @@ from numpy.typing import ArrayLike
 from ..access import OSCILLATOR, EventInstance, finder
 from ..checks import checked_integer
 from ..errors import InputError
-from ..response.labels import variable
+from ..response.labels import Variable, flags, variable
 from ..response.questions import checked_structure, numbers
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
 from .bifurcation_curve import BifurcationCurve, BifurcationTracer
 from .bifurcations import KINDS, TORUS
-from .branches import check_inside, check_start, complete_excitation, first_nodes
+from .branches import NODES, check_inside, check_start, complete_excitation, first_nodes
+from .closed_form import Floats
+from .codimension_two import POINT_KINDS, locate_points
 from .continuation import NoConvergenceError, Root, newton_correct, unit_vector
 from .families import ACCELERATION, Family, Setting, check_parameters, require_delaminated
 from .orbit_point import OrbitPoint
@@ -34,6 +36,10 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ..running.options import Running
+
+
+POINT = "codimension_two"
+KEPT = ("state", "xi", "multipliers", *NODES)  # variables of orbits that those points have, too
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,17 +82,28 @@ class BorderJob(OneItemQuestion):
         curve, root = first_root(self)
         back, forth = (trace(self, curve, start) for start in (root.reversed(), root))
         roots = [*reversed(back.points[1:]), *forth.points]
+        points = locate_points(curve, roots, (back.end, forth.end))
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            rows = [record(instance, curve, root) for root in roots]
+            rows = [record(instance, curve, root.unknowns, root.residual) for root in roots]
+            at = [record(instance, curve, each.unknowns, each.residual) for each in points]
         angles = [root.unknowns[-1] if self.kind == TORUS else np.nan for root in roots]
         ends = np.array([back.end, forth.end])
-        return {**table_of(rows), "angle": np.array(angles), "ends": ends}
+        return {
+            **table_of(rows),
+            "angle": np.array(angles),
+            "ends": ends,
+            **{f"{POINT}_{name}": part for name, part in (table_of(at) if at else {}).items()},
+            f"{POINT}_kind": np.array([each.kind for each in points], dtype=int),
+            f"{POINT}_place": np.array([each.position for each in points], dtype=float),
+        }
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Return the curve, labelled."""
         import xarray as xr
 
         setting, ends = self.setting, [str(text) for text in table["ends"]]
+        located = {key: part for key, part in table.items() if key.startswith(POINT)}
+        table = {key: part for key, part in table.items() if key not in located}
         names = coordinates(setting, table, "point")
         title = f"{KINDS[self.kind]} over {' and '.join(setting.over)}: {self.structure.label()}"
         attributes = {"title": title, "kind": KINDS[self.kind], "over": list(setting.over)}
@@ -94,7 +111,32 @@ class BorderJob(OneItemQuestion):
         data = {**variables(setting, table, "point"), **names}
         text = "angle of the multipliers on the unit circle"
         data["angle"] = variable("point", table["angle"], "rad", text)
+        data |= point_variables(setting, located)
         return xr.Dataset(data, attrs=attributes).set_coords(list(names))
+
+
+def point_variables(setting: Setting, table: Table) -> dict[str, Variable]:
+    """Return the variables of the points of codimension two."""
+    kinds = flags(POINT, table[f"{POINT}_kind"], "what happens as well", POINT_KINDS)
+    text = "position along the curve's points: between two where not whole"
+    data = {
+        f"{POINT}_kind": kinds,
+        f"{POINT}_place": variable(POINT, table[f"{POINT}_place"], "1", text),
+    }
+    if not len(table[f"{POINT}_kind"]):
+        empty = {name: variable(POINT, np.zeros(0), "1", name) for name in setting.over}
+        return {**data, **{f"{POINT}_{name}": each for name, each in empty.items()}}
+    rows = {key.removeprefix(f"{POINT}_"): part for key, part in table.items()}
+    parameters = coordinates(setting, rows, POINT)
+    data |= {f"{POINT}_{name}": parameters[name] for name in setting.over}
+    for key, (dims, values, attributes) in variables(setting, rows, POINT).items():
+        if key in KEPT:
+            each = (dims,) if isinstance(dims, str) else dims
+            own = tuple(f"{POINT}_node" if dim == "node" else dim for dim in each)
+            data[f"{POINT}_{key}"] = own, values, attributes
+    text = "what is left of both conditions, of the multipliers' polynomial over its largest part"
+    data[f"{POINT}_residual"] = variable(POINT, rows["residual"], "1", text)
+    return data
 
 
 def first_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
@@ -127,12 +169,14 @@ def trace(job: BorderJob, curve: BifurcationCurve, start: Root) -> BranchSegment
     return BifurcationTracer(curve, start, settings).trace(start)
 
 
-def record(instance: EventInstance, curve: BifurcationCurve, root: Root) -> OrbitRecord:
+def record(
+    instance: EventInstance, curve: BifurcationCurve, unknowns: Floats, residual: float
+) -> OrbitRecord:
     """Return the record of an orbit on the curve, run through in the FMU."""
-    unknowns = root.unknowns[: curve.family.size + 2]
-    orbit = curve.orbit(root.unknowns)
+    unknowns = unknowns[: curve.family.size + 2]
+    orbit = curve.orbit(unknowns)
     check = run_in_fmu(instance, curve.family.setting, unknowns[curve.family.size :], orbit)
-    return OrbitRecord.from_root(curve.family, unknowns, root.residual, check)
+    return OrbitRecord.from_root(curve.family, unknowns, residual, check)
 
 
 def border(
@@ -174,13 +218,23 @@ def border(
     -------
     xarray.Dataset
         Along ``point``: both parameters, the orbit there as :func:`orchestrate.orbit` has it, and
-        the ``angle`` of the multipliers at a Neimark-Sacker bifurcation. Attributes: ``kind``, and
-        ``first_end`` and ``last_end``, why the curve ends.
+        the ``angle`` of the multipliers at a Neimark-Sacker bifurcation. Over ``codimension_two``,
+        the points where a second bifurcation happens as well: ``codimension_two_kind``, both
+        parameters, the orbit's state, nodes and multipliers, and ``codimension_two_residual``.
+        Attributes: ``kind``, and ``first_end`` and ``last_end``, why the curve ends.
 
     Raises
     ------
     InputError
         Where arguments contradict each other, or there is no such bifurcation.
+
+    Notes
+    -----
+    Points of codimension two are cusps, fold-flips, resonances 1:1 to 1:4, folds and period
+    doublings with a pair of multipliers on the unit circle, and those at which a bifurcation
+    meets a grazing (Thota and Dankowicz, 2006). See :mod:`orchestrate.dynamics.codimension_two`
+    for the conditions. Degenerate period doublings and Neimark-Sacker bifurcations, where only the
+    sign of a normal form changes, are not looked for.
 
     Examples
     --------

@@ -172,15 +172,23 @@ class LyapunovJob(FollowingQuestion):
 
     def row(self, impacts: Impacts, item: Followed) -> Sequence[float]:
         """Return exponent, error, impacts per period; all exponents and errors if wanted."""
-        row = [*self.exponent(impacts, item), len(impacts.time) / self.periods]
-        return [*row, *self.all_exponents(impacts, item)] if self.spectrum else row
+        rate = len(impacts.time) / self.periods
+        if not self.spectrum:
+            return [*self.exponent(impacts, item), rate]
+        all_of_them = self.all_exponents(impacts, item)
+        largest = all_of_them[::STATES][:2]  # the largest one, and its error
+        if not len(impacts.time):
+            largest = np.array(self.exponent(impacts, item))
+        return [*largest, rate, *all_of_them]
 
     def all_exponents(self, impacts: Impacts, item: Followed) -> NDArray[np.float64]:
         """Return the four exponents and their errors; NaN of alike masses, which never part."""
-        structure, excitation = item.point
+        structure = item.point.structure
         if len(impacts.time):
-            end = self.periods * period(excitation.eta(structure))
-            found = lyapunov_spectrum(impacts, end, item.point, self.blocks, self.batches)
+            self.check_count(impacts, item)
+            found = lyapunov_spectrum(
+                impacts, self.end(item), item.point, self.blocks, self.batches
+            )
         elif structure.bonded:
             found = spectrum_without_impacts(structure)
         else:
@@ -188,27 +196,33 @@ class LyapunovJob(FollowingQuestion):
         return np.concatenate(found)
 
     def exponent(self, impacts: Impacts, item: Followed) -> Exponent:
-        """Return the exponent of one response.
+        """Return the largest exponent of one response.
 
         Raises
         ------
         InputError
             Where it has too few impacts.
         """
-        structure, excitation = item.point
-        eta, count = excitation.eta(structure), len(impacts.time)
-        known = None if count else without_impacts(structure)
+        known = None if len(impacts.time) else without_impacts(item.point.structure)
         if known is not None:
             return known
-        needed = fewest_impacts(self.batches)
+        self.check_count(impacts, item)
+        return largest_exponent(impacts, self.end(item), item.point, self.blocks, self.batches)
+
+    def end(self, item: Followed) -> float:
+        """Return tau at the end of the periods."""
+        return self.periods * period(item.point.excitation.eta(item.point.structure))
+
+    def check_count(self, impacts: Impacts, item: Followed) -> None:
+        """Check that a response has enough impacts."""
+        count, needed = len(impacts.time), fewest_impacts(self.batches)
         if count < needed:
             enough = f" (periods >= {-(-needed * self.periods // count)})" if count else ""
             raise InputError(
-                f"periods = {self.periods}: {count} impacts at eta = {eta:g}; "
+                f"periods = {self.periods}: {count} impacts at "
+                f"eta = {item.point.excitation.eta(item.point.structure):g}; "
                 f"expected periods with at least {needed} impacts{enough}"
             )
-        end = self.periods * period(eta)
-        return largest_exponent(impacts, end, item.point, self.blocks, self.batches)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Return exponent, error and verdict over the parameter."""

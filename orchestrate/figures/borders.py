@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ..flags import flag_words
 from .labels import title_from_attributes
 from .scales import parameter_scale
 from .style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, panels, styled
 
+MARKERS = ("*", "D", "o", "s", "^", "P", "v", "X", "<", ">", "h")  # by number of the point's kind
 COLOURS = {
     "fold": ORANGE,
     "period doubling": RED,
@@ -41,7 +46,36 @@ def draw(*curves: xr.Dataset, title: str = "") -> Figure:
         x, y = curve[first] / x_unit, curve[second] / y_unit
         plane.plot(x, y, color=COLOURS[kind], linewidth=1.2, label=label)
         shown.add(kind)
+    for curve in curves:
+        draw_points(plane, curve, ((first, x_unit), (second, y_unit)), shown)
     title = title or title_from_attributes(curves[0])
     plane.set(xlabel=x_label, ylabel=y_label, title=title)
-    figure.legend(loc="outside lower right", ncols=len(shown))
+    figure.legend(loc="outside lower right", ncols=min(4, len(shown)))
     return figure
+
+
+def draw_points(
+    plane: Axes, curve: xr.Dataset, axes: Iterable[tuple[str, float]], shown: set[str]
+) -> None:
+    """Draw a marker at each point of codimension two; each kind once in the legend.
+
+    Parameters
+    ----------
+    plane : Axes
+    curve : xarray.Dataset
+    axes : iterable of tuple
+        Of both axes the parameter, and what its values are divided by.
+    shown : set of str
+        Kinds in the legend already; added to.
+    """
+    if not curve.sizes.get("codimension_two"):
+        return
+    words = flag_words(curve.codimension_two_kind.attrs)
+    x, y = (curve[f"codimension_two_{name}"].values / unit for name, unit in axes)
+    for number, kind in enumerate(curve.codimension_two_kind.values):
+        word = words[int(kind)]
+        label = word if word not in shown else None
+        plane.plot(
+            x[number], y[number], MARKERS[int(kind) % len(MARKERS)], color=BLACK, label=label
+        )
+        shown.add(word)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,8 @@ from matplotlib.figure import Figure
 
 from .labels import title_from_attributes
 from .marks import Marks, draw_samples, draw_steps
-from .scales import along, gaps, parameter_of
+from .overlay import Overlay
+from .scales import along, gap_unit, gaps, parameter_of
 from .style import BLACK, BLUE, GREY, RED, legend_below, panels, styled, write_in_panel
 
 MARKS = {"up": Marks(BLUE, 2.0, filled=False), "down": Marks(RED)}  # down lies on up
@@ -19,7 +21,9 @@ WIDTHS = {"up": 2.6, "down": 1.0}
 
 
 @styled
-def draw(data: xr.Dataset, title: str = "", decades: int = 6) -> Figure:
+def draw(
+    data: xr.Dataset, title: str = "", decades: int = 6, overlay: Sequence[xr.Dataset] = ()
+) -> Figure:
     """Draw an orbit diagram in the paper's manner; all samples are in it.
 
     Parameters
@@ -30,19 +34,32 @@ def draw(data: xr.Dataset, title: str = "", decades: int = 6) -> Figure:
         What is the same in the whole diagram; by default the structure.
     decades : int
         Of the gap's logarithmic axis, from the largest down; below them it is linear, down to 0.
+    overlay : sequence of xarray.Dataset
+        Of :func:`orchestrate.branch`, over the samples, which are grey then: solid where orbits are
+        stable, dashed where not.
+
+    Raises
+    ------
+    InputError
+        Where a branch is of another structure, over another parameter, or of another motion of the
+        box.
     """
     figure, (top, bottom) = panels(2, 1, (9.6, 6.4), sharex=True, height_ratios=(3, 1))
     parameter = parameter_of(data.impacts_per_period)
-    shown, label = gaps(data, data.xi_rel)
+    branches = [Overlay(branch, data, parameter) for branch in overlay]
+    (shown, label), (factor, _) = gaps(data, data.xi_rel), gap_unit(data, data.xi_rel)
     x, name = along(data, parameter)
     low, high = float(x.min()), float(x.max())
     bottom.set_xlim((low, high) if high > low else (low - 0.5, high + 0.5))
-    set_gap_scale(top, shown.values, decades)
+    lines = [branch.gaps(factor).ravel() for branch in branches]
+    set_gap_scale(top, np.concatenate([shown.values.ravel(), *lines]), decades)
     both = "direction" in data.dims
+    marks = {} if branches else MARKS
+    usual = Marks(GREY if branches else BLACK)
     for direction in map(str, data.direction.values) if both else ("",):
         part = {"direction": direction} if both else {}
         samples = shown.sel(part).transpose(parameter, "sample").values
-        draw_samples(top, x, samples, MARKS.get(direction, Marks(BLACK)), direction)
+        draw_samples(top, x, samples, marks.get(direction, usual), "" if branches else direction)
         impacts = data.impacts_per_period.sel(part).values
         colour = MARKS[direction].colour if both else BLACK
         draw_steps(bottom, x, impacts, colour, WIDTHS.get(direction, 0.8))
@@ -53,8 +70,11 @@ def draw(data: xr.Dataset, title: str = "", decades: int = 6) -> Figure:
     )
     top.set_ylabel(f"{label}$(nT)$" if label.endswith("$") else f"{label}, at $t = nT$")
     bottom.set(ylabel="impacts per $T$", xlabel=name)
-    if both:
-        legend_below(figure, [top])
+    for branch in branches:
+        branch.draw(top, "xi_rel", factor)
+        branch.mark(top, "xi_rel", factor)
+    if both or branches:
+        legend_below(figure, [top], columns=8 if branches else 4)
     return figure
 
 

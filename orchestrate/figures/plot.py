@@ -21,6 +21,7 @@ from . import (
     drive_spectra,
     jump_voltages,
     lyapunov,
+    manifold,
     maps,
     motion,
     orbit_diagram,
@@ -45,6 +46,7 @@ DRAW: dict[str, Callable[[xr.Dataset], Figure]] = {  # questions whose answer ne
     "drive_spectra": drive_spectra.draw,
     "jump_voltages": jump_voltages.draw,
     "lyapunov": lyapunov.draw,
+    "manifold": manifold.draw,
     "map": maps.draw,
     "plan_test": diagnosis.draw_plan,
     "poincare": poincare.draw,
@@ -62,13 +64,18 @@ SEVERAL: dict[str, Callable[..., Figure]] = {  # of which one picture shows any 
     "lyapunov": lyapunov.draw,
     "map": maps.draw,
 }
+OVERLAY: dict[str, Callable[..., Figure]] = {  # over which branches are drawn
+    "resonance": resonance.draw,
+    "sweep": orbit_diagram.draw,
+}
 BESIDE: dict[str, Callable[..., Figure]] = {"simulate": motion.draw, "shake": shaken.draw}
 OF_BOTH: dict[str, Callable[..., Figure]] = {"couple": weak_drive.draw, "capture": capture.draw}
 PARTS: dict[str, Callable[..., Figure]] = {"jumps": weak_drive.draw_jumps}  # of couple
 KNOWN = ", ".join(sorted({*DRAW, *OF_BOTH, *analysis.DRAW}))
 EXPECTED = (
-    f"expected answers of one of {KNOWN}; several of one of {', '.join(SEVERAL)}; a sweep with "
-    "branches over it; simulate or shake with the bonded structure's; couple with drive_branch"
+    f"expected answers of one of {KNOWN}; several of one of {', '.join(SEVERAL)}; a sweep or "
+    "resonance with branches over it; simulate or shake with the bonded structure's; couple with "
+    "drive_branch"
 )
 
 
@@ -79,9 +86,9 @@ def plot(*answers: xr.Dataset, title: str = "", part: str = "", units: str | Uni
     ----------
     *answers : xarray.Dataset
         One answer, or several that belong into one picture: branches, borders, maps or exponents; a
-        sweep and branches over it; a motion of the delaminated and of the bonded structure; runs of
-        :func:`orchestrate.couple` or :func:`orchestrate.capture` of both structures, with the
-        branches of :func:`orchestrate.drive_branch`.
+        sweep or resonance curves, and branches over them; a motion of the delaminated and of the
+        bonded structure; runs of :func:`orchestrate.couple` or :func:`orchestrate.capture` of both
+        structures, with the branches of :func:`orchestrate.drive_branch`.
     title : str
         Above the picture; by default structure and excitation.
     part : str
@@ -128,9 +135,10 @@ def plot(*answers: xr.Dataset, title: str = "", part: str = "", units: str | Uni
         return DRAW[kinds[0]](answers[0], **told)
     if len(several) == 1 and kinds[0] in SEVERAL:
         return SEVERAL[kinds[0]](*answers, **told)
-    if sorted(several) == ["branch", "sweep"] and kinds.count("sweep") == 1:
+    (below, *more) = sorted(several - {"branch"}) or [""]
+    if "branch" in several and below in OVERLAY and not more and kinds.count(below) == 1:
         parts = [answer for answer, kind in zip(answers, kinds, strict=True) if kind == "branch"]
-        return branches.draw(*parts, responses=answers[kinds.index("sweep")], **told)
+        return OVERLAY[below](answers[kinds.index(below)], overlay=parts, **told)
     if len(several) == 1 and kinds[0] in BESIDE and len(answers) == 2:
         delaminated, bonded = sorted(answers, key=is_bonded)
         if is_bonded(bonded) and not is_bonded(delaminated):

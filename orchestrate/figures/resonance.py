@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from .labels import title_from_attributes
 from .marks import MAX_DISTINCT, Marks, mark
+from .overlay import Overlay
 from .scales import Along, acceleration_scale, along, length_scale, parameter_of
 from .style import (
     BLACK,
@@ -40,8 +41,11 @@ NAMES = {
 }
 
 
+LENGTHS = {"x1_max": "xi1_max", "x2_max": "xi2_max", "x_rel_max": "xi_rel_max"}  # of an orbit
+
+
 @styled
-def draw(data: xr.Dataset, title: str = "") -> Figure:
+def draw(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] = ()) -> Figure:
     """Draw resonance curves, their peaks and their jumps.
 
     Parameters
@@ -52,6 +56,15 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
         ``structure`` and ``direction``.
     title : str
         What is shaken; by default the structure and the excitation.
+    overlay : sequence of xarray.Dataset
+        Of :func:`orchestrate.branch`, over displacements and gaps: solid where orbits are stable,
+        dashed where not.
+
+    Raises
+    ------
+    InputError
+        Where a branch is of another structure, over another parameter, or of another motion of the
+        box.
     """
     figure = Figure(figsize=(9.6, 7.6), layout="constrained")
     rows = [row for row in LAYOUT if row[0] in data]
@@ -62,12 +75,15 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
     set_title(figure, title or title_from_attributes(data))
     parameter = parameter_of(data[rows[0][0]])
     x = along(data, parameter)
+    branches = [Overlay(branch, data, parameter) for branch in overlay]
     for name, plane in axes.items():
         if name == THRESHOLD:
             draw_threshold(plane, data, x)
             continue
         draw_quantity(plane, data, data[name], x)
         draw_peaks(plane, data, name, parameter, x)
+        if name in LENGTHS and branches:
+            draw_branches(plane, branches, name, unit_of(data, data[name])[0])
     if "x_rel_max" in axes:
         draw_jumps(axes["x_rel_max"], data, parameter, x)
     for name in (name for row in rows[-2:] for name in row):  # panels of two widths
@@ -75,6 +91,16 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
         axes[name].set_xlabel(x.label)
     legend_below(figure, axes.values(), columns=6)
     return figure
+
+
+def draw_branches(axes: Axes, branches: Sequence[Overlay], name: str, factor: float) -> None:
+    """Draw branches over curves, within the frequencies of these; bifurcations in the gap."""
+    span = axes.get_xlim()
+    for branch in branches:
+        branch.draw(axes, LENGTHS[name], factor, (BLACK, BLACK))
+        if name == "x_rel_max":
+            branch.mark(axes, LENGTHS[name], factor)
+    axes.set_xlim(span)
 
 
 def draw_quantity(axes: Axes, data: xr.Dataset, values: xr.DataArray, x: Along) -> None:

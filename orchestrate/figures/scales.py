@@ -116,13 +116,20 @@ def parameter_scale(data: xr.Dataset, parameter: str) -> tuple[float, str]:
     return 1.0, symbol(parameter)
 
 
-def gaps(data: xr.Dataset, values: xr.DataArray) -> tuple[xr.DataArray, str]:
-    """Return gaps over a eta^2 as an axis shows them, in m for a structure in SI or where a unit of
-    length is asked for, and their label.
+def gap_unit(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
+    """Return the unit in m of an axis of gaps, with its label; 0 where it has them over a eta^2.
+
+    It is in m for a structure in SI, or where a unit of length is asked for.
     """
     asked = in_si(data) or units_of(data).length
     if not (asked and {"amplitude", "eta"} <= set(data.coords)):
-        return values, XI_REL
-    metres = values * data.amplitude * data.eta**2
-    factor, name = length_scale(data, float(metres.max()))
-    return metres / factor, f"{gap_name(data)} in {name}m"
+        return 0.0, XI_REL
+    largest = float((values * data.amplitude * data.eta**2).max())
+    factor, name = length_scale(data, largest)
+    return factor, f"{gap_name(data)} in {name}m"
+
+
+def gaps(data: xr.Dataset, values: xr.DataArray) -> tuple[xr.DataArray, str]:
+    """Return gaps over a eta^2 as an axis shows them, with its label, see :func:`gap_unit`."""
+    factor, label = gap_unit(data, values)
+    return (values * data.amplitude * data.eta**2 / factor if factor else values), label

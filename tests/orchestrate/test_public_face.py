@@ -19,6 +19,7 @@ ROOT = Path(__file__).resolve().parents[2]
 FUNCTIONS = (
     *("simulate", "resonance", "sweep", "map", "lyapunov", "attractors", "basin", "spectra"),
     *("impact_statistics", "poincare", "basin_entropy", "orbit", "branch", "border", "couple"),
+    "manifold",
     *("shake", "measure", "record", "read_record", "write_record"),
 )
 HEAVY = ("xarray", "scipy", "matplotlib", "fmpy", "netCDF4", "pandas", "loky", "tqdm")
@@ -65,6 +66,7 @@ def questions() -> dict[str, xr.Dataset]:
         "poincare": orchestrate.poincare(OWN, **box, transient=20, periods=20, at="impacts"),
         "impact_statistics": orchestrate.impact_statistics(OWN, **box, transient=20, periods=20),
         "orbit": orchestrate.orbit(UNIT, eta=2.0),
+        "manifold": orchestrate.manifold(UNIT, eta=3.0, length=0.3),
         "branch": orchestrate.branch(UNIT, eta=2.0, limits=(1.95, 2.05)),
         "couple": orchestrate.couple(
             OWN, motor(), voltage=(1.2 * volts, 1.25 * volts), rate=1e-3 * volts * OWN.omega

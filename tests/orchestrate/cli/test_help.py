@@ -29,7 +29,17 @@ COMMANDS = (
         "lyapunov",
         "attractors",
     ),
-    *("basin", "orbit", "branch", "border", "couple", "capture", "passage", "jump-voltages"),
+    *(
+        "basin",
+        "orbit",
+        "manifold",
+        "branch",
+        "border",
+        "couple",
+        "capture",
+        "passage",
+        "jump-voltages",
+    ),
     *("drive-branch", "explore", "report", "paper"),
 )
 

@@ -45,6 +45,11 @@ QUESTIONS = {  # command line, words that must be said, pictures
         ("unstable", "-3.359480", "impact at 0.480678 s", "state at phase 0"),
         True,
     ),
+    "manifold": (
+        ("--eta", "3.0", "--length", "1"),
+        ("saddle: multiplier -3.359480", "side -: ", "1 times the orbit's size", "ends by length"),
+        True,
+    ),
     "branch": (
         ("--eta", "2.62", "--limits", "2.6:2.7"),
         ("Neimark-Sacker", "2.64796105", "from eta = 2.6 to eta = 2.7", "limit"),

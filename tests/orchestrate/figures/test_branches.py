@@ -7,10 +7,7 @@ import pytest
 
 from orchestrate.dynamics.borders import border
 from orchestrate.dynamics.branches import branch
-from orchestrate.errors import InputError
 from orchestrate.figures import borders, branches, scales
-from orchestrate.figures.style import GREY
-from orchestrate.response.sweep import sweep
 from orchestrate.structures import Structure
 
 PAPER = Structure.nondimensional()
@@ -42,33 +39,12 @@ def test_a_branch_of_a_structure_in_si_is_drawn_in_hertz():
 
 
 def test_bifurcations_are_marked_each_kind_once_in_the_legend():
-    figure = branches.draw(
-        window(), window(), responses=sweep(PAPER, eta=[2.45, 2.5], transient=20)
-    )
+    figure = branches.draw(window(), window())
     (plane,) = figure.axes
     words = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert sorted(words) == ["Neimark-Sacker", "period doubling"]
+    assert sorted(words) == ["Neimark-Sacker", "period doubling", "stable", "unstable"]
     marks = [line for line in plane.get_lines() if line.get_markerfacecolor() == "white"]
     assert {float(mark.get_xdata()[0]) for mark in marks} == set(window().bifurcation_value.values)
-
-
-def test_responses_in_both_directions_lie_below_a_branch():
-    both = sweep(PAPER, eta=[2.45, 2.5], direction="both", transient=20, samples=7)
-    drawn = grey(branches.draw(window(), responses=both))
-    apart = [grey(branches.draw(window(), responses=both.sel(direction=d))) for d in ("up", "down")]
-    assert len(both.xi_rel.values.ravel()) == 28 and drawn == apart[0] | apart[1]
-
-
-def grey(figure):
-    """Samples of responses in a picture."""
-    lines = [line for line in figure.axes[0].get_lines() if line.get_color() == GREY]
-    return {point for line in lines for point in map(tuple, line.get_xydata())}
-
-
-def test_responses_along_another_parameter_are_refused():
-    along = sweep(PAPER, over="e", values=[0.6, 0.7], eta=2.5, transient=5, samples=2)
-    with pytest.raises(InputError, match="responses along e, sample: expected .* along eta"):
-        branches.draw(window(), responses=along)
 
 
 def test_a_border_is_a_line_over_both_parameters():

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 import orchestrate
 from orchestrate import Drive, InputError, Structure, plot
-from orchestrate.figures import branches, motion, weak_drive
+from orchestrate.figures import branches, motion, orbit_diagram, weak_drive
 
 PAPER = Structure.nondimensional()
 QUIET = {"progress": False}
@@ -37,14 +37,14 @@ def driven():
 def drawn(monkeypatch):
     """What was drawn with what."""
     calls = {}
-    for module in (branches, motion, weak_drive):
+    for module in (branches, motion, orbit_diagram, weak_drive):
         name = module.__name__.rpartition(".")[2]
 
         def draw(*parts, _name=name, **more):
             calls[_name] = parts, more
             return Figure()
 
-        for table in ("DRAW", "SEVERAL", "BESIDE", "OF_BOTH"):
+        for table in ("DRAW", "SEVERAL", "BESIDE", "OF_BOTH", "OVERLAY"):
             entries = getattr(orchestrate.figures.plot, table)
             for kind, function in list(entries.items()):
                 if function is module.draw:
@@ -70,8 +70,8 @@ def test_the_bonded_structure_beside_it_in_any_order(simulated, drawn):
 def test_branches_over_a_sweep(continued, drawn):
     sweep, branch = continued
     plot(branch, sweep, branch)
-    parts, more = drawn["branches"]
-    assert parts == (branch, branch) and more["responses"] is sweep
+    parts, more = drawn["orbit_diagram"]
+    assert parts == (sweep,) and list(map(id, more["overlay"])) == [id(branch), id(branch)]
 
 
 def test_runs_of_both_structures(driven, drawn):

@@ -1,0 +1,54 @@
+"""``manifold``: the unstable manifold of a saddle, as a curve."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .options import Commands, amplitude_of, excitation_of, frequency_option, structure_of
+from .question import carry_out, picture_of, read_stored
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+EXAMPLES = """  {program} manifold --eta 3.0
+  {program} manifold --start orbit.nc --length 20       of an orbit that orbit has written
+  {program} manifold --structure beam --hz 14 --g 0.02
+What starts beside a saddle with one multiplier outside the unit circle leaves along it."""
+
+
+def add_parser(commands: Commands) -> None:
+    """Add the command's parser."""
+    text = "the unstable manifold of a saddle of the stroboscopic map, as a curve to each side"
+    question = commands.ask("manifold", run, text, EXAMPLES, several=False)
+    start = "NetCDF file of an orbit (default: the orbit that the command orbit finds)"
+    question.add("start", read_stored, type=Path, metavar="FILE", help=start)
+    names = ("period", "box_acceleration", "length", "spacing", "angle", "distance", "most")
+    question.declare(*names)
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Run the command."""
+    structure = structure_of(arguments)
+    question = arguments.question.keywords(arguments)
+    given = frequency_option(arguments) is not None or amplitude_of(arguments) is not None
+    if given or question["start"] is None:
+        question |= excitation_of(arguments, structure, si=True, one=True)
+    carry_out(arguments, structure, question, report, picture_of)
+
+
+def report(data: xr.Dataset) -> None:
+    """Print the multiplier, how far each side was followed, and where it is broken."""
+    from ..flags import flag_words
+
+    words, size = flag_words(data.end.attrs), float(data.orbit_size)
+    print(f"saddle: multiplier {float(data.multiplier):.6f}")
+    for number, side in enumerate(map(str, data.side.values)):
+        part = data.sel(side=side)
+        points, far = int(part.arclength.count()), float(part.arclength.max()) / size
+        breaks = int((data.break_side == number).sum())
+        print(
+            f"side {side}: {points} points, {far:.4g} times the orbit's size long, "
+            f"{breaks} breaks, ends by {words[int(part.end)]}"
+        )

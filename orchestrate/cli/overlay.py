@@ -1,0 +1,56 @@
+"""``--overlay``: branches of periodic motions over the picture of responses."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..errors import InputError
+from .options import FunctionOptions
+from .output import digest
+from .question import Draw, is_curve, picture_of, read_stored
+
+if TYPE_CHECKING:
+    from ..structures import Structure
+
+
+def add_overlay(question: FunctionOptions) -> None:
+    """Add ``--overlay`` to a command."""
+    text = (
+        "NetCDF file of a branch that is drawn over the picture, solid where stable, dashed where "
+        "not; may be repeated"
+    )
+    option = question.group.add_argument
+    option("--overlay", type=Path, action="append", default=[], metavar="FILE", help=text)
+
+
+def drawing(
+    arguments: argparse.Namespace, structure: Structure, question: Mapping[str, Any]
+) -> tuple[Draw | None, str]:
+    """Return what draws the answer, and the ending of the picture's name.
+
+    Raises
+    ------
+    InputError
+        Where a branch of ``--overlay`` is of something else than the answer will be; before
+        anything is computed.
+    """
+    if not arguments.overlay:
+        return picture_of if is_curve(question) else None, ""
+    if not is_curve(question):
+        raise InputError("--overlay: one value has no picture; expected a range or a list")
+    from ..figures.overlay import why_unfit
+
+    over = question.get("over") or ("eta" if "eta" in question else "frequency")
+    parameters = structure.parameters()
+    if arguments.command == "resonance":  # of both
+        parameters.pop("bonded")
+    branches = [read_stored("--overlay", path) for path in arguments.overlay]
+    for path, branch in zip(arguments.overlay, branches, strict=True):
+        why = why_unfit(branch, over, parameters)
+        if why:
+            raise InputError(f"--overlay {path}: {why}")
+    return partial(picture_of, overlay=branches), f"over_{digest(*branches)}"

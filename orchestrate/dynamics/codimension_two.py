@@ -1,0 +1,366 @@
+"""Points of codimension two on bifurcation curves: where a second bifurcation happens as well.
+
+Names and conditions as in Kuznetsov, Elements of Applied Bifurcation Theory, chapter 9, for maps;
+for grazing as in Thota and Dankowicz, SIAM Journal on Applied Dynamical Systems 5, 672 (2006). All
+but the cusp are decided by the polynomial D whose roots are the multipliers, the determinant of the
+orbit's matrix: D(1) = 0 at a fold, D(-1) = 0 at a period doubling, D'(1) = 0 besides at a second
+multiplier 1. It is finite where an impact grazes and multipliers are not.
+
+On the way a point is where a test function changes its sign; it is located by Brent's method on the
+curve itself. At a curve's end, where the unknowns of the curve are singular or no motion is left
+beyond, the equations of the point are solved by Newton's method.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from .bifurcation_curve import BifurcationCurve
+from .bifurcations import FLIP, FOLD, GRAZING, TORUS, TOUCHING
+from .closed_form import Floats
+from .continuation import ArclengthStepper, NoConvergenceError, Root, solve_linear
+from .families import central_difference
+from .impact_sequence import CLOSING, PeriodicOrbit
+from .turning_points import nearest_miss, turning_points
+
+DEGREE = 4  # of D: as many multipliers as states
+ON_CIRCLE = 1e-6  # of a pair of multipliers: how far its size may be from 1
+LOCATED = 1e-6  # a located point's test function, at most: what is above is no root of it
+TOLERANCE = {"xtol": 1e-14, "rtol": 1e-14}  # of Brent's method, in unknowns over their scale
+MAX_ITERATIONS = 20
+STEP = 1e-6  # of an unknown, over its scale, for differences
+CONVERGED = 1e-9  # a step of Newton's method, in unknowns over their scale
+FAR = 0.1  # a point at the end of a curve is not farther away from its last root
+
+
+class PointKind(IntEnum):
+    """What can happen on a bifurcation curve; the numbers are those in results."""
+
+    CUSP = 0
+    FOLD_FLIP = 1
+    RESONANCE_1 = 2
+    RESONANCE_2 = 3
+    RESONANCE_3 = 4
+    RESONANCE_4 = 5
+    FOLD_TORUS = 6
+    FLIP_TORUS = 7
+    GRAZING_FOLD = 8
+    GRAZING_FLIP = 9
+    GRAZING_TORUS = 10
+
+
+POINT_KINDS: dict[int, str] = {
+    PointKind.CUSP: "cusp",
+    PointKind.FOLD_FLIP: "fold-flip",
+    PointKind.RESONANCE_1: "resonance 1:1",
+    PointKind.RESONANCE_2: "resonance 1:2",
+    PointKind.RESONANCE_3: "resonance 1:3",
+    PointKind.RESONANCE_4: "resonance 1:4",
+    PointKind.FOLD_TORUS: "fold-Neimark-Sacker",
+    PointKind.FLIP_TORUS: "flip-Neimark-Sacker",
+    PointKind.GRAZING_FOLD: "grazing fold",
+    PointKind.GRAZING_FLIP: "grazing period doubling",
+    PointKind.GRAZING_TORUS: "grazing Neimark-Sacker",
+}
+ON_CURVE: dict[int, tuple[PointKind, ...]] = {  # with a test function, by the curve's kind
+    FOLD: (PointKind.CUSP, PointKind.FOLD_FLIP, PointKind.RESONANCE_1, PointKind.FOLD_TORUS),
+    FLIP: (PointKind.FOLD_FLIP, PointKind.RESONANCE_2, PointKind.FLIP_TORUS),
+    TORUS: (
+        PointKind.RESONANCE_3,
+        PointKind.RESONANCE_4,
+        PointKind.FOLD_TORUS,
+        PointKind.FLIP_TORUS,
+    ),
+    GRAZING: (PointKind.GRAZING_FOLD, PointKind.GRAZING_FLIP),
+    TOUCHING: (PointKind.GRAZING_FOLD, PointKind.GRAZING_FLIP),
+}
+GRAZES: dict[int, PointKind] = {
+    FOLD: PointKind.GRAZING_FOLD,
+    FLIP: PointKind.GRAZING_FLIP,
+    TORUS: PointKind.GRAZING_TORUS,
+}
+ANGLES = {PointKind.RESONANCE_3: 2.0 * np.pi / 3.0, PointKind.RESONANCE_4: 0.5 * np.pi}
+
+
+@dataclass(frozen=True)
+class CodimensionTwoPoint:
+    """A point of codimension two.
+
+    Attributes
+    ----------
+    kind : PointKind
+    unknowns : ndarray
+        Those of the nodes, and both parameters.
+    position : float
+        Among the curve's points: between two numbers where it lies between two points.
+    residual : float
+        What is left of its two conditions, of D over its largest coefficient.
+    """
+
+    kind: PointKind
+    unknowns: Floats
+    position: float
+    residual: float
+
+
+class Characteristic:
+    """The polynomial D whose roots are the multipliers of an orbit.
+
+    Parameters
+    ----------
+    orbit : PeriodicOrbit
+    scale : ndarray
+        Of the unknowns of its nodes.
+
+    Attributes
+    ----------
+    coefficients : ndarray, shape (5,)
+        Of ascending powers, over the largest one.
+    """
+
+    def __init__(self, orbit: PeriodicOrbit, scale: Floats) -> None:
+        circle = np.exp(2j * np.pi * np.arange(DEGREE + 1) / (DEGREE + 1))
+        signs, logs = zip(
+            *(np.linalg.slogdet(orbit.jacobian(complex(z)) * scale) for z in circle), strict=True
+        )
+        largest = max(logs)
+        if not np.isfinite(largest):
+            raise NoConvergenceError("the orbit's matrix is singular for all multipliers")
+        values = np.array(signs) * np.exp(np.array(logs) - largest)
+        coefficients = np.fft.fft(values).real / (DEGREE + 1)
+        self.coefficients: Floats = coefficients / np.abs(coefficients).max()
+
+    def __call__(self, multiplier: complex) -> complex:
+        """Return D."""
+        return complex(np.polynomial.polynomial.polyval(multiplier, self.coefficients))
+
+    def slope(self, multiplier: float) -> float:
+        """Return the derivative of D at a real number."""
+        polynomial = np.polynomial.Polynomial(self.coefficients)
+        return float(polynomial.deriv()(multiplier))
+
+    def others(self, multiplier: float) -> NDArray[np.complex128]:
+        """Return the multipliers beside a real one."""
+        quotient, _ = np.polydiv(self.coefficients[::-1], np.array([1.0, -multiplier]))
+        return np.asarray(np.roots(quotient), dtype=complex)
+
+    def pair_test(self, multiplier: float) -> float:
+        """Return a product that is 0 where two of the multipliers beside one have product 1."""
+        others = self.others(multiplier)
+        products = np.multiply.outer(others, others)[np.triu_indices(len(others), 1)]
+        return float(np.prod((1.0 - products) / (1.0 + np.abs(products))).real)
+
+
+def locate_points(
+    curve: BifurcationCurve, roots: list[Root], ends: tuple[str, str]
+) -> list[CodimensionTwoPoint]:
+    """Locate the points of codimension two along a traced curve, in order.
+
+    Parameters
+    ----------
+    curve : BifurcationCurve
+    roots : list of Root
+        From its first end to its last one.
+    ends : tuple of str
+        Why it ends there.
+    """
+    points = list(end_points(curve, roots[0], ends[0], 0.0))
+    for number, (before, after) in enumerate(zip(roots[:-1], roots[1:], strict=True)):
+        points += sorted(
+            points_between(curve, before, after, float(number)), key=lambda each: each.position
+        )
+    if len(roots) > 1:
+        points += end_points(curve, roots[-1], ends[1], len(roots) - 1.0)
+    return points
+
+
+def points_between(
+    curve: BifurcationCurve, before: Root, after: Root, number: float
+) -> Iterator[CodimensionTwoPoint]:
+    """Yield the points between two neighbouring roots."""
+    from scipy.optimize import brentq
+
+    curve.update_border(before.unknowns)
+    chord = (after.unknowns - before.unknowns) / curve.scale
+    before, after = (
+        root if root.tangent @ chord > 0.0 else root.reversed() for root in (before, after)
+    )
+    length = float(chord @ before.tangent)
+    stepper = ArclengthStepper(curve, before, length, length)
+    try:
+        known = [characteristic(curve, root.unknowns) for root in (before, after)]
+    except NoConvergenceError:
+        return
+    for kind in ON_CURVE.get(curve.kind, ()):
+
+        def value(position: float, kind: PointKind = kind) -> float:
+            return test(curve, stepper.root_after(position) if position else before, kind)
+
+        try:
+            ends = [
+                test(curve, root, kind, polynomial)
+                for root, polynomial in zip((before, after), known, strict=True)
+            ]
+            if not (np.isfinite(ends).all() and ends[0] * ends[1] < 0.0):
+                continue
+            if not ends[0] * value(length) < 0.0:  # rounding alone: no sign is certain there
+                continue
+            position = float(brentq(value, 0.0, length, **TOLERANCE))
+            root = stepper.root_after(position)
+            residual = abs(test(curve, root, kind))
+        except NoConvergenceError:
+            continue
+        if residual < LOCATED and happens(curve, root, kind):
+            unknowns = root.unknowns[: curve.family.size + 2]
+            yield CodimensionTwoPoint(kind, unknowns, number + position / length, residual)
+
+
+def characteristic(curve: BifurcationCurve, unknowns: Floats) -> Characteristic:
+    """Return the polynomial of the orbit of some unknowns."""
+    return Characteristic(curve.orbit(unknowns), curve.scale[: curve.family.size])
+
+
+def test(
+    curve: BifurcationCurve, root: Root, kind: PointKind, known: Characteristic | None = None
+) -> float:
+    """Return the function that changes its sign at a point of a kind.
+
+    Parameters
+    ----------
+    curve : BifurcationCurve
+    root : Root
+    kind : PointKind
+    known : Characteristic, optional
+        The polynomial at the root.
+
+    Raises
+    ------
+    NoConvergenceError
+        Where it has no value.
+    """
+    if kind in ANGLES:
+        return float(root.unknowns[-1] - ANGLES[kind])
+    if kind == PointKind.CUSP:
+        return cusp_test(curve, root)
+    polynomial = known or characteristic(curve, root.unknowns)
+    if kind == PointKind.RESONANCE_1:
+        return polynomial.slope(1.0)
+    if kind == PointKind.RESONANCE_2:
+        return polynomial.slope(-1.0)
+    if kind in (PointKind.FOLD_TORUS, PointKind.FLIP_TORUS) and curve.kind != TORUS:
+        return polynomial.pair_test(1.0 if kind == PointKind.FOLD_TORUS else -1.0)
+    fold = kind in (PointKind.FOLD_TORUS, PointKind.GRAZING_FOLD)
+    fold = fold or kind == PointKind.FOLD_FLIP and curve.kind == FLIP
+    return polynomial(1.0 if fold else -1.0).real
+
+
+def cusp_test(curve: BifurcationCurve, root: Root) -> float:
+    """Return how fast a fold moves in the plane of both parameters, with its sign.
+
+    Along a fold that motion is orthogonal to what the left null vector of the orbit's matrix makes
+    of the parameters' derivatives: its sign on that line changes at a cusp, where it stops.
+    """
+    size = curve.family.size
+    matrix = curve.matrix(root.unknowns).real
+    bordered = np.zeros((size + 1, size + 1))
+    bordered[:size, :size] = matrix
+    bordered[:size, size], bordered[size, :size] = curve.columns.real, curve.rows.real
+    left = np.linalg.solve(bordered.T, np.eye(size + 1)[-1])[:size]
+    derivative = curve.family.jacobian(root.unknowns[: size + 2])[:, size:]
+    normal = left @ (derivative * curve.scale[size : size + 2])
+    along = root.tangent[size : size + 2]
+    return float(along @ np.array([-normal[1], normal[0]]) / np.linalg.norm(normal))
+
+
+def happens(curve: BifurcationCurve, root: Root, kind: PointKind) -> bool:
+    """Return whether a zero of a test function is the point of its kind.
+
+    Two real multipliers may have the product 1 as well as a pair on the unit circle.
+    """
+    if kind not in (PointKind.FOLD_TORUS, PointKind.FLIP_TORUS) or curve.kind == TORUS:
+        return True
+    real = 1.0 if kind == PointKind.FOLD_TORUS else -1.0
+    others = characteristic(curve, root.unknowns).others(real)
+    pair = others[others.imag > 0.0]
+    return bool((np.abs(np.abs(pair) - 1.0) < ON_CIRCLE).any())
+
+
+# -- where a curve ends ----------------------------------------------------------------------------
+
+
+def end_points(
+    curve: BifurcationCurve, root: Root, reason: str, position: float
+) -> Iterator[CodimensionTwoPoint]:
+    """Yield the point in which a curve ends, if it ends in one."""
+    grazes = reason in ("another impact grazes", "a flight grazes")
+    if curve.kind == TORUS and "resonance" in reason:
+        first = root.unknowns[-1] < 0.5 * np.pi
+        kind = PointKind.RESONANCE_1 if first else PointKind.RESONANCE_2
+    elif curve.kind in GRAZES and grazes:
+        kind = GRAZES[curve.kind]
+    else:
+        return
+    try:
+        yield solve_end(curve, root, kind, reason, position)
+    except (NoConvergenceError, InputError, np.linalg.LinAlgError):
+        return
+
+
+def solve_end(
+    curve: BifurcationCurve, root: Root, kind: PointKind, reason: str, position: float
+) -> CodimensionTwoPoint:
+    """Solve for the point in which a curve ends, by Newton's method.
+
+    Raises
+    ------
+    NoConvergenceError
+        Where it is not near.
+    """
+    size = curve.family.size + 2
+    resonance = kind in (PointKind.RESONANCE_1, PointKind.RESONANCE_2)
+    curve.update_border(root.unknowns)
+
+    def conditions(unknowns: Floats) -> Floats:
+        if resonance:
+            polynomial = characteristic(curve, unknowns)
+            at = 1.0 if kind == PointKind.RESONANCE_1 else -1.0
+            return np.array([polynomial(at).real, polynomial.slope(at)])
+        return np.append(curve.condition(unknowns), grazing_test(curve, unknowns, reason))
+
+    unknowns = root.unknowns[:size] if resonance else root.unknowns
+    scale, first = curve.scale[: len(unknowns)], unknowns.copy()
+    for _ in range(MAX_ITERATIONS):
+        orbit = curve.family.jacobian(unknowns[:size])
+        blank = np.zeros((len(orbit), len(unknowns) - size))
+        free = (-np.inf, np.inf)
+        rows = [
+            central_difference(conditions, unknowns, i, *free, step=STEP * float(scale[i]))
+            for i in range(len(unknowns))
+        ]
+        matrix = np.vstack([np.hstack([orbit, blank]), np.array(rows).T]) * scale
+        residual = np.append(curve.family.residual(unknowns[:size]), conditions(unknowns))
+        step = solve_linear(matrix, residual)
+        unknowns = unknowns - scale * step
+        if np.abs((unknowns - first) / scale).max() > FAR:
+            raise NoConvergenceError("Newton's method went too far")
+        if np.abs(step).max() < CONVERGED:
+            left = float(np.abs(conditions(unknowns)).max())
+            if left > LOCATED:
+                break
+            return CodimensionTwoPoint(kind, unknowns[:size], position, left)
+    raise NoConvergenceError(f"no root after {MAX_ITERATIONS} iterations")
+
+
+def grazing_test(curve: BifurcationCurve, unknowns: Floats, reason: str) -> float:
+    """Return the smallest closing speed, or the smallest gap of a flight: 0 where it grazes."""
+    orbit = curve.orbit(unknowns)
+    if reason == "a flight grazes":
+        return nearest_miss(orbit, turning_points(orbit))[0]
+    closing = orbit.nodes[~orbit.sequence.releases, CLOSING]
+    return float(closing[np.abs(closing).argmin()])

@@ -1,0 +1,235 @@
+"""Curves grown point by point: close where they bend, and broken where they are not continuous.
+
+A one-dimensional unstable manifold is what becomes of a short piece of it, from a point to its
+image, when it is mapped again and again (Hobson, Journal of Computational Physics 104, 14, 1993).
+The number ``s`` of a point counts how often: its whole part is how many times, its fraction where
+in the first piece the point began. Every point is computed from its own start, so errors do not
+add up; what a start misses of the manifold shrinks with each image. New points come as close as
+distance and bend ask for (Krauskopf and Osinga, Journal of Computational Physics 146, 404, 1998).
+
+Where impacts come or go between two points, the place is bisected as far as rounding allows. The
+distance of both points falls with a power of the distance of their numbers: 1 where the curve is
+smooth, 1/2 at a grazing impact, 0 at a jump. That power, over the last bisections, decides whether
+the curve is broken there: it is connected only where the distance still falls.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_left
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from .closed_form import Floats
+
+FIRST_STEP, MAX_STEP = 0.05, 0.25  # of s
+AFTER_BORDER = 1e-3  # of s: the first step behind a border, where no bend is known yet
+SHORTER, LONGER = 0.5, 1.5  # of a step: after one that was too long, and after an easy one
+EASY = 0.5  # of the allowed distance and angle
+SHARP = 0.01  # of the allowed distance: where points are nearer, the curve may bend as it will
+JUMP = 0.25  # power below which the curve is broken: half of that at a grazing impact
+STILL = 1e-12  # of the size: so near are points that rounding moves
+ARRIVED = 1e-7  # of the size: an image of the whole piece that is shorter has come to its end
+LENGTH, POINTS, CONVERGED = "length", "most points", "converges"
+
+
+class CurvePoint(NamedTuple):
+    """A point of a curve.
+
+    Attributes
+    ----------
+    s : float
+        Its number.
+    state : ndarray
+    itinerary : tuple of int
+        What happened on the way to it, such as numbers of impacts: the curve can only be broken
+        where that changes.
+    """
+
+    s: float
+    state: Floats
+    itinerary: tuple[int, ...]
+
+
+class Border(NamedTuple):
+    """Two points to rounding next to each other, between which the itinerary changes.
+
+    Attributes
+    ----------
+    low, high : CurvePoint
+    distance : float
+        Of both.
+    power : float
+        Of the distance of their numbers, with which that distance falls.
+    """
+
+    low: CurvePoint
+    high: CurvePoint
+    distance: float
+    power: float
+
+    def is_break(self, size: float) -> bool:
+        """Return whether the curve is broken here."""
+        return self.distance > STILL * size and self.power < JUMP
+
+
+@dataclass(frozen=True)
+class GrowthSettings:
+    """How a curve is grown.
+
+    Attributes
+    ----------
+    length : float
+        At which it ends.
+    spacing : float
+        Largest distance of neighbours.
+    angle : float
+        Largest angle between successive chords, rad.
+    max_points : int
+    size : float
+        What is small is so in comparison with it.
+    max_step : float
+        Of s.
+    resolution : float
+        Of s: what rounding leaves of it.
+    """
+
+    length: float
+    spacing: float
+    angle: float
+    max_points: int
+    size: float = 1.0
+    max_step: float = MAX_STEP
+    resolution: float = 1e-14
+
+
+@dataclass
+class GrownCurve:
+    """A curve from its first point on.
+
+    Attributes
+    ----------
+    points : list of CurvePoint
+    arclength : list of float
+        Without what is broken.
+    breaks : dict of int, Border
+        By the number of the first point after each break.
+    end : str
+    """
+
+    points: list[CurvePoint] = field(default_factory=list)
+    arclength: list[float] = field(default_factory=list)
+    breaks: dict[int, Border] = field(default_factory=dict)
+    end: str = ""
+
+    def add(self, point: CurvePoint, distance: float) -> None:
+        """Add a point so far from the last one."""
+        self.arclength.append((self.arclength[-1] if self.arclength else 0.0) + distance)
+        self.points.append(point)
+
+
+def distance_of(one: CurvePoint, other: CurvePoint) -> float:
+    """Return the distance of two points, the same on every processor."""
+    return math.dist(other.state.tolist(), one.state.tolist())
+
+
+def power_of(history: list[tuple[float, float]]) -> float:
+    """Return the power with which distances fell over the last quarter of some bisections."""
+    (far, before), (near, after) = history[-1 - len(history) // 4], history[-1]
+    if not (0.0 < near < far and after > 0.0 and before > 0.0):
+        return 0.0 if after > 0.0 else 1.0
+    return float(np.log(before / after) / np.log(far / near))
+
+
+class CurveGrower:
+    """Grows a curve.
+
+    Parameters
+    ----------
+    image : callable
+        From s to the point of that number.
+    settings : GrowthSettings
+    """
+
+    def __init__(self, image: Callable[[float], CurvePoint], settings: GrowthSettings) -> None:
+        self.image, self.settings = image, settings
+        self.direction: Floats | None = None  # of the last chord
+
+    def grow(self, first: float = 0.0) -> GrownCurve:
+        """Grow the curve from a number on."""
+        settings, curve = self.settings, GrownCurve()
+        curve.add(self.image(first), 0.0)
+        step, ahead = FIRST_STEP, None
+        while not curve.end:
+            last = curve.points[-1]
+            if ahead is not None and last.s >= ahead.low.s:
+                self.cross(curve, ahead)
+                ahead, step = None, min(step, AFTER_BORDER)
+                curve.end = self.end_of(curve)
+                continue
+            target = last.s + step
+            point = self.image(target) if ahead is None or target < ahead.low.s else ahead.low
+            if point.itinerary != last.itinerary:
+                ahead = self.locate(last, point)
+                continue
+            distance, angle = distance_of(last, point), self.angle_to(last, point)
+            sharp = distance <= SHARP * settings.spacing
+            if distance <= settings.spacing and (sharp or angle <= settings.angle):
+                curve.add(point, distance)
+                if distance > STILL * settings.size:
+                    self.direction = (point.state - last.state) / distance
+                easy = distance <= EASY * settings.spacing and angle <= EASY * settings.angle
+                step = min(step * (LONGER if easy else 1.0), settings.max_step)
+                curve.end = self.end_of(curve)
+            elif point.s - last.s > settings.resolution * max(1.0, last.s):
+                step = SHORTER * (point.s - last.s)
+            else:  # a jump without another itinerary
+                ahead = Border(last, point, distance, 0.0)
+        return curve
+
+    def angle_to(self, last: CurvePoint, point: CurvePoint) -> float:
+        """Return the angle of the chord to a point with the last one; 0 after a break."""
+        size = distance_of(last, point)
+        if self.direction is None or size <= STILL * self.settings.size:
+            return 0.0
+        cosine = math.fsum((self.direction * (point.state - last.state)).tolist()) / size
+        return math.acos(max(-1.0, min(1.0, cosine)))
+
+    def locate(self, low: CurvePoint, high: CurvePoint) -> Border:
+        """Locate where the itinerary first differs from that of the lower point."""
+        resolution = self.settings.resolution * max(1.0, low.s)
+        history = [(high.s - low.s, distance_of(low, high))]
+        while high.s - low.s > resolution:
+            middle = self.image(0.5 * (low.s + high.s))
+            if not low.s < middle.s < high.s:
+                break
+            if middle.itinerary == low.itinerary:
+                low = middle
+            else:
+                high = middle
+            history.append((high.s - low.s, distance_of(low, high)))
+        return Border(low, high, history[-1][1], power_of(history))
+
+    def cross(self, curve: GrownCurve, border: Border) -> None:
+        """Go on beyond a border: connected, or with a break."""
+        broken = border.is_break(self.settings.size)
+        if broken:
+            curve.breaks[len(curve.points)] = border
+        curve.add(border.high, 0.0 if broken else border.distance)
+        self.direction = None
+
+    def end_of(self, curve: GrownCurve) -> str:
+        """Say why a curve ends here; empty where it goes on."""
+        settings, last = self.settings, curve.points[-1]
+        if curve.arclength[-1] >= settings.length:
+            return LENGTH
+        if len(curve.points) >= settings.max_points:
+            return POINTS
+        window = 2.0 * max(1.0, settings.max_step)
+        before = bisect_left(curve.points, last.s - window, key=lambda point: point.s)
+        gained = curve.arclength[-1] - curve.arclength[max(before - 1, 0)]
+        grown = curve.arclength[-1] > settings.spacing
+        return CONVERGED if grown and before and gained < ARRIVED * settings.size else ""

@@ -1,0 +1,467 @@
+"""Unstable manifolds of saddles of the stroboscopic map, as curves."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..access import OSCILLATOR, Instance, begin, finder
+from ..checks import checked_integer
+from ..errors import InputError
+from ..response.labels import flags, nondimensional_state, variable
+from ..response.questions import checked_structure, positive
+from ..running.job import Inputs, Table
+from ..running.runner import answer
+from ..structures import Structure
+from .branches import check_start, complete_excitation
+from .closed_form import Floats
+from .continuation import NoConvergenceError, fix_sign
+from .curve_growth import (
+    CONVERGED,
+    LENGTH,
+    MAX_STEP,
+    POINTS,
+    CurveGrower,
+    CurvePoint,
+    GrownCurve,
+    GrowthSettings,
+)
+from .families import ACCELERATION, Setting, require_delaminated
+from .impact_sequence import ON_CIRCLE, PHASE, PeriodicOrbit
+from .orbit_search import solve_orbit
+from .orbits import (
+    FirstGuess,
+    OneItemQuestion,
+    excitation_arguments,
+    finite_number,
+    from_result,
+    orbit,
+)
+from .turning_points import stroboscopic_states
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from typing_extensions import Unpack
+
+    from ..running.options import Running
+
+SIDES = ("+", "-")
+ENDS = {0: LENGTH, 1: POINTS, 2: CONVERGED}
+COUNTS = ("impact_count", "contact_count")
+ROUNDING = 16.0 * float(np.finfo(float).eps)  # of a state's largest number, with room
+ROUNDED = 2.0**-44, 2.0**-36  # to that a saddle's numbers are rounded, and its eigenvector
+MIN_GAP = 2.0  # starting distances: a gap at phase 0 that is smaller leaves no room for a start
+
+
+@dataclass(frozen=True)
+class Saddle:
+    """A periodic orbit with one multiplier outside the unit circle, at phase 0.
+
+    Attributes
+    ----------
+    state : ndarray, shape (4,)
+        Units of xi, with the faces' places for displacements.
+    direction : ndarray, shape (4,)
+        Of the unstable manifold, of length 1; the gap grows along it.
+    multiplier : float
+    periods : int
+    size : float
+        Largest displacement or velocity of its nodes.
+    """
+
+    state: Floats
+    direction: Floats
+    multiplier: float
+    periods: int
+    size: float
+
+    @classmethod
+    def from_orbit(cls, orbit: PeriodicOrbit) -> Saddle:
+        """Return the saddle that an orbit is.
+
+        Raises
+        ------
+        InputError
+            Where it is none, or its unstable manifold is no curve.
+        """
+        multipliers = orbit.multipliers()
+        outside = multipliers[np.abs(multipliers) > 1.0 + ON_CIRCLE]
+        if len(outside) != 1:
+            raise InputError(
+                f"start: an orbit with {len(outside)} multipliers outside the unit circle; "
+                "expected a saddle with one, whose unstable manifold is a curve"
+            )
+        largest = float(np.abs(orbit.nodes[:, 1:]).max())
+        size = float(coarsened(np.array([largest]), largest)[0])
+        state = coarsened(stroboscopic_states(orbit)[0], size)
+        direction = coarsened(unstable_direction(orbit), 1.0, ROUNDED[1])
+        multiplier = float(coarsened(outside[:1].real, 1.0, ROUNDED[1])[0])
+        return cls(state, direction, multiplier, orbit.sequence.periods, size)
+
+    @property
+    def growth(self) -> float:
+        """By what a distance on one side of the manifold grows until it is on that side again."""
+        return self.multiplier if self.multiplier > 0.0 else self.multiplier**2
+
+    @property
+    def returns(self) -> int:
+        """Excitation periods until then: twice the orbit's where the multiplier is negative."""
+        return self.periods if self.multiplier > 0.0 else 2 * self.periods
+
+    def start(self, distance: float) -> Floats:
+        """Return a state on the tangent of the manifold, so far from the orbit."""
+        return self.state + distance * self.direction
+
+
+def coarsened(numbers: Floats, size: float, to: float = ROUNDED[0]) -> Floats:
+    """Return numbers without their last bits, in which linear algebra differs by the processor.
+
+    All that follows from them is the FMU's, and the same everywhere.
+    """
+    unit = to * 2.0 ** math.floor(math.log2(size))
+    return np.asarray(np.round(numbers / unit) * unit)
+
+
+def unstable_direction(orbit: PeriodicOrbit) -> Floats:
+    """Return the eigenvector of the largest multiplier in the states at phase 0.
+
+    That of the nodes' matrix is a deviation at the first node; it is carried back to phase 0.
+    """
+    values, vectors = np.linalg.eig(orbit.monodromy())
+    node = vectors[:, np.argmax(np.abs(values))].real
+    form, phase = orbit.form, orbit.nodes[:1, PHASE]
+    contact = bool(orbit.contact[-1])
+    arrival = np.linalg.solve(orbit.reduction, np.append(0.0, node[1:]))
+    rate = form.field(orbit.arrivals[-1:], orbit.ends[-1:], contact)[0]
+    deviation = arrival - rate * node[PHASE] / form.eta
+    flow = form.contact if contact else form.flight
+    vector = flow(-phase / form.eta)[0] @ deviation
+    if contact:
+        vector = form.centre() @ vector
+    vector = fix_sign(vector / np.linalg.norm(vector))
+    gap = vector[1] - vector[0]
+    return -vector if gap < 0.0 else vector
+
+
+@dataclass(frozen=True, kw_only=True)
+class ManifoldJob(OneItemQuestion):
+    """The unstable manifold of a saddle; what is not said here is as in :func:`manifold`.
+
+    Attributes
+    ----------
+    excitation : tuple of (str, float)
+    start : FirstGuess
+        Nodes of the saddle.
+    """
+
+    excitation: tuple[tuple[str, float], ...]
+    box_acceleration: float
+    start: FirstGuess
+    period: int
+    length: float
+    spacing: float
+    angle: float
+    distance: float
+    most: int
+    asked: ClassVar[str] = "manifold"
+
+    @property
+    def setting(self) -> Setting:
+        """The structure under its excitation."""
+        return Setting.fixed(self.structure, self.excitation, self.box_acceleration)
+
+    @property
+    def values(self) -> Floats:
+        """The parameter of the setting."""
+        return np.array([self.excitation[0][1]])
+
+    def call(self) -> str:
+        """Return the call that asks it."""
+        setting, values = self.setting, self.values
+        guess = self.start.as_argument(setting.point(values).excitation.frequency)
+        start = f"start={setting.orbit_call(values, self.period, guess)}"
+        names = ("length", "spacing", "angle", "distance", "most")
+        more = [f"{name}={getattr(self, name)!r}" for name in names]
+        return f"manifold({', '.join([repr(self.structure), start, *more])})"
+
+    def saddle(self) -> Saddle:
+        """Solve for the saddle.
+
+        Raises
+        ------
+        InputError
+            Where there is no orbit, or it is no saddle.
+        """
+        guess = self.start.sequence(self.period), np.array(self.start.nodes).reshape(-1, 4)
+        try:
+            family, root = solve_orbit(self.setting, guess, self.values)
+        except NoConvergenceError as reason:
+            expected = "expected an orbit of this structure"
+            raise InputError(f"start: no orbit found from there ({reason}); {expected}") from None
+        saddle = Saddle.from_orbit(family.orbit(root.unknowns))
+        gap = float(saddle.state[1] - saddle.state[0])
+        needed = MIN_GAP * self.distance * saddle.size
+        moves = abs(saddle.direction[1] - saddle.direction[0]) > self.distance
+        if moves and gap < needed:
+            raise InputError(
+                f"distance = {self.distance:g}: the gap at phase 0 is {gap / saddle.size:.2g} of "
+                f"the orbit's size; expected a distance below {0.5 * gap / saddle.size:.2g}"
+            )
+        return saddle
+
+    def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
+        """Grow both sides."""
+        saddle = self.saddle()
+        with Instance(fmus[OSCILLATOR]) as instance:
+            curves = [self.grow(instance, saddle, sign) for sign in (1.0, -1.0)]
+        return {**table_of(curves, saddle), "saddle": saddle.state[np.newaxis]}
+
+    def grow(self, instance: Instance, saddle: Saddle, sign: float) -> GrownCurve:
+        """Grow one side of the manifold."""
+        return CurveGrower(self.point_at(instance, saddle, sign), self.settings(saddle)).grow()
+
+    def point_at(
+        self, instance: Instance, saddle: Saddle, sign: float
+    ) -> Callable[[float], CurvePoint]:
+        """Return what gives the points of one side by their numbers: each by a run of its own."""
+        point = self.setting.point(self.values)
+        time = saddle.returns * point.excitation.period
+        push = self.box_acceleration
+        more: dict[str, Any] = {ACCELERATION: push} if push else {}
+
+        def run(faces: Floats, returns: int) -> tuple[Floats, Floats]:
+            begin(instance, *point, point.from_faces(faces.copy()), **more)
+            if returns:
+                instance.step(0.0, returns * time)
+            values = np.array(instance.get("x1", "x2", "v1", "v2", *COUNTS), dtype=float)
+            return point.faces(values[:4]), values[4:]
+
+        own = run(saddle.state, 1)[1]  # what happens on the orbit itself is no change
+
+        def image(s: float) -> CurvePoint:
+            returns = math.floor(s)
+            distance = self.distance * saddle.size * saddle.growth ** (s - returns)
+            state, counts = run(saddle.start(sign * distance), returns)
+            return CurvePoint(s, state, tuple(int(n) for n in counts - returns * own))
+
+        return image
+
+    def settings(self, saddle: Saddle) -> GrowthSettings:
+        """Return how its curves are grown: at least four points while a distance doubles."""
+        growth, largest = math.log(saddle.growth), float(np.abs(saddle.state).max())
+        return GrowthSettings(
+            length=self.length * saddle.size,
+            spacing=self.spacing * saddle.size,
+            angle=self.angle,
+            max_points=self.most,
+            size=saddle.size,
+            max_step=MAX_STEP * max(1.0, math.log(2.0) / growth),
+            resolution=ROUNDING * largest / (self.distance * saddle.size * growth),
+        )
+
+    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+        """Return the curves, labelled."""
+        import xarray as xr
+
+        point = self.setting.point(self.values)
+        title = f"Unstable manifold of an orbit of {self.period} periods: {self.structure.label()}"
+        return xr.Dataset(
+            {**curve_variables(table, point), **break_variables(table)},
+            {
+                "side": variable("side", np.array(SIDES), "1", "on which the gap grows, or falls"),
+                **nondimensional_state(),
+            },
+            {"title": title, **dict(self.excitation)},
+        )
+
+
+def table_of(curves: Sequence[GrownCurve], saddle: Saddle) -> Table:
+    """Return both sides as arrays; a break is a row of NaN, and so is what is behind an end."""
+    sides = [rows_of(curve) for curve in curves]
+    most = max(len(rows) for rows in sides)
+    padded = np.full((len(sides), most, 6), np.nan)
+    for rows, side in zip(padded, sides, strict=True):
+        rows[: len(side)] = side
+    breaks = [
+        [side, border.low.s, curve.arclength[number], border.distance, border.power]
+        + [float(b - a) for a, b in zip(border.low.itinerary, border.high.itinerary, strict=True)]
+        for side, curve in enumerate(curves)
+        for number, border in curve.breaks.items()
+    ]
+    words = {word: number for number, word in ENDS.items()}
+    return {
+        "rows": padded,
+        "ends": np.array([words[curve.end] for curve in curves]),
+        "breaks": np.array(breaks, dtype=float).reshape(-1, 7),
+        "multiplier": np.array([saddle.multiplier]),
+        "size": np.array([saddle.size]),
+    }
+
+
+def rows_of(curve: GrownCurve) -> Floats:
+    """Return state, arclength and number of each point, with a row of NaN at each break."""
+    numbers = np.array([point.s for point in curve.points])
+    states = np.array([point.state for point in curve.points])
+    rows = np.column_stack([states, curve.arclength, numbers])
+    return np.insert(rows, list(curve.breaks), np.nan, axis=0)
+
+
+def curve_variables(table: Table, point: Any) -> dict[str, Any]:
+    """Return the variables of the curves."""
+    faces, along = table["rows"][..., :4], ("side", "point")
+    xi, gap = faces.copy(), faces[..., 1] - faces[..., 0]
+    xi[..., 1] -= point.structure.gap_offset / point.length
+    text = "states at phase 0: x1, x2 in m, v1, v2 in m/s; NaN where the curve is broken"
+    rate = point.speed * (faces[..., 3] - faces[..., 2])
+    saddle = table["saddle"][0]
+    count = "excitation periods over those of a return, from the first piece on"
+    return {
+        "state": variable((*along, "coordinate"), point.from_faces(faces.copy()), "SI", text),
+        "xi": variable((*along, "coordinate"), xi, "1", "states at phase 0 (3)"),
+        "x_rel": variable(along, point.length * gap, "m", "gap at phase 0"),
+        "v_rel": variable(along, rate, "m/s", "its rate"),
+        "arclength": variable(along, table["rows"][..., 4], "1", "from the saddle, in xi (3)"),
+        "iterate": variable(along, table["rows"][..., 5], "1", count),
+        "end": flags("side", table["ends"], "why the curve ends", ENDS),
+        "saddle": variable("coordinate", point.from_faces(saddle.copy()), "SI", "the orbit itself"),
+        "multiplier": variable((), table["multiplier"][0], "1", "the one outside the circle"),
+        "orbit_size": variable(
+            (), table["size"][0], "1", "largest displacement or velocity in xi (3)"
+        ),
+    }
+
+
+def break_variables(table: Table) -> dict[str, Any]:
+    """Return the variables of the breaks: where they are, and how they were told."""
+    texts = {
+        "iterate": "number of the last point before the break",
+        "arclength": "from the saddle to the break",
+        "distance": "across the break, in xi (3)",
+        "power": "with which that distance falls with that of the starts: 0 at a jump",
+        "impacts": "impacts more behind the break",
+        "contacts": "permanent contacts more behind the break",
+    }
+    rows = table["breaks"].T
+    sides = flags("break", rows[0], "side of the manifold", dict(enumerate(SIDES)))
+    return {
+        "break_side": sides,
+        **{
+            f"break_{name}": variable("break", row, "1", text)
+            for (name, text), row in zip(texts.items(), rows[1:], strict=True)
+        },
+    }
+
+
+def manifold(
+    structure: Structure,
+    *,
+    start: xr.Dataset | None = None,
+    eta: ArrayLike | None = None,
+    frequency: ArrayLike | None = None,
+    amplitude: ArrayLike | None = None,
+    period: int = 1,
+    box_acceleration: float = 0.0,
+    length: float = 5.0,
+    spacing: float = 0.005,
+    angle: float = 0.2,
+    distance: float = 1e-5,
+    most: int = 10000,
+    **running: Unpack[Running],
+) -> xr.Dataset:
+    """Grow the unstable manifold of a saddle of the stroboscopic map, as a curve to each side.
+
+    Parameters
+    ----------
+    structure : Structure
+    start : xarray.Dataset, optional
+        The saddle: an orbit of :func:`orchestrate.orbit`, or a point of a branch. By default the
+        orbit that :func:`orchestrate.orbit` finds.
+    eta, frequency, amplitude : float, optional
+        The excitation; by default that of ``start``.
+    period : int
+        Excitation periods of the orbit, without ``start``.
+    box_acceleration
+        As in :func:`orchestrate.orbit`.
+    length : float
+        Arclength of each side, over the orbit's size.
+    spacing : float
+        Largest distance of neighbouring points, over the orbit's size.
+    angle : float
+        Largest angle between successive chords, rad.
+    distance : float
+        From the saddle, over the orbit's size, at which the curve begins on its tangent.
+    most : int
+        Most points to a side.
+    **running
+        ``store``, ``fmu`` and others, see :class:`orchestrate.running.options.Running`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``side`` (``"+"``: the gap at phase 0 grows from the saddle on) and ``point``:
+        ``state`` in SI, ``xi``, ``x_rel`` and ``v_rel``, ``arclength`` in units of xi, and
+        ``iterate``. A row of NaN is a break, and fills up the shorter side. ``end`` of each side;
+        ``multiplier``, ``orbit_size`` and ``saddle``; over ``break``: where the curve is broken, by
+        what distance, how that was decided, and what happens more often behind it.
+
+    Raises
+    ------
+    InputError
+        Where arguments contradict each other, there is no such orbit, or not just one of its
+        multipliers lies outside the unit circle.
+
+    Notes
+    -----
+    States at phase 0 are four numbers. With one multiplier outside the unit circle the unstable
+    manifold is a curve, and the stable one has three dimensions: no curve shows it. Its trace in a
+    plane of starts is the boundary of basins, which :func:`orchestrate.basin` draws.
+
+    Each point is the image of a start of its own on the tangent, ``distance`` away, so it misses
+    the manifold by the square of that distance, and less with each image. See
+    :mod:`orchestrate.dynamics.curve_growth`. The map is not continuous where an impact passes phase
+    0 (the gap is closed there, and its rate jumps), nor where chattering ends in contact with one
+    impact more or less (17). There the curve is broken. It is decided by bisection, as
+    far as rounding allows: the distance of two points falls with a power of that of their starts,
+    1/2 at a grazing impact and 0 at a jump, which is ``break_power``.
+
+    Examples
+    --------
+    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.dynamics.manifolds import manifold
+    >>> curve = manifold(Structure.nondimensional(), eta=3.0, length=0.5)
+    >>> float(curve.multiplier.round(4)), curve.sizes["side"]
+    (-3.3595, 2)
+    """
+    require_delaminated(checked_structure(structure))
+    given = excitation_arguments(eta, frequency, amplitude)
+    if start is None:
+        quiet: dict[str, Any] = {
+            name: value
+            for name, value in running.items()
+            if name in ("fmu", "build_folder", "progress")
+        }
+        asked: dict[str, Any] = {**dict(given), **quiet, "period": period}
+        start = orbit(structure, box_acceleration=box_acceleration, **asked)
+    check_start(start, several=False)
+    excitation = complete_excitation(start, ("e",), given, (0.0, 0.0), structure)
+    job = ManifoldJob(
+        name=f"manifold_{structure.label()}",
+        structure=structure,
+        excitation=excitation,
+        box_acceleration=finite_number(ACCELERATION, box_acceleration),
+        start=from_result(start),
+        period=start.sizes["sample"],
+        length=positive("length", length),
+        spacing=positive("spacing", spacing),
+        angle=positive("angle", angle),
+        distance=positive("distance", distance),
+        most=checked_integer("most", most, 2),
+    )
+    job.saddle()  # what is none is said before any work
+    return answer(job, running, finder(running))

@@ -1,0 +1,181 @@
+"""Branches over responses: whether both belong together, and a branch in the responses' units."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+
+from ..errors import InputError
+from ..structures.ranges import STRUCTURE
+from .branch_lines import draw_bifurcations, draw_lines
+from .scales import ETA, acceleration_scale, along, frequency_scale, parameter_scale
+from .style import BLUE, RED
+
+SAME = 1e-9  # relative: numbers that are nearer than this are one
+SI = (*STRUCTURE, "bonded")
+MOVED = {  # by a parameter that is none of SI
+    "mu": {"m2", "d2"},
+    "kappa": {"k2"},
+    "omega": {"k1", "k2", "d1", "d2"},
+    "D": {"d1", "d2"},
+    "D1": {"d1"},
+    "D2": {"d2"},
+    "f1": {"k1", "d1"},
+    "f2": {"k2", "d2"},
+    "zeta1": {"d1"},
+    "zeta2": {"d2"},
+}
+ALIKE = ({"eta", "frequency"}, {"level", "amplitude"})  # names of what is one axis
+
+
+def why_unfit(branch: xr.Dataset, over: str, parameters: Mapping[str, Any]) -> str:
+    """Say why an answer is no branch of a structure over a parameter; empty where it is one.
+
+    Parameters
+    ----------
+    branch : xarray.Dataset
+    over : str
+        What the responses are along.
+    parameters : mapping
+        Of the responses' structure, SI.
+    """
+    question = str(branch.attrs.get("call", "")).partition("(")[0] or "nothing"
+    if question != "branch":
+        return f"an answer of {question}; expected one of branch"
+    name = str(branch.attrs["over"])
+    if name != over and not any({name, over} <= alike for alike in ALIKE):
+        return f"a branch along {name}; expected one along {over}"
+    if branch.attrs.get("box_acceleration", 0.0) or "box_acceleration" in branch.coords:
+        return "a branch with a constant acceleration of the box; expected one without"
+    for key in SI:
+        if key in MOVED.get(name, {name}) or key not in parameters:
+            continue
+        own, other = float(branch.attrs[key]), float(parameters[key])
+        if not math.isclose(own, other, rel_tol=SAME):
+            return f"a branch of another structure, {key} = {own:g}; expected {key} = {other:g}"
+    return ""
+
+
+def why_shaken_otherwise(branch: xr.Dataset, data: xr.Dataset, over: str) -> str:
+    """Say why a branch belongs to another motion of the box; empty where it does not.
+
+    Without a clearance the box's amplitude does not matter: everything grows with it.
+    """
+    at = branch.frequency.values
+    if over not in ALIKE[0]:
+        same = [differ(branch[key].values, data[key].values) for key in ("eta", "frequency")]
+        if all(same):
+            eta = [float(each.eta.values[0]) for each in (branch, data)]
+            return f"a branch at eta = {eta[0]:g}; expected eta = {eta[1]:g}"
+    if branch.attrs["clearance"] and over not in ALIKE[1]:
+        own, other = branch.amplitude.values, amplitude_at(data, at)
+        if not np.allclose(own, other, rtol=SAME, atol=0.0):
+            return (
+                f"a branch at an amplitude of {own[0]:g} m, where the responses have "
+                f"{other[0]:g} m; expected the same, as there is a clearance"
+            )
+    return ""
+
+
+def differ(some: np.ndarray, others: np.ndarray) -> bool:
+    """Return whether values are not all the same number."""
+    return not np.allclose(np.append(some, others), some[0], rtol=SAME, atol=0.0)
+
+
+def amplitude_at(data: xr.Dataset, frequency: np.ndarray) -> np.ndarray:
+    """Return the box's amplitude of some responses at frequencies between theirs, m.
+
+    Where the level is held, exactly that; else linear between the responses.
+    """
+    order = np.argsort(data.frequency.values, kind="stable")
+    own = data.frequency.values[order]
+    amplitude = np.broadcast_to(data.amplitude.values, own.shape)[order]
+    level = amplitude * own**2
+    if np.allclose(level, level[0], rtol=SAME, atol=0.0):
+        return np.asarray(level[0] / frequency**2)
+    return np.interp(frequency, own, amplitude)
+
+
+class Overlay:
+    """A branch over responses, in their units.
+
+    Parameters
+    ----------
+    branch : xarray.Dataset
+        Of :func:`orchestrate.branch`.
+    data : xarray.Dataset
+        Of :func:`orchestrate.sweep` or :func:`orchestrate.resonance`.
+    parameter : str
+        What these are along.
+
+    Raises
+    ------
+    InputError
+        Where both do not belong together.
+    """
+
+    def __init__(self, branch: xr.Dataset, data: xr.Dataset, parameter: str) -> None:
+        parameters = {key: data.attrs[key] for key in SI if key in data.attrs}
+        if "structure" in data.dims:  # of both
+            parameters.pop("bonded", None)
+        why = why_unfit(branch, parameter, parameters)
+        why = why or why_shaken_otherwise(branch, data, parameter)
+        if why:
+            raise InputError(f"overlay: {why}")
+        self.branch, self.data, self.parameter = branch, data, parameter
+
+    def x(self, values: xr.DataArray) -> np.ndarray:
+        """Return values of the branch's parameter as the responses' axis has them."""
+        name, numbers = str(self.branch.attrs["over"]), values.values
+        if name in ALIKE[0]:
+            omega = math.sqrt(self.branch.attrs["k1"] / self.branch.attrs["m1"])
+            frequency = numbers * omega if name == "eta" else numbers
+            on_ratios = along(self.data, self.parameter).label == ETA
+            return np.asarray(frequency / (omega if on_ratios else frequency_scale(self.data)[0]))
+        if self.parameter == "level":
+            accelerations = numbers * self.branch.frequency.values[0] ** 2
+            return np.asarray(accelerations / acceleration_scale(self.data, "g")[0])
+        return np.asarray(numbers / parameter_scale(self.data, self.parameter)[0])
+
+    def scale(self, factor: float) -> np.ndarray:
+        """Return what lengths over a eta^2 are multiplied by, at each point of the branch.
+
+        Parameters
+        ----------
+        factor : float
+            What an axis in m is divided by; 0 for one that has lengths over a eta^2.
+        """
+        branch = self.branch
+        if not factor:
+            return np.ones(branch.sizes["point"])
+        own = self.parameter in ALIKE[1]
+        turns = branch.frequency.values
+        amplitude = branch.amplitude.values if own else amplitude_at(self.data, turns)
+        return np.asarray(amplitude * branch.eta.values**2 / factor)
+
+    def draw(
+        self, plane: Axes, name: str, factor: float, colours: tuple[str, str] = (BLUE, RED)
+    ) -> None:
+        """Draw a length of the orbits, such as ``xi_rel``; ``factor`` as in :meth:`scale`."""
+        rows = np.atleast_2d(self.branch[name].transpose(..., "point").values * self.scale(factor))
+        x = self.x(self.branch[str(self.branch.attrs["over"])])
+        draw_lines(plane, x, rows, self.branch.stable.values == 1, colours)
+
+    def mark(self, plane: Axes, name: str, factor: float) -> None:
+        """Draw the bifurcations at a length of the orbits; ``factor`` as in :meth:`scale`."""
+        if not self.branch.sizes.get("bifurcation"):
+            return
+        scale, values = self.scale(factor), self.branch[f"bifurcation_{name}"]
+        at = np.interp(self.branch.bifurcation_place.values, np.arange(len(scale)), scale)
+        rows = values.transpose("bifurcation", ...).values.reshape(len(at), -1) * at[:, np.newaxis]
+        draw_bifurcations(plane, self.branch, self.x(self.branch.bifurcation_value), rows)
+
+    def gaps(self, factor: float) -> np.ndarray:
+        """Return the gaps at phase 0, as an axis shows them."""
+        samples = self.branch.xi_rel.transpose("sample", "point").values
+        return np.asarray(samples * self.scale(factor))

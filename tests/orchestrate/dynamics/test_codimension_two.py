@@ -1,0 +1,209 @@
+"""Points of codimension two: against closed forms, normal forms, and from both of their curves."""
+
+from __future__ import annotations
+
+import functools
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import orchestrate
+from orchestrate import Structure
+from orchestrate.dynamics import codimension_two
+from orchestrate.dynamics.bifurcations import FOLD
+from orchestrate.dynamics.codimension_two import Characteristic, PointKind, points_between
+from orchestrate.dynamics.continuation import newton_correct, unit_vector
+from orchestrate.dynamics.families import Setting
+from orchestrate.dynamics.impact_sequence import ImpactSequence, PeriodicOrbit
+from orchestrate.flags import flag_words
+
+from .single_impact import SingleImpact
+
+PAPER = Structure.nondimensional()
+QUIET = {"progress": False}
+WINDOWS = {1: (2.5, (2.4, 2.8)), 2: (3.55, (3.25, 3.7)), 3: (5.62, (5.45, 5.72))}
+
+
+@functools.cache
+def window(period):
+    eta, limits = WINDOWS[period]
+    return orchestrate.branch(PAPER, eta=eta, period=period, limits=limits, **QUIET)
+
+
+@functools.cache
+def points(period, kind, over, limits):
+    """The points on a curve of a kind, by their names: both parameters, and the point itself."""
+    start = window(period)
+    names = flag_words(start.bifurcation_kind.attrs)
+    numbers = [i for i, k in enumerate(start.bifurcation_kind.values) if names[int(k)] == kind]
+    found = orchestrate.border(
+        PAPER,
+        start=start,
+        bifurcation=numbers[0],
+        over=("eta", over),
+        limits=[(1.0, 7.0), limits],
+        longest=0.08,
+        **QUIET,
+    )
+    words = flag_words(found.codimension_two_kind.attrs)
+    table = {}
+    for number, at in enumerate(found.codimension_two_kind.values):
+        each = found.isel(codimension_two=number)
+        values = float(each.codimension_two_eta), float(each[f"codimension_two_{over}"])
+        table[words[int(at)]] = values, each
+    return table
+
+
+def polynomial(*multipliers):
+    """D of some multipliers and its slope, as their closed form has them."""
+    coefficients = np.poly(np.array(multipliers))
+    return np.polyval(coefficients, -1.0), np.polyval(np.polyder(coefficients), -1.0)
+
+
+def test_a_resonance_1_3_is_where_the_closed_form_has_it():
+    (eta, kappa), at = points(1, "Neimark-Sacker", "kappa", (1.05, 2.2))["resonance 1:3"]
+    truth = SingleImpact(eta, 1, kappa=kappa).multipliers
+    assert np.abs(truth - np.exp(2j * np.pi / 3.0)).min() < 1e-8
+    assert float(at.codimension_two_residual) < 1e-12
+
+
+def test_a_flip_neimark_sacker_point_is_on_both_curves():
+    limits = (1.05, 2.2)
+    both = [
+        points(1, kind, "kappa", limits)["flip-Neimark-Sacker"][0]
+        for kind in ("Neimark-Sacker", "period doubling")
+    ]
+    assert both[0] == pytest.approx(both[1], abs=1e-9)
+    truth = SingleImpact(both[0][0], 1, kappa=both[0][1]).multipliers
+    pair = truth[truth.imag > 0.0]
+    assert np.abs(truth + 1.0).min() < 1e-8 and abs(np.abs(pair) - 1.0).min() < 1e-8
+
+
+@pytest.mark.slow
+def test_a_resonance_1_2_is_the_end_of_one_curve_and_on_the_other():
+    limits = (0.69, 0.99)
+    both = [
+        points(3, kind, "e", limits)["resonance 1:2"]
+        for kind in ("Neimark-Sacker", "period doubling")
+    ]
+    (eta, e), at = both[0]
+    assert both[0][0] == pytest.approx(both[1][0], abs=1e-9)
+    truth = SingleImpact(eta, 3, e=e).multipliers
+    assert polynomial(*truth) == pytest.approx((0.0, 0.0), abs=1e-8)
+    multipliers = at.codimension_two_multipliers.sel(part="real").values
+    assert (np.abs(multipliers + 1.0) < 1e-4).sum() == 2
+
+
+def test_a_period_doubling_ends_where_a_flight_grazes():
+    limits = (0.29, 0.71)
+    both = [
+        points(2, kind, "e", limits)["grazing period doubling"][0]
+        for kind in ("period doubling", "grazing of a flight")
+    ]
+    assert both[0] == pytest.approx(both[1], abs=1e-9)
+    eta, e = both[0]
+    truth = SingleImpact(eta, 2, e=e)
+    assert np.abs(truth.multipliers + 1.0).min() < 1e-8
+    assert abs(truth.gap(np.linspace(0.01, 0.99, 20_001) * truth.time).min()) < 1e-7
+
+
+def test_the_roots_of_the_polynomial_are_the_multipliers():
+    """Of a contact too, where two are zero."""
+    for eta, count in ((3.0, 4), (0.4, 2)):
+        found = orchestrate.orbit(PAPER, eta=eta, **QUIET)
+        there = found.node_kind.values >= 0
+        names = ("node_phase", "node_position", "node_velocity", "node_closing")
+        nodes = np.stack([found[name].values[there] for name in names], axis=1)
+        kinds = tuple(map(int, found.node_kind.values[there]))
+        form = Setting.fixed(PAPER, (("eta", eta),)).form(np.array([eta]))
+        orbit = PeriodicOrbit(ImpactSequence(1, kinds), form, nodes)
+        d = Characteristic(orbit, np.ones(4 * len(nodes)))
+        own = [complex(*pair) for pair in found.multipliers.values]
+        for multiplier in own[:count]:
+            assert abs(d(multiplier)) < 1e-9
+        assert abs(d(1.7)) > 1e-6
+
+
+class Normal:
+    """A fold curve of a normal form: p1 + p2 x - x^3 = 0, with multipliers of its own."""
+
+    kind, accuracy, scale = FOLD, 1e-12, np.ones(3)
+
+    def __init__(self):
+        self.family = SimpleNamespace(size=1, jacobian=self.first, setting=None)
+        self.columns = self.rows = np.ones(1)
+
+    def update_border(self, unknowns):
+        pass
+
+    def first(self, unknowns):
+        x, _, p2 = unknowns
+        return np.array([[p2 - 3.0 * x * x, 1.0, x]])
+
+    def matrix(self, unknowns):
+        return self.first(unknowns)[:, :1].astype(complex)
+
+    def residual(self, unknowns):
+        x, p1, p2 = unknowns
+        return np.array([p1 + p2 * x - x**3, p2 - 3.0 * x * x])
+
+    def jacobian(self, unknowns, at_root=False):
+        return np.vstack([self.first(unknowns), [-6.0 * unknowns[0], 0.0, 1.0]])
+
+
+class Known(Characteristic):
+    """The polynomial of multipliers that are known."""
+
+    def __init__(self, *multipliers):
+        self.coefficients = np.poly(multipliers)[::-1].real
+
+
+def between(curve, first, last):
+    """The points of a normal form between two places x."""
+    roots = []
+    for x in (first, last):
+        guess = np.array([x, -2.0 * x**3, 3.0 * x * x])
+        roots.append(newton_correct(curve, guess, unit_vector(3, 0)))
+    return {each.kind: each for each in points_between(curve, *roots, 0.0)}
+
+
+@pytest.mark.parametrize("first", [-0.05, -0.15])
+def test_a_cusp_is_where_the_normal_form_has_it(monkeypatch, first):
+    known = Known(1.0, 0.5, 0.3, 0.2)
+    monkeypatch.setattr(codimension_two, "characteristic", lambda *_: known)
+    found = between(Normal(), first, 0.1)
+    assert set(found) == {PointKind.CUSP}
+    assert found[PointKind.CUSP].unknowns == pytest.approx(np.zeros(3), abs=1e-12)
+    assert between(Normal(), 0.05, 0.3) == {}
+
+
+def test_what_the_multipliers_beside_1_say_on_a_fold(monkeypatch):
+    """One is -1, one more is 1, a pair is on the unit circle; two real ones of product 1 are
+    nothing.
+    """
+    cases = {
+        PointKind.FOLD_FLIP: lambda x: (-1.0 - (x - 0.2), 0.3, 0.2),
+        PointKind.RESONANCE_1: lambda x: (1.0 + (x - 0.2), 0.3, 0.2),
+        PointKind.FOLD_TORUS: lambda x: (*((0.8 + x) * np.exp([1.1j, -1.1j])), 0.2),
+        None: lambda x: (2.0, 0.3 + x, 0.2),
+    }
+    for kind, others in cases.items():
+
+        def known(curve, unknowns, others=others):
+            return Known(1.0, *others(unknowns[0]))
+
+        monkeypatch.setattr(codimension_two, "characteristic", known)
+        found = between(Normal(), 0.1, 0.35)
+        assert set(found) == ({kind} if kind is not None else set())
+        if kind is not None:
+            assert found[kind].unknowns[0] == pytest.approx(0.2, abs=1e-9)
+            assert found[kind].residual < 1e-9
+
+
+def test_a_curve_without_such_points_says_so():
+    start = window(1)
+    found = orchestrate.border(
+        PAPER, start=start, bifurcation=0, limits=[(2.5, 2.8), (0.69, 0.71)], **QUIET
+    )
+    assert found.sizes["codimension_two"] == 0

@@ -1,0 +1,282 @@
+"""Unstable manifolds: curves that are known exactly, and that of a saddle by its inverse map."""
+
+from __future__ import annotations
+
+import functools
+import math
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+from scipy.optimize import brentq
+
+import orchestrate
+from orchestrate import InputError, Structure
+from orchestrate.access import OSCILLATOR, Instance, begin
+from orchestrate.dynamics import manifolds
+from orchestrate.dynamics.curve_growth import CurveGrower, CurvePoint, GrowthSettings
+from orchestrate.response.questions import point
+
+from .single_impact import GAP, RATE, SingleImpact
+
+PAPER = Structure.nondimensional()
+QUIET = {"progress": False}
+SETTINGS = GrowthSettings(length=3.0, spacing=0.02, angle=0.2, max_points=3000, resolution=1e-10)
+START = 1e-5  # of the first piece, from the saddle
+
+
+def images(step, growth, fold=lambda state: (0,)):
+    """The images of the first piece along the first co-ordinate under a map with a saddle at 0."""
+
+    def image(s):
+        state = np.array([START * growth ** (s - math.floor(s)), 0.0])
+        itinerary = np.zeros(1, dtype=int)
+        for _ in range(math.floor(s)):
+            itinerary += fold(state)
+            state = step(state)
+        return CurvePoint(s, state, tuple(itinerary.tolist()))
+
+    return image
+
+
+def test_a_parabola_that_is_a_manifold_exactly():
+    """Of (a x, b y + (a^2 - b) x^2), y = x^2 is invariant; distance and angle are kept."""
+    a, b = 1.7, 0.4
+    curve = CurveGrower(
+        images(lambda z: np.array([a * z[0], b * z[1] + (a * a - b) * z[0] ** 2]), a), SETTINGS
+    ).grow()
+    states = np.array([point.state for point in curve.points])
+    x, y = states.T
+    assert y == pytest.approx(x**2, abs=3.0 * START**2)
+    assert curve.end == "length" and not curve.breaks
+    chords = np.diff(states, axis=0)
+    assert np.linalg.norm(chords, axis=1).max() <= SETTINGS.spacing
+    angles = np.arctan2(chords[:, 1], chords[:, 0])
+    assert np.abs(np.diff(angles)).max() <= SETTINGS.angle
+    exact = 0.5 * x[-1] * math.hypot(1.0, 2.0 * x[-1]) + 0.25 * math.asinh(2.0 * x[-1])
+    assert curve.arclength[-1] == pytest.approx(exact, rel=1e-3)
+
+
+@pytest.mark.parametrize("height", [0.5, 1e-3])
+def test_a_jump_breaks_the_curve_and_a_root_does_not(height):
+    """Beyond x = 1: y is higher, by a step at once or by a square root as at a grazing impact."""
+    for power in (0.0, 0.5):
+
+        def step(z, power=power):
+            more = height * max(z[0] - 1.0, 0.0) ** power if z[0] > 1.0 else 0.0
+            return np.array([1.7 * z[0], 0.4 * z[1] + more])
+
+        settings = GrowthSettings(2.5, 0.02, 0.2, 3000, resolution=1e-10)
+        grower = CurveGrower(images(step, 1.7, lambda z: (int(z[0] > 1.0),)), settings)
+        curve = grower.grow()
+        if power:
+            assert not curve.breaks and curve.arclength[-1] > 2.5
+            continue
+        ((number, border),) = curve.breaks.items()
+        assert border.distance == pytest.approx(height, rel=1e-6)
+        assert abs(border.power) < 0.01
+        assert curve.points[number - 1].state[0] == pytest.approx(1.7, abs=1e-8)
+        assert curve.arclength[number] == curve.arclength[number - 1]
+
+
+def test_a_curve_that_converges_ends():
+    """2 x/(1 + x) leads from 0 to 1."""
+    map_of = images(lambda z: np.array([2.0 * z[0] / (1.0 + z[0]), 0.5 * z[1]]), 2.0)
+    curve = CurveGrower(map_of, SETTINGS).grow()
+    assert curve.end == "converges" and curve.arclength[-1] == pytest.approx(1.0, abs=1e-4)
+
+
+@functools.cache
+def curve(**more):
+    return orchestrate.manifold(PAPER, eta=3.0, **{"length": 2.0, **more}, **QUIET)
+
+
+class Backwards:
+    """The stroboscopic map of one impact a period, run backwards in closed form."""
+
+    def __init__(self, eta):
+        self.hit = SingleImpact(eta, 1)
+        self.period = 2.0 * math.pi / eta
+        self.rates, self.vectors = np.linalg.eig(self.hit.a)
+
+    def steady(self, times):
+        """The forced response, shape (n, 4)."""
+        return np.outer(np.exp(1j * self.hit.eta * times), self.hit.response).imag
+
+    def flow(self, state, start, times):
+        """The states at other times, in flight."""
+        free = np.linalg.solve(self.vectors, state - self.steady(np.array([start]))[0])
+        return (np.exp(np.outer(times - start, self.rates)) * free @ self.vectors.T).real + (
+            self.steady(times)
+        )
+
+    def __call__(self, state):
+        """The state a period before."""
+
+        def gap(time):
+            return float(self.flow(state, self.period, np.array([time]))[0] @ GAP)
+
+        times = np.linspace(self.period, 0.0, 400)
+        first = int(np.argmax(self.flow(state, self.period, times) @ GAP < 0.0))
+        at = brentq(gap, times[first], times[first - 1], xtol=1e-15)
+        after = self.flow(state, self.period, np.array([at]))[0]
+        before = np.linalg.solve(self.hit.restitution, after)
+        assert RATE @ before < 0.0 < RATE @ after
+        return self.flow(before, at, np.zeros(1))[0]
+
+
+def saddle_of(data):
+    return data.saddle.values
+
+
+def test_run_backwards_its_points_come_to_the_saddle():
+    """At the rate of its multiplier: only what is on the manifold does, all else leaves."""
+    data, back = curve(distance=1e-6, length=0.5), Backwards(3.0)
+    multiplier = float(data.multiplier)
+    exact = SingleImpact(3.0, 1).multipliers
+    assert multiplier == pytest.approx(exact[np.abs(exact).argmax()].real, rel=1e-9)
+    for side in "+-":
+        part = data.sel(side=side)
+        number = int(np.flatnonzero(part.iterate.values > 1.6)[0])
+        state = part.state.values[number]
+        distances = []
+        for _ in range(4):  # more than its own periods: beyond its start on the tangent
+            state = back(state)
+            distances.append(float(np.linalg.norm(state - saddle_of(data))))
+        ratios = np.array(distances[:-1]) / np.array(distances[1:])
+        assert ratios == pytest.approx(abs(multiplier), rel=0.02)
+
+
+def test_its_direction_is_the_eigenvector_at_phase_0():
+    """Of flight, saltation and flight, as single impacts have them."""
+    saddle, hit = manifolds.ManifoldJob(**job_fields()).saddle(), SingleImpact(3.0, 1)
+    drive = hit.b * math.sin(hit.phase)
+    incoming = hit.a @ hit.state + drive
+    jump = hit.a @ hit.restitution @ hit.state + drive - hit.restitution @ incoming
+    saltation = hit.restitution + np.outer(jump, GAP) / (GAP @ incoming)
+    first = hit.phase / 3.0
+    matrix = expm(hit.a * (hit.time - first)) @ saltation @ expm(hit.a * first)
+    image = matrix @ saddle.direction
+    assert image == pytest.approx(saddle.multiplier * saddle.direction, abs=1e-9)
+
+
+def test_it_is_tangent_to_the_eigenvector():
+    """What it misses of the tangent grows as the square of the distance."""
+    data = curve()
+    part = data.sel(side="+")
+    away = part.state.values - saddle_of(data)
+    direction = away[0] / np.linalg.norm(away[0])
+    missed, distance = [], []
+    for target in (2e-4, 4e-4, 8e-4):
+        i = int(np.argmax(np.linalg.norm(away, axis=1) > target))
+        along = float(away[i] @ direction)
+        missed.append(np.linalg.norm(away[i] - along * direction))
+        distance.append(along)
+    powers = np.diff(np.log(missed)) / np.diff(np.log(distance))
+    assert powers == pytest.approx(2.0, abs=0.1)
+
+
+def test_images_of_its_points_lie_on_it():
+    """By the FMU, two periods: on the points of numbers greater by 1, to 1e-8."""
+    job = manifolds.ManifoldJob(**job_fields())
+    saddle, sides = job.saddle(), {}
+    with Instance(exported_path()) as instance:
+        data = curve()
+        part = data.sel(side="-")
+        numbers = np.flatnonzero((part.iterate.values > 1.0) & (part.iterate.values < 4.0))[::9]
+        box = point(PAPER, {"eta": 3.0})
+        for i in numbers:
+            begin(instance, *box, part.state.values[i])
+            instance.step(0.0, 2.0 * box.excitation.period)
+            image = np.array(instance.get("x1", "x2", "v1", "v2"))
+            s = float(part.iterate[i]) + 1.0
+            sides[i] = np.abs(image - job.point_at(instance, saddle, -1.0)(s).state).max()
+    assert len(sides) > 5 and max(sides.values()) < 1e-8
+
+
+def job_fields():
+    start = orchestrate.orbit(PAPER, eta=3.0, **QUIET)
+    found = manifolds.from_result(start)
+    numbers = {"length": 2.0, "spacing": 0.005, "angle": 0.2, "distance": 1e-5, "most": 100}
+    names = {"name": "manifold", "structure": PAPER, "excitation": (("eta", 3.0),)}
+    return {**names, "box_acceleration": 0.0, "start": found, "period": 1, **numbers}
+
+
+def exported_path():
+    from orchestrate.access import finder
+
+    return finder({})(OSCILLATOR).path
+
+
+def test_breaks_are_rows_of_nan_and_never_connected():
+    data = curve()
+    for number, side in enumerate("+-"):
+        part = data.sel(side=side)
+        last = int(np.flatnonzero(np.isfinite(part.arclength.values))[-1])
+        inside = part.isel(point=slice(0, last + 1))
+        holes = np.flatnonzero(np.isnan(inside.x_rel.values))
+        assert len(holes) == int((data.break_side == number).sum())
+        chords = np.linalg.norm(np.diff(inside.xi.values, axis=0), axis=1)
+        assert np.nanmax(chords) <= 1.001 * 0.005 * float(data.orbit_size)
+    # an impact that passes phase 0 is the first break: it closes the gap there
+    first = data.isel({"break": 0})
+    part = data.isel(side=int(first.break_side))
+    hole = int(np.flatnonzero(np.isnan(part.x_rel.values))[0])
+    assert abs(part.x_rel.values[[hole - 1, hole + 1]]).max() < 1e-9
+    rates = part.v_rel.values[[hole - 1, hole + 1]]
+    assert max(rates) == pytest.approx(-PAPER.e * min(rates), rel=1e-5)
+    assert abs(int(first.break_impacts)) == 1
+
+
+def test_the_scale_of_a_structure_does_not_matter():
+    beam = Structure.nondimensional(omega=75.0, m1=1.5)
+    own = orchestrate.manifold(beam, frequency=225.0, amplitude=1e-4, length=0.5, **QUIET)
+    unit = curve(length=0.5)
+    assert own.xi.values[:, :40] == pytest.approx(unit.xi.values[:, :40], abs=1e-9, nan_ok=True)
+    metres = 9e-4 * unit.x_rel.values[:, :40]
+    assert own.x_rel.values[:, :40] == pytest.approx(metres, abs=1e-12, nan_ok=True)
+
+
+@pytest.mark.slow
+def test_its_bits_are_the_same_with_the_kernels_of_any_processor():
+    """Its far points lie on a chaotic attractor: a last bit more would be another curve."""
+    code = (
+        "import hashlib, orchestrate as o;"
+        "m = o.manifold(o.Structure.nondimensional(), eta=3.0, length=1.0, progress=False);"
+        "print(hashlib.sha256(m.state.values.tobytes()).hexdigest())"
+    )
+    said = set()
+    for kernel in ("Haswell", "Nehalem"):
+        surroundings = {**os.environ, "OPENBLAS_CORETYPE": kernel}
+        command = [sys.executable, "-c", code]
+        done = subprocess.run(command, env=surroundings, capture_output=True, text=True, check=True)
+        said.add(done.stdout)
+    assert len(said) == 1
+
+
+def test_pictures():
+    (plane,) = orchestrate.plot(curve()).axes
+    lines = {line.get_label(): line for line in plane.get_lines()}
+    assert len(lines) == 3 and "saddle" in lines
+    assert np.isnan(lines["where it falls"].get_ydata()).any()
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"eta": 2.0}, "0 multipliers outside the unit circle; expected a saddle with one"),
+        ({"eta": 2.75}, "2 multipliers outside"),
+        ({"eta": 3.0, "length": 0.0}, "length = 0"),
+        ({"eta": 3.0, "spacing": math.nan}, "spacing = nan"),
+        ({"eta": 3.0, "most": 1}, "most = 1"),
+        ({"eta": 3.0, "distance": 0.1}, "distance = 0.1: the gap at phase 0"),
+        ({"start": 1.0}, "start = 1.0"),
+    ],
+)
+def test_what_is_wrong_is_named(wrong, words):
+    with pytest.raises(InputError, match=words) as caught:
+        orchestrate.manifold(PAPER, **wrong, **QUIET)
+    assert "expected" in str(caught.value)
