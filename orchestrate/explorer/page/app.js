@@ -108,7 +108,6 @@ export class App {
       closer: () => this.open(middle() - 0.3 * half(), middle() + 0.3 * half()),
       "run-on": () => inspector.runOn(),
       others: () => this.showOthers(),
-      "hint-go": () => this.showOthers(),
       link: () => this.copy(location.href, "link"),
       "command-copy": () => this.copy(at("command").textContent ?? "", "command"),
       "motion-command-copy": () => this.copy(at("motion-command").textContent ?? "", "command"),

@@ -197,6 +197,6 @@ export function sentenceOf({ impacts, contact, multiplicity, peak }, exponent, s
     return `Repeats ${every}: ${count}${contact ? ", then the halves stick together for a while" : ""}.`;
   }
   const kind = exponent !== undefined && exponent > CHAOTIC ? "Chaos: never repeats" : "Does not repeat";
-  const sticks = `; at times${seen ? "" : ", not in those shown,"} the halves stick together`;
+  const sticks = `; at times${seen ? "" : " (not shown)"} the halves stick together`;
   return `${kind}, ${count}${contact ? sticks : ""}.`;
 }

@@ -47,7 +47,7 @@ def test_six_tasks_are_done_by_the_page_alone(first):
     first.run(WORDS, "button", "As it was")
     typed(first, "eta-number", "1.3")
     first.until(MOVED)
-    first.run(WORDS, "button", "Other motions here?")
+    first.run(WORDS, "button", "Other motions")
     first.until("return document.getElementById('basins').dataset.complete === 'true'")
     assert first.run("return document.querySelectorAll('#basins li').length") == 2
     before = first.text("sentence")
