@@ -11,7 +11,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from ..errors import InputError
-from ..structures.ranges import STRUCTURE
+from ..structures.ranges import OF_LENGTH, STRUCTURE
 from .branch_lines import draw_bifurcations, draw_lines
 from .scales import ETA, acceleration_scale, along, frequency_scale, parameter_scale
 from .style import BLUE, RED
@@ -55,7 +55,7 @@ def why_unfit(branch: xr.Dataset, over: str, parameters: Mapping[str, Any]) -> s
     for key in SI:
         if key in MOVED.get(name, {name}) or key not in parameters:
             continue
-        own, other = float(branch.attrs[key]), float(parameters[key])
+        own, other = float(branch.attrs.get(key, 0.0)), float(parameters[key])
         if not math.isclose(own, other, rel_tol=SAME):
             return f"a branch of another structure, {key} = {own:g}; expected {key} = {other:g}"
     return ""
@@ -64,7 +64,7 @@ def why_unfit(branch: xr.Dataset, over: str, parameters: Mapping[str, Any]) -> s
 def why_shaken_otherwise(branch: xr.Dataset, data: xr.Dataset, over: str) -> str:
     """Say why a branch belongs to another motion of the box; empty where it does not.
 
-    Without a clearance the box's amplitude does not matter: everything grows with it.
+    The box's amplitude does not matter where everything grows with it, as without a clearance.
     """
     at = branch.frequency.values
     if over not in ALIKE[0]:
@@ -72,12 +72,13 @@ def why_shaken_otherwise(branch: xr.Dataset, data: xr.Dataset, over: str) -> str
         if all(same):
             eta = [float(each.eta.values[0]) for each in (branch, data)]
             return f"a branch at eta = {eta[0]:g}; expected eta = {eta[1]:g}"
-    if branch.attrs["clearance"] and over not in ALIKE[1]:
+    has_scale = any(branch.attrs.get(name) for name in OF_LENGTH)
+    if has_scale and over not in ALIKE[1]:
         own, other = branch.amplitude.values, amplitude_at(data, at)
         if not np.allclose(own, other, rtol=SAME, atol=0.0):
             return (
                 f"a branch at an amplitude of {own[0]:g} m, where the responses have "
-                f"{other[0]:g} m; expected the same, as there is a clearance"
+                f"{other[0]:g} m; expected the same, as the structure has a scale of length"
             )
     return ""
 
