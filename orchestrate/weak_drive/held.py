@@ -120,6 +120,9 @@ class HoldSettings:
         irregular motions: speeds that are known no better rule out no jump.
     again : int
         How often the voltage of an irregular motion is held again before its end counts as a loss.
+    by_chance : float
+        Range of voltages, over K omega, in which an irregular motion may end meanwhile: where it
+        does in a wider one, it ends by chance, and nothing is decided.
     stair : float
         Longest first step of the voltage, over K omega, and
     max_stairs : int
@@ -139,6 +142,7 @@ class HoldSettings:
     smallest_jump: float = 4e-3
     largest_scatter: float = 8e-3
     again: int = 3
+    by_chance: float = 2e-4
     stair: float = 4e-3
     max_stairs: int = 25
     past: float = 0.02
@@ -338,25 +342,32 @@ class HeldVoltageTest:
 
     def between(self, points: list[Settled], sign: float) -> Verdict:
         """Bracket the largest rise (``sign`` -1: fall) of the settled speed, and say what it is."""
+        ended = math.nan
         for _ in range(self.settings.max_holds):
             i, low, high = largest_change(points, sign)
             if sign * (high.speed - low.speed) < self.smallest_change(low, high):
                 return Verdict(FOLLOWS)
             if self.is_within(low, high, self.settings.width):
-                short = high.origin == low.voltage
+                short = high.origin in (low.voltage, high.voltage)  # a short step, or held again
                 again = high if short else self.step_from(low, high.voltage)
                 if self.differ(again, high):
                     points[i + 1] = again  # a longer step of the voltage had thrown it across
                     continue
                 what = self.there_and_back(low, high)
+                points[i] = self.later(low) if what == LOST else low
+                if points[i] is not low:
+                    ended = low.voltage if math.isnan(ended) else ended
+                    if abs(low.voltage - ended) <= self.settings.by_chance * self.volts:
+                        continue  # it was lost before, as close as a bracket can tell
+                    what = UNDECIDED
                 if what != FOLLOWS or self.is_within(low, high, self.settings.finest):
                     return Verdict(LOST if what == LOST else UNDECIDED, low.voltage, high.voltage)
             middle = next(
                 (point for point in self.inside(low, high) if point.speed == point.speed), None
             )
             if middle is None:
-                what = self.there_and_back(low, high)
-                return Verdict(LOST if what == LOST else UNDECIDED, low.voltage, high.voltage)
+                lost = self.there_and_back(low, high) == LOST and self.later(low) is low
+                return Verdict(LOST if lost else UNDECIDED, low.voltage, high.voltage)
             points.insert(i + 1, middle)
         return Verdict(UNDECIDED, low.voltage, high.voltage)
 
@@ -371,25 +382,23 @@ class HeldVoltageTest:
             yield self.step_from(low, low.voltage + part * (high.voltage - low.voltage))
 
     def there_and_back(self, low: Settled, high: Settled) -> int:
-        """Go back to the lower voltage: a motion was lost where the speed does not come back, and
-        the motion there lasts.
-        """
+        """Go back to the lower voltage: a motion was lost where the speed does not come back."""
         back = self.step_from(high, low.voltage)
         if abs(back.speed - low.speed) > self.settings.two_motions + noise(back, low):
-            return LOST if self.lasts(low) else UNDECIDED
+            return LOST
         comes_back = math.isfinite(back.speed) and not self.differ(back, low)
         return FOLLOWS if comes_back else UNDECIDED
 
-    def lasts(self, point: Settled) -> bool:
-        """Return whether an irregular motion lasts when its voltage is held again: where it ends by
-        chance, it may have been lost before. Others have settled.
+    def later(self, point: Settled) -> Settled:
+        """Return a motion, or, where an irregular one ends when its voltage is held again, what
+        comes after: it may have been lost before. Others have settled.
         """
         later, left = point, self.settings.again if point.error > self.settings.tolerance else 0
         for _ in range(left):
             later = self.step_from(later, point.voltage)
             if self.differ(later, point):
-                return False
-        return True
+                return later
+        return point
 
     def is_within(self, low: Settled, high: Settled, width: float) -> bool:
         """Return whether two voltages are as close as is asked for, over K omega."""

@@ -162,22 +162,24 @@ def test_a_way_back_that_has_not_settled_is_undecided():
         assert scripted.there_and_back(low, high) == what
 
 
-@pytest.mark.parametrize(("life", "what"), [(2, UNDECIDED), (4, LOST)])
-def test_an_irregular_motion_that_ends_by_itself_is_undecided(life, what):
-    """It has settled as far as a hold tells, and is gone in the next one or the one after."""
+@pytest.mark.parametrize(("early", "what"), [(0.0, LOST), (1e-4, LOST), (2e-3, UNDECIDED)])
+def test_an_irregular_motion_that_ends_by_chance_is_undecided(early, what):
+    """It outlives one hold up to 1.52, more of them up to that less ``early``."""
 
     class Transient(Scripted):
         def step_from(self, point, voltage):
-            self.life -= voltage == point.voltage
-            back = self.back if voltage < point.voltage or self.life <= 0 else 0.0
-            return self.at(voltage, back)
+            last = 1.52 - (early if voltage == point.voltage else 0.0)
+            leaves = point.error == 0.0 or (voltage >= point.voltage and voltage > last)
+            return self.at(voltage, 0.02 * leaves)._replace(
+                error=0.0 if leaves else 1e-3, origin=point.voltage
+            )
 
-    transient = Transient(back=0.02)
-    transient.life = life
-    low, high = transient.at(1.5)._replace(error=1e-3), transient.at(1.5001, higher=0.02)
-    assert transient.there_and_back(low, high) == what
-    transient.life = 1
-    assert transient.there_and_back(low._replace(error=0.0), high) == LOST
+    transient = Transient()
+    points = transient.stairs(transient.at(1.5)._replace(error=1e-3), 1.56)
+    verdict = transient.between(points, 1.0)
+    assert verdict.what == what
+    if what == LOST:
+        assert verdict.low - 1e-9 <= 1.52 - early <= verdict.high + 1e-9
 
 
 @pytest.mark.parametrize(("higher", "what"), [(0.0, FOLLOWS), (0.012, UNDECIDED)])

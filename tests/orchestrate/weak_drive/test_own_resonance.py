@@ -72,7 +72,8 @@ def test_halves_that_swing_alike_never_part():
 def decided(found, way):
     """That there is no false none; where the motion is lost, over K omega."""
     at = found.sel(jump=way)
-    assert at.held_verdict != FOLLOWS and at.decided != "by the record"
+    assert at.held_verdict != FOLLOWS
+    assert at.decided != "by the record" or np.isfinite(at.jumps)  # clear without being held
     if at.held_verdict == LOST:
         place = float(at.held_jumps) / APART.drive.volts(APART.structure)
         assert OWN_LOSSES[0] < place < OWN_LOSSES[1]
