@@ -294,7 +294,7 @@ class Delaminated(Hypothesis):
         assert player is not None
         player.start(self.structure(values, evidence))
         nodes = evidence.pieces.nodes
-        return player.play(nodes, evidence.pieces.derivatives, nodes).rows[:, :2].T
+        return player.play(nodes, evidence.pieces.derivatives, nodes, ("x1", "x2")).rows.T
 
 
 class DelaminatedWithClearance(Delaminated):

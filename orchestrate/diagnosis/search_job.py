@@ -30,8 +30,11 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 FROM_BONDED = 15  # steps downhill from the bonded solution
 FROM_SCAN = 1  # starts of each part of the scan from which to go downhill
-COARSE, SHORT = 9, 2  # steps downhill from there, where faces are seen to part and elsewhere
+COARSE, SHORT = 4, 2  # steps downhill from there, where faces are seen to part and elsewhere
+CONTINUED, FURTHER = 3, 6  # how many of the best of them go on, and for how many steps
 REFINED, CLOSE = 2, 1.3  # how many of the best are polished, and how close their misfits are
+ENOUGH = 1.2  # misfit of a delaminated one from which no other kind of clearance is looked for
+POLISHED = 4  # rounds on the whole record after those near the resonance
 GAPS = (-0.3, -0.1, -0.03, 0.03, 0.1, 0.3)  # clearances over the largest displacement
 ROWS, NUMBERS, MINIMA = 4, 6, 8  # of tables: solutions, values in each, misfits of minima
 
@@ -71,6 +74,12 @@ class RecordData:
 def evidence_of(data: RecordData) -> Evidence:
     """A record's evidence, made once a process."""
     return Evidence.from_record(data.dataset())
+
+
+@lru_cache(maxsize=2)
+def coarse_evidence_of(data: RecordData) -> Evidence:
+    """The part of it near the resonance, which a motion goes through in half the time."""
+    return evidence_of(data).near_resonance()
 
 
 @lru_cache(maxsize=2)
@@ -166,7 +175,7 @@ class SearchJob(Job):
     def search_split(self, split: float, player: Player) -> Table:
         """Minima of the delaminated one from the starts of one split of the halves."""
         place = len(self.sound)
-        search = Search(self.hypotheses[place], self.evidence, player)
+        search = Search(self.hypotheses[place], coarse_evidence_of(self.data), player)
         starts = [s for s in search.hypothesis.starts(self.evidence) if s["split"] == split]
         coarse = COARSE if is_worth_a_search(self.data) else SHORT
         found = search.best(starts, keep=FROM_SCAN, coarse=coarse, fine=0)
@@ -191,42 +200,69 @@ class SearchJob(Job):
         bonded = sound[0][1][0]
         sound = [(search, no_worse_than(bonded, search, found)) for search, found in sound]
         best = int(np.argmin([found[0].misfit for _, found in sound]))
+        worth = self.is_worth_polishing(sound)
         made = [
             self.finished(place, one, player, place in (0, best)) for place, one in enumerate(sound)
         ]
         if self.delaminated:
-            plain = self.finished(len(made), self.minima(len(made), previous, player), player)
+            search, found = self.minima(len(made), previous, player)
+            found = self.polished(search, found) if worth else search.scan([found[0].values])
+            plain = self.finished(len(made), (search, found), player, worth)
             made.append(plain)
             if "clearance" in self.free:
-                made.append(self.with_clearance(plain, player))
+                made.append(self.with_clearance(plain, player, worth))
         spent = previous["evaluations"]
         for place, result in enumerate(made):
             result["end_evaluations"] += spent[previous["place"] == place].sum()
         return {name: np.stack([part[name] for part in made])[np.newaxis] for name in made[0]}
 
     def minima(self, place: int, previous: Table, player: Player) -> tuple[Search, list[Solution]]:
-        """Minima of a hypothesis; the two best delaminated ones are refined."""
-        search = Search(self.hypotheses[place], self.evidence, player)
-        found = self.solutions(previous, place)
-        if place >= len(self.sound) and is_worth_a_search(self.data):
-            close = [one for one in found[:REFINED] if one.misfit < CLOSE * found[0].misfit]
-            best = [search.polish(one) for one in close]
-            found = sorted([*best, *found[len(close) :]], key=lambda solution: solution.misfit)
-        return search, found
+        """Minima of a hypothesis, as the searches beside each other have left them."""
+        return Search(self.hypotheses[place], self.evidence, player), self.solutions(previous, place)
 
-    def with_clearance(self, plain: dict[str, Any], player: Player) -> dict[str, Any]:
-        """The same with gaps and preloads: from the best without, and from its own starts."""
+    def is_worth_polishing(self, sound: Sequence[tuple[Search, list[Solution]]]) -> bool:
+        """Whether a verdict may depend on the delaminated fit: no sound one describes the record,
+        or faces are seen to part.
+        """
+        search, found = sound[0]
+        motion = search.hypothesis.displacements(found[0].values, self.evidence, None)
+        even = even_orders(self.evidence, self.evidence.matched(self.evidence.computed(motion)))
+        lowest = min(found[0].misfit for _, found in sound)
+        return even.seen or even.moved_apart > 1.0 or lowest > SOUND_DESCRIBES
+
+    def polished(self, search: Search, starts: Sequence[Solution]) -> list[Solution]:
+        """The minima behind the best of coarse solutions: near the resonance, then of all."""
+        coarse = Search(search.hypothesis, coarse_evidence_of(self.data), search.player)
+        further = [coarse.refine(one.values, FURTHER, 3e-3) for one in starts[:CONTINUED]]
+        found = sorted(further, key=lambda solution: solution.misfit)
+        close = [one for one in found[:REFINED] if one.misfit < CLOSE * found[0].misfit]
+        rounds = [coarse.polish(one).values for one in close]
+        rest = [one.values for one in found[len(close) :]]
+        best, *others = search.scan([*rounds, *rest])
+        search.evaluations += coarse.evaluations
+        return [search.polish(best, POLISHED), *others]
+
+    def with_clearance(
+        self, plain: dict[str, Any], player: Player, worth: bool
+    ) -> dict[str, Any]:
+        """The same with gaps and preloads: from the best without, and from its own starts where that
+        does not describe the record already.
+        """
         search = Search(self.hypotheses[-1], self.evidence, player)
         names = list(search.hypothesis.bounds(self.evidence))
         best = dict(zip(names, plain["end_values"][: len(names) - 1].tolist(), strict=False))
         starts = [{**best, "clearance": clearance} for clearance in (0.0, *GAPS)]
-        starts += search.hypothesis.starts(self.evidence)
-        if is_worth_a_search(self.data):
-            found = search.best(starts, keep=3, coarse=COARSE, fine=0)
-            found[0] = search.polish(found[0])
-        else:
+        if not worth:
             found = search.scan(starts[:1])
-        return self.finished(len(self.hypotheses) - 1, (search, found), player)
+        elif plain["end_misfit"] < ENOUGH:
+            found = search.scan(starts)
+            found[0] = search.polish(found[0], POLISHED)
+        else:
+            starts += search.hypothesis.starts(self.evidence)
+            coarse = Search(search.hypothesis, coarse_evidence_of(self.data), player)
+            found = self.polished(search, coarse.best(starts, keep=3, coarse=COARSE, fine=0))
+            search.evaluations += coarse.evaluations
+        return self.finished(len(self.hypotheses) - 1, (search, found), player, worth)
 
     def finished(
         self,
@@ -238,7 +274,7 @@ class SearchJob(Job):
         """The best solution of a hypothesis with its errors, and what it computes."""
         search, found = minima
         values, known = found[0].values, None
-        if with_errors and (place < len(self.sound) or is_worth_a_search(self.data)):
+        if with_errors:
             known = estimate(search, values)
             values = known.values
         motion = search.hypothesis.displacements(values, self.evidence, player)
