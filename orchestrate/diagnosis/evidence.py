@@ -15,6 +15,7 @@ from ..laboratory.pieces import Pieces
 from ..laboratory.sampled import Sampled
 from .orders import (
     FEWEST,
+    KEPT,
     ORDERS,
     Complexes,
     OrderWindows,
@@ -83,9 +84,13 @@ class Evidence:
     @classmethod
     def from_record(cls, record: xr.Dataset) -> Evidence:
         """Of a record; raises as :func:`.orders.record_orders`."""
-        orders = record_orders(record)
+        return cls.from_orders(record_orders(record))
+
+    @classmethod
+    def from_orders(cls, orders: RecordOrders, kept: float = KEPT) -> Evidence:
+        """Of the orders of a whole record, as :func:`.orders.thinned` leaves them."""
         channels, highest = trimmed(orders)
-        thin = thinned(channels, highest)
+        thin = thinned(channels, highest, kept)
         if thin is not orders.channels:
             orders = orders_of(thin)
         rate = orders.channels.sample_rate
@@ -199,7 +204,9 @@ class Evidence:
         from scipy.sparse import diags_array
 
         read = 1.0 / np.sinc(np.outer(FITTED, self.frequency) / self.rate) ** 2
-        return (diags_array(read.repeat(2, axis=0).ravel()) @ self.windows.of_displacements()).tocsr()
+        return (
+            diags_array(read.repeat(2, axis=0).ravel()) @ self.windows.of_displacements()
+        ).tocsr()
 
     @cached_property
     def resonance(self) -> float:

@@ -25,9 +25,9 @@ Floats = NDArray[np.float64]
 REPORTED = {  # units and long names
     "f1": ("Hz", "natural frequency of half 1 alone"),
     "f2": ("Hz", "natural frequency of half 2 alone"),
-    "zeta1": ("1", "damping ratio of half 1 alone"),
-    "zeta2": ("1", "damping ratio of half 2 alone"),
-    "e": ("1", "coefficient of restitution"),
+    "zeta1": ("1", "effective damping ratio of half 1 alone"),
+    "zeta2": ("1", "effective damping ratio of half 2 alone"),
+    "e": ("1", "effective coefficient of restitution"),
     "clearance": ("m", "gap between the faces at rest; below 0: pressed together"),
     "f": ("Hz", "natural frequency of the sound structure"),
     "zeta": ("1", "damping ratio of the sound structure"),
@@ -53,9 +53,12 @@ class Hypothesis(ABC):
     ----------
     name : str
         In messages and results.
+    is_rugged : bool
+        Whether single impacts make the misfit uneven.
     """
 
     name: ClassVar[str]
+    is_rugged: ClassVar[bool] = False
 
     @abstractmethod
     def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
@@ -160,13 +163,13 @@ class Rubbing(Sound):
     """A linear spring with dry friction."""
 
     name = "bonded, with dry friction"
-    extra = {"friction": (0.0, 1.0)}
+    extra = {"friction": (0.0, 5.0)}  # above 1 it locks
 
     def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
         """Little and much."""
         return [
             {**one, "friction": size} for one in super().starts(evidence) for size in (0.02, 0.2)
-        ]
+        ] + [{**super().starts(evidence)[0], "friction": 1.5}]
 
     def mass(self, values: Values, evidence: Evidence) -> SingleMass:
         """The structure itself; friction over the base's usual acceleration."""
@@ -227,6 +230,7 @@ class Delaminated(Hypothesis):
     guess: Structure
     free: tuple[str, ...] = ("f1", "f2", "zeta1", "zeta2", "e")
     name: ClassVar[str] = "delaminated"
+    is_rugged: ClassVar[bool] = True
 
     def values_of(self, structure: Structure, evidence: Evidence) -> dict[str, float]:
         """The numbers of a structure."""

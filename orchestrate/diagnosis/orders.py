@@ -33,7 +33,7 @@ OVERLAP = 0.5
 QUIET = 0.05  # of the usual amplitude of the base: windows below are not used
 NO_SINE = 0.5  # rms of what the base does beside its orders, over the rms of order 1
 FEWEST = 8  # windows
-KEPT = 7.0  # samples in a period of the highest frequency: order 3 has more than two then
+KEPT = 11.0  # samples in a period of the highest frequency: order 3 has more than three then
 EXPECTED = "expected a swept or stepped sine"
 
 
@@ -219,18 +219,20 @@ def orders_of(channels: Channels) -> RecordOrders:
     return RecordOrders(windows, channels, whole, floor, np.quantile(floor, 0.2, axis=1))
 
 
-def thinned(channels: Channels, highest: float) -> Channels:
+def thinned(channels: Channels, highest: float, kept: float = KEPT) -> Channels:
     """Every second, third, ... sample of channels, low-passed before, if enough of them are left.
 
     Parameters
     ----------
     channels : Channels
     highest : float
-        Frequency of the excitation, Hz, in whose period ``KEPT`` samples are to be left.
+        Frequency of the excitation, Hz, in whose period
+    kept : float
+        samples are to be left.
     """
     from scipy.signal import firwin, resample_poly
 
-    factor = int(channels.sample_rate // (KEPT * highest))
+    factor = int(channels.sample_rate // (kept * highest))
     if factor < 2:
         return channels
     # 90 dB from the new Nyquist frequency on, flat up to 0.86 of it: order 3 passes

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -19,9 +20,10 @@ from ..structures import Structure
 from .errors import estimate
 from .even_orders import even_orders
 from .evidence import Evidence
-from .fitting import Search, Solution, distinct
+from .fitting import ROUNDS, Search, Solution, distinct
 from .hypotheses import SOUND, SPLITS, Delaminated, DelaminatedWithClearance, Hypothesis
 from .misfit import misfit
+from .orders import RecordOrders, record_orders
 from .verdicts import SOUND_DESCRIBES
 
 if TYPE_CHECKING:
@@ -34,6 +36,10 @@ COARSE, SHORT = 4, 2  # steps downhill from there, where faces are seen to part 
 CONTINUED, FURTHER = 3, 6  # how many of the best of them go on, and for how many steps
 REFINED, CLOSE = 2, 1.3  # how many of the best are polished, and how close their misfits are
 ENOUGH = 1.2  # misfit of a delaminated one from which no other kind of clearance is looked for
+FEWER = 7.0  # samples in a period of the highest frequency for a coarse search
+GUESSED = 0.06  # standard deviation of a guessed frequency's logarithm
+UNLIKE, FAR = 0.02, 20.0  # part by which its squares make a misfit count more, and most of them
+APART = 0.04  # ln(f2/f1) between two solutions that count as two
 POLISHED = 4  # rounds on the whole record after those near the resonance
 GAPS = (-0.3, -0.1, -0.03, 0.03, 0.1, 0.3)  # clearances over the largest displacement
 ROWS, NUMBERS, MINIMA = 4, 6, 8  # of tables: solutions, values in each, misfits of minima
@@ -73,13 +79,19 @@ class RecordData:
 @lru_cache(maxsize=2)
 def evidence_of(data: RecordData) -> Evidence:
     """A record's evidence, made once a process."""
-    return Evidence.from_record(data.dataset())
+    return Evidence.from_orders(orders_of_data(data))
+
+
+@lru_cache(maxsize=2)
+def orders_of_data(data: RecordData) -> RecordOrders:
+    """The orders of the whole record."""
+    return record_orders(data.dataset())
 
 
 @lru_cache(maxsize=2)
 def coarse_evidence_of(data: RecordData) -> Evidence:
-    """The part of it near the resonance, which a motion goes through in half the time."""
-    return evidence_of(data).near_resonance()
+    """The part near the resonance with fewer samples: a motion takes a third of the time."""
+    return Evidence.from_orders(orders_of_data(data), FEWER).near_resonance()
 
 
 @lru_cache(maxsize=2)
@@ -218,7 +230,8 @@ class SearchJob(Job):
 
     def minima(self, place: int, previous: Table, player: Player) -> tuple[Search, list[Solution]]:
         """Minima of a hypothesis, as the searches beside each other have left them."""
-        return Search(self.hypotheses[place], self.evidence, player), self.solutions(previous, place)
+        search = Search(self.hypotheses[place], self.evidence, player)
+        return search, self.solutions(previous, place)
 
     def is_worth_polishing(self, sound: Sequence[tuple[Search, list[Solution]]]) -> bool:
         """Whether a verdict may depend on the delaminated fit: no sound one describes the record,
@@ -233,20 +246,36 @@ class SearchJob(Job):
     def polished(self, search: Search, starts: Sequence[Solution]) -> list[Solution]:
         """The minima behind the best of coarse solutions: near the resonance, then of all."""
         coarse = Search(search.hypothesis, coarse_evidence_of(self.data), search.player)
-        further = [coarse.refine(one.values, FURTHER, 3e-3) for one in starts[:CONTINUED]]
-        found = sorted(further, key=lambda solution: solution.misfit)
-        close = [one for one in found[:REFINED] if one.misfit < CLOSE * found[0].misfit]
-        rounds = [coarse.polish(one).values for one in close]
+        chosen = apart(self.ranked(search, starts))[:CONTINUED]
+        found = self.ranked(search, [coarse.refine(s.values, FURTHER, 3e-3) for s in chosen])
+        lowest = min(one.misfit for one in found)
+        close = [one for one in found[:REFINED] if one.misfit < CLOSE * lowest]
+        polished = [coarse.polish(one).values for one in close]
         rest = [one.values for one in found[len(close) :]]
-        best, *others = search.scan([*rounds, *rest])
+        best, *others = self.ranked(search, search.scan([*polished, *rest]))
         search.evaluations += coarse.evaluations
-        return [search.polish(best, POLISHED), *others]
+        rounds = POLISHED if best.misfit < ENOUGH else ROUNDS
+        return [search.polish(best, rounds), *others]
 
-    def with_clearance(
-        self, plain: dict[str, Any], player: Player, worth: bool
-    ) -> dict[str, Any]:
-        """The same with gaps and preloads: from the best without, and from its own starts where that
-        does not describe the record already.
+    def ranked(self, search: Search, solutions: Sequence[Solution]) -> list[Solution]:
+        """Delaminated solutions, the best first: by misfit, and by how far from the guess they are.
+
+        Of one sensor's record both halves may change places at nearly the same misfit; what is
+        known of the halves before then decides, as far as a guess may be trusted.
+        """
+        hypothesis = search.hypothesis
+        assert isinstance(hypothesis, Delaminated)
+
+        def cost(solution: Solution) -> float:
+            made = hypothesis.structure(solution.values, self.evidence)
+            off = (math.log(made.get(f) / self.guess.get(f)) / GUESSED for f in ("f1", "f2"))
+            return solution.misfit * (1.0 + UNLIKE * min(sum(one**2 for one in off), FAR))
+
+        return sorted(solutions, key=cost)
+
+    def with_clearance(self, plain: dict[str, Any], player: Player, worth: bool) -> dict[str, Any]:
+        """The same with gaps and preloads: from the best without, and where that does not describe
+        the record already from its own starts.
         """
         search = Search(self.hypotheses[-1], self.evidence, player)
         names = list(search.hypothesis.bounds(self.evidence))
@@ -296,6 +325,15 @@ class SearchJob(Job):
             "end_fitted": np.stack([computed.real, computed.imag]),
             "end_evaluations": float(search.evaluations),
         }
+
+
+def apart(solutions: Sequence[Solution]) -> list[Solution]:
+    """Solutions without those that are near a better one: the first of each split of the halves."""
+    found: list[Solution] = []
+    for one in solutions:
+        if all(abs(one.values["split"] - other.values["split"]) > APART for other in found):
+            found.append(one)
+    return found
 
 
 def table_of(place: int, solutions: Sequence[Solution], evaluations: int) -> Table:

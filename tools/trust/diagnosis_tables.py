@@ -14,6 +14,7 @@ from .diagnosis_rows import (
     COLUMNS,
     DELAMINATED,
     FAILED,
+    FITTED,
     NO_OPENING,
     NOT_DESCRIBED,
     REFUSED,
@@ -28,6 +29,7 @@ SIGNS = {  # what has a curve: label and colour
     "ratio": ("detect: ratio of misfits", "#207040"),
 }
 NONLINEAR = ("hardening", "friction", "clamp")
+WITHIN = 1.96  # standard errors
 PICTURE = "diagnosis.png"
 NOISE, LEVEL, SIZE = (0.001, 0.01, 0.03, 0.1), (2.0, 4.5, 10.0), (0.1, 0.3, 0.5, 0.7, 0.9)
 FALSE = 0.05  # part of false ones at which signs are compared
@@ -95,12 +97,23 @@ def target_lines(table: pd.DataFrame) -> list[str]:
             f"- f1 and f2 of two masses called delaminated ({len(errors)} numbers): median error "
             f"{median:.2f} %, nine of ten within {nine:.2f} %;"
         )
+    found += deviation_lines(compliant)
     seconds = table.seconds.astype(float)
     found.append(
         f"- a verdict takes {seconds.median():.1f} s of one processor in the median, "
         f"{seconds.max():.1f} s at most."
     )
     return found
+
+
+def deviation_lines(table: pd.DataFrame) -> list[str]:
+    """How often stated 95 % intervals hold the truth, of each number."""
+    parts = []
+    for name in FITTED:
+        known = table[f"{name} deviation"].dropna().astype(float).abs()
+        if len(known):
+            parts.append(f"{name} {part(int((known <= WITHIN).sum()), len(known))}")
+    return [f"- intervals of 95 % that hold the truth: {', '.join(parts)};"] if parts else []
 
 
 def curve_lines(table: pd.DataFrame) -> list[str]:

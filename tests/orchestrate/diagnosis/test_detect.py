@@ -4,8 +4,12 @@ import numpy as np
 import pytest
 
 import orchestrate
+from orchestrate.diagnosis.detect import DetectJob
+from orchestrate.diagnosis.fit import checked_data
+from orchestrate.diagnosis.fitting import Search, Solution
+from orchestrate.diagnosis.hypotheses import FREE
 
-from .records import BEAM, guess, record
+from .records import BEAM, RATE, SWEEP, guess, record
 
 LIMIT = {"jobs": 1, "progress": False}
 
@@ -79,3 +83,28 @@ def test_random_vibration_is_refused_in_one_line():
     made = orchestrate.record(box_acceleration=noise[0], acceleration1=noise[1], sample_rate=600.0)
     with pytest.raises(orchestrate.InputError, match="expected a swept or stepped sine"):
         orchestrate.detect(made, guess())
+
+
+def test_a_structure_that_is_locked_is_not_seen_to_open():
+    """Dry friction that is larger than what pulls: all accelerometers read the base's motion."""
+    history = orchestrate.shake(BEAM, SWEEP, sample_rate=RATE, progress=False)
+    rng, base = np.random.default_rng(4), history.box_acceleration.values
+    read = [base + 0.1 * rng.standard_normal(len(base)) for _ in range(3)]
+    locked = orchestrate.record(
+        time=history.time.values,
+        **dict(zip(("box_acceleration", "acceleration1", "acceleration2"), read, strict=True)),
+    )
+    answer = orchestrate.detect(locked, guess(), **LIMIT)
+    assert str(answer.verdict.values) == "no opening seen", answer.attrs["reason"]
+
+
+def test_of_halves_that_may_change_places_the_guess_decides():
+    """One sensor, masses alike: both solutions miss about as much."""
+    job = DetectJob(name="x", data=checked_data(record(both=False)), guess=guess(), free=FREE)
+    search = Search(job.hypotheses[5], job.evidence)
+    there = search.hypothesis.values_of(guess(), job.evidence)
+    mirrored = {**there, "split": -there["split"]}
+    like, unlike = Solution("x", there, 1.05), Solution("x", mirrored, 1.0)
+    assert job.ranked(search, [unlike, like])[0] is like
+    much_better = Solution("x", mirrored, 0.5)
+    assert job.ranked(search, [like, much_better])[0] is much_better
