@@ -148,8 +148,8 @@ class Curved(Sound):
             f = evidence.resonance / math.sqrt(1.0 + 0.75 * cube)
             for share in (1.0, 0.5):
                 f = evidence.resonance / math.sqrt(1.0 + 0.75 * cube * share)
-                start = {"f": f, "log_zeta": math.log(0.01), "square": 0.0, "cube": cube}
-                found.append(start)
+                start = {"f": f, "square": 0.0, "cube": cube}
+                found += [{**start, "log_zeta": math.log(zeta)} for zeta in (0.01, 0.004)]
         return found
 
     def mass(self, values: Values, evidence: Evidence) -> SingleMass:
@@ -307,9 +307,15 @@ class DelaminatedWithClearance(Delaminated):
     name: ClassVar[str] = "delaminated, with clearance"
 
     def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
-        """Halves that move alone up to a gap: the resonance is that of the one with the sensor."""
+        """Halves that strike each other, and such that move alone up to a gap: then the
+        resonance is that of the one with the sensor.
+        """
         guess, found = self.values_of(self.guess, evidence), []
         m1, m2 = self.guess.m1, self.guess.m2
+        for split in SPLITS:
+            for gap in (0.05, 0.1, 0.2, 0.4, 0.7):
+                common = evidence.resonance * math.sqrt(1.0 + 0.25 * split**2)
+                found.append({**guess, "common": common, "split": split, "clearance": gap})
         peaks = evidence.peaks
         splits = [math.log(peaks[1] / peaks[0])] if len(peaks) == 2 else list(SPLITS)
         for split in splits:

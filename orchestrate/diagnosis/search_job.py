@@ -33,13 +33,14 @@ Floats = NDArray[np.float64]
 FROM_BONDED = 15  # steps downhill from the bonded solution
 FROM_SCAN = 1  # starts of each part of the scan from which to go downhill
 COARSE, SHORT = 4, 2  # steps downhill from there, where faces are seen to part and elsewhere
+KEPT = 6  # starts with a clearance from which to go downhill
 CONTINUED, FURTHER = 3, 6  # how many of the best of them go on, and for how many steps
 REFINED, CLOSE = 2, 1.3  # how many of the best are polished, and how close their misfits are
 ENOUGH = 1.2  # misfit of a delaminated one from which no other kind of clearance is looked for
 FEWER = 7.0  # samples in a period of the highest frequency for a coarse search
 GUESSED = 0.06  # standard deviation of a guessed frequency's logarithm
 UNLIKE, FAR = 0.02, 20.0  # part by which its squares make a misfit count more, and most of them
-APART = 0.04  # ln(f2/f1) between two solutions that count as two
+APART = {"split": 0.04, "clearance": 0.1}  # between two solutions that count as two
 POLISHED = 4  # rounds on the whole record after those near the resonance
 GAPS = (-0.3, -0.1, -0.03, 0.03, 0.1, 0.3)  # clearances over the largest displacement
 ROWS, NUMBERS, MINIMA = 4, 6, 8  # of tables: solutions, values in each, misfits of minima
@@ -182,7 +183,10 @@ class SearchJob(Job):
         """Minima of a sound hypothesis."""
         search = Search(self.hypotheses[place], self.evidence)
         starts = search.hypothesis.starts(self.evidence)
-        return table_of(place, search.best(starts, keep=3, coarse=10, fine=20), search.evaluations)
+        found = search.best(starts, keep=3, coarse=10, fine=20)
+        if found[0].misfit > SOUND_DESCRIBES:  # a jump of the response makes it rugged
+            found[0] = search.polish(found[0])
+        return table_of(place, found, search.evaluations)
 
     def search_split(self, split: float, player: Player) -> Table:
         """Minima of the delaminated one from the starts of one split of the halves."""
@@ -289,7 +293,9 @@ class SearchJob(Job):
         else:
             starts += search.hypothesis.starts(self.evidence)
             coarse = Search(search.hypothesis, coarse_evidence_of(self.data), player)
-            found = self.polished(search, coarse.best(starts, keep=3, coarse=COARSE, fine=0))
+            begun = apart(coarse.scan(starts))[:KEPT]
+            found = [coarse.refine(one.values, COARSE, 3e-3) for one in begun]
+            found = self.polished(search, found)
             search.evaluations += coarse.evaluations
         return self.finished(len(self.hypotheses) - 1, (search, found), player, worth)
 
@@ -328,10 +334,12 @@ class SearchJob(Job):
 
 
 def apart(solutions: Sequence[Solution]) -> list[Solution]:
-    """Solutions without those that are near a better one: the first of each split of the halves."""
+    """Solutions without those that are near a better one: with another split or clearance."""
     found: list[Solution] = []
     for one in solutions:
-        if all(abs(one.values["split"] - other.values["split"]) > APART for other in found):
+        steps = ((one.values.get(n, 0.0), s, n) for n, s in APART.items())
+        sizes = [[abs(v - other.values.get(n, 0.0)) / s for other in found] for v, s, n in steps]
+        if all(max(distances) > 1.0 for distances in zip(*sizes, strict=True)):
             found.append(one)
     return found
 
