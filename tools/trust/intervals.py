@@ -16,7 +16,7 @@ from . import roc
 from .campaign import Campaign, Outcome
 from .diagnosis_rows import FITTED, WITHIN
 
-RATE, DURATION = 640.0, 8.0  # Hz, s
+RATE, DURATION = 900.0, 12.0  # Hz, s
 ENDS = (0.75, 1.3)  # of the sweep, over the common frequency
 NOISE = (0.01, 0.05)  # over the root mean square of each channel
 OFF = 0.1  # of a guess's frequencies, at most
@@ -30,7 +30,7 @@ class Intervals(Campaign):
     title = "Do stated intervals hold the truth?"
     asks = (
         "`fit` on records of the model itself: two halves 10 to 40 % apart, damping ratios of 0.8 "
-        "to 2 %, restitution of 0.35 to 0.85, a sweep of 8 s, two sensors, noise of 1 to 5 %, "
+        "to 2 %, restitution of 0.35 to 0.85, a sweep of 12 s, two sensors, noise of 1 to 5 %, "
         "guesses off by up to 10 %. Intervals of 1.96 standard errors on both sides are to hold "
         "the truth in 92 to 98 % of the trials, of each number. A finding is a fit without an "
         "answer. Of real contacts: [above](#trust-diagnosis)."
@@ -101,7 +101,7 @@ def recorded(
     low, high = (end * middle for end in ENDS)
     sweep = orchestrate.SweptSine(first=low, last=high, duration=DURATION, acceleration=5.0)
     history = orchestrate.shake(beam, sweep, sample_rate=RATE, progress=False)
-    sensor = orchestrate.Sensor(bandwidth=260.0, sample_rate=RATE)
+    sensor = orchestrate.Sensor(bandwidth=400.0, sample_rate=RATE)
     felt = orchestrate.measure(history, sensor, excitation=sweep)
     read = {}
     for name in ("box_acceleration", "acceleration1", "acceleration2"):
