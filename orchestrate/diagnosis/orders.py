@@ -34,7 +34,7 @@ QUIET = 0.05  # of the usual amplitude of the base: windows below are not used
 NO_SINE = 0.5  # rms of what the base does beside its orders, over the rms of order 1
 FEWEST = 8  # windows
 KEPT = 11.0  # samples in a period of the highest frequency: order 3 has more than three then
-EXPECTED = "expected a swept or stepped sine"
+EXPECTED = "not described by this method: expected a swept or stepped sine"
 
 
 @dataclass(frozen=True)
