@@ -3,7 +3,8 @@
 Near the minimum the numbers move by ``-(J'WJ)^-1 J'W d`` where the residuals move by d, with the
 weights W of the soft loss. Three covariances of d are taken:
 
-* noise: motions under the measured base with more noise of the same size, read with noise;
+* noise: motions under the measured base with more noise of the same size, read with noise; and
+  what single impacts that come or stay away make of the residuals around the minimum;
 * blocks: the residuals that are there, summed over blocks of neighbouring windows (a sandwich):
   what the model misses hangs together over neighbours and is no noise;
 * discrepancy: what a model misses beyond noise, it may also have hidden in its numbers, where no
@@ -91,7 +92,9 @@ def errors_of(search: Search, values: dict[str, float], model: LinearModel) -> E
     count, rows, influence = len(values), model.weighted, model.influence
     changes = noisy(search, values)
     moved = np.stack([rows.T @ change.ravel() for change in changes])
+    bumps = model.scatter @ rows
     by_noise = influence @ (moved.T @ moved / len(moved)) @ influence.T
+    by_noise += influence @ (bumps.T @ bumps / len(bumps)) @ influence.T
     residuals = search.residuals(values)
     scores = np.einsum("scwp,scw->wp", rows.reshape(model.slopes.shape), residuals)
     parts = np.array_split(scores, max(min(BLOCKS, len(scores) // 3), count + 2))

@@ -34,12 +34,16 @@ class LinearModel:
         Numbers of the point of the cloud with the smallest misfit, and
     lowest : float
         that misfit.
+    scatter : ndarray, shape (points, residuals)
+        What the points of the cloud are beside the regression: single impacts that come or stay
+        away.
     """
 
     residuals: Floats
     slopes: Floats
     best: dict[str, float]
     lowest: float
+    scatter: Floats
 
     @classmethod
     def around(
@@ -81,7 +85,9 @@ class LinearModel:
         number = int(np.argmin(sizes_of_rows))
         slopes = solution[1:].T.reshape(*shape, count)
         residuals_here = solution[0].reshape(shape)
-        return cls(residuals_here, slopes, named[number], sizes_of_rows[number])
+        free = max(len(points) - basis.shape[1], 1)
+        scatter = (rows.reshape(len(rows), -1) - basis @ solution) * np.sqrt(len(points) / free)
+        return cls(residuals_here, slopes, named[number], sizes_of_rows[number], scatter)
 
     @property
     def weighted(self) -> Floats:
