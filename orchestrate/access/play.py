@@ -5,6 +5,8 @@ Each cubic is set where it begins and runs on, so the motion does not depend on 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -53,6 +55,7 @@ class Player(EventInstance):
         nodes: NDArray[np.float64],
         derivatives: NDArray[np.float64],
         samples: NDArray[np.float64],
+        outputs: Sequence[str] = PLAYED,
     ) -> Played:
         """Compute the motion under a box acceleration given as consecutive cubics.
 
@@ -64,10 +67,12 @@ class Player(EventInstance):
             Of each at its beginning, m/s2 to m/s5.
         samples : ndarray
             When the motion is read: from the first node to the last, ascending, s.
+        outputs : sequence of str
+            What is read; each takes its time.
 
         Returns
         -------
         Played
-            Its rows in the order of ``PLAYED``.
+            Its rows in the order of ``outputs``.
         """
-        return self.event_loop(CUBIC, PLAYED).run(nodes, derivatives, samples)
+        return self.event_loop(CUBIC, tuple(outputs)).run(nodes, derivatives, samples)

@@ -81,8 +81,8 @@ def detect(
     -----
     Sound hypotheses are one mass on a linear spring, on one that hardens or softens, with dry
     friction, or with a stop on one side. "Delaminated" needs order 2 at five times the noise and at
-    a hundredth of order 1 (or two faces whose order 1 differs), and a misfit 1.5 times smaller than
-    that of the best sound hypothesis, in nine of ten records that are put together of its blocks.
+    half a hundredth of order 1 (or two faces whose order 1 differs), and a misfit 1.5 times smaller
+    than that of the best sound hypothesis, in nine of ten records put together of its blocks.
     There is no verdict "intact": a structure that is pressed together moves as a bonded one below
     the level that opens it. See :doc:`/diagnosis`.
 

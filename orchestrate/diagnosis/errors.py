@@ -1,13 +1,18 @@
 """Standard errors of fitted numbers: from noise that is simulated, and from what the model misses.
 
 Near the minimum the numbers move by ``-(J'WJ)^-1 J'W d`` where the residuals move by d, with the
-weights W of the soft loss. Two covariances of d are taken:
+weights W of the soft loss. Three covariances of d are taken:
 
-* noise: motions under the measured base with more noise of the same size, read with noise;
+* noise: motions under the measured base with more noise of the same size, read with noise; and
+  what single impacts that come or stay away make of the residuals around the minimum;
 * blocks: the residuals that are there, summed over blocks of neighbouring windows (a sandwich):
-  what the model misses hangs together over neighbours and is no noise.
+  what the model misses hangs together over neighbours and is no noise;
+* discrepancy: what a model misses beyond noise, it may also have hidden in its numbers, where no
+  residual shows it. Numbers at which the squares beyond noise are larger by ``HIDDEN`` of
+  themselves are one standard deviation away; damping and restitution are in doubt by ``CONTACT``
+  beside. Of records of the model itself nothing is left of it.
 
-The variance is the sum of both: each sees a part of what there is, and the blocks are few. ``J'J``
+The variance is the sum of them: each sees a part of what there is, and the blocks are few. ``J'J``
 alone would take each window for an experiment of its own and the model for true; on real contacts
 it is 20 to 100 times too small.
 """
@@ -27,7 +32,7 @@ from ..laboratory.sampled import Sampled
 from .evidence import Evidence
 from .fitting import Search, step_of
 from .linear import LinearModel
-from .misfit import misfit
+from .misfit import misfit, soft_squares
 from .orders import ORDERS
 
 if TYPE_CHECKING:
@@ -38,6 +43,10 @@ REPLICATES = 16
 RUGGED = 1.05  # misfit after the last step over that before: more is a step too far
 BLOCKS = 20  # of windows
 SEED = 20_241
+CONTACT = 0.12  # of a restitution; of damping ratios it is the mean of both halves'
+REAL = 0.3  # misfit beyond noise from which a contact is another than the model's for sure
+HIDDEN = 0.1  # part of the squares beyond noise by which they may be larger at the truth
+NOISE_ALONE = 1.3  # squares over those that noise makes: less of them has no other cause
 
 
 @dataclass(frozen=True)
@@ -48,14 +57,15 @@ class Estimate:
     ----------
     values : dict of str to float
     covariance : ndarray, shape (numbers, numbers)
-    noise, blocks : ndarray, shape (numbers,)
-        Standard deviations by noise alone, and by blocks alone.
+    noise, blocks, discrepancy : ndarray, shape (numbers,)
+        Standard deviations by each alone.
     """
 
     values: dict[str, float]
     covariance: Floats
     noise: Floats
     blocks: Floats
+    discrepancy: Floats
 
 
 def estimate(search: Search, values: Mapping[str, float]) -> Estimate:
@@ -73,22 +83,55 @@ def estimate(search: Search, values: Mapping[str, float]) -> Estimate:
     model = LinearModel.around(search.residuals, bounds, here, shape, seed=1)
     moved = model.minima(bounds, here)[0]
     before, after = (misfit(search.residuals(one)) for one in (here, moved))
-    return errors_of(search, moved if after <= RUGGED * before else here, model)
+    allowed = RUGGED if search.hypothesis.is_rugged else 1.0
+    return errors_of(search, moved if after <= allowed * before else here, model)
 
 
 def errors_of(search: Search, values: dict[str, float], model: LinearModel) -> Estimate:
     """Covariances by noise and by blocks, at the numbers."""
     count, rows, influence = len(values), model.weighted, model.influence
-    moved = np.stack([rows.T @ change.ravel() for change in noisy(search, values)])
+    changes = noisy(search, values)
+    moved = np.stack([rows.T @ change.ravel() for change in changes])
+    bumps = model.scatter @ rows
     by_noise = influence @ (moved.T @ moved / len(moved)) @ influence.T
+    by_noise += influence @ (bumps.T @ bumps / len(bumps)) @ influence.T
     residuals = search.residuals(values)
     scores = np.einsum("scwp,scw->wp", rows.reshape(model.slopes.shape), residuals)
     parts = np.array_split(scores, max(min(BLOCKS, len(scores) // 3), count + 2))
     sums = np.stack([part.sum(axis=0) for part in parts])
     small = len(sums) / max(len(sums) - count, 1)
     by_blocks = small * influence @ (sums.T @ sums) @ influence.T
-    noise, blocks = (np.sqrt(np.maximum(np.diag(c), 0.0)) for c in (by_noise, by_blocks))
-    return Estimate(values, by_noise + by_blocks, noise, blocks)
+    beyond = hidden_squares(residuals, changes)
+    hidden = contact_doubt(values, beyond / residuals.size) - HIDDEN * beyond * influence
+    noise, blocks, rest = (
+        np.sqrt(np.maximum(np.diag(c), 0.0)) for c in (by_noise, by_blocks, hidden)
+    )
+    return Estimate(values, by_noise + by_blocks + hidden, noise, blocks, rest)
+
+
+def contact_doubt(values: Mapping[str, float], beyond: float) -> Floats:
+    """Covariance of damping and restitution by what a real contact does: it loses energy in another
+    way at each speed, and a fit shares that out between both halves and the impacts.
+
+    Parameters
+    ----------
+    values : mapping of str to float
+    beyond : float
+        Mean square of the residuals beyond noise.
+    """
+    size = min(1.0, math.sqrt(beyond) / REAL)
+    damping = {
+        name: math.exp(values[name]) for name in ("log_zeta1", "log_zeta2") if name in values
+    }
+    doubt = {name: float(np.mean(list(damping.values()))) / zeta for name, zeta in damping.items()}
+    doubt["e"] = CONTACT
+    return np.diag([(size * doubt.get(name, 0.0)) ** 2 for name in values])
+
+
+def hidden_squares(residuals: Floats, changes: list[Floats]) -> float:
+    """The sum of squares of residuals beyond what noise makes of it; large ones by their size."""
+    by_noise = float(np.mean([soft_squares(change).sum() for change in changes]))
+    return max(float(soft_squares(residuals).sum()) - NOISE_ALONE * by_noise, 0.0)
 
 
 def noisy(search: Search, values: Mapping[str, float]) -> list[Floats]:

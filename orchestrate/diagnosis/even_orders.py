@@ -15,7 +15,8 @@ Floats = NDArray[np.float64]
 GROUP = 5  # neighbouring windows that are taken together
 QUIET = 0.1  # of the largest order 1: windows where less moves are not taken
 ABOVE, BESIDE = 5.0, 2.0  # times the noise; times what is between the orders, impacts' own too
-LEAST = 0.01  # of order 1: sensors and bases that are not linear make less
+LEAST = 0.005  # of order 1: sensors and bases that are not linear make less
+LEAST_APART = 0.03  # of order 1: what two sensors on one body may differ by
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,7 @@ class EvenOrders:
     @property
     def moved_apart(self) -> float:
         """Largest difference of two sensors over order 1 and three hundredths; 0 with one."""
-        size = self.apart / np.maximum(self.threshold, 3.0 * LEAST)
+        size = self.apart / np.maximum(self.threshold, LEAST_APART)
         return float(np.nanmax(size)) if np.isfinite(size).any() else 0.0
 
 

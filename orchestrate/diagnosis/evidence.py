@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -16,6 +15,7 @@ from ..laboratory.pieces import Pieces
 from ..laboratory.sampled import Sampled
 from .orders import (
     FEWEST,
+    KEPT,
     ORDERS,
     Complexes,
     OrderWindows,
@@ -27,6 +27,7 @@ from .orders import (
 
 if TYPE_CHECKING:
     import xarray as xr
+    from scipy.sparse import csr_array
 
 Floats = NDArray[np.float64]
 FITTED = (1.0, 2.0, 3.0)
@@ -34,6 +35,7 @@ RELATIVE = (0.03, 0.03, 0.03)  # errors of a model's orders 1, 2, 3 over the siz
 NEIGHBOURS = 2  # windows on each side over which that size is the largest
 IRREGULAR = 1.5  # errors of orders over the amplitude between the orders
 AROUND = (0.62, 1.55)  # of the resonance's frequency: what is fitted of a wide sweep
+NEAR = (0.8, 1.28)  # of that of both sensors' resonances: what a coarse search goes by
 MOST = 0.9  # of a record: more of it is not worth to be cut
 SKIPPED = 1.0  # s at the beginning where the start is not forgotten; at most a tenth of the record
 GAIN, DELAY = 0.03, 2e-4  # of a sensor against that of the base: standard deviations, 1 and s
@@ -43,8 +45,9 @@ LOST = 30.0  # residual of a motion that has no bounds
 SENSORS = ("acceleration1", "acceleration2")
 
 
-def trimmed(orders: RecordOrders) -> Channels:
-    """The channels from before the sweep comes near the resonance until it is away from it.
+def trimmed(orders: RecordOrders) -> tuple[Channels, float]:
+    """The channels from before the sweep comes near the resonance until it is away from it, and the
+    highest frequency there in Hz.
 
     The rest is long and holds little: a fit would spend half its time there.
     """
@@ -56,8 +59,9 @@ def trimmed(orders: RecordOrders) -> Channels:
     begin = windows.parts[inside[0]].start - round((SKIPPED + 0.5) * channels.sample_rate)
     part = slice(max(begin, 0), windows.parts[inside[-1]].stop)
     if len(inside) < FEWEST or part.stop - part.start > MOST * len(channels.time):
-        return channels
-    return replace(channels, time=channels.time[part], values=channels.values[:, part])
+        return channels, float(windows.frequency.max())
+    cut = replace(channels, time=channels.time[part], values=channels.values[:, part])
+    return cut, float(windows.frequency[inside].max())
 
 
 @dataclass(frozen=True)
@@ -80,14 +84,46 @@ class Evidence:
     @classmethod
     def from_record(cls, record: xr.Dataset) -> Evidence:
         """Of a record; raises as :func:`.orders.record_orders`."""
-        orders = record_orders(record)
-        thin = thinned(trimmed(orders), float(orders.windows.frequency.max()))
+        return cls.from_orders(record_orders(record))
+
+    @classmethod
+    def from_orders(cls, orders: RecordOrders, kept: float = KEPT) -> Evidence:
+        """Of the orders of a whole record, as :func:`.orders.thinned` leaves them."""
+        channels, highest = trimmed(orders)
+        thin = thinned(channels, highest, kept)
         if thin is not orders.channels:
             orders = orders_of(thin)
         rate = orders.channels.sample_rate
         return cls(
             orders, Sampled(acceleration=tuple(orders.channels.box), sample_rate=rate).pieces()
         )
+
+    def near_resonance(self) -> Evidence:
+        """The part of it that a coarse search needs, where both resonances are."""
+        size = np.abs(self.measured[:, 0] - self.level) / self.frequency**2
+        moving = self.frequency[np.unravel_index(np.argmax(size), size.shape)[1]]
+        low, high = (end([*self.peaks, moving]) for end in (min, max))
+        ratio = self.orders.windows.frequency
+        inside = np.flatnonzero((ratio > NEAR[0] * low) & (ratio < NEAR[1] * high))
+        parts, channels = self.orders.windows.parts, self.orders.channels
+        begin = parts[inside[0]].start - round((SKIPPED + 0.1) * self.rate)
+        part = slice(max(begin, 0), parts[inside[-1]].stop)
+        if len(inside) < FEWEST or part.stop - part.start > MOST * self.samples:
+            return self
+        kept = np.flatnonzero([part.start <= p.start and p.stop <= part.stop for p in parts])
+        pieces = replace(
+            self.pieces,
+            nodes=self.pieces.nodes[part] - self.pieces.nodes[part.start],
+            derivatives=self.pieces.derivatives[part.start : part.stop - 1],
+        )
+        orders = RecordOrders(
+            self.orders.windows.cut(kept, part),
+            replace(channels, time=channels.time[part], values=channels.values[:, part]),
+            self.orders.amplitude[:, :, kept],
+            self.orders.floor[:, kept],
+            self.orders.noise,
+        )
+        return Evidence(orders, pieces, self.relative)
 
     @property
     def rate(self) -> float:
@@ -163,6 +199,16 @@ class Evidence:
         return self.windows.amplitudes(self.orders.channels.box[np.newaxis])[0]
 
     @cached_property
+    def operator(self) -> csr_array:
+        """From displacements in the base to parts of orders, see :meth:`computed`."""
+        from scipy.sparse import diags_array
+
+        read = 1.0 / np.sinc(np.outer(FITTED, self.frequency) / self.rate) ** 2
+        return (
+            diags_array(read.repeat(2, axis=0).ravel()) @ self.windows.of_displacements()
+        ).tocsr()
+
+    @cached_property
     def resonance(self) -> float:
         """Frequency at which the structure moves most for the base's amplitude, Hz."""
         response = (np.abs(self.measured[:, 0]) / self.level).max(axis=0)
@@ -195,11 +241,10 @@ class Evidence:
         back from around the sampling rate is as small as there the square of the sinc is, by which
         the orders are divided. The base's orders are added.
         """
-        chosen = motion[[min(mass, len(motion) - 1) for mass in self.masses]]
-        second = np.diff(chosen, 2, axis=1) * self.rate**2
-        padded = np.pad(second, ((0, 0), (1, 1)), mode="edge")
-        found = self.windows.amplitudes(padded)
-        return found / np.sinc(np.outer(FITTED, self.frequency) / self.rate) ** 2 + self.base
+        chosen = [min(mass, len(motion) - 1) for mass in self.masses]
+        parts = {row: self.operator @ motion[row] for row in set(chosen)}
+        found = np.stack([parts[row] for row in chosen]).reshape(len(chosen), len(FITTED), 2, -1)
+        return found[:, :, 0] + 1j * found[:, :, 1] + self.base
 
     def matched(self, computed: Complexes) -> Complexes:
         """The same with each sensor's gain and delay, as order 1 asks for them in closed form.
@@ -217,16 +262,12 @@ class Evidence:
         """Gain and delay (s) of a sensor that bring a computed order 1 closest to the measured."""
         if not np.isfinite(computed).all():  # a motion without bounds
             return 1.0, 0.0
-        weight = 1.0 / self.error[row, 0]
-        slope = -1j * TURN * self.frequency * computed
-        columns = np.stack([computed * weight, slope * weight * DELAY / GAIN], axis=1)
-        target = (self.measured[row, 0] - computed) * weight
-        basis = np.concatenate(
-            [columns.real, columns.imag, np.eye(2) * PRIOR * math.sqrt(len(weight))]
-        )
-        basis[: 2 * len(weight)] *= GAIN
-        wanted = np.concatenate([target.real, target.imag, np.zeros(2)])
-        solution = np.linalg.lstsq(basis, wanted, rcond=None)[0]
+        weighted = computed / self.error[row, 0]
+        columns = np.stack([GAIN * weighted, -1j * DELAY * TURN * self.frequency * weighted])
+        target = self.measured[row, 0] / self.error[row, 0] - weighted
+        normal = (columns @ columns.conj().T).real
+        normal += np.eye(2) * PRIOR**2 * len(weighted)  # no gain or delay without a reason
+        solution = np.linalg.solve(normal, (columns.conj() @ target).real)
         gain = 1.0 + float(np.clip(GAIN * solution[0], -MOST_GAIN, MOST_GAIN))
         return gain, float(np.clip(DELAY * solution[1], -MOST_DELAY, MOST_DELAY))
 

@@ -64,9 +64,16 @@ class Search:
     evidence: Evidence
     player: Player | None = None
     evaluations: int = field(default=0, init=False)
+    _last: tuple[dict[str, float], Floats] | None = field(default=None, init=False)
 
     def residuals(self, values: Mapping[str, float]) -> Floats:
         """What the motion with these numbers misses, shape (sensors, 4, windows)."""
+        if self._last is None or self._last[0] != values:
+            self._last = dict(values), self.computed_residuals(values)
+        return self._last[1]
+
+    def computed_residuals(self, values: Mapping[str, float]) -> Floats:
+        """The same, computed anew."""
         from ..errors import FmuError, InputError
 
         self.evaluations += 1
@@ -121,7 +128,9 @@ class Search:
         bounds = self.hypothesis.bounds(self.evidence)
         for number in range(rounds):
             model = LinearModel.around(self.residuals, bounds, here.values, size * shape, number)
-            best = self.scan([*model.minima(bounds, here.values), model.best])[0]
+            best = self.scan(model.minima(bounds, here.values))[0]
+            if model.lowest < best.misfit:
+                best = Solution(best.name, model.best, model.lowest)
             shape = model.valley()
             if best.misfit < (1.0 - GAINED) * here.misfit:
                 here, size = best, min(1.0, 1.5 * size)

@@ -25,9 +25,9 @@ Floats = NDArray[np.float64]
 REPORTED = {  # units and long names
     "f1": ("Hz", "natural frequency of half 1 alone"),
     "f2": ("Hz", "natural frequency of half 2 alone"),
-    "zeta1": ("1", "damping ratio of half 1 alone"),
-    "zeta2": ("1", "damping ratio of half 2 alone"),
-    "e": ("1", "coefficient of restitution"),
+    "zeta1": ("1", "effective damping ratio of half 1 alone"),
+    "zeta2": ("1", "effective damping ratio of half 2 alone"),
+    "e": ("1", "effective coefficient of restitution"),
     "clearance": ("m", "gap between the faces at rest; below 0: pressed together"),
     "f": ("Hz", "natural frequency of the sound structure"),
     "zeta": ("1", "damping ratio of the sound structure"),
@@ -53,9 +53,12 @@ class Hypothesis(ABC):
     ----------
     name : str
         In messages and results.
+    is_rugged : bool
+        Whether single impacts make the misfit uneven.
     """
 
     name: ClassVar[str]
+    is_rugged: ClassVar[bool] = False
 
     @abstractmethod
     def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
@@ -145,8 +148,8 @@ class Curved(Sound):
             f = evidence.resonance / math.sqrt(1.0 + 0.75 * cube)
             for share in (1.0, 0.5):
                 f = evidence.resonance / math.sqrt(1.0 + 0.75 * cube * share)
-                start = {"f": f, "log_zeta": math.log(0.01), "square": 0.0, "cube": cube}
-                found.append(start)
+                start = {"f": f, "square": 0.0, "cube": cube}
+                found += [{**start, "log_zeta": math.log(zeta)} for zeta in (0.01, 0.004)]
         return found
 
     def mass(self, values: Values, evidence: Evidence) -> SingleMass:
@@ -160,13 +163,13 @@ class Rubbing(Sound):
     """A linear spring with dry friction."""
 
     name = "bonded, with dry friction"
-    extra = {"friction": (0.0, 1.0)}
+    extra = {"friction": (0.0, 5.0)}  # above 1 it locks
 
     def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
         """Little and much."""
         return [
             {**one, "friction": size} for one in super().starts(evidence) for size in (0.02, 0.2)
-        ]
+        ] + [{**super().starts(evidence)[0], "friction": 1.5}]
 
     def mass(self, values: Values, evidence: Evidence) -> SingleMass:
         """The structure itself; friction over the base's usual acceleration."""
@@ -227,6 +230,7 @@ class Delaminated(Hypothesis):
     guess: Structure
     free: tuple[str, ...] = ("f1", "f2", "zeta1", "zeta2", "e")
     name: ClassVar[str] = "delaminated"
+    is_rugged: ClassVar[bool] = True
 
     def values_of(self, structure: Structure, evidence: Evidence) -> dict[str, float]:
         """The numbers of a structure."""
@@ -294,7 +298,7 @@ class Delaminated(Hypothesis):
         assert player is not None
         player.start(self.structure(values, evidence))
         nodes = evidence.pieces.nodes
-        return player.play(nodes, evidence.pieces.derivatives, nodes).rows[:, :2].T
+        return player.play(nodes, evidence.pieces.derivatives, nodes, ("x1", "x2")).rows.T
 
 
 class DelaminatedWithClearance(Delaminated):
@@ -303,9 +307,15 @@ class DelaminatedWithClearance(Delaminated):
     name: ClassVar[str] = "delaminated, with clearance"
 
     def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
-        """Halves that move alone up to a gap: the resonance is that of the one with the sensor."""
+        """Halves that strike each other, and such that move alone up to a gap: then the
+        resonance is that of the one with the sensor.
+        """
         guess, found = self.values_of(self.guess, evidence), []
         m1, m2 = self.guess.m1, self.guess.m2
+        for split in SPLITS:
+            for gap in (0.05, 0.1, 0.2, 0.4, 0.7):
+                common = evidence.resonance * math.sqrt(1.0 + 0.25 * split**2)
+                found.append({**guess, "common": common, "split": split, "clearance": gap})
         peaks = evidence.peaks
         splits = [math.log(peaks[1] / peaks[0])] if len(peaks) == 2 else list(SPLITS)
         for split in splits:

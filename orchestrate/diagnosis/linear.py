@@ -16,7 +16,7 @@ from .misfit import misfit, soft_weights
 
 Floats = NDArray[np.float64]
 Bounds = Mapping[str, tuple[float, float]]
-POINTS = 5  # of a cloud, for each number
+POINTS = 4  # of a cloud, for each number
 SEED = 20_241
 VALLEY = 0.3  # by which part the squares grow in the cloud
 DAMPINGS = (0.0, 0.01, 0.1, 1.0)
@@ -31,12 +31,19 @@ class LinearModel:
     residuals : ndarray, shape (sensors, 4, windows)
     slopes : ndarray, shape (sensors, 4, windows, numbers)
     best : dict of str to float
-        Numbers of the point of the cloud with the smallest misfit.
+        Numbers of the point of the cloud with the smallest misfit, and
+    lowest : float
+        that misfit.
+    scatter : ndarray, shape (points, residuals)
+        What the points of the cloud are beside the regression: single impacts that come or stay
+        away.
     """
 
     residuals: Floats
     slopes: Floats
     best: dict[str, float]
+    lowest: float
+    scatter: Floats
 
     @classmethod
     def around(
@@ -74,9 +81,13 @@ class LinearModel:
         basis = np.column_stack([np.ones(len(points)), points - here])
         solution = np.linalg.lstsq(basis, rows.reshape(len(rows), -1), rcond=None)[0]
         shape = rows.shape[1:]
-        best = named[int(np.argmin([misfit(row) for row in rows]))]
+        sizes_of_rows = [misfit(row) for row in rows]
+        number = int(np.argmin(sizes_of_rows))
         slopes = solution[1:].T.reshape(*shape, count)
-        return cls(solution[0].reshape(shape), slopes, best)
+        residuals_here = solution[0].reshape(shape)
+        free = max(len(points) - basis.shape[1], 1)
+        scatter = (rows.reshape(len(rows), -1) - basis @ solution) * np.sqrt(len(points) / free)
+        return cls(residuals_here, slopes, named[number], sizes_of_rows[number], scatter)
 
     @property
     def weighted(self) -> Floats:

@@ -19,6 +19,7 @@ from ..laboratory.analysis.orders import EDGE, NYQUIST, Window, measured_phase, 
 
 if TYPE_CHECKING:
     import xarray as xr
+    from scipy.sparse import csr_array
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
@@ -33,7 +34,7 @@ QUIET = 0.05  # of the usual amplitude of the base: windows below are not used
 NO_SINE = 0.5  # rms of what the base does beside its orders, over the rms of order 1
 FEWEST = 8  # windows
 KEPT = 11.0  # samples in a period of the highest frequency: order 3 has more than three then
-EXPECTED = "expected a swept or stepped sine"
+EXPECTED = "not described by this method: expected a swept or stepped sine"
 
 
 @dataclass(frozen=True)
@@ -82,6 +83,36 @@ class OrderWindows:
             self.sample_rate,
             self.samples,
         )
+
+    def of_displacements(self) -> csr_array:
+        """Return the matrix from displacements to the amplitudes of their accelerations.
+
+        Rows are orders, real and imaginary parts, and windows, in this order. A channel's second
+        differences at its samples stand for its acceleration; at both ends the next ones do.
+        """
+        from scipy.sparse import coo_array, csr_array, vstack
+
+        count = self.samples
+        inner = np.clip(np.arange(count), 1, count - 2)
+        columns = (inner[:, np.newaxis] + np.array([-1, 0, 1])).ravel()
+        weights = np.tile(self.sample_rate**2 * np.array([1.0, -2.0, 1.0]), count)
+        second = coo_array((weights, (np.arange(count).repeat(3), columns))).tocsr()
+        starts = np.cumsum([0, *(part.stop - part.start for part in self.parts)])
+        places = np.concatenate([np.arange(part.start, part.stop) for part in self.parts])
+        solutions = np.concatenate(self.solutions)
+        shape = len(self), count
+        blocks = [
+            csr_array((values, places, starts), shape) @ second
+            for column in solutions.T
+            for values in (column.real, column.imag)
+        ]
+        return vstack(blocks).tocsr()
+
+    def cut(self, windows: NDArray[np.intp], samples: slice) -> OrderWindows:
+        """Return some of the windows, of a record that is cut to some of its samples."""
+        some = self.chosen(windows, len(self.orders))
+        parts = (slice(p.start - samples.start, p.stop - samples.start) for p in some.parts)
+        return replace(some, parts=tuple(parts), samples=samples.stop - samples.start)
 
     def amplitudes(self, values: Floats, later: float = 0.0) -> Complexes:
         """Complex amplitudes of channels, shape (channels, orders, windows).
@@ -188,21 +219,24 @@ def orders_of(channels: Channels) -> RecordOrders:
     return RecordOrders(windows, channels, whole, floor, np.quantile(floor, 0.2, axis=1))
 
 
-def thinned(channels: Channels, highest: float) -> Channels:
+def thinned(channels: Channels, highest: float, kept: float = KEPT) -> Channels:
     """Every second, third, ... sample of channels, low-passed before, if enough of them are left.
 
     Parameters
     ----------
     channels : Channels
     highest : float
-        Frequency of the excitation, Hz, in whose period ``KEPT`` samples are to be left.
+        Frequency of the excitation, Hz, in whose period
+    kept : float
+        samples are to be left.
     """
     from scipy.signal import firwin, resample_poly
 
-    factor = int(channels.sample_rate // (KEPT * highest))
+    factor = int(channels.sample_rate // (kept * highest))
     if factor < 2:
         return channels
-    low_pass = firwin(40 * factor + 1, 0.8 / factor, window=("kaiser", 9.0))  # 90 dB
+    # 90 dB from the new Nyquist frequency on, flat up to 0.86 of it: order 3 passes
+    low_pass = firwin(80 * factor + 1, 0.93 / factor, window=("kaiser", 9.0))
     values = resample_poly(channels.values, 1, factor, axis=1, window=low_pass)
     time, rate = channels.time[::factor], channels.sample_rate / factor
     return replace(channels, time=time, sample_rate=rate, values=values)

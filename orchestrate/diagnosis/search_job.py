@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -19,9 +20,10 @@ from ..structures import Structure
 from .errors import estimate
 from .even_orders import even_orders
 from .evidence import Evidence
-from .fitting import Search, Solution, distinct
+from .fitting import ROUNDS, Search, Solution, distinct
 from .hypotheses import SOUND, SPLITS, Delaminated, DelaminatedWithClearance, Hypothesis
 from .misfit import misfit
+from .orders import RecordOrders, record_orders
 from .verdicts import SOUND_DESCRIBES
 
 if TYPE_CHECKING:
@@ -30,8 +32,16 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 FROM_BONDED = 15  # steps downhill from the bonded solution
 FROM_SCAN = 1  # starts of each part of the scan from which to go downhill
-COARSE, SHORT = 9, 2  # steps downhill from there, where faces are seen to part and elsewhere
+COARSE, SHORT = 4, 2  # steps downhill from there, where faces are seen to part and elsewhere
+KEPT = 6  # starts with a clearance from which to go downhill
+CONTINUED, FURTHER = 3, 6  # how many of the best of them go on, and for how many steps
 REFINED, CLOSE = 2, 1.3  # how many of the best are polished, and how close their misfits are
+ENOUGH = 1.2  # misfit of a delaminated one from which no other kind of clearance is looked for
+FEWER = 7.0  # samples in a period of the highest frequency for a coarse search
+GUESSED = 0.06  # standard deviation of a guessed frequency's logarithm
+UNLIKE, FAR = 0.02, 20.0  # part by which its squares make a misfit count more, and most of them
+APART = {"split": 0.04, "clearance": 0.1}  # between two solutions that count as two
+POLISHED = 4  # rounds on the whole record after those near the resonance
 GAPS = (-0.3, -0.1, -0.03, 0.03, 0.1, 0.3)  # clearances over the largest displacement
 ROWS, NUMBERS, MINIMA = 4, 6, 8  # of tables: solutions, values in each, misfits of minima
 
@@ -70,7 +80,19 @@ class RecordData:
 @lru_cache(maxsize=2)
 def evidence_of(data: RecordData) -> Evidence:
     """A record's evidence, made once a process."""
-    return Evidence.from_record(data.dataset())
+    return Evidence.from_orders(orders_of_data(data))
+
+
+@lru_cache(maxsize=2)
+def orders_of_data(data: RecordData) -> RecordOrders:
+    """The orders of the whole record."""
+    return record_orders(data.dataset())
+
+
+@lru_cache(maxsize=2)
+def coarse_evidence_of(data: RecordData) -> Evidence:
+    """The part near the resonance with fewer samples: a motion takes a third of the time."""
+    return Evidence.from_orders(orders_of_data(data), FEWER).near_resonance()
 
 
 @lru_cache(maxsize=2)
@@ -161,12 +183,15 @@ class SearchJob(Job):
         """Minima of a sound hypothesis."""
         search = Search(self.hypotheses[place], self.evidence)
         starts = search.hypothesis.starts(self.evidence)
-        return table_of(place, search.best(starts, keep=3, coarse=10, fine=20), search.evaluations)
+        found = search.best(starts, keep=3, coarse=10, fine=20)
+        if found[0].misfit > SOUND_DESCRIBES:  # a jump of the response makes it rugged
+            found[0] = search.polish(found[0])
+        return table_of(place, found, search.evaluations)
 
     def search_split(self, split: float, player: Player) -> Table:
         """Minima of the delaminated one from the starts of one split of the halves."""
         place = len(self.sound)
-        search = Search(self.hypotheses[place], self.evidence, player)
+        search = Search(self.hypotheses[place], coarse_evidence_of(self.data), player)
         starts = [s for s in search.hypothesis.starts(self.evidence) if s["split"] == split]
         coarse = COARSE if is_worth_a_search(self.data) else SHORT
         found = search.best(starts, keep=FROM_SCAN, coarse=coarse, fine=0)
@@ -191,42 +216,88 @@ class SearchJob(Job):
         bonded = sound[0][1][0]
         sound = [(search, no_worse_than(bonded, search, found)) for search, found in sound]
         best = int(np.argmin([found[0].misfit for _, found in sound]))
+        worth = self.is_worth_polishing(sound)
         made = [
             self.finished(place, one, player, place in (0, best)) for place, one in enumerate(sound)
         ]
         if self.delaminated:
-            plain = self.finished(len(made), self.minima(len(made), previous, player), player)
+            search, found = self.minima(len(made), previous, player)
+            found = self.polished(search, found) if worth else search.scan([found[0].values])
+            plain = self.finished(len(made), (search, found), player, worth)
             made.append(plain)
             if "clearance" in self.free:
-                made.append(self.with_clearance(plain, player))
+                made.append(self.with_clearance(plain, player, worth))
         spent = previous["evaluations"]
         for place, result in enumerate(made):
             result["end_evaluations"] += spent[previous["place"] == place].sum()
         return {name: np.stack([part[name] for part in made])[np.newaxis] for name in made[0]}
 
     def minima(self, place: int, previous: Table, player: Player) -> tuple[Search, list[Solution]]:
-        """Minima of a hypothesis; the two best delaminated ones are refined."""
+        """Minima of a hypothesis, as the searches beside each other have left them."""
         search = Search(self.hypotheses[place], self.evidence, player)
-        found = self.solutions(previous, place)
-        if place >= len(self.sound) and is_worth_a_search(self.data):
-            close = [one for one in found[:REFINED] if one.misfit < CLOSE * found[0].misfit]
-            best = [search.polish(one) for one in close]
-            found = sorted([*best, *found[len(close) :]], key=lambda solution: solution.misfit)
-        return search, found
+        return search, self.solutions(previous, place)
 
-    def with_clearance(self, plain: dict[str, Any], player: Player) -> dict[str, Any]:
-        """The same with gaps and preloads: from the best without, and from its own starts."""
+    def is_worth_polishing(self, sound: Sequence[tuple[Search, list[Solution]]]) -> bool:
+        """Whether a verdict may depend on the delaminated fit: no sound one describes the record,
+        or faces are seen to part.
+        """
+        search, found = sound[0]
+        motion = search.hypothesis.displacements(found[0].values, self.evidence, None)
+        even = even_orders(self.evidence, self.evidence.matched(self.evidence.computed(motion)))
+        lowest = min(found[0].misfit for _, found in sound)
+        return even.seen or even.moved_apart > 1.0 or lowest > SOUND_DESCRIBES
+
+    def polished(self, search: Search, starts: Sequence[Solution]) -> list[Solution]:
+        """The minima behind the best of coarse solutions: near the resonance, then of all."""
+        coarse = Search(search.hypothesis, coarse_evidence_of(self.data), search.player)
+        chosen = apart(self.ranked(search, starts))[:CONTINUED]
+        found = self.ranked(search, [coarse.refine(s.values, FURTHER, 3e-3) for s in chosen])
+        lowest = min(one.misfit for one in found)
+        close = [one for one in found[:REFINED] if one.misfit < CLOSE * lowest]
+        polished = [coarse.polish(one).values for one in close]
+        rest = [one.values for one in found[len(close) :]]
+        best, *others = self.ranked(search, search.scan([*polished, *rest]))
+        search.evaluations += coarse.evaluations
+        rounds = POLISHED if best.misfit < ENOUGH else ROUNDS
+        return [search.polish(best, rounds), *others]
+
+    def ranked(self, search: Search, solutions: Sequence[Solution]) -> list[Solution]:
+        """Delaminated solutions, the best first: by misfit, and by how far from the guess they are.
+
+        Of one sensor's record both halves may change places at nearly the same misfit; what is
+        known of the halves before then decides, as far as a guess may be trusted.
+        """
+        hypothesis = search.hypothesis
+        assert isinstance(hypothesis, Delaminated)
+
+        def cost(solution: Solution) -> float:
+            made = hypothesis.structure(solution.values, self.evidence)
+            off = (math.log(made.get(f) / self.guess.get(f)) / GUESSED for f in ("f1", "f2"))
+            return solution.misfit * (1.0 + UNLIKE * min(sum(one**2 for one in off), FAR))
+
+        return sorted(solutions, key=cost)
+
+    def with_clearance(self, plain: dict[str, Any], player: Player, worth: bool) -> dict[str, Any]:
+        """The same with gaps and preloads: from the best without, and where that does not describe
+        the record already from its own starts.
+        """
         search = Search(self.hypotheses[-1], self.evidence, player)
         names = list(search.hypothesis.bounds(self.evidence))
         best = dict(zip(names, plain["end_values"][: len(names) - 1].tolist(), strict=False))
         starts = [{**best, "clearance": clearance} for clearance in (0.0, *GAPS)]
-        starts += search.hypothesis.starts(self.evidence)
-        if is_worth_a_search(self.data):
-            found = search.best(starts, keep=3, coarse=COARSE, fine=0)
-            found[0] = search.polish(found[0])
-        else:
+        if not worth:
             found = search.scan(starts[:1])
-        return self.finished(len(self.hypotheses) - 1, (search, found), player)
+        elif plain["end_misfit"] < ENOUGH:
+            found = search.scan(starts)
+            found[0] = search.polish(found[0], POLISHED)
+        else:
+            starts += search.hypothesis.starts(self.evidence)
+            coarse = Search(search.hypothesis, coarse_evidence_of(self.data), player)
+            begun = apart(coarse.scan(starts))[:KEPT]
+            found = [coarse.refine(one.values, COARSE, 3e-3) for one in begun]
+            found = self.polished(search, found)
+            search.evaluations += coarse.evaluations
+        return self.finished(len(self.hypotheses) - 1, (search, found), player, worth)
 
     def finished(
         self,
@@ -238,7 +309,7 @@ class SearchJob(Job):
         """The best solution of a hypothesis with its errors, and what it computes."""
         search, found = minima
         values, known = found[0].values, None
-        if with_errors and (place < len(self.sound) or is_worth_a_search(self.data)):
+        if with_errors:
             known = estimate(search, values)
             values = known.values
         motion = search.hypothesis.displacements(values, self.evidence, player)
@@ -260,6 +331,17 @@ class SearchJob(Job):
             "end_fitted": np.stack([computed.real, computed.imag]),
             "end_evaluations": float(search.evaluations),
         }
+
+
+def apart(solutions: Sequence[Solution]) -> list[Solution]:
+    """Solutions without those that are near a better one: with another split or clearance."""
+    found: list[Solution] = []
+    for one in solutions:
+        steps = ((one.values.get(n, 0.0), s, n) for n, s in APART.items())
+        sizes = [[abs(v - other.values.get(n, 0.0)) / s for other in found] for v, s, n in steps]
+        if all(max(distances) > 1.0 for distances in zip(*sizes, strict=True)):
+            found.append(one)
+    return found
 
 
 def table_of(place: int, solutions: Sequence[Solution], evaluations: int) -> Table:

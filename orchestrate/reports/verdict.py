@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..constants import TURN
 from ..figures.diagnosis import PARTED, draw_detect, draw_misfit
 from .page import MISSING, Picture, Section, Table, Verdict, text_of, with_error
 
@@ -100,7 +101,8 @@ def decision(answer: xr.Dataset) -> Section:
     odds = number(answer, "odds")
     if math.isfinite(odds) and odds > 0.0:
         points.append(
-            f"Odds of the delaminated against the best sound structure: {ratio_of(odds)}."
+            f"Odds of the delaminated against the best sound structure: {ratio_of(odds)}, by how "
+            "often the ratio of misfits holds in records put together of blocks of this one."
         )
     if settle:
         points.append(f"What would change or settle it: {full(settle)}")
@@ -179,8 +181,12 @@ def parameters(answer: xr.Dataset) -> Section | None:
     shown = by_misfit(answer)
     names = [str(one.hypothesis.values) if "hypothesis" in one.coords else "value" for one in shown]
     units = dict(zip(answer.parameter.values, answer.unit.values, strict=True))
+    meaning = dict(zip(answer.parameter.values, answer.meaning.values, strict=True))
     rows = [
-        (str(name), *(parameter_text(one.sel(parameter=name), str(units[name])) for one in shown))
+        (
+            f"{name}, {meaning[name]}",
+            *(parameter_text(one.sel(parameter=name), str(units[name])) for one in shown),
+        )
         for name in answer.parameter.values
     ]
     columns = [0] + [
@@ -220,4 +226,16 @@ def parameter_text(at: xr.Dataset, unit: str) -> str:
 def assumed(answer: xr.Dataset) -> Section:
     """What was assumed."""
     own = [text.strip() for text in str(answer.attrs.get("assumed", "")).split(";")]
-    return Section("What was assumed", points=[*ALWAYS_ASSUMED, *map(full, filter(None, own))])
+    points = [*ALWAYS_ASSUMED, *guessed(answer), *map(full, filter(None, own))]
+    return Section("What was assumed", points=points)
+
+
+def guessed(answer: xr.Dataset) -> list[str]:
+    """The guess that the search began with; its masses were kept."""
+    numbers = {name: float(answer.attrs.get(name, math.nan)) for name in ("m1", "m2", "k1", "k2")}
+    if not all(value > 0.0 for value in numbers.values()):
+        return []
+    masses = " and ".join(text_of(numbers[name], "kg") for name in ("m1", "m2"))
+    halves = (math.sqrt(numbers[f"k{i}"] / numbers[f"m{i}"]) / TURN for i in (1, 2))
+    frequencies = " and ".join(text_of(f, "Hz") for f in halves)
+    return [f"Guessed of both halves: masses of {masses}, which were kept, and {frequencies}."]

@@ -1,18 +1,25 @@
-"""``python -m tools.trust list``, ``run CAMPAIGN --seed S --budget N``, ``page``.
+"""``python -m tools.trust list``, ``run CAMPAIGN --seed S --budget N``, ``keep``, ``page``.
 
-A run enters a record and writes the page anew.
+A run enters a record and writes the page anew. Of a run that was stopped, ``keep`` with the same
+seed and budget enters what was done: the record of a run with that smaller budget.
 """
 
 from __future__ import annotations
 
 import argparse
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 from orchestrate.access.exported import finder
-from orchestrate.errors import VibroimpactError
+from orchestrate.errors import InputError, VibroimpactError
 from orchestrate.files import write_whole
+from orchestrate.running.identity import identity_of
+from orchestrate.running.options import RunOptions
+from orchestrate.running.progress import Progress
+from orchestrate.running.provenance import with_provenance
 from orchestrate.running.runner import answer
+from orchestrate.running.store import open_store
 
 from . import page, records
 from .campaign import Campaign
@@ -32,7 +39,42 @@ def run(
     campaign: Campaign, seed: int, budget: int, store: Path = STORE, **running: object
 ) -> records.Record:
     """Run a campaign, or go on with it; a batch that was done is not done again."""
-    job = CampaignJob(
+    job = job_of(campaign, seed, budget)
+    place = store / f"{campaign.name}-{seed}-{budget}-{job.sources[:6]}.nc"
+    result = answer(job, {"store": place, **running}, finder(running))
+    return records.record_of(campaign.name, seed, budget, result)
+
+
+def keep(campaign: Campaign, seed: int, budget: int, store: Path = STORE) -> records.Record:
+    """Return the record of the first batches of a run that was stopped, without a gap.
+
+    Raises
+    ------
+    InputError
+        Where the first batch is not there.
+    """
+    job = job_of(campaign, seed, budget)
+    place = store / f"{campaign.name}-{seed}-{budget}-{job.sources[:6]}.nc"
+    find = finder({})
+    fmus = {model: find(model) for model in job.models}
+    identity = identity_of(job, fmus, {})
+    kept = open_store(job.name, identity, RunOptions.from_keywords({"store": place}))
+    try:
+        done = Progress(job, kept, identity, fmus).done_chunks
+        count = next(number for number in range(len(done) + 1) if number not in done)
+        if not count:
+            raise InputError(f"{place}: holds no batch; expected a run that was begun")
+        part = replace(job, budget=min(count * job.chunk * campaign.batch, budget))
+        result = part.dataset(kept.table(count), {})
+        result = with_provenance(result, part, identity, fmus, kept.begun)
+    finally:
+        kept.close()
+    return records.record_of(campaign.name, seed, part.budget, result)
+
+
+def job_of(campaign: Campaign, seed: int, budget: int) -> CampaignJob:
+    """Return a run as a job."""
+    return CampaignJob(
         name=campaign.name,
         campaign=campaign.name,
         seed=seed,
@@ -40,9 +82,6 @@ def run(
         size=campaign.batch,
         sources=sources(),
     )
-    place = store / f"{campaign.name}-{seed}-{budget}-{job.sources[:6]}.nc"
-    result = answer(job, {"store": place, **running}, finder(running))
-    return records.record_of(campaign.name, seed, budget, result)
 
 
 def write_page() -> None:
@@ -59,9 +98,11 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
     commands.add_parser("list", help="campaigns and their targets")
     commands.add_parser("page", help="write docs/trust.md from the records")
     one = commands.add_parser("run", help="run a campaign, or go on with it")
-    one.add_argument("campaign", choices=CAMPAIGNS)
-    one.add_argument("--seed", type=int, required=True)
-    one.add_argument("--budget", type=int, required=True, help="units to do")
+    part = commands.add_parser("keep", help="enter what a run has done that was stopped")
+    for parser_of in (one, part):
+        parser_of.add_argument("campaign", choices=CAMPAIGNS)
+        parser_of.add_argument("--seed", type=int, required=True)
+        parser_of.add_argument("--budget", type=int, required=True, help="units to do")
     one.add_argument("--jobs", type=int, default=1, help="processes at once")
     one.add_argument("--cluster", help="address of a Dask scheduler")
     one.add_argument("--force", action="store_true", help="begin anew")
@@ -77,9 +118,13 @@ def main(arguments: list[str] | None = None) -> int:
     if options.command == "page":
         write_page()
         return 0
-    running = {"jobs": options.jobs, "cluster": options.cluster, "force": options.force}
+    what = CAMPAIGNS[options.campaign], options.seed, options.budget
     try:
-        record = run(CAMPAIGNS[options.campaign], options.seed, options.budget, **running)
+        if options.command == "keep":
+            record = keep(*what)
+        else:
+            running = {"jobs": options.jobs, "cluster": options.cluster, "force": options.force}
+            record = run(*what, **running)
     except VibroimpactError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2

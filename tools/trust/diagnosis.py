@@ -21,6 +21,7 @@ from .diagnosis_rows import (
     COLUMNS,
     DELAMINATED,
     FAILED,
+    FITTED,
     NO_OPENING,
     REFUSED,
     USUAL,
@@ -55,7 +56,7 @@ class Diagnosis(Campaign):
     )
     unit = "beams"
     target = 500
-    batch = 4
+    batch = 1  # a run may be stopped after any beam
     measures = "error of f1 or f2, in percent, where a beam is rightly called delaminated"
     package = True
 
@@ -101,7 +102,9 @@ def judged(case: Case) -> dict[str, Any]:
     begin = time.process_time()
     verdict, parameters, message = asked(case)
     seconds = time.process_time() - begin
-    errors = errors_of(parameters, truth) if verdict == DELAMINATED else {}
+    right = verdict == DELAMINATED
+    errors = errors_of(parameters, truth) if right else {}
+    deviations = deviations_of(parameters, truth) if right else {}
     return {
         "kind": truth.kind,
         "delaminated": int(truth.is_delaminated),
@@ -119,8 +122,8 @@ def judged(case: Case) -> dict[str, Any]:
         "kurtosis": rounded(signs.kurtosis_above(case.record)),
         "verdict": verdict,
         "ratio": rounded(parameters.get("ratio", math.nan)),
-        "f1 error": errors.get("f1"),
-        "f2 error": errors.get("f2"),
+        **{f"{name} error": errors.get(name) for name in ("f1", "f2")},
+        **{f"{name} deviation": deviations.get(name) for name in FITTED},
         "seconds": rounded(seconds),
         "wrong": wrong_in(verdict, truth, message),
     }
@@ -134,7 +137,7 @@ class Answer(NamedTuple):
     verdict : str
         Or that it refused, or failed.
     numbers : mapping of str to float
-        The ratio of its misfits, f1 and f2.
+        The ratio of its misfits; of ``FITTED`` the values, and their standard errors.
     message : str
         Where it refused or failed.
     """
@@ -154,8 +157,10 @@ def asked(case: Case) -> Answer:
         return Answer(FAILED, {}, f"{type(error).__name__}: {error}")
     names = [str(name) for name in answer.hypothesis.values if str(name).startswith(DELAMINATED)]
     best = min(names, key=lambda name: float(answer.misfit.sel(hypothesis=name)))
-    values = answer.value.sel(hypothesis=best)
-    numbers = {name: float(values.sel(parameter=name)) for name in ("f1", "f2")}
+    chosen = answer[["value", "standard_error"]].sel(hypothesis=best, parameter=list(FITTED))
+    numbers = dict(zip(FITTED, chosen.value.values.tolist(), strict=True))
+    errors = chosen.standard_error.values.tolist()
+    numbers |= {f"{name} error": error for name, error in zip(FITTED, errors, strict=True)}
     return Answer(str(answer.verdict.item()), {"ratio": float(answer.ratio), **numbers})
 
 
@@ -168,6 +173,20 @@ def errors_of(parameters: Mapping[str, float], truth: Truth) -> dict[str, float 
         for name in ("f1", "f2")
         if math.isfinite(parameters.get(name, math.nan))
     }
+
+
+def deviations_of(parameters: Mapping[str, float], truth: Truth) -> dict[str, float | None]:
+    """Errors over the standard errors that were stated, where two masses are described; of the
+    restitution against the mean over the impacts.
+    """
+    if not math.isnan(truth.size) or not truth.is_delaminated:
+        return {}
+    every = {}
+    for name in FITTED:
+        known = truth.restitution if name == "e" else getattr(truth, name)
+        stated = parameters.get(f"{name} error", math.nan)
+        every[name] = rounded((parameters.get(name, math.nan) - known) / (stated or math.nan))
+    return every
 
 
 def wrong_in(verdict: str, truth: Truth, message: str = "") -> str:

@@ -14,11 +14,13 @@ from .diagnosis_rows import (
     COLUMNS,
     DELAMINATED,
     FAILED,
+    FITTED,
     NO_OPENING,
     NOT_DESCRIBED,
     REFUSED,
     UNDECIDED,
     USUAL,
+    WITHIN,
 )
 
 VERDICTS = (DELAMINATED, NO_OPENING, NOT_DESCRIBED, UNDECIDED, REFUSED, FAILED)
@@ -36,14 +38,6 @@ FALSE = 0.05  # part of false ones at which signs are compared
 def table_of(rows: Sequence[Sequence[Any]]) -> pd.DataFrame:
     """Rows with their names."""
     return pd.DataFrame(list(rows), columns=list(COLUMNS))
-
-
-def part(count: int, of: int) -> str:
-    """A part with its 95 % interval, in percent."""
-    low, high = roc.interval(count, of)
-    if not of:
-        return "none"
-    return f"{100.0 * count / of:.1f} % of {of} ({100.0 * low:.1f} to {100.0 * high:.1f})"
 
 
 def lines(rows: Sequence[Sequence[Any]]) -> list[str]:
@@ -84,10 +78,10 @@ def target_lines(table: pd.DataFrame) -> list[str]:
     found = [
         "At 1 to 5 % noise, where the record was not refused:",
         "",
-        f"- two masses, sound or delaminated: wrong {part(int(wrong), len(compliant))}; "
-        f"undecided {part(int(undecided), len(compliant))};",
+        f"- two masses, sound or delaminated: wrong {roc.part(int(wrong), len(compliant))}; "
+        f"undecided {roc.part(int(undecided), len(compliant))};",
         f"- sound beams that harden, soften, rub or rattle in their clamp: called delaminated "
-        f"{part(len(calm), len(nonlinear))};",
+        f"{roc.part(len(calm), len(nonlinear))};",
     ]
     if len(errors):
         median, nine = np.quantile(errors, (0.5, 0.9))
@@ -95,12 +89,23 @@ def target_lines(table: pd.DataFrame) -> list[str]:
             f"- f1 and f2 of two masses called delaminated ({len(errors)} numbers): median error "
             f"{median:.2f} %, nine of ten within {nine:.2f} %;"
         )
+    found += deviation_lines(compliant)
     seconds = table.seconds.astype(float)
     found.append(
         f"- a verdict takes {seconds.median():.1f} s of one processor in the median, "
         f"{seconds.max():.1f} s at most."
     )
     return found
+
+
+def deviation_lines(table: pd.DataFrame) -> list[str]:
+    """How often stated 95 % intervals hold the truth, of each number."""
+    parts = []
+    for name in FITTED:
+        known = table[f"{name} deviation"].dropna().astype(float).abs()
+        if len(known):
+            parts.append(f"{name} {roc.part(int((known <= WITHIN).sum()), len(known))}")
+    return [f"- intervals of 95 % that hold the truth: {', '.join(parts)};"] if parts else []
 
 
 def curve_lines(table: pd.DataFrame) -> list[str]:
@@ -121,7 +126,7 @@ def curve_lines(table: pd.DataFrame) -> list[str]:
         opened, sound = own[own.opened == 1], own[own.delaminated == 0]
         cells = [name, f"{len(opened)}, {len(sound)}"]
         cells += [sign_cell(own, sign) for sign in SIGNS]
-        cells += [part(int((g.verdict == DELAMINATED).sum()), len(g)) for g in (opened, sound)]
+        cells += [roc.part(int((g.verdict == DELAMINATED).sum()), len(g)) for g in (opened, sound)]
         found.append(f"| {' | '.join(cells)} |")
     return found
 

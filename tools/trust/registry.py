@@ -11,6 +11,7 @@ from .faults import Faults
 from .flights import Energy, Impacts, Roots
 from .fuzzing import Fuzzing
 from .hostile import Hostile
+from .intervals import Intervals
 from .leaks import Leaks
 from .mutants import Mutants
 from .restores import Restores
@@ -20,7 +21,7 @@ CAMPAIGNS: dict[str, Campaign] = {
     campaign.name: campaign
     for campaign in (
         *(Impacts(), Roots(), Grids(), Restores(), Energy(), Fuzzing()),
-        *(Attractors(), Verdicts(), Diagnosis(), Faults(), Clusters(), Hostile()),
-        *(Mutants(), Leaks()),
+        *(Attractors(), Verdicts(), Diagnosis(), Intervals(), Faults(), Clusters()),
+        *(Hostile(), Mutants(), Leaks()),
     )
 }

@@ -74,6 +74,14 @@ def interval(count: int, of: int) -> tuple[float, float]:
     return float(max(middle - half, 0.0)), float(min(middle + half, 1.0))
 
 
+def part(count: int, of: int) -> str:
+    """A part with its 95 % interval, in percent."""
+    low, high = interval(count, of)
+    if not of:
+        return "none"
+    return f"{100.0 * count / of:.1f} % of {of} ({100.0 * low:.1f} to {100.0 * high:.1f})"
+
+
 def bins(edges: Sequence[float]) -> list[tuple[float, float]]:
     """Neighbouring pairs."""
     return list(zip(edges[:-1], edges[1:], strict=True))

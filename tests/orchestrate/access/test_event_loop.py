@@ -182,3 +182,12 @@ def test_structures_have_the_sizes_of_the_source():
     """A field forgotten on one side would shift all that follow."""
     sizes = (ctypes.c_uint * 3).in_dll(ctypes.CDLL(str(library(SOURCE))), "sizes")
     assert list(sizes) == [ctypes.sizeof(kind) for kind in (Calls, Task, Progress)]
+
+
+def test_what_is_not_read_changes_nothing(event_fmu):
+    with Player(event_fmu) as player:
+        rows = []
+        for outputs in (PLAYED, ("x2", "v1")):
+            player.start(STRUCTURE, (0.1, 0.2, 0.0, 0.0))
+            rows.append(player.play(NODES, CUBICS, SAMPLES, outputs).rows)
+    assert rows[1].tobytes() == rows[0][:, [1, 2]].tobytes()

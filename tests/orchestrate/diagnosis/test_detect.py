@@ -4,6 +4,14 @@ import numpy as np
 import pytest
 
 import orchestrate
+from orchestrate.diagnosis.detect import DetectJob
+from orchestrate.diagnosis.fit import checked_data
+from orchestrate.diagnosis.fitting import Search, Solution
+from orchestrate.diagnosis.hypotheses import FREE
+from tools.benches.bench import Bench
+from tools.benches.excitation import Swept
+from tools.benches.lumped import Faces, Halves
+from tools.benches.sensors import Sensor
 
 from .records import BEAM, guess, record
 
@@ -79,3 +87,29 @@ def test_random_vibration_is_refused_in_one_line():
     made = orchestrate.record(box_acceleration=noise[0], acceleration1=noise[1], sample_rate=600.0)
     with pytest.raises(orchestrate.InputError, match="expected a swept or stepped sine"):
         orchestrate.detect(made, guess())
+
+
+def test_a_structure_that_friction_locks_is_not_seen_to_open():
+    """Faces pressed together rub: on a bench of its own, whose contact is no model of ours."""
+    faces = Faces(law="linear", frequency=900.0, clearance=-4e-3, friction=0.3)
+    halves = Halves(m1=1.5, m2=1.2, f1=37.5, f2=34.7, zeta1=0.007, zeta2=0.005)
+    sensor = Sensor(noise=0.02)
+    bench = Bench(
+        excitation=Swept(24.0, 56.0, 12.0, 3.0), box=sensor, face1=sensor, face2=sensor, rate=1000.0
+    )
+    locked, motion = bench.measure(halves.delaminated(faces), seed=3)
+    assert motion.largest_gap.max() < 0.0
+    answer = orchestrate.detect(locked, guess(f1=38.0, f2=34.0), **LIMIT)
+    assert str(answer.verdict.values) == "no opening seen", answer.attrs["reason"]
+
+
+def test_of_halves_that_may_change_places_the_guess_decides():
+    """One sensor, masses alike: both solutions miss about as much."""
+    job = DetectJob(name="x", data=checked_data(record(both=False)), guess=guess(), free=FREE)
+    search = Search(job.hypotheses[5], job.evidence)
+    there = search.hypothesis.values_of(guess(), job.evidence)
+    mirrored = {**there, "split": -there["split"]}
+    like, unlike = Solution("x", there, 1.05), Solution("x", mirrored, 1.0)
+    assert job.ranked(search, [unlike, like])[0] is like
+    much_better = Solution("x", mirrored, 0.5)
+    assert job.ranked(search, [like, much_better])[0] is much_better

@@ -5,7 +5,7 @@ import pytest
 
 import orchestrate
 from orchestrate.access import OSCILLATOR, Player, find
-from orchestrate.diagnosis.errors import estimate
+from orchestrate.diagnosis.errors import contact_doubt, estimate, hidden_squares
 from orchestrate.diagnosis.evidence import Evidence
 from orchestrate.diagnosis.fitting import Search, misfit
 from orchestrate.diagnosis.hypotheses import Bonded, Curved, Delaminated
@@ -60,6 +60,44 @@ def test_records_of_many_samples_are_thinned_and_say_the_same(player):
     evidence = Evidence.from_record(orchestrate.measure(history, sensor, excitation=sweep))
     assert 400.0 < evidence.rate < 600.0
     assert missed(evidence, BEAM, player) < 0.15
+
+
+def test_what_is_computed_at_once_is_what_windows_give(player):
+    evidence = Evidence.from_record(record())
+    values = Delaminated(BEAM).values_of(BEAM, evidence)
+    motion = Delaminated(BEAM).displacements(values, evidence, player)
+    second = np.pad(np.diff(motion, 2, axis=1), ((0, 0), (1, 1)), mode="edge") * evidence.rate**2
+    read = np.sinc(np.outer((1, 2, 3), evidence.frequency) / evidence.rate) ** 2
+    expected = evidence.windows.amplitudes(second) / read + evidence.base
+    size = abs(expected).max()
+    np.testing.assert_allclose(evidence.computed(motion), expected, atol=1e-9 * size)
+
+
+def test_the_part_near_the_resonance_says_the_same_of_a_structure(player):
+    wide = orchestrate.SweptSine(first=20.0, last=56.0, duration=20.0, acceleration=5.0)
+    whole = Evidence.from_record(record(sweep=wide))
+    part = whole.near_resonance()
+    assert part.samples < 0.9 * whole.samples and len(part.used) >= 8
+    for name in ("resonance", "displacement", "peaks"):
+        assert getattr(part, name) == pytest.approx(getattr(whole, name), rel=1e-12), name
+    assert missed(part, BEAM, player) < 0.1
+    assert missed(part, BEAM.replace(f1=30.6), player) > 0.25
+
+
+def test_what_noise_alone_makes_leaves_nothing_hidden_and_a_real_misfit_does():
+    rng = np.random.default_rng(1)
+    changes = [rng.standard_normal((2, 4, 60)) for _ in range(16)]
+    assert hidden_squares(rng.standard_normal((2, 4, 60)), changes) == 0.0
+    assert hidden_squares(2.0 * rng.standard_normal((2, 4, 60)), changes) > 400.0
+
+
+def test_damping_and_restitution_are_in_doubt_where_the_contact_is_another():
+    values = {"common": 34.0, "log_zeta1": np.log(0.03), "log_zeta2": np.log(0.01), "e": 0.5}
+    assert not contact_doubt(values, 0.0).any()
+    deviation = np.sqrt(np.diag(contact_doubt(values, 1.0)))
+    np.testing.assert_allclose(deviation[1:3] * [0.03, 0.01], 0.02)  # of both, their mean
+    assert deviation[0] == 0.0 and 0.1 < deviation[3] < 0.2
+    assert not contact_doubt({"f": 34.0, "log_zeta": -4.0}, 1.0).any()
 
 
 def test_a_bonded_structure_is_one_mass(player):

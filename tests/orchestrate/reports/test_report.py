@@ -14,6 +14,7 @@ import xarray as xr
 import orchestrate
 from orchestrate.errors import InputError
 from orchestrate.reports.page import Page, Section, Table, Verdict, text_of, with_error
+from orchestrate.reports.verdict import verdict_sections
 
 EVIL = "<script>alert(\"1\")</script> & 'others'"
 RATE = 1000.0
@@ -138,3 +139,40 @@ def test_nothing_is_no_report(tmp_path):
     with pytest.raises(InputError, match="no answer of a question"):
         orchestrate.report(xr.Dataset(), output=tmp_path / "r.html")
     assert not list(tmp_path.iterdir())
+
+
+def test_a_verdict_says_what_was_guessed_and_what_each_parameter_is():
+    answer = xr.Dataset(
+        {
+            "verdict": ((), "delaminated"),
+            "odds": ((), 300.0),
+            "misfit": ("hypothesis", [2.0, 0.5]),
+            "value": (("hypothesis", "parameter"), [[0.3, np.nan], [np.nan, 42.0]]),
+            "standard_error": (("hypothesis", "parameter"), [[0.1, np.nan], [np.nan, 0.5]]),
+        },
+        {
+            "hypothesis": ["bonded, with a stop on one side", "delaminated"],
+            "parameter": ["stop", "f1"],
+            "unit": ("parameter", ["1", "Hz"]),
+            "meaning": ("parameter", ["stiffness of a stop", "frequency of half 1"]),
+        },
+        {"m1": 1.5, "m2": 0.75, "k1": 1.5 * (2 * np.pi * 42.0) ** 2, "k2": 0.75e5},
+    )
+    sections = {section.heading: section for section in verdict_sections(answer)}
+    assert any("1.5 kg and 0.75 kg" in words for words in sections["What was assumed"].points)
+    assert any("42 Hz and 50.3 Hz" in words for words in sections["What was assumed"].points)
+    rows = dict(row[:1] + row[1:2] for row in sections["Parameters"].tables[0].rows)
+    assert rows["f1, frequency of half 1"] == "42.00 ± 0.50 Hz"
+    assert "stop, stiffness of a stop" in rows
+    odds = [words for words in sections["Why"].points if words.startswith("Odds")]
+    assert "300 to 1" in odds[0] and "blocks" in odds[0]
+    without = answer.assign_attrs(m1=float("nan"))
+    assert not any("kg" in words for words in verdict_sections(without)[-1].points)
+
+
+def test_the_signature_is_on_the_page_of_what_it_comes_from(signs, tmp_path):
+    page = Page("t", "", [Section("one"), Section("two")], Verdict("Yes.", "It is.", "bad"), True)
+    html = page.html()
+    end = html.partition('<div class="end">')[2]
+    assert "<h2>two</h2>" in end and "Read and signed" in end and "<h2>one</h2>" not in end
+    parsed(html)

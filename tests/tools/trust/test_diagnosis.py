@@ -110,7 +110,8 @@ def quick(monkeypatch):
         truth = case.truth
         wrong = truth.kind == "hardening"
         verdict = "delaminated" if truth.opened or wrong else "no opening seen"
-        return diagnosis.Answer(verdict, {"f1": 1.02 * truth.f1, "f2": 0.97 * truth.f2})
+        numbers = {"f1": 1.02 * truth.f1, "f1 error": 0.01 * truth.f1, "f2": 0.97 * truth.f2}
+        return diagnosis.Answer(verdict, numbers)
 
     monkeypatch.setattr(diagnosis, "asked", asked)
 
@@ -123,6 +124,7 @@ def test_a_run_keeps_a_row_for_each_beam(quick, exported):
     assert json.loads(json.dumps(found.rows)) == [list(row) for row in found.rows]
     first = dict(zip(diagnosis.COLUMNS, found.rows[1], strict=True))
     assert (first["f1 error"], first["f2 error"]) == (0.02, -0.03)
+    assert (first["f1 deviation"], first["f2 deviation"]) == (2.0, None)
     assert first == {**judged(diagnosis.case_of(4, 1)), "seconds": first["seconds"]}
 
 
@@ -139,6 +141,8 @@ def made_rows(count):
         row |= {"verdict": "delaminated" if split else "no opening seen", "sensors": 1}
         row |= {"ratio": 1.0 + 2.0 * split if number > 9 else None}
         row |= {"f1 error": 0.01 if split else None, "f2 error": -0.02 if split else None}
+        row |= dict.fromkeys((f"{name} deviation" for name in diagnosis.FITTED), None)
+        row |= {"f1 deviation": (-2.5 if number < 20 else 1.5) if split else None}
         rows.append([row[name] for name in diagnosis.COLUMNS])
     rows[0][diagnosis.COLUMNS.index("verdict")] = "delaminated"
     rows[0][diagnosis.COLUMNS.index("wrong")] = "called delaminated, and is sound"
@@ -150,6 +154,7 @@ def test_tables_and_picture(tmp_path):
     assert "| sound | 1 | 99 | 0 | 0 | 0 | 0 | 1 |" in text
     assert "two masses, sound or delaminated: wrong 0.5 % of 200 (0.1 to 2.8)" in text
     assert "median error 1.50 %, nine of ten within 2.00 %" in text
+    assert "intervals of 95 % that hold the truth: f1 90.0 % of 100 (82.6 to 94.5);" in text
     assert text.count("1.000 ± 0.000; 100 % | 100.0 % of 100") >= 3
     assert "| sensors: 1 | 100, 100 |" in text and "excitation: up" in text
     assert diagnosis_tables.curve_of(diagnosis_tables.table_of(made_rows(10)), "ratio") is None
@@ -169,6 +174,28 @@ def test_rows_go_into_the_record_and_onto_the_page(quick, exported, tmp_path):
     assert "rows" not in json.loads((tmp_path / "other.jsonl").read_text())
 
 
+def test_a_run_that_was_stopped_keeps_what_it_has(quick, exported, tmp_path, monkeypatch):
+    """Its record is that of a run with as many beams."""
+    asked, left = diagnosis.asked, iter(range(3))
+
+    def stopped(case):
+        if next(left, None) is None:
+            raise KeyboardInterrupt
+        return asked(case)
+
+    monkeypatch.setattr(diagnosis, "asked", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        ledger.run(Diagnosis(), 4, 6, tmp_path, jobs=1, progress=False)
+    kept = ledger.keep(Diagnosis(), 4, 6, tmp_path)
+    assert kept.budget == kept.done == 3 and len(kept.rows) == 3
+    monkeypatch.setattr(diagnosis, "asked", asked)
+    whole = ledger.run(Diagnosis(), 4, 3, tmp_path, jobs=1, progress=False)
+    of_beams = [[row[:-2] for row in one.rows] for one in (kept, whole)]  # without the seconds
+    assert of_beams[0] == of_beams[1] and kept.package == whole.package
+    with pytest.raises(orchestrate.InputError, match="holds no batch"):
+        ledger.keep(Diagnosis(), 5, 6, tmp_path)
+
+
 def test_other_benches_are_another_campaign():
     assert sources() == records.digest(HERE, HERE.parent / "benches") != records.digest(HERE)
 
@@ -180,14 +207,16 @@ def test_each_kind_of_beam_is_asked_about():
 def made_answer(record, guess, **running):
     """What the detector answers, of two delaminated hypotheses the second is the better one."""
     names = ["bonded", "delaminated", "delaminated, with clearance"]
+    values = [[np.nan] * 5, [1.0, 2.0, 0.1, 0.1, 0.5], [41.0, 52.0, 0.01, 0.02, 0.6]]
     return xr.Dataset(
         {
             "verdict": ((), "delaminated"),
             "ratio": ((), 3.0),
             "misfit": ("hypothesis", [6.0, 3.0, 2.0]),
-            "value": (("hypothesis", "parameter"), [[np.nan, np.nan], [1.0, 2.0], [41.0, 52.0]]),
+            "value": (("hypothesis", "parameter"), np.array(values)),
+            "standard_error": (("hypothesis", "parameter"), 0.01 * np.array(values)),
         },
-        {"hypothesis": names, "parameter": ["f1", "f2"]},
+        {"hypothesis": names, "parameter": list(diagnosis.FITTED)},
     )
 
 
@@ -195,7 +224,11 @@ def test_the_numbers_are_those_of_the_best_delaminated_hypothesis(monkeypatch):
     monkeypatch.setattr(orchestrate, "detect", made_answer)
     case = recipe.Case(xr.Dataset(), orchestrate.Structure(), SPLIT)
     verdict, numbers, _ = diagnosis.asked(case)
-    assert (verdict, numbers) == ("delaminated", {"ratio": 3.0, "f1": 41.0, "f2": 52.0})
+    assert (verdict, numbers["ratio"]) == ("delaminated", 3.0)
+    assert (numbers["f1"], numbers["f2"], numbers["f2 error"]) == (41.0, 52.0, 0.52)
+    deviation = diagnosis.deviations_of(numbers, SPLIT)
+    assert deviation["f2"] == pytest.approx((52.0 - 45.0) / 0.52, rel=0.01)
+    assert deviation["e"] is None, "there was no impact"
     assert diagnosis.errors_of(numbers, SPLIT) == pytest.approx(
         {"f1": 41.0 / 45.0 - 1.0, "f2": 52.0 / 45.0 - 1.0}, abs=1e-3
     )
