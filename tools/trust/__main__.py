@@ -14,7 +14,7 @@ from orchestrate.errors import VibroimpactError
 from orchestrate.files import write_whole
 from orchestrate.running.runner import answer
 
-from . import page, records
+from . import ledger_page, records
 from .campaign import Campaign
 from .job import CampaignJob, sources
 from .registry import CAMPAIGNS
@@ -47,9 +47,9 @@ def run(
 
 def write_page() -> None:
     """The page and its pictures, from all records."""
-    page.draw(records.read())
-    text = page.text(records.read())
-    write_whole(page.PAGE, lambda place: place.write_text(text, "utf-8"))
+    ledger_page.draw(records.read())
+    text = ledger_page.text(records.read())
+    write_whole(ledger_page.PAGE, lambda place: place.write_text(text, "utf-8"))
 
 
 def parse(arguments: list[str] | None) -> argparse.Namespace:

@@ -115,7 +115,7 @@ def curve_lines(table: pd.DataFrame) -> list[str]:
         "called delaminated: opened | sound |",
         "|---|---|---|---|---|---|---|",
     ]
-    for name, own in (*groups(table), *further_groups(table)):
+    for name, own in (*groups(table), *groups_by_setup(table)):
         if not has_both(own):
             continue
         opened, sound = own[own.opened == 1], own[own.delaminated == 0]
@@ -147,7 +147,7 @@ def curve_of(table: pd.DataFrame, sign: str) -> roc.Curve | None:
 
 
 def groups(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
-    """All beams, and those of equal noise, level, or length of the delamination."""
+    """Group rows: all beams, then intervals of noise, level and length of the delamination."""
     masses = table[table["size"].isna()]
     found = [("all", table), ("two masses", masses)]
     for low, high in roc.bins(NOISE):
@@ -164,8 +164,8 @@ def groups(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
     return found
 
 
-def further_groups(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
-    """Two masses by excitation and sensors, and beside sound beams that are not linear."""
+def groups_by_setup(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
+    """Group two-mass rows by excitation, number of sensors, and kind of nonlinear sound beam."""
     masses = table[table["size"].isna()]
     found = [(f"excitation: {name}", own) for name, own in masses.groupby("excitation", sort=True)]
     found += [(f"sensors: {count}", own) for count, own in masses.groupby("sensors", sort=True)]

@@ -7,10 +7,10 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from . import archives, documents, pages
+from . import archives, documents, forged_results
 from .campaign import Campaign, Outcome
 from .children import Child, Ended, import_all, in_little_memory
-from .pages import Window, window
+from .forged_results import Window, window
 
 SLOW = 30.0  # s
 WRONG = 0.2  # of the forged results have numbers that make no sense too
@@ -83,22 +83,22 @@ def opened(
     from orchestrate.running.store import load
 
     result, branches, page = (folder / name for name in ("f.nc", "b.nc", "page.html"))
-    pages.forged(result, chance, load(good), seen.address)
+    forged_results.forged(result, chance, load(good), seen.address)
     wrong = chance.random() < WRONG
     if wrong:
-        pages.with_wrong_numbers(result, chance)
+        forged_results.with_wrong_numbers(result, chance)
     command = ["explore", str(result), "--no-open", "--output", str(page)]
     if chance.random() < 0.3:
-        pages.forged_branch(branches, chance, load(branch), seen.address)
+        forged_results.forged_branch(branches, chance, load(branch), seen.address)
         command += ["--branches", str(branches)]
     ended = Child(command, folder / "temporary", in_little_memory).wait(2.0 * SLOW)
     reason = verdict(ended, [])
     if not reason:
-        fragment = pages.fragment(chance, seen.address)
+        fragment = forged_results.fragment(chance, seen.address)
         made = ended.code == 0
         lost = "" if wrong else f"no page: {' / '.join(ended.lines)[:200]}"
         reason = seen.verdict(page, fragment) if made else lost
-    pages.clean_up(result, branches, page)
+    forged_results.clean_up(result, branches, page)
     return ended, reason
 
 
@@ -140,7 +140,7 @@ def hand(arguments: list[str], folder: Path) -> tuple[Ended, list[str]]:
     ended = Child(arguments, temporary, in_little_memory).wait(2.0 * SLOW)
     strays = [str(path) for path in outside(folder) if path.exists() and path not in before]
     left = [path.name for path in temporary.iterdir()] if temporary.exists() else []
-    pages.clean_up(folder / "page.html")
+    forged_results.clean_up(folder / "page.html")
     shutil.rmtree(temporary, ignore_errors=True)
     shutil.rmtree(folder / "results", ignore_errors=True)
     return ended, strays + left
