@@ -127,7 +127,7 @@ def add_settings(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
+    """Analyse records: print the results, write them and their pictures."""
     names = endings_of("--show", arguments.show, tuple(ANALYSES))
     formats = endings_of("--format", arguments.format, FORMATS)
     plots = endings_of("--plot", arguments.plot, PLOTS)
@@ -141,7 +141,7 @@ def run(arguments: argparse.Namespace) -> None:
             label: analyse(ANALYSES[name], record, paths[label], settings[name])
             for label, record in records.items()
         }
-        report(name, results)
+        print_result(name, results)
         read = {label: str(path) for label, path in paths.items()}
         told = digest(read, settings[name], *part_and_reading(arguments))
         stem = f"analyse_{name}_{arguments.record.stem}_{told}"
@@ -296,7 +296,7 @@ def write(
 # -- what is said ---------------------------------------------------------------------------------
 
 
-def report(name: str, results: dict[str, xr.Dataset]) -> None:
+def print_result(name: str, results: dict[str, xr.Dataset]) -> None:
     """Print the numbers that a person wants, a line a channel."""
     print(f"{ANALYSES[name].text}:")
     for label, data in results.items():

@@ -72,7 +72,7 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
+    """Diagnose records: a verdict on each beam, its evidence and a report."""
     formats = endings_of("--format", arguments.format, FORMATS)
     plots = endings_of("--plot", arguments.plot, PLOTS)
     check_output(arguments.output)

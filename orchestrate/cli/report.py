@@ -28,7 +28,7 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
+    """Write stored results as one page."""
     import orchestrate
 
     from ..files import open_folder

@@ -39,18 +39,18 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Run the command."""
+    """Compute amplitude and acceleration over frequency, bonded and delaminated."""
     structure = structure_of(arguments)
     if arguments.g is not None and not is_one(arguments.g):
         arguments.command = "resonance_levels"
         excitation, told = excitation_by_level(arguments, structure), report_levels
     else:
-        excitation, told = excitation_of(arguments, structure, si=True), report
+        excitation, told = excitation_of(arguments, structure, si=True), print_result
     question = {**excitation, **arguments.question.keywords(arguments)}
     carry_out(arguments, structure, question, told, picture_of if is_curve(excitation) else None)
 
 
-def report(data: xr.Dataset) -> None:
+def print_result(data: xr.Dataset) -> None:
     """Print peaks and jumps, a line each."""
     name = parameter_of(data)
     if data.sizes[name] == 1:

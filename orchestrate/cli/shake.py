@@ -100,7 +100,7 @@ def run(arguments: argparse.Namespace) -> None:
     question = {"excitation": signal_of(arguments), **arguments.question.keywords(arguments)}
     if question["sample_rate"] is None:
         del question["sample_rate"]  # a file's name has always been without it
-    carry_out_beside(arguments, structure, question, report)
+    carry_out_beside(arguments, structure, question, print_result)
 
 
 def signal_of(
@@ -198,7 +198,7 @@ def level_of(arguments: argparse.Namespace) -> Any:
     return tuple((f, unit * value) for f, value in breakpoints_of(f"--{given[0]}", text))
 
 
-def report(data: xr.Dataset) -> None:
+def print_result(data: xr.Dataset) -> None:
     """What was found, in a few lines."""
     names = ("box_acceleration", "a1_abs", "a2_abs")
     factor, unit = scale_of(data, "m/s2")

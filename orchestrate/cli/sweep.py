@@ -54,17 +54,19 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Run the command."""
+    """Compute an orbit diagram: stroboscopic samples of the gap over a parameter."""
     structure = structure_of(arguments)
     excitation, is_range = varied_arguments(arguments, structure, usual=PAPER_RANGE)
     direction = arguments.direction or ("up" if is_range else "given")
     question = {**excitation, "direction": direction, **arguments.question.keywords(arguments)}
     if question["start"] is None:
         del question["start"]  # a file's name has always been without it
-    carry_out(arguments, structure, question, report, picture_of if is_curve(excitation) else None)
+    carry_out(
+        arguments, structure, question, print_result, picture_of if is_curve(excitation) else None
+    )
 
 
-def report(data: xr.Dataset) -> None:
+def print_result(data: xr.Dataset) -> None:
     """Print largest gap, amplitudes, which responses repeat, and where up and down differ."""
     name = parameter_of(data)
     if data.sizes[name] == 1:

@@ -41,7 +41,7 @@ def draw(
     theory : xarray.Dataset, optional
         ``voltage``, ``speed`` and ``amplitude`` of the averaged theory, over ``speed``.
     branches : xarray.Dataset, optional
-        Of :func:`orchestrate.drive_branch`: unstable motions are dashed.
+        Of :func:`orchestrate.drive_branch`: unstable motions are dotted.
     title : str
         What is shown: set, rate, volts.
     """
@@ -172,7 +172,7 @@ def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
 
 
 def draw_branches(axes: Sequence[Axes], branches: xr.Dataset) -> None:
-    """Draw stationary motions, thin and pale under the ramps: dashed where they are unstable."""
+    """Draw stationary motions, thin and pale under the ramps: dotted where they are unstable."""
     for name in branches.structure.values:
         for i, leg in enumerate(branches.leg.values):
             branch = branches.sel(structure=name, leg=leg)

@@ -60,7 +60,7 @@ class ShakeJob(Question):
     accuracy: float
     start: tuple[float, ...] = REST
     asked: ClassVar[str] = "shake"
-    chunk: ClassVar[int] = 20_000
+    chunk_size: ClassVar[int] = 20_000
     sequential: ClassVar[bool] = True
     item: ClassVar[str] = "piece"
 

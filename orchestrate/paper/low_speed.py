@@ -57,7 +57,7 @@ class LowSpeedJob(Job):
     points: tuple[Point, ...] = points()
     periods: int = 2000
     gamma: float = 1e-4
-    chunk: ClassVar[int] = 10
+    chunk_size: ClassVar[int] = 10
 
     def count(self) -> int:
         """Return the number of motions."""

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from ..dynamics.attractors import AttractorsJob
-from ..dynamics.basins import Side
+from ..dynamics.basins import PlaneAxis
 from ..dynamics.clusters import AttractorSettings
 from ..dynamics.following import OnwardQuestion
 from ..dynamics.impact_statistics import ImpactStatisticsJob
@@ -89,7 +89,7 @@ class Plan:
         for name in asked:
             if name not in self.parts:
                 known = ", ".join(self.parts)
-                raise InputError(f"figures: {name or 'nothing'} is none; expected some of {known}")
+                raise InputError(f"figures: unknown figure {name!r}; choose from {known}")
         return [part for name, part in self.parts.items() if name in asked]
 
 
@@ -192,8 +192,8 @@ def basin_job(attractors: AttractorsJob, sweep: SweepJob, resolution: Resolution
         name="basin",
         structure=sweep.structure,
         excitation=Excitation.nondimensional(1.0, sweep.structure),  # replaced by what is found
-        x=Side("x_rel", 0.0, 3.0, side),
-        y=Side("v_rel", -3.0, 3.0, side),
+        x=PlaneAxis("x_rel", 0.0, 3.0, side),
+        y=PlaneAxis("v_rel", -3.0, 3.0, side),
         settings=attractors.settings,
         attractors=attractors.name,
         sweep=sweep.name,

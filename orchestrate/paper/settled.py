@@ -41,7 +41,7 @@ class SettledJob(OnwardQuestion):
     """
 
     settings: AttractorSettings = AttractorSettings(transient=0, settle=0.0)
-    chunk: ClassVar[int] = 20
+    chunk_size: ClassVar[int] = 20
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Followed], previous: Table | None

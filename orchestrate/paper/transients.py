@@ -44,7 +44,7 @@ class LaterJob(OnwardQuestion):
     transient: int = 4300
     samples: int = 201
     tolerance: float = 1e-2
-    chunk: ClassVar[int] = 20
+    chunk_size: ClassVar[int] = 20
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Followed], previous: Table | None

@@ -97,8 +97,8 @@ class DriveSpectraJob(Job):
             ends = run.revolve(steps)["time"][-self.revolutions - 1 :]
             if len(ends) < 2:
                 raise InputError(
-                    f"not two revolutions of the motor at {self.approach.last:g} V: expected a "
-                    "voltage that turns it, and time"
+                    f"the motor completed no two revolutions at {self.approach.last:g} V: "
+                    "raise the voltage or the duration"
                 )
             speed = TURN * (len(ends) - 1) / (ends[-1] - ends[0])
             return self.sample(run, TURN / speed / self.points), float(speed)

@@ -51,7 +51,7 @@ class Verdict(NamedTuple):
 
     Attributes
     ----------
-    what : int
+    outcome : int
         ``NOT_ASKED``, ``LOST``, ``FOLLOWS``, ``LEFT_BEFORE`` or ``UNDECIDED``.
     low, high : float
         The last voltage at which the motion stays and the first at which it is lost, V; of an
@@ -59,7 +59,7 @@ class Verdict(NamedTuple):
         else.
     """
 
-    what: float
+    outcome: int
     low: float = math.nan
     high: float = math.nan
 
@@ -278,7 +278,7 @@ class HeldVoltageTest:
         if not beyond(points[-1]):
             return Verdict(UNDECIDED, points[-1].voltage, target)
         verdict = self.between(list(points), sign)
-        if verdict.what == FOLLOWS and not (beyond(points[-1], far) and self.comes_back(points)):
+        if verdict.outcome == FOLLOWS and not (beyond(points[-1], far) and self.comes_back(points)):
             return Verdict(UNDECIDED, low.voltage, points[-1].voltage)
         return verdict
 
@@ -458,7 +458,7 @@ def settled_speed(means: np.ndarray, settings: HoldSettings) -> tuple[float, flo
 def with_final_chunk(chunks: list[Chunk]) -> list[Chunk]:
     """Return chunks with the last item, which is not a step, as one of its own."""
     last = chunks[-1]
-    if last.last - last.first == 1:
+    if last.stop - last.start == 1:
         return chunks
-    steps = Chunk(last.index, last.first, last.last - 1, last.after)
-    return [*chunks[:-1], steps, Chunk(last.index + 1, last.last - 1, last.last, last.index)]
+    steps = Chunk(last.index, last.start, last.stop - 1, last.after)
+    return [*chunks[:-1], steps, Chunk(last.index + 1, last.stop - 1, last.stop, last.index)]

@@ -239,7 +239,7 @@ class Master:
             The one to begin with.
         h : float, optional
             Their length, s, where it is not the scheme's.
-        kept : ndarray, shape (len(voltages), len(memory())), optional
+        kept : ndarray, shape (len(voltages), len(get_state())), optional
             Takes the memory after each.
 
         Returns

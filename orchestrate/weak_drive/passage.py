@@ -75,7 +75,7 @@ class PassageJob(Job):
     around: float | None
 
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
-    chunk: ClassVar[int] = 10_000
+    chunk_size: ClassVar[int] = 10_000
     sequential: ClassVar[bool] = True
     has_final_chunk: ClassVar[bool] = True
     item: ClassVar[str] = "step"
@@ -102,7 +102,7 @@ class PassageJob(Job):
             names = (KEPT + name for name in SAMPLES)
             return {**revolutions, **dict(zip(names, columns, strict=True))}
 
-        return self.run.work_on(fmus, items, previous, self.chunk, revolve)
+        return self.run.work_on(fmus, items, previous, self.chunk_size, revolve)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Return samples over time, and the jumps."""

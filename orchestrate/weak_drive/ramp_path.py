@@ -153,7 +153,7 @@ class Branches:
             if fold is not None or turned:
                 return self.jump(fold, path, sign)
             if not lost:
-                return self.double(flip, motions, i, path, sign)
+                return self.leg_after_period_doubling(flip, motions, i, path, sign)
         if motions.end != LIMIT:
             path.end = f"its motion ends at {motions.voltage[-1]:.5f} V: {motions.end}"
         return None
@@ -194,10 +194,10 @@ class Branches:
         part = (voltage - low) / (high - low) if high != low else 0.0
         return float(motions.speed[i] + part * (motions.speed[i + 1] - motions.speed[i]))
 
-    def double(
+    def leg_after_period_doubling(
         self, flip: int | None, motions: Motions, i: int, path: Path, sign: float
     ) -> Motions | None:
-        """Return the stable motions of twice the period that go on from a period doubling."""
+        """Return the traced leg of twice the period; without one say why the path ends."""
         voltage = float(motions.voltage[i])
         if flip is not None:
             voltage = float(self.places[flip][0])

@@ -395,8 +395,8 @@ class Shooter:
         """
         known: dict[float, Shot] = {0.0: base}
 
-        def end(change: float) -> Floats | None:
-            """Return the end after a change; None where a grazing lies between."""
+        def end_state_shifted_by(change: float) -> Floats | None:
+            """Return the period's end state with this unknown shifted; None across a grazing."""
             if change not in known:
                 moved = unknowns.copy()
                 moved[which] += change
@@ -406,7 +406,8 @@ class Shooter:
         for change in CHANGES:
             for difference in (central, one_sided):
                 for size in (change,) if difference is central else (change, -change):
-                    fine, coarse = difference(end, size), difference(end, 2.0 * size)
+                    fine = difference(end_state_shifted_by, size)
+                    coarse = difference(end_state_shifted_by, 2.0 * size)
                     if fine is None or coarse is None:
                         continue
                     if np.abs(fine - coarse).max() <= AGREEMENT * max(1.0, np.abs(fine).max()):

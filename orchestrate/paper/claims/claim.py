@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from ..plain import plain
+from ..readable import plain
 from .results import Edges, Limit, Results
 
 YES, PARTLY, NO, UNDECIDED = "yes", "partly", "no", "undecided"

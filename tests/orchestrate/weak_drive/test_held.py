@@ -71,7 +71,7 @@ def fold_of(slope, up=True):
 def test_a_fold(slope, up, start, rate):
     """It is bracketed, at each rate of the ramp; -0.02: the other one is 5e-4 away."""
     verdict = judged(slope, up, start, rate=rate)
-    assert verdict.what == LOST
+    assert verdict.outcome == LOST
     low, high = sorted((verdict.low, verdict.high))
     assert low - 5e-6 <= fold_of(slope, up) <= high + 5e-6 and high - low < 2e-4
 
@@ -84,7 +84,7 @@ NARROW = {"first": 1.47, "last": 1.53, "stiff": 2500.0}  # speeds change little 
 def test_folds_that_are_close_in_speed_too(up, start, rate):
     """1.1e-4 apart; the speed jumps by 0.0066: some rates said that it passes without a gap."""
     verdict = judged(-0.0365, up, start, rate=rate, **NARROW)
-    assert verdict.what == LOST
+    assert verdict.outcome == LOST
     fold = 1.5 + (1 if up else -1) * 2.0 / 3.0 * 0.0365 * (0.0365 / 7500.0) ** 0.5
     low, high = sorted((verdict.low, verdict.high))
     assert low - 5e-6 <= fold <= high + 5e-6 and high - low < 2e-4
@@ -94,7 +94,7 @@ def test_folds_that_are_close_in_speed_too(up, start, rate):
 def test_no_two_rates_contradict_each_other(slope):
     """A jump at one and none at another: what lies between the two is undecided at some."""
     rates = (2e-4, 1.3e-4, 1e-4, 5e-5)
-    said = {judged(slope, start=1.27, rate=rate, **NARROW).what for rate in rates}
+    said = {judged(slope, start=1.27, rate=rate, **NARROW).outcome for rate in rates}
     assert said <= {LOST, UNDECIDED} or said <= {FOLLOWS, UNDECIDED}
     assert said == {LOST} or slope > -0.035
     assert said == {FOLLOWS} or slope < 0.005
@@ -110,7 +110,7 @@ def test_two_motions_of_nearly_the_same_speed_are_undecided():
 def test_a_steep_branch(slope):
     """Up to 200 times as steep as the voltage, but the speed comes back with it."""
     verdict = judged(slope, longest=2e5)
-    assert verdict.what == FOLLOWS and np.isnan(verdict.low)
+    assert verdict.outcome == FOLLOWS and np.isnan(verdict.low)
 
 
 @pytest.mark.parametrize("slope", [-0.02, -0.005, 0.0, 0.005])
@@ -219,7 +219,7 @@ def test_the_held_course_goes_on_until_the_resonance_is_behind():
     early = (0.2, 0.1, 0.25)
     assert around(early, 1.17).what == FOLLOWS
     verdict = around(early, 1.17, resonance=(1.17, 1.3))
-    assert verdict.what == LOST
+    assert verdict.outcome == LOST
     assert verdict.low - 5e-6 <= fold_of(-0.05) <= verdict.high + 5e-6
 
 
@@ -228,7 +228,7 @@ def test_the_held_course_begins_before_the_resonance():
     late = (0.95, 0.85, 0.97)
     assert around(late, 1.17, up=False).what == FOLLOWS
     verdict = around(late, 1.17, up=False, resonance=(1.17, 1.36))
-    assert verdict.what == LOST
+    assert verdict.outcome == LOST
     assert verdict.high - 5e-6 <= fold_of(-0.05, up=False) <= verdict.low + 5e-6
 
 
