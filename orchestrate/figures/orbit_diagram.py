@@ -20,7 +20,7 @@ WIDTHS = {"up": 2.6, "down": 1.0}
 
 @styled
 def draw(data: xr.Dataset, title: str = "", decades: int = 6) -> Figure:
-    """Draw an orbit diagram in the paper's manner; all samples are in it.
+    """Draw an orbit diagram as in the paper; no sample is left out.
 
     Parameters
     ----------

@@ -130,9 +130,7 @@ def undecided_directions(data: xr.Dataset) -> list[str]:
 
 
 def split_directions(data: xr.Dataset) -> list[tuple[np.ndarray, str, str]]:
-    """Return the revolutions of the way there and of the way back, with a line style and a name for
-    each.
-    """
+    """Return the revolutions of each direction of the voltage, with line style and name."""
     voltage = data.voltage.values
     turn = int(np.argmax(np.abs(voltage - voltage[0])))
     outward, back = np.arange(0, turn + 1), np.arange(turn + 1, len(voltage))
