@@ -62,7 +62,7 @@ def print_result(data: xr.Dataset) -> None:
 
 
 def print_entropy(data: xr.Dataset) -> None:
-    """Print how uncertain it is where a start leads, of a plane with enough starts."""
+    """Print the basin entropy of the plane, if there are enough starts."""
     if data.sizes["attractor"] < 2 or min(data.attractor_of.shape) < FEWEST_STARTS:
         return
     mixed = orchestrate.basin_entropy(data)

@@ -60,7 +60,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def print_result(data: xr.Dataset) -> None:
-    """Print the curve's extent, and why it ends."""
+    """Print the curve's extent, and the reason of its end."""
     print(f"{data.attrs['kind']}: {data.sizes['point']} points")
     for name in map(str, data.attrs["over"]):
         first, last = float(data[name][0]), float(data[name][-1])

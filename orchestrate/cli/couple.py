@@ -298,7 +298,7 @@ def format_lag(at: xr.Dataset, volts: float, bonded: xr.Dataset | None, fold: fl
 
 
 def lag_error(voltage: float, volts: float, bonded: xr.Dataset) -> float:
-    """Estimate how far the lag of a delaminated structure's jump may be from the bonded one's, V.
+    """Estimate the error of a delaminated structure's lag, from the bonded structure's, V.
 
     It depends on the branch by the fold, which differs as the vibration's torque there does. The
     slip tells that torque: a jump that is moved by a tenth of it is taken to be late by as much as

@@ -305,7 +305,7 @@ class Files:
 
     @property
     def shown(self) -> Path:
-        """The result's name for tables and pictures, whose units may be others than asked in."""
+        """Path of tables and pictures; it has their units in it if ``--units`` is given."""
         units = f"_{self.units}" if self.units else ""
         return self.result.with_name(f"{self.result.stem}{units}{self.result.suffix}")
 
