@@ -112,7 +112,7 @@ class Progress:
 
     @property
     def complete(self) -> bool:
-        """Whether the result is there."""
+        """Whether the job's result is complete."""
         return self.result is not None
 
     def done(self) -> int:
