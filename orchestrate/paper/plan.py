@@ -112,14 +112,14 @@ def follow(kind: type[Followers], sweep: SweepJob, name: str, **fields: Any) -> 
 
 
 def settled_job(sweep: SweepJob, resolution: Resolution) -> SettledJob:
-    """Return what each fifth response of an up-sweep settles to; below 0.43 most have contact."""
+    """Make the job that settles every fifth response of an up-sweep from eta = 0.43 on."""
     etas = tuple(eta for eta in resolution.etas() if eta >= 0.43)[::5]
     settings = AttractorSettings(transient=0, settle=0.0, longest=resolution.longest)
     return follow(SettledJob, sweep, "settled", eta=etas, settings=settings)
 
 
 def later_jobs(sweep: SweepJob, resolution: Resolution) -> list[LaterJob]:
-    """A sweep's responses later: of all frequencies, and of a few drawn by chance later still."""
+    """Return jobs that continue a sweep's responses: all for some time, a random few for longer."""
     done = sweep.transient + sweep.samples
     few = np.random.default_rng(500).choice(np.array(resolution.etas()), FEW, replace=False)
     asked = {
@@ -145,7 +145,7 @@ def exponent_job(settled: SettledJob, resolution: Resolution) -> LyapunovJob:
 
 
 def own_runs(sweep: SweepJob, settled: Sequence[SettledJob], resolution: Resolution) -> list[Job]:
-    """Runs of their own of what is largest of many: exponents by region, impulses of the maps."""
+    """Return jobs that compute maxima once more: exponents by region, impulses of the maps."""
     jobs: list[Job] = [
         LargestJob(
             name=job.name.replace("settled", "largest").removesuffix("_up"),
@@ -255,7 +255,7 @@ def make(resolution: Resolution) -> Plan:
 def further_jobs(
     ups: Sequence[SweepJob], settled: Sequence[SettledJob], resolution: Resolution
 ) -> dict[str, list[Job]]:
-    """Return what goes beyond the paper's figures, by part."""
+    """Make the jobs beyond the paper's figures, by part."""
     first = ups[0]
     attractors = AttractorsJob(
         name="attractors",

@@ -62,7 +62,7 @@ class SettledJob(OnwardQuestion):
         return {"rows": np.array(rows), "end": np.array(ends), "contact": np.array(contacts)}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return what they are, over the parameter."""
+        """Return the settled responses over the parameter: features, contact and end state."""
         import xarray as xr
 
         along = self.series.name

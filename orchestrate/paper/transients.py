@@ -61,7 +61,7 @@ class LaterJob(OnwardQuestion):
         return {"rows": np.array(rows)}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return what they are then, over the parameter."""
+        """Return the later responses' features over the parameter."""
         import xarray as xr
 
         along = self.series.name
