@@ -112,12 +112,11 @@ class CoupleJob(CoupledRun):
             return {**revolve(run), **run.get_state(), **no_verdicts()}
 
     def progress_note(self, first: int) -> str:
-        """Return a note for the verdicts: they are no step, and may take as long as many."""
+        """Return the note that the progress bar shows during the held-voltage test."""
         return "voltages held where a jump is in doubt" if first == self.steps() else ""
 
     def verdicts(self, fmus: Mapping[str, Path], table: Table, every: int) -> np.ndarray:
-        """Return the results of the held-voltage test in both directions, shape (2, 3), where the
-        record does not decide.
+        """Run the held-voltage test where the record does not decide; shape (2, 3).
 
         Parameters
         ----------
@@ -168,9 +167,7 @@ class CoupleJob(CoupledRun):
         return Passing(row, before, after, rows_in_leg.look, half)
 
     def doubt(self, table: Table, up: bool) -> tuple[Passing, tuple[int, int]] | None:
-        """Return a passing that the record does not tell from a steep branch, by steps of the run,
-        and the steps between which the voltage goes that way.
-        """
+        """Return a doubtful passing in steps, and the first and last step of its sweep."""
         passing = None if self.control else self.passing(table, up)
         theory = theories(self.structure, self.drive)[UPWARD.index(up)]
         if passing is None or not is_doubtful(passing, self.structure.bonded, theory):
@@ -278,9 +275,7 @@ class CoupleJob(CoupledRun):
         return why_none(self.sweep_leg(table, up)[0], up, resonance)
 
     def ends_within(self, table: Table, up: bool) -> str:
-        """Return that the voltage ceases to go a way before the speed is beyond both the bonded
-        resonance and the structure's own; empty where it is.
-        """
+        """Return why a direction is undecided: the sweep ends short of a resonance; else empty."""
         leg, rows = self.sweep_leg(table, up)
         low, high = own_resonance.dividing_speeds(self.structure, self.drive)
         end = float(leg.Omega[-LAST_REVOLUTIONS:].mean())

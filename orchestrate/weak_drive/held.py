@@ -239,7 +239,7 @@ class HeldVoltageTest:
         up: bool,
         resonance: tuple[float, float] | None = None,
     ) -> Verdict:
-        """Say whether a motion is lost on the way through the resonance.
+        """Classify whether a motion is lost on the way through the resonance.
 
         Parameters
         ----------
@@ -285,9 +285,7 @@ class HeldVoltageTest:
     def further(
         self, point: Settled, voltage: float, last: int, sign: float, speed: float
     ) -> list[Settled]:
-        """Go on from a voltage in steps until a speed is well past, but no further than the run
-        goes; those where nothing settles are left out.
-        """
+        """Go on in steps until a speed is well past, as far as the run went; return points."""
         end, points = self.voltage(last), [point]
         step, missing = sign * self.settings.stair * self.volts, sign * (speed - point.speed)
         left = self.settings.max_stairs + math.ceil(max(missing, 0.0) / self.settings.stair)
@@ -309,7 +307,7 @@ class HeldVoltageTest:
         return min(past, end) if sign > 0.0 else max(past, end)
 
     def comes_back(self, points: list[Settled]) -> bool:
-        """Go the same steps back: whether the speeds are the same, as far as they settle."""
+        """Go the same steps back; return whether the speeds are the same, as far as they settle."""
         last = points[-1]
         for point in reversed(points[:-1]):
             back = self.step_from(last, point.voltage)
@@ -319,7 +317,7 @@ class HeldVoltageTest:
         return True
 
     def stairs(self, low: Settled, target: float) -> list[Settled]:
-        """Go to a voltage in steps; those where nothing settles are left out."""
+        """Go to a voltage in steps; return the first point and those that settled."""
         span = abs(target - low.voltage) / self.volts
         count = max(1, min(math.ceil(span / self.settings.stair), self.settings.max_stairs))
         points = [low]
@@ -330,14 +328,12 @@ class HeldVoltageTest:
         return points
 
     def falls_back(self, low: Settled, sign: float) -> bool:
-        """Return whether a held speed goes back from the ramp's, which lags: then to another
-        motion.
-        """
+        """Return whether a held speed falls behind the ramp's: then it went to another motion."""
         allowed = 2.0 * self.settings.distinct + 3.0 * low.error
         return sign * (low.speed - low.begin) < -allowed
 
     def between(self, points: list[Settled], sign: float) -> Verdict:
-        """Bracket the largest rise (``sign`` -1: fall) of the settled speed, and say what it is."""
+        """Bracket the largest change of the settled speed, and classify it."""
         for _ in range(self.settings.max_holds):
             i, low, high = largest_change(points, sign)
             if sign * (high.speed - low.speed) < self.smallest_change(low, high):
@@ -366,14 +362,12 @@ class HeldVoltageTest:
         return min(settings.smallest_jump + noise(low, high), settings.largest_scatter)
 
     def inside(self, low: Settled, high: Settled) -> Iterator[Settled]:
-        """Yield voltages between two, held: the middle first."""
+        """Hold voltages between two points and yield the results: the middle first."""
         for part in (0.5, 0.25, 0.75):
             yield self.step_from(low, low.voltage + part * (high.voltage - low.voltage))
 
     def there_and_back(self, low: Settled, high: Settled) -> int:
-        """Go back to the lower voltage: a motion was lost where the speed does not come back, and
-        the motion there lasts.
-        """
+        """Return to the lower voltage; classify as lost if the speed does not come back."""
         back = self.step_from(high, low.voltage)
         if abs(back.speed - low.speed) > self.settings.two_motions + noise(back, low):
             return LOST if self.lasts(low) else UNDECIDED
@@ -381,9 +375,7 @@ class HeldVoltageTest:
         return FOLLOWS if comes_back else UNDECIDED
 
     def lasts(self, point: Settled) -> bool:
-        """Return whether an irregular motion lasts when its voltage is held again: where it ends by
-        chance, it may have been lost before. Others have settled.
-        """
+        """Hold an irregular motion's voltage again; return whether the motion lasts."""
         later, left = point, self.settings.again if point.error > self.settings.tolerance else 0
         for _ in range(left):
             later = self.step_from(later, point.voltage)
@@ -392,16 +384,16 @@ class HeldVoltageTest:
         return True
 
     def is_within(self, low: Settled, high: Settled, width: float) -> bool:
-        """Return whether two voltages are as close as is asked for, over K omega."""
+        """Return whether two voltages are closer than a width, over K omega."""
         return abs(high.voltage - low.voltage) <= width * self.volts
 
     def differ(self, point: Settled, other: Settled) -> bool:
-        """Return whether both have settled, at different speeds."""
+        """Return whether both points have settled, at different speeds."""
         return abs(point.speed - other.speed) > self.settings.distinct + noise(point, other)
 
 
 def noise(point: Settled, other: Settled) -> float:
-    """Return three errors of the difference of two speeds."""
+    """Return three standard errors of the difference of two speeds."""
     return 3.0 * math.hypot(point.error, other.error)
 
 
@@ -422,8 +414,7 @@ def block_means(speeds: np.ndarray, settings: HoldSettings) -> np.ndarray:
 
 
 def settled_speed(means: np.ndarray, settings: HoldSettings) -> tuple[float, float]:
-    """Return the speed that a motion settles at, by its mean speeds, and the error of an irregular
-    one; NaN where they do not say.
+    """Return the speed that block means settle at, and its error; NaN where they do not settle.
 
     Means that approach a limit as an exponential say it before they are there (Aitken's process):
     three such limits in turn must agree. By a fold the approach is slower than any exponential, and
@@ -456,7 +447,7 @@ def settled_speed(means: np.ndarray, settings: HoldSettings) -> tuple[float, flo
 
 
 def with_final_chunk(chunks: list[Chunk]) -> list[Chunk]:
-    """Return chunks with the last item, which is not a step, as one of its own."""
+    """Return chunks with the final item, the held-voltage test, as a chunk of its own."""
     last = chunks[-1]
     if last.stop - last.start == 1:
         return chunks

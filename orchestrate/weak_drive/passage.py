@@ -62,7 +62,7 @@ KEPT = "sampled "  # before the names of samples in a table that has revolutions
 
 @dataclass(frozen=True)
 class PassageJob(Job):
-    """Run of the coupled system with all its communication points.
+    """Job of a run that keeps all its communication points.
 
     Attributes
     ----------
@@ -300,7 +300,7 @@ def waterfall(
 
 
 def over_angle(data: xr.Dataset, mass: int, points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return times and displacements in space at equal angles, ``points`` per revolution.
+    """Interpolate displacements in space at equal angles; return them with their times.
 
     Where the motor turns back for a moment, samples are left out until it has come as far again.
     """

@@ -88,7 +88,7 @@ def check_against_theory(verdict: Verdict, theory: Theory, volts: float) -> Verd
 
 
 def reason(passing: Passing, held: Verdict, final: Verdict, theory: Theory, hold: float) -> str:
-    """Return why there is no jump, or none is reported, though the speed passes the resonance.
+    """Format why no jump is reported, though the speed passes the resonance.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def reason(passing: Passing, held: Verdict, final: Verdict, theory: Theory, hold
 
 
 def undecided(held: Verdict, theory: Theory, hold: float) -> str:
-    """Return why nothing is reported, and what helps."""
+    """Format why nothing is reported, and what helps."""
     if held.outcome == UNDECIDED:
         known = math.isfinite(held.low) and math.isfinite(held.high)
         between = f" between {held.low:.5g} and {held.high:.5g} V" if known else ""
@@ -124,7 +124,7 @@ def undecided(held: Verdict, theory: Theory, hold: float) -> str:
 
 
 def how_decided(passing: Passing | None, final: Verdict) -> str:
-    """Return how jump or none was decided; empty where the speed does not pass the resonance."""
+    """Format how jump or none was decided; empty where the speed does not pass the resonance."""
     if passing is None:
         return ""
     if final.outcome == UNDECIDED:
