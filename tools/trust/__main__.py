@@ -23,7 +23,7 @@ STORE = Path(__file__).resolve().parents[2] / "results" / "trust"
 
 
 def listed() -> None:
-    """Campaigns with their targets."""
+    """Print the campaigns with their targets."""
     for campaign in CAMPAIGNS.values():
         print(f"{campaign.name:10s}{campaign.target:>14,} {campaign.unit}: {campaign.title}")
 
@@ -31,7 +31,7 @@ def listed() -> None:
 def run(
     campaign: Campaign, seed: int, budget: int, store: Path = STORE, **running: object
 ) -> records.Record:
-    """Run a campaign, or go on with it; a batch that was done is not done again."""
+    """Run a campaign, or continue it: batches that are stored are not computed again."""
     job = CampaignJob(
         name=campaign.name,
         campaign=campaign.name,
@@ -46,14 +46,14 @@ def run(
 
 
 def write_page() -> None:
-    """The page and its pictures, from all records."""
+    """Write the page and its pictures, from all records."""
     ledger_page.draw(records.read())
     text = ledger_page.text(records.read())
     write_whole(ledger_page.PAGE, lambda place: place.write_text(text, "utf-8"))
 
 
 def parse(arguments: list[str] | None) -> argparse.Namespace:
-    """Return the command line."""
+    """Parse the command line."""
     parser = argparse.ArgumentParser(prog="python -m tools.trust", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
     commands.add_parser("list", help="campaigns and their targets")
@@ -69,7 +69,7 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Do what the command line says; 1 where something was found."""
+    """Run the command line; return 1 if a campaign had findings."""
     options = parse(arguments)
     if options.command == "list":
         listed()
