@@ -89,7 +89,7 @@ class Plan:
         for name in asked:
             if name not in self.parts:
                 known = ", ".join(self.parts)
-                raise InputError(f"figures: unknown figure {name!r}; choose from {known}")
+                raise InputError(f"unknown figure {name!r}; choose from {known}")
         return [part for name, part in self.parts.items() if name in asked]
 
 

@@ -103,7 +103,7 @@ def test_no_two_rates_contradict_each_other(slope):
 def test_two_motions_of_nearly_the_same_speed_are_undecided():
     """The folds are wider apart than a bracket, their speeds less than told apart for sure."""
     settings = {"two_motions": 0.02, "smallest_jump": 0.005}
-    assert judged(-0.0365, start=1.27, **NARROW, **settings).what == UNDECIDED
+    assert judged(-0.0365, start=1.27, **NARROW, **settings).outcome == UNDECIDED
 
 
 @pytest.mark.parametrize("slope", [0.005, 0.02, 0.1])
@@ -118,12 +118,12 @@ def test_a_steep_branch(slope):
 def test_a_short_hold_is_never_wrong(slope, longest):
     """Near the edge of a fold speeds settle slowly: it may be undecided, not the other verdict."""
     lost = fold_of(slope) - fold_of(slope, up=False) > 1e-4 if slope < 0.0 else False
-    assert judged(slope, longest=longest).what in (UNDECIDED, LOST if lost else FOLLOWS)
+    assert judged(slope, longest=longest).outcome in (UNDECIDED, LOST if lost else FOLLOWS)
 
 
 def test_a_short_hold_is_undecided_and_a_longer_one_decides():
-    assert judged(-0.02, longest=1500.0).what == UNDECIDED
-    assert judged(-0.02, longest=2e4).what == LOST
+    assert judged(-0.02, longest=1500.0).outcome == UNDECIDED
+    assert judged(-0.02, longest=2e4).outcome == LOST
 
 
 class Scripted(HeldVoltageTest):
@@ -146,7 +146,7 @@ class Scripted(HeldVoltageTest):
         return self.at(voltage, self.back if voltage < point.voltage else 0.0)
 
     def verdict(self):
-        return self.classify(Passing(28, 15, 35, DOUBTFUL, 28.0), (0, 39), 1.3, True).what
+        return self.classify(Passing(28, 15, 35, DOUBTFUL, 28.0), (0, 39), 1.3, True).outcome
 
 
 def test_another_motion_on_the_way_back_is_undecided():
@@ -217,7 +217,7 @@ def around(steps, passing, up=True, last=1.6, **settings):
 def test_the_held_course_goes_on_until_the_resonance_is_behind():
     """The record passes 1.17 early; the fold is at a speed of 1.27, where nobody looked."""
     early = (0.2, 0.1, 0.25)
-    assert around(early, 1.17).what == FOLLOWS
+    assert around(early, 1.17).outcome == FOLLOWS
     verdict = around(early, 1.17, resonance=(1.17, 1.3))
     assert verdict.outcome == LOST
     assert verdict.low - 5e-6 <= fold_of(-0.05) <= verdict.high + 5e-6
@@ -226,7 +226,7 @@ def test_the_held_course_goes_on_until_the_resonance_is_behind():
 def test_the_held_course_begins_before_the_resonance():
     """On the way down the record passes 1.17 late, and the fold at 1.33 lies before."""
     late = (0.95, 0.85, 0.97)
-    assert around(late, 1.17, up=False).what == FOLLOWS
+    assert around(late, 1.17, up=False).outcome == FOLLOWS
     verdict = around(late, 1.17, up=False, resonance=(1.17, 1.36))
     assert verdict.outcome == LOST
     assert verdict.high - 5e-6 <= fold_of(-0.05, up=False) <= verdict.low + 5e-6
@@ -234,13 +234,13 @@ def test_the_held_course_begins_before_the_resonance():
 
 def test_a_run_that_ends_within_the_resonance_decides_nothing():
     early = (0.8, 0.4, 0.9)
-    assert around(early, 1.17, last=1.48).what == FOLLOWS
-    assert around(early, 1.17, last=1.48, resonance=(1.17, 1.3)).what == UNDECIDED
+    assert around(early, 1.17, last=1.48).outcome == FOLLOWS
+    assert around(early, 1.17, last=1.48, resonance=(1.17, 1.3)).outcome == UNDECIDED
 
 
 def test_what_has_left_before():
     """The first state of the way is beyond already."""
-    assert judged(-0.2, start=1.45, first=1.5).what == LEFT_BEFORE
+    assert judged(-0.2, start=1.45, first=1.5).outcome == LEFT_BEFORE
 
 
 BLOCKS = np.arange(30)
