@@ -49,7 +49,7 @@ class Clockwork:
             if task.previous is not None
             else repr(task.warmup_items).encode()
         )
-        key = task.chunk.first, begun
+        key = task.chunk.start, begun
         if key not in self.known:
             fmus = {OSCILLATOR: find(OSCILLATOR).path}
             clock = time.process_time()
@@ -87,12 +87,12 @@ def main() -> None:
     """Print a table."""
     parser = argparse.ArgumentParser(prog="python -m tools.cores", description=__doc__)
     parser.add_argument("--step", type=float, default=0.001, help="of the frequency ratio")
-    parser.add_argument("--chunk", type=int, default=SweepJob.chunk, help="values a chunk")
+    parser.add_argument("--chunk", type=int, default=SweepJob.chunk_size, help="values a chunk")
     parser.add_argument("--each", type=float, default=2e-3, help="seconds beside, a chunk")
     arguments = parser.parse_args()
     job, clockwork = figure_6(arguments.step), Clockwork()
     find(OSCILLATOR)
-    with patch.object(SweepJob, "chunk", arguments.chunk):
+    with patch.object(SweepJob, "chunk_size", arguments.chunk):
         print(f"{job.count()} values in {len(job.chunks())} chunks")
         print("workers   seconds   efficiency   guessed in vain")
         elapsed(job, 1, clockwork, arguments.each)

@@ -54,7 +54,7 @@ def begin(
 
 
 def from_rest(structure: Structure, state: list[float]) -> list[float]:
-    """Return a state as the FMU takes it, its displacements from the position at rest."""
+    """Return a state with its displacements from the position at rest, as the FMU takes it."""
     if structure.gap_offset >= 0.0 or not any(state):
         return state
     (x1, x2, *velocities), (rest_1, rest_2) = state, structure.at_rest
@@ -87,7 +87,7 @@ def gap_between(states: NDArray[np.float64], gap_offset: ArrayLike = 0.0) -> NDA
 
 
 def four_numbers(start: ArrayLike) -> list[float]:
-    """Return a start state as plain floats."""
+    """Return a start state as four floats."""
     try:
         state = np.asarray(start, dtype=float)
     except (TypeError, ValueError):

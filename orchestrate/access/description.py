@@ -50,7 +50,7 @@ class Description:
 
     @property
     def is_fmi3(self) -> bool:
-        """Whether it is FMI 3.0, not 2.0."""
+        """True for FMI 3.0, False for 2.0."""
         return self.fmi_version.startswith("3")
 
     def variable(self, name: str) -> Any:

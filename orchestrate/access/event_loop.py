@@ -38,7 +38,7 @@ MAX_STEPS = 200_000  # of one call: between two of them an interrupt is heard
 
 
 class Played(NamedTuple):
-    """Motion read at given times, and its impacts.
+    """Result of an event loop: the motion at given times, and its impacts.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ class Played(NamedTuple):
 
 
 class Calls(ctypes.Structure):
-    """Instance as the library calls it."""
+    """Instance with its functions, as the compiled library takes it."""
 
     _fields_ = [
         *((name, c_void_p) for name in ("instance", *FUNCTIONS)),
@@ -67,7 +67,7 @@ class Calls(ctypes.Structure):
 
 
 class Task(ctypes.Structure):
-    """What there is to do: addresses of arrays, and their sizes."""
+    """Pieces of input and sampling times, as addresses of arrays with their sizes."""
 
     _fields_ = [
         *((name, c_void_p) for name in ("nodes", "derivatives", "samples")),
@@ -78,7 +78,7 @@ class Task(ctypes.Structure):
 
 
 class Progress(ctypes.Structure):
-    """What is done."""
+    """Numbers of pieces, samples and impacts that the library has done."""
 
     _fields_ = [
         ("time", c_double),
@@ -107,7 +107,7 @@ def event_loop_of(
 
 
 class EventLoop:
-    """A motion computed through all its events, under an input that is set piece by piece.
+    """Loop that computes a motion through all its events, its input set piece by piece.
 
     Parameters
     ----------
@@ -180,12 +180,12 @@ class EventLoop:
         return Played(rows, touching, Impacts.from_table(np.array(table)))
 
     def _tables(self, samples: Floats) -> tuple[Floats, NDArray[np.bool_]]:
-        """Return arrays for what is read."""
+        """Return uninitialised arrays for the sampled outputs and the contact flags."""
         return np.empty((len(samples), len(self.outputs))), np.empty(len(samples), dtype=bool)
 
 
 class CompiledEventLoop(EventLoop):
-    """The same, compiled."""
+    """The same loop in compiled code."""
 
     def __init__(
         self, instance: SteppingInstance, inputs: Sequence[str] = (), outputs: Sequence[str] = ()

@@ -99,7 +99,7 @@ class Instance:
 
     @property
     def is_fmi3(self) -> bool:
-        """Whether it is FMI 3.0, not 2.0."""
+        """True for FMI 3.0, False for 2.0."""
         return self.description.is_fmi3
 
     def _make2(self) -> None:

@@ -40,7 +40,7 @@ READING = ("unit", "columns", "sample_rate", "scale")
 
 @dataclass(frozen=True)
 class Analysis:
-    """What ``--show`` names.
+    """One analysis that ``--show`` names: its function, options and printer.
 
     Attributes
     ----------
@@ -71,7 +71,7 @@ Reporter = Callable[["xr.Dataset"], Iterator[str]]
 
 
 def add_parser(commands: Commands) -> None:
-    """Declare the command."""
+    """Add the command's parser."""
     text = "what an analyser shows of a record: responses, spectra, orders, shock spectra"
     parser = commands.add("analyse", run, text, EXAMPLES)
     record = "a result of shake (.nc), or a record: .csv, .txt, .uff, .unv, .mat, .wav, .nc"
@@ -98,7 +98,7 @@ def add_parser(commands: Commands) -> None:
 
 
 def add_reading(parser: argparse.ArgumentParser) -> None:
-    """How measured records are read; NetCDF says all itself."""
+    """Add the options for reading measured records; NetCDF files need none."""
     group = parser.add_argument_group("how to read records", "what files but NetCDF may not say")
     option = group.add_argument
     option("--unit", metavar="UNIT", help="of accelerations: m/s2, g, mg ...")
@@ -110,7 +110,7 @@ def add_reading(parser: argparse.ArgumentParser) -> None:
 
 
 def add_settings(parser: argparse.ArgumentParser) -> None:
-    """Options of the analyses; each is left to its function where it is not given."""
+    """Add the options of the analyses; an analysis gets only those that are given."""
     option = parser.add_argument_group("settings").add_argument
     lines = "distance of the lines, Hz, of frf, psd and spectrogram"
     option("--resolution", type=plain_float, metavar="HZ", help=lines)
@@ -127,7 +127,7 @@ def add_settings(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
+    """Analyse records: print the results, write them and their pictures."""
     names = endings_of("--show", arguments.show, tuple(ANALYSES))
     formats = endings_of("--format", arguments.format, FORMATS)
     plots = endings_of("--plot", arguments.plot, PLOTS)
@@ -141,7 +141,7 @@ def run(arguments: argparse.Namespace) -> None:
             label: analyse(ANALYSES[name], record, paths[label], settings[name])
             for label, record in records.items()
         }
-        report(name, results)
+        print_result(name, results)
         read = {label: str(path) for label, path in paths.items()}
         told = digest(read, settings[name], *part_and_reading(arguments))
         stem = f"analyse_{name}_{arguments.record.stem}_{told}"
@@ -160,12 +160,12 @@ def warn_without_sensor(arguments: argparse.Namespace, records: Mapping[str, xr.
 
 
 def part_and_reading(arguments: argparse.Namespace) -> list[Any]:
-    """All options that decide what a record is."""
+    """Return all options that decide what a record is, for the name of the files."""
     return [getattr(arguments, name) for name in ("begin", "end", "sensor", *READING)]
 
 
 def settings_of(arguments: argparse.Namespace, names: tuple[str, ...]) -> dict[str, dict[str, Any]]:
-    """Keywords of each function; an option that none of them takes is refused."""
+    """Return the keywords of each analysis; raise for an option that none of them takes."""
     owned = {option for one in ANALYSES.values() for option in one.options}
     given = {option for option in owned if getattr(arguments, option) is not None}
     for option in sorted(given):
@@ -182,7 +182,7 @@ def settings_of(arguments: argparse.Namespace, names: tuple[str, ...]) -> dict[s
 
 
 def paths_of(arguments: argparse.Namespace) -> dict[str, Path]:
-    """Files of the records by their labels, the first one first."""
+    """Return the files of the records by label, the first record first."""
     label = arguments.label or (arguments.record.stem if arguments.beside else "")
     paths = {label: arguments.record}
     for text in arguments.beside:
@@ -196,7 +196,7 @@ def paths_of(arguments: argparse.Namespace) -> dict[str, Path]:
 
 
 def part_of(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
-    """A record, between ``--from`` and ``--to``."""
+    """Read a record and cut it to ``--from`` and ``--to``."""
     record = record_of(arguments, path)
     if "time" not in record.coords or arguments.begin is arguments.end is None:
         return record
@@ -208,7 +208,7 @@ def part_of(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
 
 
 def record_of(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
-    """A record of any kind of file; NetCDF says all itself."""
+    """Read a record from a file of any kind; NetCDF files need no options."""
     from .. import read_record
 
     if path.suffix.lower() == ".nc":
@@ -228,7 +228,7 @@ def record_of(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
 
 
 def as_read(history: xr.Dataset, text: str) -> xr.Dataset:
-    """What the sensors of ``--sensor`` read of a history.
+    """Compute what the sensors of ``--sensor`` read of a simulated motion.
 
     Raises
     ------
@@ -247,7 +247,7 @@ def as_read(history: xr.Dataset, text: str) -> xr.Dataset:
 
 
 def columns_of(text: str) -> dict[str, str | int]:
-    """Columns of ``--columns``, by channel.
+    """Parse the columns of ``--columns``, by channel.
 
     Raises
     ------
@@ -263,7 +263,7 @@ def columns_of(text: str) -> dict[str, str | int]:
 def analyse(
     analysis: Analysis, record: xr.Dataset, path: Path, settings: Mapping[str, Any]
 ) -> xr.Dataset:
-    """The result of an analysis of a record; a complaint names the record's file."""
+    """Analyse a record; errors name its file."""
     import orchestrate
 
     try:
@@ -276,7 +276,7 @@ def analyse(
 def write(
     place: Path, results: dict[str, xr.Dataset], formats: tuple[str, ...], plots: tuple[str, ...]
 ) -> None:
-    """Write results, a file a record, and one picture of all."""
+    """Write each record's result to a file, and one picture of all."""
     from ..figures.analysis import draw
     from ..files import open_folder
     from ..running.store import write_netcdf
@@ -296,8 +296,8 @@ def write(
 # -- what is said ---------------------------------------------------------------------------------
 
 
-def report(name: str, results: dict[str, xr.Dataset]) -> None:
-    """Print the numbers that a person wants, a line a channel."""
+def print_result(name: str, results: dict[str, xr.Dataset]) -> None:
+    """Print the most important numbers, a line per channel."""
     print(f"{ANALYSES[name].text}:")
     for label, data in results.items():
         for line in REPORTERS[name](data):
@@ -305,20 +305,20 @@ def report(name: str, results: dict[str, xr.Dataset]) -> None:
 
 
 def channels_of(data: xr.Dataset, box: bool = True) -> Iterator[tuple[str, xr.Dataset]]:
-    """Name and result of each channel."""
+    """Yield name and result of each channel."""
     for channel in map(str, data.channel.values):
         if box or channel != "box_acceleration":
             yield MASSES[channel], data.sel(channel=channel)
 
 
 def largest(values: xr.DataArray) -> xr.DataArray:
-    """The largest value, with the coordinates it has."""
+    """Return the entry with the largest value, with its coordinates."""
     flat = values.stack(every=values.dims)
     return flat.isel(every=int(flat.fillna(-1.0).values.argmax()))
 
 
 def say_frf(data: xr.Dataset) -> Iterator[str]:
-    """The peak of H1, its error, and the coherence."""
+    """Yield a line on the peak of H1, its error, and the coherence."""
     if not data.excited.any():
         yield "the box does not move"
         return
@@ -334,7 +334,7 @@ def say_frf(data: xr.Dataset) -> Iterator[str]:
 
 
 def say_psd(data: xr.Dataset) -> Iterator[str]:
-    """Root mean squares and peaks."""
+    """Yield a line on root mean square and peak."""
     for name, part in channels_of(data):
         at = float(part.psd.idxmax())
         yield (
@@ -344,7 +344,7 @@ def say_psd(data: xr.Dataset) -> Iterator[str]:
 
 
 def say_orders(data: xr.Dataset) -> Iterator[str]:
-    """The largest amplitude of each order, and where."""
+    """Yield lines on the largest amplitude of each order, and its frequency."""
     for name, part in channels_of(data, box=False):
         peaks = []
         for order in map(float, part.order.values):
@@ -354,7 +354,7 @@ def say_orders(data: xr.Dataset) -> Iterator[str]:
 
 
 def say_harmonics(data: xr.Dataset) -> Iterator[str]:
-    """The largest and the usual distortion."""
+    """Yield a line on the largest and the median distortion."""
     for name, part in channels_of(data, box=False):
         peak, usual = largest(part.distortion), 100.0 * float(part.distortion.median())
         yield (
@@ -364,7 +364,7 @@ def say_harmonics(data: xr.Dataset) -> Iterator[str]:
 
 
 def say_spectrogram(data: xr.Dataset) -> Iterator[str]:
-    """The largest line."""
+    """Yield a line on the largest line of the spectra."""
     for name, part in channels_of(data):
         peak = largest(part.amplitude)
         yield (
@@ -374,14 +374,14 @@ def say_spectrogram(data: xr.Dataset) -> Iterator[str]:
 
 
 def say_shock(data: xr.Dataset) -> Iterator[str]:
-    """The largest response."""
+    """Yield a line on the largest response."""
     for name, part in channels_of(data):
         peak = largest(part.maximax)
         yield f"{name}: largest response {float(peak):.4g} m/s2 at {float(peak.frequency):.5g} Hz"
 
 
 def say_density(data: xr.Dataset) -> Iterator[str]:
-    """Skewness and kurtosis with their errors."""
+    """Yield a line on skewness and kurtosis with their errors."""
     for name, part in channels_of(data):
         yield (
             f"{name}: skewness {float(part.skewness):.3f} +- {float(part.skewness_error):.3f}, "

@@ -45,21 +45,25 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Run the command."""
+    """Find the attractors that random starts lead to, and their shares."""
     structure = structure_of(arguments)
     excitation, _ = varied_arguments(arguments, structure)
     question = {**excitation, **arguments.question.keywords(arguments)}
-    carry_out(arguments, structure, question, report, picture_of if is_curve(excitation) else None)
+    carry_out(
+        arguments, structure, question, print_result, picture_of if is_curve(excitation) else None
+    )
 
 
-def report(data: xr.Dataset) -> None:
+def print_result(data: xr.Dataset) -> None:
     """Print attractors and their shares, or where there are several."""
     name = parameter_of(data)
     if data.sizes[name] <= MAX_VALUES_IN_FULL:
         for i in range(data.sizes[name]):
             at_value = data.isel({name: i})
             where = format_parameter(data, name, float(at_value[name]))
-            print(f"{int(at_value.number)} found at {where}, of {data.sizes['start']} starts")
+            count, starts = int(at_value.number), data.sizes["start"]
+            word = "attractor" if count == 1 else "attractors"
+            print(f"{count} {word} at {where} ({starts} random starts)")
             print_attractors(at_value, "starts")
         return
     ordered = data.sortby(name)

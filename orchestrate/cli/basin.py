@@ -43,14 +43,14 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Run the command."""
+    """Compute which attractor each start of a plane leads to."""
     structure = structure_of(arguments)
     excitation = excitation_of(arguments, structure, si=True, one=True)
     question = {**excitation, **arguments.question.keywords(arguments)}
-    carry_out(arguments, structure, question, report, picture_of)
+    carry_out(arguments, structure, question, print_result, picture_of)
 
 
-def report(data: xr.Dataset) -> None:
+def print_result(data: xr.Dataset) -> None:
     """Print the attractors and their shares of the plane."""
     labels = data.attractor_of.values
     started, overlapping = int((labels >= 0).sum()), int((labels < 0).sum())
@@ -62,7 +62,7 @@ def report(data: xr.Dataset) -> None:
 
 
 def print_entropy(data: xr.Dataset) -> None:
-    """Print how uncertain it is where a start leads, of a plane with enough starts."""
+    """Print the basin entropy of the plane, if there are enough starts."""
     if data.sizes["attractor"] < 2 or min(data.attractor_of.shape) < FEWEST_STARTS:
         return
     mixed = orchestrate.basin_entropy(data)

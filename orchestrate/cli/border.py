@@ -49,17 +49,17 @@ def limits_of(option: str, text: str) -> tuple[tuple[float, float], ...]:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Run the command."""
+    """Trace a bifurcation of a branch over two parameters."""
     structure = structure_of(arguments)
     for name in ("start", "limits"):
         if getattr(arguments, name) is None:
             expected = "a file of the command branch" if name == "start" else "A:B,C:D"
             raise InputError(f"--{name}: nothing given; expected {expected}")
     question = arguments.question.keywords(arguments)
-    carry_out(arguments, structure, question, report, picture_of)
+    carry_out(arguments, structure, question, print_result, picture_of)
 
 
-def report(data: xr.Dataset) -> None:
+def print_result(data: xr.Dataset) -> None:
     """Print the curve's extent, its points of codimension two, and why it ends."""
     from ..flags import flag_words
 

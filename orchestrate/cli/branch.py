@@ -49,13 +49,13 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Run the command."""
+    """Trace a branch of periodic motions along a parameter, with its bifurcations."""
     structure = structure_of(arguments)
     over, limits = over_of(arguments)
     keywords = arguments.question.keywords(arguments)
     excitation = excitation_arguments(arguments, structure, over, keywords["start"] is not None)
     question = {**excitation, "over": over, "limits": limits, **keywords}
-    carry_out(arguments, structure, question, report, picture_of)
+    carry_out(arguments, structure, question, print_result, picture_of)
 
 
 def over_of(arguments: argparse.Namespace) -> tuple[str, tuple[float, float]]:
@@ -68,8 +68,8 @@ def over_of(arguments: argparse.Namespace) -> tuple[str, tuple[float, float]]:
         raise InputError("--over g: expected --over amplitude, in m, at one frequency")
     first, last = ends_of("--limits", arguments.limits)
     if arguments.over in UNITS:
-        turns = TO_RAD_S[UNITS[arguments.over]]
-        return "frequency", (turns(first), turns(last))
+        to_rad_s = TO_RAD_S[UNITS[arguments.over]]
+        return "frequency", (to_rad_s(first), to_rad_s(last))
     return arguments.over, (first, last)
 
 
@@ -103,7 +103,7 @@ def picture_of(data: xr.Dataset) -> Any:
     return draw(data, title=title_from_attributes(data))
 
 
-def report(data: xr.Dataset) -> None:
+def print_result(data: xr.Dataset) -> None:
     """Print bifurcations as a table, and why the branch ends."""
     from ..flags import flag_words
 

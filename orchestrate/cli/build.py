@@ -51,7 +51,7 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Run the command."""
+    """Export the FMUs."""
     from ..access import (
         FORMS,
         PLAIN_FORMS,

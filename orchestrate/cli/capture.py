@@ -67,7 +67,7 @@ def range_of(
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Run the command."""
+    """Compute which voltages from rest pass the resonance and which are captured."""
     structure, drive = structure_and_drive(arguments)
     if (arguments.over is None) != (arguments.values is None):
         raise InputError("--over and --values: expected both, or none of them")
@@ -81,7 +81,7 @@ def run(arguments: argparse.Namespace) -> None:
         **times_of(arguments, structure, "step"),
     }
     draw = partial(picture_of, name=Path(arguments.drive).stem, question=question)
-    ask_each(arguments, structure, drive, question, draw, report)
+    ask_each(arguments, structure, drive, question, draw, print_result)
 
 
 def picture_of(results: dict[str, xr.Dataset], name: str, question: dict[str, Any]) -> Any:
@@ -94,7 +94,7 @@ def picture_of(results: dict[str, xr.Dataset], name: str, question: dict[str, An
     return draw(results, f"{name}: {switched}, {first:.4g} V to {last:.4g} V")
 
 
-def report(state: str, data: xr.Dataset) -> None:
+def print_result(state: str, data: xr.Dataset) -> None:
     """Print the borders."""
     (over,) = {str(dim) for dim in data.passes.dims} - {"voltage"} or {""}
     if not over:

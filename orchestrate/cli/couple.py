@@ -70,9 +70,10 @@ def add_master(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group("master")
     add_step(group)
     add_hold(group)
-    text = "of that control: largest defect over the work exchanged in a step (default: 1e-8)"
+    text = "step-size tolerance: largest defect over the work exchanged in a step (default: 1e-8)"
     group.add_argument("--tolerance", type=plain_float, help=text)
-    text = "master, see the manual (default: %(default)s)"
+    text = "co-simulation algorithm: jacobi, jacobi-derivative, gauss-seidel, rollback or iterated "
+    text += "(default: %(default)s)"
     group.add_argument("--algorithm", default="rollback", help=text)
 
 
@@ -96,7 +97,7 @@ def jobs_of(arguments: argparse.Namespace, structure: Structure, drive: Drive) -
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Run the command."""
+    """Couple structure and motor for the voltages asked for: runs, jumps, pictures and packages."""
     from ..access import finder
     from ..running.options import RunOptions
     from ..running.runner import answer_all
@@ -115,7 +116,7 @@ def run(arguments: argparse.Namespace) -> None:
     states = states_of(arguments, structure)
     results = {state: load(path) for state, path in zip(states, paths, strict=True)}
     branches = branches_of(arguments, structure, drive)
-    report(results, drive.volts(structure), folds_crossed(branches, structure, drive))
+    print_result(results, drive.volts(structure), folds_crossed(branches, structure, drive))
     for data, path in zip(results.values(), paths, strict=True):
         for file in (path, *export_formats(data, path, formats, fresh)):
             print(file)
@@ -244,7 +245,7 @@ def folds_crossed(branches: xr.Dataset | None, structure: Structure, drive: Driv
     return folds
 
 
-def report(results: dict[str, xr.Dataset], volts: float, folds: Folds | None = None) -> None:
+def print_result(results: dict[str, xr.Dataset], volts: float, folds: Folds | None = None) -> None:
     """Print the results.
 
     Parameters
@@ -322,7 +323,7 @@ def format_lag(at: xr.Dataset, volts: float, bonded: xr.Dataset | None, fold: fl
 
 
 def lag_error(voltage: float, volts: float, bonded: xr.Dataset) -> float:
-    """Estimate how far the lag of a delaminated structure's jump may be from the bonded one's, V.
+    """Estimate the error of a delaminated structure's lag, from the bonded structure's, V.
 
     It depends on the branch by the fold, which differs as the vibration's torque there does. The
     slip tells that torque: a jump that is moved by a tenth of it is taken to be late by as much as

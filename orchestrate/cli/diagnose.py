@@ -48,7 +48,7 @@ CHANNELS = ("time", "box_acceleration", "acceleration1", "acceleration2")
 
 
 def add_parser(commands: Commands) -> None:
-    """Declare the command."""
+    """Add the command's parser."""
     text = "whether a measured beam is delaminated: a verdict, its evidence, a report"
     parser = commands.add("diagnose", run, text, EXAMPLES)
     files = "measured: .csv, .txt, .uff, .unv, .mat, .nc; one beam each"
@@ -72,7 +72,7 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
+    """Diagnose records: a verdict on each beam, its evidence and a report."""
     formats = endings_of("--format", arguments.format, FORMATS)
     plots = endings_of("--plot", arguments.plot, PLOTS)
     check_output(arguments.output)
@@ -90,18 +90,18 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def name_of(path: Path, guess: Structure, arguments: argparse.Namespace) -> str:
-    """Name of the files of a record: another content, guess or way to read it has another one."""
+    """Return the name of a record's files, which depends on content, guess and reading options."""
     read_as = [arguments.columns, arguments.unit, arguments.sample_rate]
     return f"diagnose_{path.stem}_{digest(checksum(path), guess.parameters(), read_as)}"
 
 
 def checksum(path: Path) -> str:
-    """SHA-256 of a file."""
+    """Return the SHA-256 of a file."""
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def guess_of(arguments: argparse.Namespace) -> Structure:
-    """The guess of the beam.
+    """Return the guess of the beam, from ``--structure``.
 
     Raises
     ------
@@ -115,7 +115,7 @@ def guess_of(arguments: argparse.Namespace) -> Structure:
 
 
 def read(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
-    """A record from its file."""
+    """Read a record from its file; raise if no face's acceleration is in it."""
     from .. import read_record
 
     columns = columns_of(arguments)
@@ -129,7 +129,7 @@ def read(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
 
 
 def columns_of(arguments: argparse.Namespace) -> dict[str, str | int] | None:
-    """Columns of the channels in a file, by name or number.
+    """Parse ``--columns``: the columns of the channels, by name or number.
 
     Raises
     ------
@@ -152,7 +152,7 @@ def verdicts_of(
     names: Mapping[Path, str],
     guess: Structure,
 ) -> dict[Path, xr.Dataset]:
-    """The verdict on each record, stored by its name."""
+    """Compute the verdict on each record, or take it from disk."""
     from .. import detect_all
 
     named = {names[path]: record for path, record in records.items()}
@@ -169,7 +169,7 @@ def verdicts_of(
 
 
 def signs_of(record: xr.Dataset, others: list[xr.Dataset], guess: Structure) -> xr.Dataset:
-    """The model-free signs of a record."""
+    """Compute the model-free signs of a record."""
     from .. import signs
 
     return signs(record, other=others, structure=guess)
@@ -182,7 +182,7 @@ def write(
     formats: tuple[str, ...],
     plots: tuple[str, ...],
 ) -> None:
-    """Write answers, pictures and the report, and print their places."""
+    """Write answers, pictures and the report; print the paths of the files."""
     from .. import plot, report
     from ..files import open_folder
     from ..running.store import write_netcdf

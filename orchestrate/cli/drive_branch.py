@@ -46,11 +46,11 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Run the command."""
+    """Trace the stationary motions of structure and motor, stable and unstable."""
     structure, drive = structure_and_drive(arguments)
     question = arguments.question.keywords(arguments)
     draw = partial(picture_of, name=Path(arguments.drive).stem)
-    ask_once(arguments, structure, drive, question, draw, report)
+    ask_once(arguments, structure, drive, question, draw, print_result)
 
 
 def picture_of(data: xr.Dataset, name: str) -> Any:
@@ -61,7 +61,7 @@ def picture_of(data: xr.Dataset, name: str) -> Any:
     return draw_stationary(data, f"{name}: stationary motions, held by {volts}")
 
 
-def report(data: xr.Dataset) -> None:
+def print_result(data: xr.Dataset) -> None:
     """Print bifurcations, which of them slow ramps meet, and how far the branches go."""
     from ..weak_drive.ramp_path import ramp_paths
 

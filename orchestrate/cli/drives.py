@@ -283,7 +283,7 @@ def ask_each(
     drive: Drive,
     question: Mapping[str, Any],
     draw: Callable[[dict[str, xr.Dataset]], Any],
-    report: Callable[[str, xr.Dataset], None],
+    print_result: Callable[[str, xr.Dataset], None],
 ) -> None:
     """Ask for each structure; print the results, write files, draw both in one picture.
 
@@ -296,7 +296,7 @@ def ask_each(
         Keywords of the public function that has the command's name.
     draw : callable
         From the results by structure to a picture.
-    report : callable
+    print_result : callable
         Says what came out for a structure of a name.
     """
     import orchestrate
@@ -310,7 +310,7 @@ def ask_each(
         running = running_of(arguments, files[state].result)
         results[state] = ask(chosen, drive, **question, **running)
     for state, data in results.items():
-        report(state, data)
+        print_result(state, data)
     for state, data in results.items():
         files[state].write(data, None)
     fresh = any(one_file.fresh for one_file in files.values())
@@ -328,7 +328,7 @@ def ask_once(
     drive: Drive,
     question: Mapping[str, Any],
     draw: Callable[[xr.Dataset], Any] | None,
-    report: Callable[[xr.Dataset], None],
+    print_result: Callable[[xr.Dataset], None],
 ) -> None:
     """Ask a question that answers for both structures at once."""
     import orchestrate
@@ -336,7 +336,7 @@ def ask_once(
     ask = getattr(orchestrate, arguments.command.replace("-", "_"))
     files = Files.from_options(arguments, file_name(arguments, structure, drive, question))
     data = ask(structure, drive, **question, **running_of(arguments, files.result))
-    report(data)
+    print_result(data)
     files.write(data, (lambda: draw(data)) if draw else None)
 
 

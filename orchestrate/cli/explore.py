@@ -33,7 +33,7 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Run the command."""
+    """Write the explorer's page and open it in the browser."""
     from ..explorer.page import explore
 
     data: Any = structure_of(arguments)

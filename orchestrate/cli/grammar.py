@@ -13,7 +13,7 @@ from typing import TypeVar
 from ..errors import InputError
 
 Parsed = TypeVar("Parsed")
-Side = tuple[str, float, float, int]
+AxisSpec = tuple[str, float, float, int]
 MAX_VALUES = 10_000_000
 RANGE = "expected FIRST:LAST:STEP with 0 < FIRST <= LAST and STEP > 0, or a list such as 0.4,1.047"
 
@@ -133,10 +133,10 @@ def state_of(option: str, text: str) -> tuple[float, ...]:
     return parse(option, text, expected, lambda part: floats(part, ",", (4,)))
 
 
-def side_of(option: str, text: str) -> Side:
+def side_of(option: str, text: str) -> AxisSpec:
     """Parse a side of a plane from ``NAME,FIRST,LAST,COUNT``."""
 
-    def read(text: str) -> Side:
+    def read(text: str) -> AxisSpec:
         name, first, last, count = (part.strip() for part in text.split(","))
         return name, plain_float(first), plain_float(last), plain_int(count)
 

@@ -47,7 +47,7 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Run the command."""
+    """Compute the voltages at which the speed jumps at rate 0, bonded and delaminated."""
     structure, drive = structure_and_drive(arguments)
     unit = drive.volts(structure) * structure.omega
     ends = two_voltages(arguments, structure, drive)
@@ -58,7 +58,7 @@ def run(arguments: argparse.Namespace) -> None:
         **times_of(arguments, structure, "settle", "step"),
     }
     draw = partial(picture_of, name=Path(arguments.drive).stem, ends=ends)
-    tell = partial(report, directions=("up",) if arguments.one_way else ("up", "down"))
+    tell = partial(print_result, directions=("up",) if arguments.one_way else ("up", "down"))
     ask_once(arguments, structure, drive, question, draw, tell)
 
 
@@ -71,7 +71,7 @@ def picture_of(data: xr.Dataset, name: str, ends: tuple[float, float]) -> Any:
     return draw(data, f"{name}: {ramps}, and at rate 0")
 
 
-def report(data: xr.Dataset, directions: tuple[str, ...]) -> None:
+def print_result(data: xr.Dataset, directions: tuple[str, ...]) -> None:
     """Print a table of the jumps at rate 0, and what to do where there is none."""
     print(f"{'jump':6}{'bonded':>24}{'delaminated':>24}{'change':>12}   in V, at rate 0")
     for jump in directions:

@@ -35,7 +35,7 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Run the command."""
+    """Compute the largest Lyapunov exponents along a parameter."""
     structure = structure_of(arguments)
     excitation, _ = varied_arguments(arguments, structure)
     question = {**excitation, **arguments.question.keywords(arguments)}
@@ -43,10 +43,12 @@ def run(arguments: argparse.Namespace) -> None:
         swept: dict[str, Any] = {**excitation, "direction": arguments.follow, "samples": 1}
         swept["transient"] = arguments.transient
         question["start"] = orchestrate.sweep(structure, **swept, **running_of(arguments))
-    carry_out(arguments, structure, question, report, picture_of if is_curve(excitation) else None)
+    carry_out(
+        arguments, structure, question, print_result, picture_of if is_curve(excitation) else None
+    )
 
 
-def report(data: xr.Dataset) -> None:
+def print_result(data: xr.Dataset) -> None:
     """Print verdicts, and where they hold."""
     name = parameter_of(data)
     ordered = data.sortby(name)

@@ -29,16 +29,16 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Run the command."""
+    """Compute the unstable manifold of a saddle."""
     structure = structure_of(arguments)
     question = arguments.question.keywords(arguments)
     given = frequency_option(arguments) is not None or amplitude_of(arguments) is not None
     if given or question["start"] is None:
         question |= excitation_of(arguments, structure, si=True, one=True)
-    carry_out(arguments, structure, question, report, picture_of)
+    carry_out(arguments, structure, question, print_result, picture_of)
 
 
-def report(data: xr.Dataset) -> None:
+def print_result(data: xr.Dataset) -> None:
     """Print the multiplier, how far each side was followed, and where it is broken."""
     from ..flags import flag_words
 

@@ -42,13 +42,13 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Run the command."""
+    """Compute responses over two parameters."""
     structure = structure_of(arguments)
     question = {
         **map_arguments(arguments, structure),
         **arguments.question.keywords(arguments),
     }
-    carry_out(arguments, structure, question, report, picture_of)
+    carry_out(arguments, structure, question, print_result, picture_of)
 
 
 def map_arguments(arguments: argparse.Namespace, structure: Structure) -> dict[str, Any]:
@@ -73,7 +73,7 @@ def map_arguments(arguments: argparse.Namespace, structure: Structure) -> dict[s
     return excitation
 
 
-def report(data: xr.Dataset) -> None:
+def print_result(data: xr.Dataset) -> None:
     """Print what the map shows."""
     undecided = is_flag(data.multiplicity_decided, "undecided")
     kinds = data.multiplicity.where(~undecided, -1).values.astype(int)

@@ -439,11 +439,11 @@ def excitation_of(
         either = "--amplitude in m or --g" if level else "--amplitude in m"
         raise InputError(f"--{name} {text}: expected {either} with it")
     omega = structure.omega
-    turns = each(TO_RAD_S[UNITS[name]] if name in UNITS else lambda eta: eta * omega, values)
+    frequencies = each(TO_RAD_S[UNITS[name]] if name in UNITS else lambda eta: eta * omega, values)
     if arguments.g is None:
-        return {"frequency": turns, "amplitude": amplitude}
-    held = each(lambda value: amplitude * GRAVITY / (value * value), turns)
-    return {"frequency": turns, "amplitude": held}
+        return {"frequency": frequencies, "amplitude": amplitude}
+    held = each(lambda value: amplitude * GRAVITY / (value * value), frequencies)
+    return {"frequency": frequencies, "amplitude": held}
 
 
 def described_excitation(arguments: argparse.Namespace) -> dict[str, Any] | None:

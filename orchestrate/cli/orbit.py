@@ -32,7 +32,7 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Run the command."""
+    """Find one periodic motion, stable or not, by Newton's method."""
     structure = structure_of(arguments)
     excitation = excitation_of(arguments, structure, si=True, one=True)
     question = {**excitation, **arguments.question.keywords(arguments)}
@@ -48,10 +48,10 @@ def run(arguments: argparse.Namespace) -> None:
         return draw(with_units(motion, units_of(data)))
 
     drawable = not arguments.box_acceleration
-    carry_out(arguments, structure, question, report, picture_of if drawable else None)
+    carry_out(arguments, structure, question, print_result, picture_of if drawable else None)
 
 
-def report(data: xr.Dataset) -> None:
+def print_result(data: xr.Dataset) -> None:
     """Print stability and impacts."""
     parts = data.multipliers.transpose("multiplier", "part").values
     size = max(abs(complex(*pair)) for pair in parts)

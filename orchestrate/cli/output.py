@@ -190,8 +190,10 @@ def name_of(
     >>> name_of("branch", Structure(), {"over": "frequency", "limits": (31.4159265, 62.831853)})
     'branch_e0.7_D0.005_5-10Hz_e71461'
     """
-    turns = question.get("over") == "frequency"  # then its values and limits are in Hz too
-    named = ("frequency" if turns and name in ("values", "limits") else name for name in question)
+    in_hertz = question.get("over") == "frequency"  # then its values and limits are in Hz too
+    named = (
+        "frequency" if in_hertz and name in ("values", "limits") else name for name in question
+    )
     pairs = zip(named, question.values(), strict=True)
     parts = [command, structure.label(), *(brief(*item, unit, structure) for item in pairs)]
     return "_".join(filter(None, [*parts, digest(parameters_of(structure), question)]))
@@ -294,8 +296,8 @@ class Files:
         others = [path for path in files.beside() if existing_files(path)]
         if store is not None and others and not result.exists():
             raise InputError(
-                f"{others[0]}: is there, without {result.name}, and may be of others; expected "
-                "another --store, or remove it"
+                f"{others[0]} already exists but {result.name} does not; "
+                "choose another --store or delete it"
             )
         return files
 

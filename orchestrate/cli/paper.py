@@ -38,7 +38,7 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Run the command."""
+    """Compute the paper's figures and numbers; write its report."""
     from ..paper.reproduce import reproduce
     from ..paper.resolution import FULL, QUICK
 

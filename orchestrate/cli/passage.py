@@ -58,7 +58,7 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Run the command."""
+    """Compute a run through the resonance at full resolution."""
     from ..weak_drive.schedule import Constant
 
     structure, drive = structure_and_drive(arguments)
@@ -77,7 +77,7 @@ def run(arguments: argparse.Namespace) -> None:
     }
     spectra = {"revolutions": arguments.revolutions, "mass": arguments.mass}
     draw = partial(picture_of, name=Path(arguments.drive).stem, spectra=spectra, control=control)
-    ask_each(arguments, structure, drive, question, draw, report)
+    ask_each(arguments, structure, drive, question, draw, print_result)
 
 
 def first_of(data: xr.Dataset) -> xr.Dataset:
@@ -102,7 +102,7 @@ def picture_of(
     return draw(shown, falls, title)
 
 
-def report(state: str, data: xr.Dataset) -> None:
+def print_result(state: str, data: xr.Dataset) -> None:
     """Print the result in a line."""
     from ..figures.passage import format_jumps
 

@@ -34,14 +34,14 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Run the command."""
+    """Compute a Poincaré section: at a phase of the box, at impacts or at releases."""
     structure = structure_of(arguments)
     excitation = excitation_of(arguments, structure, si=True, one=True)
     question = {**excitation, **arguments.question.keywords(arguments)}
-    carry_out(arguments, structure, question, report, picture_of)
+    carry_out(arguments, structure, question, print_result, picture_of)
 
 
-def report(data: xr.Dataset) -> None:
+def print_result(data: xr.Dataset) -> None:
     """Print how many points the section has, and where they lie."""
     count = data.sizes["point"]
     print(f"{count} points")

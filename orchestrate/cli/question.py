@@ -50,7 +50,7 @@ def carry_out(
     arguments: argparse.Namespace,
     structure: Structure,
     question: Question,
-    report: Callable[[xr.Dataset], None],
+    print_result: Callable[[xr.Dataset], None],
     draw: Draw | None,
     ending: str = "",
     *,
@@ -65,7 +65,7 @@ def carry_out(
     structure : Structure
     question : mapping
         All other keywords of the function.
-    report : callable
+    print_result : callable
         Prints what came out.
     draw : callable, optional
         From the result to a picture; none where there is nothing to draw.
@@ -94,7 +94,7 @@ def carry_out(
     for line in trivial_notes(structure, question):
         print(line)
     shown = with_units(data, units)
-    report(shown)
+    print_result(shown)
     files.write(shown, partial(draw, shown) if draw else None)
     return data
 
@@ -123,19 +123,19 @@ def carry_out_beside(
     arguments: argparse.Namespace,
     structure: Structure,
     question: Question,
-    report: Callable[[xr.Dataset], None],
+    print_result: Callable[[xr.Dataset], None],
 ) -> None:
     """Ask and draw as :func:`carry_out`; with ``--beside`` of the bonded structure before."""
     if not arguments.beside:
-        carry_out(arguments, structure, question, report, picture_of)
+        carry_out(arguments, structure, question, print_result, picture_of)
         return
     for name in ("store", "start"):
         if getattr(arguments, name) is not None:
             raise InputError(f"--beside: of two structures; expected it without --{name}")
-    bonded = carry_out(arguments, structure.as_bonded(), question, report, None)
+    bonded = carry_out(arguments, structure.as_bonded(), question, print_result, None)
     print("delaminated:")
     beside = partial(picture_of, bonded=bonded)
-    carry_out(arguments, structure.as_delaminated(), question, report, beside, "with_bonded")
+    carry_out(arguments, structure.as_delaminated(), question, print_result, beside, "with_bonded")
 
 
 def picture_of(data: xr.Dataset, **more: Any) -> Any:

@@ -14,7 +14,7 @@ EXAMPLES = """  {program} report results/sweep.nc --title Beam --notes November
 
 
 def add_parser(commands: Commands) -> None:
-    """Declare the command."""
+    """Add the command's parser."""
     text = "stored results as one page with pictures and numbers, to read, print and sign"
     parser = commands.add("report", run, text, EXAMPLES)
     files = "results of earlier commands; a verdict of diagnose comes first"
@@ -28,7 +28,7 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
+    """Write stored results as one page."""
     import orchestrate
 
     from ..files import open_folder

@@ -42,7 +42,7 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Run the command."""
+    """Compute amplitude and acceleration over frequency, bonded and delaminated."""
     structure = structure_of(arguments)
     keywords = arguments.question.keywords(arguments)
     if arguments.g is not None and not is_one(arguments.g):
@@ -55,10 +55,10 @@ def run(arguments: argparse.Namespace) -> None:
         return
     excitation = excitation_of(arguments, structure, si=True)
     picture, over = drawing(arguments, structure, excitation)
-    carry_out(arguments, structure, {**excitation, **keywords}, report, picture, over=over)
+    carry_out(arguments, structure, {**excitation, **keywords}, print_result, picture, over=over)
 
 
-def report(data: xr.Dataset) -> None:
+def print_result(data: xr.Dataset) -> None:
     """Print peaks and jumps, a line each."""
     name = parameter_of(data)
     if data.sizes[name] == 1:

@@ -49,7 +49,7 @@ OF_KINDS = {  # options that only one kind knows
 
 
 def add_parser(commands: Commands) -> None:
-    """Declare the command."""
+    """Add the command's parser."""
     text = "as in the laboratory: motion and impacts under sines, random, shock or a record"
     parser = commands.add("shake", run, text, EXAMPLES)
     add_structure(parser)
@@ -66,7 +66,7 @@ def add_parser(commands: Commands) -> None:
 
 
 def add_signals(parser: argparse.ArgumentParser) -> None:
-    """The excitation."""
+    """Add the options of the excitation."""
     group = parser.add_argument_group("the box's acceleration", "one of the first five")
     option = group.add_argument
     option("--swept-sine", metavar="FIRST:LAST", help="frequencies, Hz; downwards too")
@@ -95,18 +95,18 @@ def add_signals(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Carry it out."""
+    """Shake the structure, and print and write the record."""
     structure = structure_of(arguments)
     question = {"excitation": signal_of(arguments), **arguments.question.keywords(arguments)}
     if question["sample_rate"] is None:
         del question["sample_rate"]  # a file's name has always been without it
-    carry_out_beside(arguments, structure, question, report)
+    carry_out_beside(arguments, structure, question, print_result)
 
 
 def signal_of(
     arguments: argparse.Namespace,
 ) -> Random | Sampled | Shock | SteppedSine | SweptSine:
-    """The excitation that the options describe.
+    """Return the excitation that the options describe.
 
     Raises
     ------
@@ -146,7 +146,7 @@ def signal_of(
 
 
 def recorded(arguments: argparse.Namespace) -> Sampled:
-    """The box's acceleration of a file, played again."""
+    """Read the box's acceleration from a file, as an excitation."""
     from .. import Sampled, read_record
 
     column = arguments.column
@@ -159,7 +159,7 @@ def recorded(arguments: argparse.Namespace) -> Sampled:
 
 
 def kind_of(arguments: argparse.Namespace) -> str:
-    """Which excitation is asked for; options of others are refused."""
+    """Return which kind of excitation is asked for; raise for options of another kind."""
     given = [name for name in KINDS if getattr(arguments, name) is not None]
     if len(given) != 1:
         told = options((name.replace("_", "-") for name in given), " and ") or "nothing"
@@ -185,7 +185,7 @@ def kind_of(arguments: argparse.Namespace) -> str:
 
 
 def level_of(arguments: argparse.Namespace) -> Any:
-    """The peak acceleration in m/s2: a number, or a profile."""
+    """Return the peak acceleration in m/s2: a number, or a profile over frequency."""
     from ..constants import GRAVITY
 
     given = [name for name in ("g", "acceleration") if getattr(arguments, name) is not None]
@@ -198,8 +198,8 @@ def level_of(arguments: argparse.Namespace) -> Any:
     return tuple((f, unit * value) for f, value in breakpoints_of(f"--{given[0]}", text))
 
 
-def report(data: xr.Dataset) -> None:
-    """What was found, in a few lines."""
+def print_result(data: xr.Dataset) -> None:
+    """Print the largest accelerations and gap, and the impacts."""
     names = ("box_acceleration", "a1_abs", "a2_abs")
     factor, unit = scale_of(data, "m/s2")
     felt = [float(abs(data[name]).max()) / factor for name in names]

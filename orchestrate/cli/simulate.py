@@ -29,14 +29,14 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Run the command."""
+    """Compute time histories of both masses, the gap and the contact force."""
     structure = structure_of(arguments)
     excitation = excitation_of(arguments, structure, si=True, one=True)
     question = {**excitation, **arguments.question.keywords(arguments)}
-    carry_out_beside(arguments, structure, question, report)
+    carry_out_beside(arguments, structure, question, print_result)
 
 
-def report(data: xr.Dataset) -> None:
+def print_result(data: xr.Dataset) -> None:
     """Print the result."""
     reach = [with_unit(data, abs(data[n]).max(), "m", ".6g") for n in ("x1", "x2", "x_rel")]
     print("largest |x1| {}, |x2| {}, gap {}".format(*reach))

@@ -53,7 +53,7 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Run the command."""
+    """Compute acceleration spectra, on a motor or under harmonic excitation."""
     frequencies = [name for name in FREQUENCIES if getattr(arguments, name) is not None]
     if not frequencies and amplitude_of(arguments) is None:
         motor_spectra(arguments)
@@ -97,10 +97,10 @@ def harmonic_spectra(arguments: argparse.Namespace) -> None:
     structure = structure.replace(**changes_of(arguments.set))
     excitation = excitation_of(arguments, structure, si=True)
     question = {**excitation, **arguments.question.keywords(arguments)}
-    carry_out(arguments, structure, question, report, picture_of)
+    carry_out(arguments, structure, question, print_result, picture_of)
 
 
-def report(data: xr.Dataset) -> None:
+def print_result(data: xr.Dataset) -> None:
     """Print the largest lines, a line per kind and frequency."""
     name = str(data.acceleration.dims[0])
     for value in data[name].values:

@@ -55,7 +55,7 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Run the command."""
+    """Compute an orbit diagram: stroboscopic samples of the gap over a parameter."""
     structure = structure_of(arguments)
     excitation, is_range = varied_arguments(arguments, structure, usual=PAPER_RANGE)
     direction = arguments.direction or ("up" if is_range else "given")
@@ -63,10 +63,10 @@ def run(arguments: argparse.Namespace) -> None:
     if question["start"] is None:
         del question["start"]  # a file's name has always been without it
     draw, over = drawing(arguments, structure, excitation)
-    carry_out(arguments, structure, question, report, draw, over=over)
+    carry_out(arguments, structure, question, print_result, draw, over=over)
 
 
-def report(data: xr.Dataset) -> None:
+def print_result(data: xr.Dataset) -> None:
     """Print largest gap, amplitudes, which responses repeat, and where up and down differ."""
     name = parameter_of(data)
     if data.sizes[name] == 1:

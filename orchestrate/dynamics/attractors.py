@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..access import OSCILLATOR, REST, EventInstance, Instance, begin, finder, sampled
-from ..checks import checked_integer
+from ..checks import REQUIRES_DELAMINATED, checked_integer
 from ..errors import InputError
 from ..response.labels import Variable, flags, si_state, variable
 from ..response.questions import Numbers, Point, SeriesQuestion, numbers, positive, series_arguments
@@ -84,14 +84,14 @@ class AttractorsJob(SeriesQuestion):
     follows: str = ""
     settings: AttractorSettings = AttractorSettings()
     asked: ClassVar[str] = "attractors"
-    chunk: ClassVar[int] = 240
+    chunk_size: ClassVar[int] = 240
     gathers: ClassVar[bool] = True
     item: ClassVar[str] = "start"
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if any(point.structure.bonded for point in self.series.points):
-            raise InputError("structure: is bonded; expected one whose masses can part")
+            raise InputError(REQUIRES_DELAMINATED)
         if isinstance(self.scale, tuple) and len(self.scale) != len(self.series.values):
             raise InputError(
                 f"scale: {len(self.scale)} values for {len(self.series.values)} of "

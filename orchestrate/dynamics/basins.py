@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..access import OSCILLATOR, REST, STATE, EventInstance, Instance, begin, finder, gap_between
-from ..checks import checked_integer
+from ..checks import REQUIRES_DELAMINATED, checked_integer
 from ..errors import InputError
 from ..response.labels import si_state, variable
 from ..response.questions import Point, Question, one_point, state
@@ -60,7 +60,7 @@ SETTINGS = (
 GAPS = {"x_rel": ("x1", "x2"), "v_rel": ("v1", "v2")}
 
 
-class Side(NamedTuple):
+class PlaneAxis(NamedTuple):
     """One side of the plane: equally spaced values of a coordinate.
 
     Attributes
@@ -87,14 +87,14 @@ class Plane(NamedTuple):
     Attributes
     ----------
     point : Point
-    x, y : Side
+    x, y : PlaneAxis
     at : tuple of float
         State in whose neighbourhood the plane lies: x1, x2 in m, v1, v2 in m/s.
     """
 
     point: Point
-    x: Side
-    y: Side
+    x: PlaneAxis
+    y: PlaneAxis
     at: tuple[float, ...]
 
     def starts(self) -> tuple[Floats, Floats]:
@@ -144,7 +144,7 @@ class BasinJob(Question):
     ----------
     excitation : Excitation
         Its phase is that of all starts where ``phase`` is not a coordinate.
-    x, y : Side
+    x, y : PlaneAxis
     at : tuple of float
     known : tuple of tuple of float
         States on attractors that are known, at phase 0.
@@ -152,13 +152,13 @@ class BasinJob(Question):
     """
 
     excitation: Excitation
-    x: Side
-    y: Side
+    x: PlaneAxis
+    y: PlaneAxis
     at: tuple[float, ...] = REST
     known: tuple[tuple[float, ...], ...] = ()
     settings: AttractorSettings = AttractorSettings()
     asked: ClassVar[str] = "basin"
-    chunk: ClassVar[int] = 240
+    chunk_size: ClassVar[int] = 240
     gathers: ClassVar[bool] = True
     item: ClassVar[str] = "start"
 
@@ -244,7 +244,7 @@ def run_to_phase_zero(instance: Instance, start: Start) -> tuple[float, ...]:
     return tuple(instance.get(*STATE))
 
 
-def check_side(name: str, given: Any) -> Side:
+def check_side(name: str, given: Any) -> PlaneAxis:
     """Return a side of the plane from what the user gave.
 
     Raises
@@ -262,7 +262,7 @@ def check_side(name: str, given: Any) -> Side:
         raise InputError(f"{name} = {given!r}: no coordinate {axis!r}; {expected}")
     if not (math.isfinite(low) and math.isfinite(high) and low < high):
         raise InputError(f"{name} = {given!r}: expected finite low < high")
-    return Side(axis, low, high, checked_integer(f"{name}: count", count, 2, 100_000))
+    return PlaneAxis(axis, low, high, checked_integer(f"{name}: count", count, 2, 100_000))
 
 
 def basin(
@@ -391,16 +391,16 @@ class Known(NamedTuple):
     samples: Floats
     gap: float
 
-    def side(self, name: str) -> Side:
+    def side(self, name: str) -> PlaneAxis:
         """Return a side for the gap or for its velocity, twice as wide as the attractors."""
         gap = self.gap or self.point.length
         if name == "x_rel":
-            return Side(name, 0.0, round_to_two_digits(BEYOND * gap), COUNT)
+            return PlaneAxis(name, 0.0, round_to_two_digits(BEYOND * gap), COUNT)
         rates = np.abs(self.samples[:, 3] - self.samples[:, 2])
         high = round_to_two_digits(
             BEYOND * max(float(rates.max()), self.point.excitation.frequency * gap)
         )
-        return Side(name, -high, high, COUNT)
+        return PlaneAxis(name, -high, high, COUNT)
 
     def middle(self) -> tuple[float, ...]:
         """Return the mean of the attractors' states at phase 0."""
@@ -435,7 +435,7 @@ def round_to_two_digits(value: float) -> float:
 def check_plane(job: BasinJob) -> None:
     """Check that there is a start, and that the masses can part at all."""
     if job.structure.bonded:
-        raise InputError("structure: is bonded; expected one whose masses can part")
+        raise InputError(REQUIRES_DELAMINATED)
     states, _ = job.plane({}).starts()
     if not (gap_between(states, job.structure.gap_offset) >= 0.0).any():
         raise InputError("x and y: the masses overlap at every start; expected some with x2 >= x1")

@@ -20,8 +20,8 @@ from .bifurcations import EARLIER_RELEASE, FLIP, FOLD, GRAZING, KINDS, TORUS, TO
 from .closed_form import Floats
 from .continuation import ArclengthStepper, NoConvergenceError, Root, leading_component
 from .families import Family, central_difference
-from .impact_sequence import CLOSING, PeriodicOrbit
 from .orbit_point import OrbitPoint
+from .periodic_orbit import CLOSING, PeriodicOrbit
 from .tracer import BranchStep, BranchTracer, ContinuationSettings
 from .turning_points import (
     GAP,

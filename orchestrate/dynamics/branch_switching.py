@@ -10,8 +10,8 @@ from .bifurcations import FLIP, GRAZING, KINDS, TOUCHING
 from .closed_form import Floats
 from .continuation import ArclengthStepper, Root, fix_sign, newton_correct, unit_vector
 from .families import Family
-from .impact_sequence import CLOSING, PHASE, ImpactSequence
 from .orbit_point import OrbitPoint
+from .periodic_orbit import CLOSING, PHASE, ImpactSequence
 from .turning_points import nearest_miss, turning_points
 
 AWAY = 1e-3  # along the new branch, in unknowns over their scale: where its gap is tested

@@ -266,7 +266,7 @@ def branch(
     Notes
     -----
     Pseudo-arclength continuation of the equations of
-    :mod:`orchestrate.dynamics.impact_sequence`. Bifurcations are located by Brent's method to
+    :mod:`orchestrate.dynamics.periodic_orbit`. Bifurcations are located by Brent's method to
     rounding. A branch ends where the sequence of impacts does: where an impact or a flight grazes,
     or where permanent contact is lost or begins. Impacts of a chattering that come and go by (17)
     are followed.

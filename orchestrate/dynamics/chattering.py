@@ -7,9 +7,9 @@ import numpy as np
 from .bifurcations import CONTACT_BEGUN, CONTACT_LOST
 from .closed_form import Floats
 from .continuation import NoConvergenceError
-from .impact_sequence import IMPACT, RELEASE, STICK, ImpactSequence, PeriodicOrbit
 from .orbit_point import OrbitPoint
 from .orbit_search import solve_orbit
+from .periodic_orbit import IMPACT, RELEASE, STICK, ImpactSequence, PeriodicOrbit
 
 MAX_CHANGES = 10  # impacts that come or go in one step: more are no small change of an orbit
 

@@ -26,7 +26,7 @@ from .bifurcations import FLIP, FOLD, GRAZING, TORUS, TOUCHING
 from .closed_form import Floats
 from .continuation import ArclengthStepper, NoConvergenceError, Root, solve_linear
 from .families import central_difference
-from .impact_sequence import CLOSING, PeriodicOrbit
+from .periodic_orbit import CLOSING, PeriodicOrbit
 from .turning_points import nearest_miss, turning_points
 
 DEGREE = 4  # of D: as many multipliers as states

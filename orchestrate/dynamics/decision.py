@@ -23,8 +23,8 @@ from .clusters import AttractorSettings, run_until_settled
 from .continuation import NoConvergenceError
 from .families import Setting
 from .guesses import Guess, from_impacts, start
-from .impact_sequence import ImpactSequence, PeriodicOrbit
 from .orbit_search import least_periods, solve_orbit, why_no_motion
+from .periodic_orbit import ImpactSequence, PeriodicOrbit
 from .settled_motion import (
     IRREGULAR,
     ORBIT,

@@ -8,12 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from ..checks import REQUIRES_DELAMINATED
 from ..errors import InputError
 from ..response.questions import EXCITATION_PARAMETERS, Point, point
 from ..structures import PARAMETERS, Structure
 from ..structures.ranges import expected_one_of
 from .closed_form import ClosedForm, Floats
-from .impact_sequence import POSITION, ImpactSequence, PeriodicOrbit
+from .periodic_orbit import POSITION, ImpactSequence, PeriodicOrbit
 
 ACCELERATION = "box_acceleration"
 SMALLEST = 1e-3  # scale of displacements and velocities over a eta^2: of a motion all but at rest
@@ -105,7 +106,7 @@ class Setting:
 
 
 def require_delaminated(structure: Structure) -> Structure:
-    """Return a structure, if its masses can part and knock; raise where they are glued.
+    """Return a structure, if it is delaminated; raise where its masses are glued.
 
     Raises
     ------
@@ -113,7 +114,7 @@ def require_delaminated(structure: Structure) -> Structure:
         Where they are glued.
     """
     if structure.bonded:
-        raise InputError("bonded = True: expected a structure whose masses knock")
+        raise InputError(REQUIRES_DELAMINATED)
     return structure
 
 

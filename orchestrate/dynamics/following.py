@@ -101,7 +101,7 @@ class FollowingQuestion(OnwardQuestion, ABC):
 
     @abstractmethod
     def row(self, impacts: Impacts, item: Followed) -> Sequence[float]:
-        """Return the numbers of one response.
+        """Return the columns of the result for one response; subclasses choose them.
 
         Parameters
         ----------

@@ -11,7 +11,7 @@ from ..constants import TURN
 from ..response.questions import Point
 from .closed_form import ClosedForm, Floats
 from .families import ACCELERATION
-from .impact_sequence import CLOSING, IMPACT, PHASE, RELEASE, STICK, ImpactSequence, PeriodicOrbit
+from .periodic_orbit import CLOSING, IMPACT, PHASE, RELEASE, STICK, ImpactSequence, PeriodicOrbit
 from .release import contact_durations
 from .turning_points import from_phase_zero
 

@@ -48,7 +48,7 @@ class ImpactStatisticsJob(FollowingQuestion):
     """Responses along a parameter, impact by impact."""
 
     asked: ClassVar[str] = "impact_statistics"
-    chunk: ClassVar[int] = 40
+    chunk_size: ClassVar[int] = 40
 
     def row(self, impacts: Impacts, item: Followed) -> Sequence[float]:
         """Return the numbers in the order of ``FIELDS``."""

@@ -168,7 +168,7 @@ class LyapunovJob(FollowingQuestion):
     sigmas: float = SIGMAS
     wander: float = WANDER
     asked: ClassVar[str] = "lyapunov"
-    chunk: ClassVar[int] = 5
+    chunk_size: ClassVar[int] = 5
 
     def row(self, impacts: Impacts, item: Followed) -> Sequence[float]:
         """Return exponent, error, impacts per period; all exponents and errors if wanted."""

@@ -33,7 +33,6 @@ from .curve_growth import (
     GrowthSettings,
 )
 from .families import ACCELERATION, Setting, require_delaminated
-from .impact_sequence import ON_CIRCLE, PHASE, PeriodicOrbit
 from .orbit_search import solve_orbit
 from .orbits import (
     FirstGuess,
@@ -43,6 +42,7 @@ from .orbits import (
     from_result,
     orbit,
 )
+from .periodic_orbit import ON_CIRCLE, PHASE, PeriodicOrbit
 from .turning_points import stroboscopic_states
 
 if TYPE_CHECKING:

@@ -22,7 +22,7 @@ from .bifurcations import (
 from .closed_form import Floats
 from .continuation import Root
 from .families import Family
-from .impact_sequence import CLOSING, POSITION, VELOCITY, PeriodicOrbit
+from .periodic_orbit import CLOSING, POSITION, VELOCITY, PeriodicOrbit
 from .turning_points import nearest_miss, turning_points, weakest_force
 
 CONTACT_KINDS = (CONTACT_LOST, CONTACT_BEGUN)

@@ -14,8 +14,8 @@ from ..response.questions import Point
 from ..running.job import Table
 from .closed_form import Floats
 from .families import ACCELERATION, Family, Setting
-from .impact_sequence import CLOSING, ON_CIRCLE, PHASE, POSITION, RELEASE, VELOCITY
 from .orbit_search import FmuCheck
+from .periodic_orbit import CLOSING, ON_CIRCLE, PHASE, POSITION, RELEASE, VELOCITY
 from .turning_points import (
     Amplitudes,
     from_phase_zero,

@@ -13,7 +13,7 @@ from .closed_form import ClosedForm, Floats
 from .continuation import NoConvergenceError, Root, newton_correct, unit_vector
 from .families import Family, Setting
 from .guesses import Guess, from_phases, start
-from .impact_sequence import CLOSING, IMPACT, PHASE, RELEASE, STICK, ImpactSequence, PeriodicOrbit
+from .periodic_orbit import CLOSING, IMPACT, PHASE, RELEASE, STICK, ImpactSequence, PeriodicOrbit
 from .turning_points import (
     from_phase_zero,
     nearest_miss,

@@ -22,8 +22,8 @@ from .bifurcations import (
 from .chattering import add_or_remove_impacts, change_one_impact
 from .continuation import ArclengthStepper, NoConvergenceError, Root
 from .families import Family
-from .impact_sequence import POSITION
 from .orbit_point import EITHER, OrbitPoint
+from .periodic_orbit import POSITION
 from .tracer import NO_CONVERGENCE, BranchSegment, BranchStep, BranchTracer, ContinuationSettings
 
 FIRST_STEP = 1e-3  # in unknowns over their scale: short, as the branch is not known yet

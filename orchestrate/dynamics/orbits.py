@@ -25,9 +25,9 @@ from .closed_form import Floats
 from .continuation import NoConvergenceError
 from .families import ACCELERATION, Setting, require_delaminated
 from .guesses import Guess, close_returns, from_phases, from_state
-from .impact_sequence import IMPACT, PHASE, RELEASE, ImpactSequence
 from .orbit_records import OrbitRecord, coordinates, table_of, variables
 from .orbit_search import first_motion, run_in_fmu, single_impacts
+from .periodic_orbit import IMPACT, PHASE, RELEASE, ImpactSequence
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -289,7 +289,7 @@ def orbit(
 
     Notes
     -----
-    See :mod:`orchestrate.dynamics.impact_sequence` for the equations. Where chattering ends in
+    See :mod:`orchestrate.dynamics.periodic_orbit` for the equations. Where chattering ends in
     permanent contact the deviation of the gap dies there: two multipliers are zero. The other two
     decide the stability; the sequence of the last impacts is that of the structure's ``gamma``.
 

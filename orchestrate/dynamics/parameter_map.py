@@ -94,7 +94,7 @@ class MapJob(Question):
     exponent: bool = False
     periods: int = 500
     asked: ClassVar[str] = "map"
-    chunk: ClassVar[int] = 120
+    chunk_size: ClassVar[int] = 120
 
     def __post_init__(self) -> None:
         _ = self.points  # what is wrong is said before any work

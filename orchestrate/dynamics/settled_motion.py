@@ -12,7 +12,7 @@ from ..access import gap_between
 from ..constants import TURN
 from ..response.multiplicity import MIN_RELATIVE_GAP
 from ..response.questions import Point
-from .impact_sequence import PHASE, PeriodicOrbit
+from .periodic_orbit import PHASE, PeriodicOrbit
 from .turning_points import Amplitudes, stroboscopic_states, turning_points
 
 Floats = NDArray[np.float64]

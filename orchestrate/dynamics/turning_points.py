@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..constants import TURN
 from .closed_form import Floats
-from .impact_sequence import PHASE, PeriodicOrbit
+from .periodic_orbit import PHASE, PeriodicOrbit
 
 XI_1, XI_2, GAP = range(3)  # quantities that turn, as weights of the two masses
 WEIGHTS = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 1.0]])

@@ -72,7 +72,7 @@ def draw(
 
 
 def grid_of(results: Results, rows: int, heights: tuple[float, ...]) -> tuple[Figure, Any]:
-    """A figure with a column for each mass whose acceleration is in one of the records.
+    """Make a figure with a column for each mass whose acceleration is in one of the records.
 
     Returns
     -------
@@ -93,13 +93,13 @@ def grid_of(results: Results, rows: int, heights: tuple[float, ...]) -> tuple[Fi
 
 
 def present(results: Results) -> list[str]:
-    """The channels that one of the records has, the box first."""
+    """Return the channels that at least one of the records has, the box first."""
     known = {str(name) for data in results.values() for name in data.channel.values}
     return [name for name in CHANNELS if name in known]
 
 
 def of_channel(results: Results, channel: str) -> Iterator[tuple[str, xr.Dataset, str]]:
-    """Label, result of a channel and colour, where a record has the channel."""
+    """Yield label, result and colour of each record that has a channel."""
     colours = colours_of(results)
     for label, data in results.items():
         if channel in data.channel.values:
@@ -107,7 +107,7 @@ def of_channel(results: Results, channel: str) -> Iterator[tuple[str, xr.Dataset
 
 
 def colours_of(results: Results) -> dict[str, str]:
-    """A colour for each record; a record that was measured is black."""
+    """Return a colour for each record; a measured record is black."""
     free = [colour for colour in COLOURS if colour != BLACK]
     colours: dict[str, str] = {}
     for label in results:
@@ -117,7 +117,7 @@ def colours_of(results: Results) -> dict[str, str]:
 
 
 def add_legend(figure: Figure, axes: Axes, results: Results) -> None:
-    """Names of the records below all panels, where there are any."""
+    """Add a legend with the names of the records below all panels, if they have names."""
     if any(results):
         colours = colours_of(results)
         handles = [axes.plot([], [], color=colours[label])[0] for label in results]
@@ -126,7 +126,7 @@ def add_legend(figure: Figure, axes: Axes, results: Results) -> None:
 
 
 def from_the_top(axes: Axes, values: list[np.ndarray], decades: int = DECADES) -> None:
-    """A logarithmic axis that ends some decades below the largest value."""
+    """Set a logarithmic axis that ends some decades below the largest value."""
     every = np.concatenate([np.ravel(array) for array in values])
     every = every[np.isfinite(every) & (every > 0.0)]
     axes.set_yscale("log")
@@ -139,7 +139,7 @@ def from_the_top(axes: Axes, values: list[np.ndarray], decades: int = DECADES) -
 
 
 def unbroken(phase: xr.DataArray) -> np.ndarray:
-    """A phase in degrees from -270 to 90, where resonances turn; no line where it jumps."""
+    """Return a phase in degrees in -270 to 90, where resonances turn; NaN where it jumps."""
     degrees = (DEGREES * phase.values + 270.0) % 360.0 - 270.0
     jumps = np.flatnonzero(np.abs(np.diff(degrees)) > 180.0)
     degrees[jumps] = np.nan
@@ -147,7 +147,7 @@ def unbroken(phase: xr.DataArray) -> np.ndarray:
 
 
 def note_hidden(axes: Axes, values: Mapping[str, list[np.ndarray]]) -> None:
-    """Say which records lie below an axis."""
+    """Write into a panel which records lie below its axis."""
     low = axes.get_ylim()[0]
     hidden = [name for name, arrays in values.items() if np.nanmedian(np.hstack(arrays)) < low]
     if any(hidden):
@@ -156,7 +156,7 @@ def note_hidden(axes: Axes, values: Mapping[str, list[np.ndarray]]) -> None:
 
 
 def directions(data: xr.Dataset) -> Iterator[tuple[xr.Dataset, str]]:
-    """The parts of a sweep that go up, and those that go down, with their line styles."""
+    """Yield the upward and the downward parts of a sweep, each with its line style."""
     rising = (data.sweep_rate.values >= 0.0).tolist()
     for up, numbers in groupby(range(len(rising)), key=rising.__getitem__):
         yield data.isel(time=list(numbers)), "-" if up else "--"
@@ -166,7 +166,7 @@ def directions(data: xr.Dataset) -> Iterator[tuple[xr.Dataset, str]]:
 
 
 def draw_frf(results: Results) -> Figure:
-    """Magnitude by H1, phase and coherence."""
+    """Draw magnitude by H1, phase and coherence."""
     figure, columns = grid_of(results, 3, (1.5, 0.9, 0.9))
     shown: list[np.ndarray] = []
     for channel, (magnitude, phase, coherence) in columns.items():
@@ -189,7 +189,7 @@ def draw_frf(results: Results) -> Figure:
 
 
 def draw_psd(results: Results) -> Figure:
-    """Power densities, a row a channel."""
+    """Draw power spectral densities, a row per channel."""
     names = present(results)
     figure, axes = panels(len(names), 1, (9.0, 0.8 + 2.0 * len(names)), sharex=True)
     for channel, plane in zip(names, axes, strict=True):
@@ -207,7 +207,7 @@ def draw_psd(results: Results) -> Figure:
 
 
 def draw_orders(results: Results) -> Figure:
-    """Amplitudes, a row an order, and the phase of the first."""
+    """Draw the amplitudes of the orders, a row per order, and the phase of the first."""
     orders = [float(order) for order in next(iter(results.values())).order.values]
     rows = [(f"order {n:g}\nin m/s$^2$", order_reader(n, "amplitude", 1.0)) for n in orders]
     figure, columns = draw_rows(results, rows, (1.0,) * len(orders) + (0.8,))
@@ -222,7 +222,7 @@ def draw_orders(results: Results) -> Figure:
 
 
 def draw_harmonics(results: Results) -> Figure:
-    """Total harmonic distortion, and the lowest harmonics one by one."""
+    """Draw the total harmonic distortion and the lowest harmonics."""
     orders = [float(order) for order in next(iter(results.values())).order.values[:2]]
     rows: list[tuple[str, Reader]] = [("distortion\n(THD) in %", lambda x: 100.0 * x.distortion)]
     words = "order {:g}\nover order 1 in %"
@@ -231,14 +231,14 @@ def draw_harmonics(results: Results) -> Figure:
 
 
 def order_reader(order: float, name: str, factor: float) -> Reader:
-    """A function that takes an order's values from a result."""
+    """Return a function that takes an order's values from a result."""
     return lambda data: factor * at_order(data, order)[name]
 
 
 def draw_rows(
     results: Results, rows: list[tuple[str, Reader]], heights: tuple[float, ...]
 ) -> tuple[Figure, Any]:
-    """Curves over the frequency of a sweep, dashed where it goes down.
+    """Draw curves over the frequency of a sweep, dashed where it goes down.
 
     Parameters
     ----------
@@ -269,12 +269,12 @@ def draw_rows(
 
 
 def at_order(data: xr.Dataset, order: float) -> xr.Dataset:
-    """An order of a result; NaN where it was not tracked."""
+    """Return the part of a result for one order; NaN if it was not tracked."""
     return data.reindex(order=[order]).isel(order=0)
 
 
 def draw_spectrograms(results: Results) -> Figure:
-    """A row a channel, a column a record, all on one scale of decibels."""
+    """Draw spectrograms: a row per channel, a column per record, one scale of decibels."""
     names, count = present(results), len(results)
     size = (1.2 + 4.2 * count, 0.8 + 2.2 * len(names))
     figure, axes = panels(len(names), count, size, sharex=True, sharey=True)
@@ -301,7 +301,7 @@ def draw_spectrograms(results: Results) -> Figure:
 
 
 def draw_shock_spectra(results: Results) -> Figure:
-    """Maximax spectra, the residual ones thin."""
+    """Draw maximax shock spectra, and the residual ones as thin lines."""
     names = present(results)
     size = (1.0 + 3.6 * len(names), 4.4)
     figure, axes = panels(1, len(names), size, sharex=True, sharey=True)
@@ -321,7 +321,7 @@ def draw_shock_spectra(results: Results) -> Figure:
 
 
 def draw_densities(results: Results) -> Figure:
-    """Densities over standard deviations, beside the Gaussian one."""
+    """Draw densities over standard deviations, beside the Gaussian one."""
     names = present(results)
     figure, axes = panels(1, len(names), (1.0 + 3.8 * len(names), 4.2), sharey=True)
     gauss = np.linspace(-4.5, 4.5, 181)

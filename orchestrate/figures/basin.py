@@ -51,7 +51,7 @@ def draw(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", "")) -
 
 
 def coordinate_scale(data: xr.Dataset, name: str) -> tuple[float, str]:
-    """Return what a coordinate of the plane is divided by, and its label."""
+    """Return the divisor of a coordinate of the plane, and its label."""
     unit = "m/s" if name.startswith("v") else "m"
     if name == "phase":
         return 1.0, symbol(name)

@@ -42,7 +42,7 @@ def draw(maps: Mapping[str, xr.Dataset], title: str = "") -> Figure:
 
 
 def kinds_of(data: xr.Dataset) -> dict[str, tuple[np.ndarray, dict[str, Any]]]:
-    """Return where starts pass, are captured or undecided, and their marks."""
+    """Return the starts that pass, are captured or are undecided, with their marks."""
     passed = data.passes.values > 0
     undecided = data.decision.isin(["undecided", "settled at the resonance"]).values
     kinds: dict[str, tuple[np.ndarray, dict[str, Any]]] = {
@@ -54,7 +54,7 @@ def kinds_of(data: xr.Dataset) -> dict[str, tuple[np.ndarray, dict[str, Any]]]:
 
 
 def is_wide(data: xr.Dataset) -> bool:
-    """Return whether undecided starts leave a border wider than it was to be."""
+    """Return whether undecided starts leave the threshold's interval wider than the tolerance."""
     return bool((data.border_high - data.border_low > data.border.attrs["tolerance"]).any())
 
 

@@ -38,7 +38,7 @@ HEIGHT = 0.8  # of all bars of a sign
 
 @styled
 def draw_signs(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw signs over what noise and a sound structure show of them.
+    """Draw signs over their noise floors and over the values of sound structures.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def write_values(axes: Axes, place: np.ndarray, ratios: np.ndarray, values: np.n
 
 @styled
 def draw_plan(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw where a delamination shows, and what force would keep it shut.
+    """Draw where in frequency and level a delamination shows, and what preload hides it.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def draw_plan(data: xr.Dataset, title: str = "") -> Figure:
 
 
 def draw_map(figure: Figure, plane: Axes, data: xr.Dataset, limit: float) -> None:
-    """The distance by orders 2 and 3 over frequency and level, and the recommended sweep."""
+    """Draw the distance by orders 2 and 3 over frequency and level, and the recommended sweep."""
     values = data.distance_harmonics
     top = max(float(values.max()), 10.0 * limit)
     norm = LogNorm(1e-4 * top, top)
@@ -147,7 +147,7 @@ def draw_map(figure: Figure, plane: Axes, data: xr.Dataset, limit: float) -> Non
 
 
 def draw_distances(plane: Axes, data: xr.Dataset, limit: float) -> None:
-    """The distances at one level."""
+    """Draw the distances at one level."""
     at = data.isel(level=0)
     plane.semilogy(at.frequency, at.distance_harmonics, color=BLUE, label="orders 2 and 3")
     plane.semilogy(at.frequency, at.distance_first, color=ORANGE, label="order 1")
@@ -202,7 +202,7 @@ def draw_detect(data: xr.Dataset, title: str = "") -> Figure:
 
 
 def by_hypothesis(data: xr.Dataset) -> xr.Dataset:
-    """An answer along its hypotheses, also where it has one only."""
+    """Return an answer with the dimension ``hypothesis``, even if it has one only."""
     if "hypothesis" in data.dims:
         return data
     fitted = {name: data[name] for name in ("fitted", "misfit", "misfit_at") if name in data}
@@ -213,9 +213,7 @@ def by_hypothesis(data: xr.Dataset) -> xr.Dataset:
 
 
 def best_fits(data: xr.Dataset) -> list[str]:
-    """Names of the fits that are worth a curve: the best delaminated and the best sound structure,
-    and the bonded one.
-    """
+    """Return the fits to draw: the best delaminated, the best sound and the bonded one."""
     order = np.argsort(data.misfit.values, kind="stable")
     ordered = [str(name) for name in data.hypothesis.values[order]]
     parted = [name for name in ordered if name.startswith(PARTED)][:1]
@@ -224,7 +222,7 @@ def best_fits(data: xr.Dataset) -> list[str]:
 
 
 def limit_decades(plane: Axes, values: np.ndarray) -> None:
-    """Show what was measured; a fit may be as small as it likes."""
+    """Limit a logarithmic axis to the decades of the measured values."""
     known = values[np.isfinite(values) & (values > 0.0)]
     if len(known):
         plane.set_ylim(0.3 * np.quantile(known, 0.02), 3.0 * known.max())

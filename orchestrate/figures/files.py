@@ -20,7 +20,7 @@ UNDATED: dict[str, dict[str, Any]] = {  # the same figure is the same bytes, tod
 
 
 def prepare() -> None:
-    """Import fonts and formulas, which a process's first picture takes most of a second for."""
+    """Draw a small figure so that the first real one does not wait for fonts and formulas."""
     with style():
         figure, (axes,) = panels(1, 1, (1.0, 1.0))
         axes.set_xlabel(XI_REL)
@@ -28,7 +28,7 @@ def prepare() -> None:
 
 
 def png_of(figure: Figure) -> bytes:
-    """A figure as the bytes of a PNG file."""
+    """Return a figure as the bytes of a PNG file."""
     file = io.BytesIO()
     with style():
         figure.savefig(file, format="png", metadata=UNDATED["png"])
@@ -36,7 +36,7 @@ def png_of(figure: Figure) -> bytes:
 
 
 def size_of(png: bytes) -> dict[str, int]:
-    """Width and height of a picture in pixels, from its header: a page keeps their place."""
+    """Return width and height of a PNG picture in pixels, from its header."""
     width, height = (int.from_bytes(png[start : start + 4], "big") for start in (16, 20))
     return {"width": width, "height": height}
 

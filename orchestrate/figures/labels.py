@@ -53,7 +53,7 @@ PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
 def symbol(name: str) -> str:
-    """Return a parameter's symbol for an axis; what has none keeps its name, with its unit."""
+    """Return a parameter's symbol for an axis; without one, its name with its unit."""
     unit = STRUCTURE[name].unit if name in STRUCTURE else "1"
     ending = f" in {unit}" if unit != "1" else ""
     return SYMBOLS.get(name, name.replace("_", " ") + ending)
@@ -69,7 +69,7 @@ def format_parameters(values: Mapping[str, float]) -> str:
 
 
 def title_from_attributes(data: xr.Dataset, shown_elsewhere: Iterable[str] = ()) -> str:
-    r"""Format a dataset's structure and excitation for a title: e, D, and what is not usual.
+    r"""Format a dataset's structure and excitation for a title: e, D, and non-default parameters.
 
     A structure that is not in the paper's units is described by its halves: frequencies in Hz,
     damping ratios at them in per cent.
@@ -109,12 +109,12 @@ def title_from_attributes(data: xr.Dataset, shown_elsewhere: Iterable[str] = ())
 
 
 def gap_name(data: xr.Dataset) -> str:
-    """Return what the gap is called on an axis: with a clearance it is not ``x2 - x1`` alone."""
+    """Return the gap's label for an axis: with a clearance it is not ``x2 - x1`` alone."""
     return "gap" if data.attrs.get("clearance") else "gap $x_2 - x_1$"
 
 
 def added_text(name: str, value: float, data: xr.Dataset) -> str:
-    """Format a parameter that the paper's structures have not."""
+    """Format a parameter that is not in the paper; such as the clearance."""
     return clearance_text(value, data) if name == "clearance" else format_parameters({name: value})
 
 
@@ -149,9 +149,7 @@ def frequency_text(data: xr.Dataset, frequency: float) -> str:
 
 
 def excitation_texts(data: xr.Dataset, known: Mapping[str, float]) -> dict[str, str]:
-    """Format the box's motion by its parameters: what is one number in a dataset, in the units it
-    is shown in; else in Hz and in m.
-    """
+    """Format frequency and amplitude of the box's motion, those that are one number."""
     units, texts = units_of(data), {}
     if "eta" in known:
         omega = omega_of(data)

@@ -93,9 +93,7 @@ def draw_map(plane: Axes, data: xr.DataArray, x: np.ndarray, y: np.ndarray) -> N
 
 
 def colour_scale(name: str, values: np.ndarray) -> tuple[np.ndarray, dict[str, Any]]:
-    """Return the values of a quantity as they are coloured, and their scale; what is 0 has no
-    logarithm.
-    """
+    """Return a quantity's values and their colour scale; on a logarithmic one 0 is NaN."""
     if name == "multiplicity":
         shown = np.where(values == 0, 9, np.minimum(values, 8))
         return shown, {"vmin": 0.5, "vmax": 9.5, "cmap": ListedColormap(SHADES)}

@@ -31,7 +31,7 @@ class Marks(NamedTuple):
 
 
 def mark(count: int, marks: Marks) -> dict[str, Any]:
-    """Return the style of a line of marks for so many values side by side."""
+    """Return the line and marker style for ``count`` values side by side."""
     style = {"linestyle": "none", "color": marks.colour}
     if count > MAX_DISTINCT and marks.size <= 1.0:
         return {**style, "marker": ","}
@@ -44,7 +44,7 @@ def mark(count: int, marks: Marks) -> dict[str, Any]:
 
 
 def one_per_cell(axes: Axes, x: np.ndarray, samples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return one sample of each cell of a panel that samples fall into, and how many fall there.
+    """Return one sample of each cell of a panel that has any, and the number of samples in it.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def one_per_cell(axes: Axes, x: np.ndarray, samples: np.ndarray) -> tuple[np.nda
 
 
 def cell_index(axis: Axis, values: np.ndarray, count: int) -> np.ndarray:
-    """Return which of so many equal parts of an axis values fall into."""
+    """Return which of ``count`` equal parts of an axis each value falls into."""
     change = axis.get_transform().transform
     first, last = change(axis.get_view_interval())
     position = (change(values.ravel()) - first) * (count / (last - first))

@@ -84,9 +84,7 @@ def format_jumps(data: xr.Dataset) -> str:
 
 
 def repeats_after(data: xr.Dataset) -> int:
-    """Return the number of revolutions after which the losses in impacts repeat best; 1 without
-    impacts.
-    """
+    """Return the number of revolutions after which impact losses repeat best; 1 without impacts."""
     angle = np.maximum.accumulate(np.abs(data.angle.values))
     turns = ((angle - angle[0]) // TURN).astype(int)
     first = np.unique(turns, return_index=True)[1]
@@ -149,9 +147,7 @@ def draw_speed(
 
 
 def draw_waterfall(axes: Axes, spectra: xr.Dataset, begin: float, top: float) -> Any:
-    """Draw lines over time as colours; the slow swinging of the box below half the speed is left
-    out.
-    """
+    """Draw spectra over time as colours, without the slow motion below half the speed."""
     shown = spectra.sel(order=slice(0.25, None))
     values = shown.acceleration.values.T.clip(FLOOR * top)
     norm = LogNorm(FLOOR * top, top)

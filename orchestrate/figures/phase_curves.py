@@ -58,7 +58,7 @@ def draw_kinds(
     names: dict[int, str],
     dotted: bool = False,
 ) -> None:
-    """Draw a curve in the colours of its states; contact is thick, or a dot where it is a point."""
+    """Draw a curve in the colours of its states; contact is a thick line, or a dot if a point."""
     for index, colour in enumerate(KIND_COLOURS):
         of_kind = np.where(kind == index, 1.0, np.nan)
         contact = index == CONTACT

@@ -173,7 +173,7 @@ def plot_drive(answers: Sequence[xr.Dataset], kinds: Sequence[str], title: str) 
 
 
 def question_of(answer: object) -> str:
-    """The name of the public function that gave an answer.
+    """Return the name of the public function that gave an answer.
 
     Raises
     ------
@@ -192,5 +192,5 @@ def question_of(answer: object) -> str:
 
 
 def is_bonded(answer: xr.Dataset) -> bool:
-    """Whether an answer is of the undamaged structure."""
+    """Return whether an answer is of the undamaged (bonded) structure."""
     return bool(answer.attrs.get("bonded", False))

@@ -39,7 +39,7 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
 
 
 def widen(plane: Axes) -> None:
-    """Widen axes whose values are nearly one: a motion that repeats is a point, not a cloud."""
+    """Widen axes with nearly constant values, so that a periodic motion shows as a point."""
     for low, high, put in (
         (*plane.get_xlim(), plane.set_xlim),
         (*plane.get_ylim(), plane.set_ylim),

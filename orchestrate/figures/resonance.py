@@ -129,7 +129,7 @@ def draw_quantity(axes: Axes, data: xr.Dataset, values: xr.DataArray, x: Along) 
 
 
 def draw_threshold(axes: Axes, data: xr.Dataset, x: Along) -> None:
-    """Draw the box's acceleration, and that at which the linear response opens or touches."""
+    """Draw the box's acceleration, and the one at which the linear response opens or touches."""
     level = (data.amplitude * data.frequency**2).broadcast_like(data[THRESHOLD]).values
     factor, unit = acceleration_scale(data)
     threshold, event = finite(data[THRESHOLD]) / factor, data[THRESHOLD].attrs["event"]
@@ -145,7 +145,7 @@ def draw_threshold(axes: Axes, data: xr.Dataset, x: Along) -> None:
 
 
 def unit_of(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
-    """Return what a quantity is divided by, and its unit."""
+    """Return the divisor of a quantity, and its unit."""
     if str(values.name).startswith("a"):
         return acceleration_scale(data)
     factor, letter = length_scale(data, float(values.max()))
@@ -198,7 +198,7 @@ def draw_jumps(axes: Axes, data: xr.Dataset, parameter: str, x: Along) -> None:
 
 
 def axis_position(value: float, parameter: xr.DataArray, x: Along) -> float:
-    """Return where a value of the parameter is on the axis."""
+    """Return the position of a parameter's value on the axis."""
     order = np.argsort(parameter.values)
     return float(np.interp(value, parameter.values[order], x.values[order]))
 
@@ -206,7 +206,7 @@ def axis_position(value: float, parameter: xr.DataArray, x: Along) -> float:
 def list_largest(
     axes: Axes, largest: Mapping[str, tuple[float, float]], unit: str, x: Along
 ) -> None:
-    """Write the largest value of each structure with its place, in the corner away from them."""
+    """Write each structure's largest value and its place in a corner of the panel."""
     middle = float(np.mean(axes.get_xlim()))
     right = all(at < middle for _, at in largest.values())
     for row, (structure, (value, at)) in enumerate(largest.items()):

@@ -48,9 +48,7 @@ def parameter_of(data: xr.DataArray) -> str:
 
 
 def in_si(data: xr.Dataset) -> bool:
-    """Return whether frequencies are shown with a unit: one is asked for, or the structure is given
-    in SI, with omega not 1 rad/s, or frequencies are what varies.
-    """
+    """Return whether frequencies are shown with a unit, not as ratios eta."""
     if units_of(data).frequency:
         return units_of(data).frequency != "eta"
     known = all(is_number(data.attrs.get(name)) for name in ("k1", "m1"))
@@ -59,16 +57,14 @@ def in_si(data: xr.Dataset) -> bool:
 
 
 def frequency_scale(data: xr.Dataset) -> tuple[float, str]:
-    """Return what frequencies in rad/s are divided by, and the unit: Hz where none is asked for."""
+    """Return the divisor of frequencies in rad/s and their unit, Hz by default."""
     if units_of(data).frequency:
         return scale_of(data, "rad/s")
     return FACTORS["frequency"]["Hz"], "Hz"
 
 
 def length_scale(data: xr.Dataset, largest: float) -> tuple[float, str]:
-    """Return what lengths, or velocities, are divided by, and the prefix of the unit: the one that
-    is asked for, or the largest that leaves at least 1.
-    """
+    """Return the divisor of lengths or velocities, and the prefix of their unit."""
     factor, word = scale_of(data, "m")
     if not units_of(data).length:
         return prefix(largest)
@@ -76,7 +72,7 @@ def length_scale(data: xr.Dataset, largest: float) -> tuple[float, str]:
 
 
 def acceleration_scale(data: xr.Dataset, usual: str = "m/s2") -> tuple[float, str]:
-    """Return what accelerations are divided by, and the unit for an axis.
+    """Return the divisor of accelerations, and their unit for an axis.
 
     Parameters
     ----------
@@ -104,7 +100,7 @@ def along(data: xr.Dataset, parameter: str) -> Along:
 
 
 def parameter_scale(data: xr.Dataset, parameter: str) -> tuple[float, str]:
-    """Return what values of a parameter are divided by, and the label of its axis."""
+    """Return the divisor of a parameter's values, and the label of its axis."""
     factor, word = frequency_scale(data)
     if parameter == "frequency" and (in_si(data) or word == "eta"):
         return factor, FREQUENCIES[word]

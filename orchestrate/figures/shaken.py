@@ -23,7 +23,7 @@ MASSES: tuple[tuple[str, dict[str, Any]], ...] = (
 
 @styled
 def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) -> Figure:
-    """Draw a record: what the box did, what both masses felt, the gap and the impacts.
+    """Draw a laboratory record: accelerations of box and masses, the gap and the impacts.
 
     Parameters
     ----------
@@ -68,22 +68,20 @@ def draw_impacts(axes: Axes, data: xr.Dataset) -> None:
 
 
 def outline(axes: Axes, bonded: xr.Dataset, felt: float) -> None:
-    """Draw the bonded structure's acceleration as the two lines that it stays between."""
+    """Draw the bonded structure's acceleration by its lower and upper envelope."""
     time, low, high = extremes(bonded.time.values, bonded.a1_abs.values / felt)
     axes.plot(time, high, color=BLACK, linewidth=0.9, label="both, bonded")
     axes.plot(time, low, color=BLACK, linewidth=0.9)
 
 
 def extremes(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Time, least and largest value of equal parts of a signal."""
+    """Return time, least and largest value of equal parts of a signal."""
     edges = np.linspace(0, len(time), min(COLUMNS, len(time)) + 1).astype(int)[:-1]
     return time[edges], np.minimum.reduceat(values, edges), np.maximum.reduceat(values, edges)
 
 
 def envelope(axes: Axes, data: xr.Dataset, name: str, factor: float, **style: Any) -> None:
-    """Draw a signal: itself where it is short, between its least and largest values where it is
-    long.
-    """
+    """Draw a signal; if it is long, the band between its least and largest values."""
     time, values = data.time.values, data[name].values / factor
     if len(time) <= SHORT:
         axes.plot(time, values, linewidth=1.0, **{**style, "alpha": 1.0})

@@ -58,7 +58,7 @@ Arguments = ParamSpec("Arguments")
 
 
 def style() -> AbstractContextManager[None]:
-    """Return a context in which our settings replace the user's."""
+    """Return a context in which our settings replace the user's matplotlib settings."""
     return matplotlib.style.context(STYLE, after_reset=True)
 
 

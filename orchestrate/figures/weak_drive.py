@@ -57,7 +57,7 @@ def draw(
     theory : xarray.Dataset, optional
         ``voltage``, ``amplitude`` and ``stable`` of the averaged theory, over ``speed``.
     branches : xarray.Dataset, optional
-        Of :func:`orchestrate.drive_branch`: unstable motions are dashed.
+        Of :func:`orchestrate.drive_branch`: unstable motions are dotted.
     title : str
         What is shown: set, rate, volts.
     """
@@ -177,9 +177,7 @@ def undecided_directions(data: xr.Dataset) -> list[str]:
 
 
 def split_directions(data: xr.Dataset) -> list[tuple[np.ndarray, str, str]]:
-    """Return the revolutions of the way there and of the way back, with a line style and a name for
-    each.
-    """
+    """Return the revolutions of each direction of the voltage, with line style and name."""
     voltage = data.voltage.values
     turn = int(np.argmax(np.abs(voltage - voltage[0])))
     outward, back = np.arange(0, turn + 1), np.arange(turn + 1, len(voltage))
@@ -218,7 +216,7 @@ def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
 
 
 def draw_branches(axes: Sequence[Axes], branches: xr.Dataset) -> None:
-    """Draw stationary motions, thin and pale under the ramps: dashed where they are unstable."""
+    """Draw stationary motions, thin and pale under the ramps: dotted where they are unstable."""
     for name in branches.structure.values:
         for i, leg in enumerate(branches.leg.values):
             branch = branches.sel(structure=name, leg=leg)

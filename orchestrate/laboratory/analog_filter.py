@@ -27,7 +27,7 @@ NEAR = 1.0
 
 @dataclass(frozen=True)
 class Cells:
-    """A signal as polynomials, each over its own part of the time, in order and without holes.
+    """A signal as polynomials, one per cell of time; the cells follow each other without gaps.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class AnalogFilter:
 
     @classmethod
     def from_zpk(cls, zeros: Complexes, poles: Complexes) -> AnalogFilter:
-        """By zeros and poles, rad/s; the gain at frequency 0 is 1."""
+        """Make a filter from its zeros and poles, rad/s; its gain at frequency 0 is 1."""
         gain = np.prod(-poles) / np.prod(-zeros)
         upper = poles[poles.imag > -1e-9 * np.abs(poles)]
         residues = []
@@ -70,7 +70,7 @@ class AnalogFilter:
         return cls(upper, np.array(residues))
 
     def frequency_response(self, frequency: Floats) -> Complexes:
-        """Its gain and phase at frequencies, Hz."""
+        """Compute the complex frequency response at frequencies in Hz."""
         s = 1j * TURN * np.asarray(frequency)[..., None]
         there = self.residues / (s - self.poles)
         mirrored = np.conj(self.residues) / (s - np.conj(self.poles))
@@ -80,7 +80,7 @@ class AnalogFilter:
     def respond(
         self, cells: Cells, impulse_times: Floats, impulses: Floats, times: Floats
     ) -> Floats:
-        """The output at equally spaced times, from rest at the first.
+        """Compute the output at equally spaced times, from rest at the first.
 
         Parameters
         ----------
@@ -113,7 +113,7 @@ class AnalogFilter:
         return output
 
     def _gains(self, cells: Cells, times: Floats) -> Complexes:
-        """What each pole's z gains from the polynomials over each step, at the step's end."""
+        """Compute what the cells add to each pole's state over each step, at the step's end."""
         found = np.zeros((len(self.poles), len(times) - 1), dtype=complex)
         for part in blocks(len(cells.starts)):
             starts, ends = cells.starts[part], cells.ends[part]
@@ -130,32 +130,32 @@ class AnalogFilter:
 
 
 def blocks(count: int) -> Iterator[slice]:
-    """Parts of a long array."""
+    """Yield slices that divide a long array into blocks."""
     for begin in range(0, count, BLOCK):
         yield slice(begin, min(begin + BLOCK, count))
 
 
 def alike(lengths: Floats, step: float) -> tuple[Floats, NDArray[np.int_]]:
-    """The different ones of lengths, but for 1e-12 of a step, and which of them each is."""
+    """Return the distinct lengths (equal to 1e-12 of a step), and each one's index among them."""
     whole, which = np.unique(np.round(lengths / (1e-12 * step)), return_inverse=True)
     return whole * (1e-12 * step), which
 
 
 def steps_of(moments: Floats, times: Floats) -> NDArray[np.int_]:
-    """The steps between times that moments lie in, their ends included."""
+    """Return for each moment the index of the step of ``times`` that contains it, ends included."""
     found: NDArray[np.int_] = np.searchsorted(times, moments, side="left") - 1
     return np.clip(found, 0, len(times) - 2)
 
 
 def sums(steps: NDArray[np.int_], values: Complexes, count: int = 0) -> Complexes:
-    """Values added up by step."""
+    """Sum values by step."""
     real = np.bincount(steps, values.real, count)
     found: Complexes = real + 1j * np.bincount(steps, values.imag, count)
     return found
 
 
 def phi_functions(z: Complexes, count: int) -> Complexes:
-    """``phi_k(z)``, the integral of ``exp(z (1 - u)) u^(k-1)/(k-1)!`` over u in [0, 1].
+    """Compute ``phi_k(z)``, the integral of ``exp(z (1 - u)) u^(k-1)/(k-1)!`` over u in [0, 1].
 
     Parameters
     ----------
@@ -180,7 +180,7 @@ def phi_functions(z: Complexes, count: int) -> Complexes:
 
 
 def recurrence_up(z: Complexes, count: int) -> Complexes:
-    """By ``phi_k = (phi_(k-1) - 1/(k-1)!)/z``: for large z, where nothing cancels."""
+    """Compute them by ``phi_k = (phi_(k-1) - 1/(k-1)!)/z``: for large z, where nothing cancels."""
     found = np.empty((count, len(z)), dtype=complex)
     last = np.exp(z)
     for k in range(1, count + 1):
@@ -189,7 +189,7 @@ def recurrence_up(z: Complexes, count: int) -> Complexes:
 
 
 def recurrence_down(z: Complexes, count: int, largest: float) -> Complexes:
-    """From the Taylor series of the last one, by ``phi_(k-1) = z phi_k + 1/(k-1)!``.
+    """Compute them by ``phi_(k-1) = z phi_k + 1/(k-1)!`` from the Taylor series of the last one.
 
     The series begins so high that its terms fall from the first on.
     """
@@ -209,7 +209,7 @@ def recurrence_down(z: Complexes, count: int, largest: float) -> Complexes:
 
 
 def low_pass(kind: str, order: int, bandwidth: float) -> tuple[Complexes, Complexes]:
-    """Zeros and poles of a low-pass filter that is 3 dB down at ``bandwidth``, Hz."""
+    """Return zeros and poles of a low-pass filter that is 3 dB down at ``bandwidth``, Hz."""
     from scipy.signal import bessel, butter
 
     edge = TURN * bandwidth
@@ -221,7 +221,7 @@ def low_pass(kind: str, order: int, bandwidth: float) -> tuple[Complexes, Comple
 
 
 def anti_aliasing(sample_rate: float) -> tuple[Complexes, Complexes]:
-    """Zeros and poles of an elliptic filter before a converter.
+    """Return zeros and poles of an elliptic anti-aliasing filter for a sampling rate, Hz.
 
     Flat to 0.01 dB up to ``sample_rate/2.56``; 80 dB down from where it would come back there.
     """
@@ -235,6 +235,6 @@ def anti_aliasing(sample_rate: float) -> tuple[Complexes, Complexes]:
 
 
 def in_series(parts: Sequence[tuple[Complexes, Complexes]]) -> AnalogFilter:
-    """Filters one after the other."""
+    """Combine filters in series, as one filter."""
     zeros, poles = (np.concatenate(found) for found in zip(*parts, strict=True))
     return AnalogFilter.from_zpk(zeros, poles)

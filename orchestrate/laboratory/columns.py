@@ -43,7 +43,7 @@ HEADING = re.compile(r"^(?P<name>.*?)[\s_]*[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a file.
+    """A column of a file: its name, unit and numbers.
 
     Attributes
     ----------
@@ -82,7 +82,7 @@ class Columns:
 
 
 def split_heading(heading: str) -> tuple[str, str]:
-    """A column's name and unit.
+    """Split a column's heading into name and unit.
 
     Examples
     --------
@@ -96,7 +96,7 @@ def split_heading(heading: str) -> tuple[str, str]:
 
 
 def plain_unit(text: str) -> str:
-    """A unit as the tables have it.
+    """Return a unit in the spelling of the tables of units.
 
     Examples
     --------
@@ -108,12 +108,12 @@ def plain_unit(text: str) -> str:
 
 
 def is_unit(text: str) -> bool:
-    """Whether a text is a unit of accelerations or times."""
+    """Return whether a text is a unit of acceleration or time."""
     return plain_unit(text) in ACCELERATIONS or plain_unit(text) in TIMES
 
 
 def factor_of(label: str, unit: str, known: Mapping[str, float]) -> float:
-    """What a unit is in SI.
+    """Return the factor that converts a unit to SI.
 
     Raises
     ------
@@ -131,7 +131,7 @@ def channels_of(
     columns: Mapping[str, str | int] | Sequence[str | int] | None,
     unit: str | None,
 ) -> tuple[Floats | None, dict[str, Floats]]:
-    """The times in s, and channels in m/s2 by their names.
+    """Return the times in s, and the channels in m/s2 by name.
 
     Parameters
     ----------
@@ -162,12 +162,12 @@ def channels_of(
 
 
 def label_of(table: Columns, column: Column) -> str:
-    """File and column."""
+    """Return file and column as a text for messages."""
     return f'{table.path}, column "{column.name}"'
 
 
 def scaled(table: Columns, column: Column, factor: float) -> Floats:
-    """A column in SI; what is no number is refused with its row."""
+    """Return a column in SI; raise with the row where something is not a number."""
     wrong = np.flatnonzero(~np.isfinite(column.values))
     if len(wrong):
         row, value = wrong[0] + table.first_row, column.values[wrong[0]]
@@ -179,7 +179,7 @@ def scaled(table: Columns, column: Column, factor: float) -> Floats:
 def chosen(
     table: Columns, columns: Mapping[str, str | int] | Sequence[str | int] | None
 ) -> dict[str, int]:
-    """Which column each channel and the time are in.
+    """Return the column index of each channel and of the time, by name.
 
     By what is given, else by their names, else by their order: time, box, mass 1, mass 2.
     """
@@ -215,7 +215,7 @@ def chosen(
 
 
 def place_of(table: Columns, wish: str | int) -> int:
-    """A column by its name or number."""
+    """Return the index of a column that is asked for by name or number."""
     names = [column.name for column in table.columns]
     if wish in names:
         return names.index(str(wish))

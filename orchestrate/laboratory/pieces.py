@@ -23,13 +23,13 @@ ERROR = 3072.0  # 4! 2^7: over it, h^4 max|a''''|
 
 
 def phase_step(accuracy: float) -> float:
-    """The longest piece of a sine, rad, whose cubic has a relative error of ``accuracy``."""
+    """Return the longest piece of a sine, rad, whose cubic has a relative error of ``accuracy``."""
     return float((ERROR * accuracy) ** 0.25)
 
 
 @dataclass(frozen=True)
 class Pieces:
-    """Cubics, each over its own part of the time.
+    """Cubics for consecutive intervals of time, as the FMU takes the box's acceleration.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class Pieces:
 
     @classmethod
     def from_values(cls, nodes: Floats, values: Floats, error: float) -> Pieces:
-        """Interpolate.
+        """Interpolate values inside each piece by its cubic.
 
         Parameters
         ----------
@@ -62,24 +62,24 @@ class Pieces:
 
     @classmethod
     def interpolate(cls, nodes: Floats, signal: Callable[[Floats], Floats], error: float) -> Pieces:
-        """Interpolate a function of the time."""
+        """Interpolate a function of time by cubics."""
         lengths = np.diff(nodes)[:, None]
         return cls.from_values(nodes, signal(nodes[:-1, None] + POINTS * lengths), error)
 
     @property
     def duration(self) -> float:
-        """Where the last one ends, s."""
+        """Time at which the last piece ends, s."""
         return float(self.nodes[-1])
 
     def __call__(self, times: Floats) -> Floats:
-        """The acceleration at times, m/s2; zero after the end, at it the last piece's."""
+        """Return the acceleration at times, m/s2; zero after the end, at it the last piece's."""
         values = self.taylor(times)[:, 0]
         length = self.nodes[-1] - self.nodes[-2]
         last = self.derivatives[-1] * length ** np.arange(4) / FACTORIALS
         return np.where(times == self.nodes[-1], last.sum(), values)
 
     def taylor(self, times: Floats) -> Floats:
-        """Value and derivatives at times, of the piece that begins there or before.
+        """Return value and derivatives at times, of the piece that begins there or before.
 
         Returns
         -------
@@ -99,7 +99,7 @@ class Pieces:
         return np.where(over, 0.0, np.array(shifted)).T
 
     def __add__(self, other: Pieces) -> Pieces:
-        """Both together, over the longer of the two."""
+        """Return the sum of both signals, over the longer of the two."""
         nodes = np.union1d(self.nodes, other.nodes)
         starts = nodes[:-1]
         total = self.taylor(starts) + other.taylor(starts)
@@ -107,13 +107,13 @@ class Pieces:
 
 
 def divided(first: float, last: float, longest: float) -> Floats:
-    """Nodes of equal pieces that are at most ``longest``."""
+    """Return nodes of equal pieces that are at most ``longest``."""
     count = max(1, math.ceil((last - first) / longest))
     return first + (last - first) * np.arange(count + 1) / count
 
 
 def subdivided(nodes: Floats, parts: NDArray[np.int_]) -> Floats:
-    """Nodes of pieces, each cut into equal parts.
+    """Return the nodes of pieces with each piece cut into equal parts.
 
     Examples
     --------

@@ -72,12 +72,12 @@ class Random(ExcitationSignal):
 
     @property
     def label(self) -> str:
-        """Its band and level."""
+        """Frequency band and level, for titles."""
         return f"random {self.psd[0][0]:g} to {self.psd[-1][0]:g} Hz, {self.rms:.4g} m/s2 rms"
 
     @property
     def usual_rate(self) -> float:
-        """Ten samples in the shortest period, Hz."""
+        """Default sampling rate, Hz: ten samples in the shortest period."""
         return 10.0 * self.psd[-1][0]
 
     @property
@@ -86,7 +86,7 @@ class Random(ExcitationSignal):
         return float(np.sqrt(0.5 * (self._amplitudes() ** 2).sum()))
 
     def _amplitudes(self) -> Floats:
-        """Of the sines at 0, 1, 2 ... over the duration, m/s2."""
+        """Return the amplitudes of the sines at 0, 1, 2 ... over the duration, m/s2."""
         count = math.floor(self.psd[-1][0] * self.duration * (1.0 + 1e-12)) + 1
         if count > MOST_PIECES // 20:
             most = (MOST_PIECES // 20) / self.psd[-1][0]
@@ -95,7 +95,7 @@ class Random(ExcitationSignal):
         return np.sqrt(2.0 * density / self.duration)
 
     def pieces(self, accuracy: float = 1e-6) -> Pieces:
-        """Equal pieces; the signal at their Chebyshev points by inverse Fourier transforms."""
+        """Return equal pieces: values at their Chebyshev points by inverse Fourier transforms."""
         amplitudes = self._amplitudes()
         order = np.arange(len(amplitudes))
         phases = np.random.default_rng(self.seed).uniform(0.0, TURN, len(amplitudes))
@@ -108,7 +108,7 @@ class Random(ExcitationSignal):
         step = self.duration / count
 
         def at(shift: float, weights: Any = 1.0) -> NDArray[np.float64]:
-            """All values a shift after the nodes."""
+            """Return the signal a fixed shift after each node."""
             return np.fft.irfft(weights * lines * np.exp(1j * omega * shift), count) * count
 
         values = np.stack([at(point * step) for point in POINTS], axis=1)
@@ -121,7 +121,7 @@ class Random(ExcitationSignal):
 
 
 def next_fast(count: int) -> int:
-    """A length from ``count`` on that Fourier transforms are quick at."""
+    """Return the next length from ``count`` on for which Fourier transforms are fast."""
     from scipy.fft import next_fast_len
 
     return int(next_fast_len(count, real=True))

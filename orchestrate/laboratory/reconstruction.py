@@ -31,7 +31,7 @@ ORDER = 7  # derivatives of an acceleration kept: the next is below SHORT^7/7! =
 
 @dataclass(frozen=True)
 class Motion:
-    """A history as arrays.
+    """A stored motion of the structure as arrays, with the parameters of its equations.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class Motion:
 
     @classmethod
     def from_history(cls, history: xr.Dataset, structure: Structure, pieces: Pieces) -> Motion:
-        """Of what :func:`.shake.shake` answers."""
+        """Make it from a result of :func:`.shake.shake`."""
         begin, end = float(history.time[0]), float(history.time[-1])
         struck = history.impact_time.values
         kept = (struck > begin) & (struck <= end)  # of a part of a history others too are there
@@ -75,7 +75,7 @@ class Motion:
         )
 
     def derivatives(self, states: Floats, touching: Flags, times: Floats) -> Floats:
-        """Displacements and their derivatives, shape (ORDER + 2, 2, n), by (6).
+        """Compute displacements and their derivatives, shape (ORDER + 2, 2, n), by (6).
 
         Parameters
         ----------
@@ -93,26 +93,26 @@ class Motion:
         return found
 
     def pull(self, x: Floats, v: Floats, touching: Flags) -> Floats:
-        """Accelerations in space (6), or the same derivatives of them, shape (2, n)."""
+        """Compute accelerations in space (6), or the same derivatives of them, shape (2, n)."""
         s = self.structure
         one, two = s.k1 * x[0] + s.d1 * v[0], s.k2 * x[1] + s.d2 * v[1]
         both = (one + two) / (s.m1 + s.m2)
         return -np.where(touching, both, np.stack([one / s.m1, two / s.m2]))
 
     def advance(self, states: Floats, touching: Flags, times: Floats, lengths: Floats) -> Floats:
-        """States a short time later, shape (n, 4)."""
+        """Compute the states a short time later, shape (n, 4), by Taylor series."""
         series = self.derivatives(states, touching, times)
         return np.concatenate([taylor(series, lengths), taylor(series[1:], lengths)]).T
 
     def parts_of(self, length: float) -> int:
-        """Into how many equal parts the series need a time to be cut."""
+        """Return into how many equal steps the Taylor series divide a length of time."""
         s = self.structure
         alone = [(s.m1, s.k1, s.d1), (s.m2, s.k2, s.d2)]
         fastest = max(max(math.sqrt(k / m), d / m) for m, k, d in alone)
         return max(1, math.ceil(fastest * length / SHORT))
 
     def releases(self) -> Floats:
-        """When permanent contact ends, s: the first root of the contact force (18)."""
+        """Compute when permanent contact ends, s: the first root of the contact force (18)."""
         if self.structure.bonded:
             return np.empty(0)
         times = np.concatenate([self.times, self.impact_times])
@@ -125,7 +125,7 @@ class Motion:
         return np.array(found)
 
     def _release(self, begin: float, end: float) -> float:
-        """The release between two moments; the first one where the force falls from 0 there."""
+        """Compute the release between two moments; the first if the force falls from 0 there."""
         state = self._state_at(begin)
         touching = np.array([True])
         mesh = np.linspace(begin, end, 1 + self.parts_of(end - begin))
@@ -138,7 +138,7 @@ class Motion:
         return float(begin)
 
     def _state_at(self, time: float) -> Floats:
-        """The state at a sample, or after an impact; shape (1, 4)."""
+        """Return the state at a sample, or after an impact; shape (1, 4)."""
         index = int(np.searchsorted(self.times, time, side="right")) - 1
         now, state = float(self.times[index]), self.states[index : index + 1]
         touching = self.touching[index : index + 1]
@@ -152,14 +152,14 @@ class Motion:
         return state
 
     def strike(self, states: Floats, impulses: Floats) -> Floats:
-        """States after impulses (15): mass 1 is pushed back, mass 2 on."""
+        """Return states after impulses (15): mass 1 is pushed back, mass 2 on."""
         after = states.copy()
         after[:, 2] -= impulses / self.structure.m1
         after[:, 3] += impulses / self.structure.m2
         return after
 
     def _contact_force(self, series: Floats) -> tuple[Floats, float]:
-        """The contact force's derivatives (18), from those of the displacements, and its scale."""
+        """Compute the contact force's derivatives (18) from the displacements', and its scale."""
         s = self.structure
         own = s.k1 * series[:-1, 0] + s.d1 * series[1:, 0]
         other = s.k2 * series[:-1, 1] + s.d2 * series[1:, 1]
@@ -168,7 +168,7 @@ class Motion:
 
 
 def taylor(series: Floats, lengths: Floats) -> Floats:
-    """A Taylor series a short time later, shape (2, n)."""
+    """Evaluate a Taylor series a short time later, shape (2, n)."""
     found = np.zeros(series.shape[1:])
     for n in range(len(series) - 1, -1, -1):
         found = series[n] + found * lengths / (n + 1)
@@ -176,7 +176,7 @@ def taylor(series: Floats, lengths: Floats) -> Floats:
 
 
 def first_fall(derivatives: Floats, scale: float, length: float) -> float | None:
-    """The first time in [0, length] from which on a Taylor series is below 0.
+    """Return the first time in [0, length] from which on a Taylor series is below 0.
 
     Rounding errors of numbers of the size ``scale`` are not below 0.
     """
@@ -196,7 +196,7 @@ def first_fall(derivatives: Floats, scale: float, length: float) -> float | None
 
 @dataclass(frozen=True)
 class SmoothParts:
-    """Accelerations in space without the impulses.
+    """Accelerations in space without the impulses of impacts.
 
     Attributes
     ----------
@@ -242,7 +242,7 @@ def smooth_parts(motion: Motion, sample_rate: float) -> SmoothParts:
 
 
 def propagate(motion: Motion, nodes: Floats, releases: Floats) -> tuple[Floats, Flags, float]:
-    """States and contact where cells begin, and the distance to the samples.
+    """Compute states and contact where cells begin, and the distance to the samples.
 
     All intervals between samples at once: first their first cells, then their second ones.
     """
@@ -278,7 +278,7 @@ def propagate(motion: Motion, nodes: Floats, releases: Floats) -> tuple[Floats, 
 
 
 def mismatch(motion: Motion, states: Floats, samples: NDArray[np.int_]) -> float:
-    """Largest difference of accelerations by states and by samples, m/s2."""
+    """Return the largest difference of accelerations by states and by samples, m/s2."""
     difference = (states - motion.states[samples]).T.reshape(2, 2, -1)
     touching = motion.touching[samples]
     return float(np.abs(motion.pull(difference[0], difference[1], touching)).max(initial=0.0))

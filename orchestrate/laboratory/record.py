@@ -38,7 +38,7 @@ def record(
     sensors: Mapping[str, str] | str = "",
     title: str = "Record",
 ) -> xr.Dataset:
-    """Channels of one measurement, measured or simulated, checked.
+    """Make a record: check the channels of one measurement and put them in a dataset.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def checked_record(
     attributes: Mapping[str, Any],
     first_row: int = 0,
 ) -> xr.Dataset:
-    """A record, its rows counted from ``first_row`` in messages; see :func:`record`."""
+    """Make a record; messages count its rows from ``first_row``; see :func:`record`."""
     import xarray as xr
 
     values = {name: numbers(name, one, first_row) for name, one in channels.items()}
@@ -121,7 +121,7 @@ def checked_record(
 
 
 def numbers(name: str, given: Any, first_row: int = 0) -> Floats:
-    """A column of finite numbers.
+    """Return a column as floats; raise with the row where one is not finite.
 
     Raises
     ------
@@ -143,7 +143,7 @@ def numbers(name: str, given: Any, first_row: int = 0) -> Floats:
 
 
 def checked_rate(times: Floats, rate: float | None, first_row: int = 0) -> float:
-    """The sample rate of times in equal steps, Hz.
+    """Return the sampling rate of equally spaced times, Hz; raise if they are not.
 
     Raises
     ------

@@ -28,7 +28,7 @@ BYTE_ORDERS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
 
 @dataclass(frozen=True)
 class Dialect:
-    """How numbers are written in a file.
+    """How numbers are written in a text file: separator, decimal sign, first row.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class Dialect:
     first: int
 
     def fields(self, line: str) -> list[str]:
-        """What stands in a line, a separator at its end dropped."""
+        """Split a line into its fields; a separator at its end is dropped."""
         line = line.strip() if self.separator == " " else line.strip("\r\n")
         if self.separator == " ":
             return line.split()
@@ -51,7 +51,7 @@ class Dialect:
 
 
 def read_csv(path: Path) -> Columns:
-    """All columns of a text file.
+    """Read all columns of a text file.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def read_csv(path: Path) -> Columns:
 
 
 def decoded(path: Path, data: bytes) -> str:
-    """A file's text: UTF-8, UTF-16 with its mark, or Windows' letters."""
+    """Decode a file's text: UTF-8, UTF-16 with its mark, or Windows' letters."""
     if b"\0" in data[:4096] and data[:2] not in BYTE_ORDERS:
         raise InputError(f"{path}: no text; expected columns of numbers")
     try:
@@ -82,7 +82,7 @@ def decoded(path: Path, data: bytes) -> str:
 
 
 def dialect_of(path: Path, lines: list[str]) -> Dialect:
-    """How a file is written, by its first line of numbers that the next one is like."""
+    """Detect how a file is written, from its first line of numbers that the next one is like."""
     for number, line in enumerate(lines):
         for separator in SEPARATORS:
             for decimal, pattern in ((".", POINT), (",", COMMA)):
@@ -96,7 +96,7 @@ def dialect_of(path: Path, lines: list[str]) -> Dialect:
 
 
 def are_numbers(fields: list[str], pattern: re.Pattern[str], separator: str) -> bool:
-    """Whether a line is one of data: numbers, two at least unless nothing separates them."""
+    """Return whether a line is data: numbers, at least two unless nothing separates them."""
     texts = [field.strip() for field in fields]
     full = [text for text in texts if text]
     several = len(texts) > 1 or separator == " "
@@ -105,7 +105,7 @@ def are_numbers(fields: list[str], pattern: re.Pattern[str], separator: str) -> 
 
 
 def unambiguous(dialect: Dialect, lines: list[str]) -> Dialect:
-    """With the decimal comma where whole numbers in the first line left both possible."""
+    """Choose the decimal comma if whole numbers in the first line left both readings possible."""
     if dialect.separator == "," or dialect.decimal == ",":
         return dialect
     comma = any("," in line for line in lines) and not any("." in line for line in lines)
@@ -113,7 +113,7 @@ def unambiguous(dialect: Dialect, lines: list[str]) -> Dialect:
 
 
 def headings(lines: list[str], dialect: Dialect, count: int) -> list[tuple[str, str]]:
-    """Names and units of columns."""
+    """Return names and units of columns from the lines above the numbers."""
     rows = [dialect.fields(line.lstrip("#%").strip(" ")) for line in lines]
     fitting = [[field.strip() for field in row] for row in rows if len(row) == count]
     if not fitting:
@@ -127,7 +127,7 @@ def headings(lines: list[str], dialect: Dialect, count: int) -> list[tuple[str, 
 
 
 def parsed(path: Path, text: str, dialect: Dialect, names: list[str]) -> NDArray[np.float64]:
-    """The numbers, shape (rows, columns).
+    """Parse the numbers, shape (rows, columns).
 
     Raises
     ------
@@ -151,7 +151,7 @@ def parsed(path: Path, text: str, dialect: Dialect, names: list[str]) -> NDArray
 
 
 def refuse_first(path: Path, body: str, dialect: Dialect, names: list[str]) -> None:
-    """Name what is no number.
+    """Raise an error that names the first field that is not a number.
 
     Raises
     ------

@@ -161,14 +161,14 @@ def write_record(data: xr.Dataset, path: str | os.PathLike[str], *, binary: bool
 
 
 def kind_of(path: Path) -> str:
-    """What a file is by its ending."""
+    """Return the kind of a file by its ending."""
     if path.suffix.lower() not in ENDINGS:
         raise InputError(f"{path}: expected a file that ends in {', '.join(ENDINGS)}")
     return ENDINGS[path.suffix.lower()]
 
 
 def check_file(path: Path) -> None:
-    """See that there is a file of a size that can be read.
+    """Check that a file exists, is not empty, and is not too large to read.
 
     Raises
     ------
@@ -186,7 +186,7 @@ def check_file(path: Path) -> None:
 
 
 def read_netcdf(path: Path) -> Columns:
-    """Variables over ``time`` of a NetCDF file, with their units."""
+    """Read the variables over ``time`` of a NetCDF file, with their units."""
     import xarray as xr
 
     try:
@@ -212,7 +212,7 @@ def read_netcdf(path: Path) -> Columns:
 
 
 def read_wav(path: Path, scale: float) -> Columns:
-    """Channels of a WAV file, whole numbers as parts of the full scale."""
+    """Read the channels of a WAV file; whole numbers become parts of the full scale."""
     from scipy.io import wavfile
 
     try:

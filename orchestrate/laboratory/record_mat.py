@@ -62,7 +62,7 @@ def arrays_of(path: Path) -> dict[str, NDArray[Any]]:
 
 
 def read_mat(path: Path) -> Columns:
-    """Vectors of a MAT file, and columns of matrices as ``name[0]``, ``name[1]`` ..."""
+    """Read vectors of a MAT file, and columns of matrices as ``name[0]``, ``name[1]`` ..."""
     arrays = arrays_of(path)
     units = {name.lower(): one for name, one in arrays.items()}.get("units", np.array([""]))
     unit = str(units.ravel()[0]) if units.dtype.kind == "U" and units.size else ""

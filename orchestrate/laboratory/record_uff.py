@@ -23,7 +23,7 @@ NOTED = re.compile(r"sample_rate = (\S+), start = (\S+)")
 
 
 def library() -> ModuleType:
-    """The package pyuff.
+    """Import the package pyuff; raise with the remedy if it is not installed.
 
     Raises
     ------
@@ -39,7 +39,7 @@ def library() -> ModuleType:
 
 
 def read_uff(path: Path) -> Columns:
-    """Accelerations over the time; what else is there is skipped, with a line in the log.
+    """Read accelerations over time; other datasets are skipped, with a line in the log.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def read_uff(path: Path) -> Columns:
 
 
 def columns_of(path: Path, kinds: list[int], functions: list[tuple[int, Dataset]]) -> Columns:
-    """The columns of those datasets that are functions of the same times.
+    """Return the columns of those datasets that are functions of the same times.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def columns_of(path: Path, kinds: list[int], functions: list[tuple[int, Dataset]
 
 
 def of_time(path: Path, number: int, one: Dataset) -> bool:
-    """Whether a dataset is a real function of the time."""
+    """Return whether a dataset is a real function of time."""
     kind = int(one.get("abscissa_spec_data_type", TIME))
     over_time = kind == TIME or (kind == 0 and int(one.get("func_type", 0)) == TIME_RESPONSE)
     if over_time and not np.iscomplexobj(one["data"]):
@@ -101,7 +101,7 @@ def of_time(path: Path, number: int, one: Dataset) -> bool:
 
 
 def times_of(one: Dataset) -> Floats:
-    """The abscissa; where its step has six digits alone, the roundest rate that has them."""
+    """Return the abscissa; if its step has six digits only, by the roundest rate that has them."""
     if int(one["abscissa_spacing"]) != 1:
         return np.asarray(one["x"], float)
     noted = NOTED.search(str(one.get("id5", "")))
@@ -113,7 +113,7 @@ def times_of(one: Dataset) -> Floats:
 
 
 def rounded_rate(step: float) -> float:
-    """The number with the fewest digits whose inverse is a step, to six digits.
+    """Return the number with the fewest digits whose inverse is a step, to six digits.
 
     Examples
     --------
@@ -132,7 +132,7 @@ def rounded_rate(step: float) -> float:
 
 
 def check_whole(path: Path, number: int, one: Dataset) -> None:
-    """See that all values are there that the heading announces.
+    """Check that all values that the heading announces are there.
 
     Raises
     ------
@@ -145,7 +145,7 @@ def check_whole(path: Path, number: int, one: Dataset) -> None:
 
 
 def column_of(number: int, one: Dataset) -> Column:
-    """A dataset as a column, named by its first line, else by its node and direction."""
+    """Return a dataset as a column, named by its first line, else by its node and direction."""
     name = str(one.get("id1", "")).strip()
     if name.lower() in NO_LABELS:
         name = f"{one.get('rsp_node', number)}:{one.get('rsp_dir', 0)}"

@@ -67,7 +67,7 @@ class Sampled(ExcitationSignal):
 
     @classmethod
     def from_record(cls, record: xr.Dataset) -> Sampled:
-        """The box's acceleration of a record, from its beginning on.
+        """Take the box's acceleration of a record, from its beginning on.
 
         Parameters
         ----------
@@ -88,16 +88,16 @@ class Sampled(ExcitationSignal):
 
     @property
     def label(self) -> str:
-        """How many samples, and how often."""
+        """Number of samples and sampling rate, for titles."""
         return f"{len(self.acceleration)} samples at {self.sample_rate:g} Hz"
 
     @property
     def usual_rate(self) -> float:
-        """Its own, Hz."""
+        """Default sampling rate, Hz: the record's own."""
         return self.sample_rate
 
     def pieces(self, accuracy: float = 1e-6) -> Pieces:
-        """The spline."""
+        """Return the pieces of the spline through the samples."""
         from scipy.interpolate import CubicSpline
 
         nodes = np.arange(len(self.acceleration)) / self.sample_rate

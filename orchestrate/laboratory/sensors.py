@@ -98,13 +98,13 @@ class Sensor:
 
     @property
     def rate(self) -> float:
-        """Of the record, Hz."""
+        """Sampling rate of the record, Hz."""
         assert self.sample_rate is not None  # set when it was made
         return self.sample_rate
 
     @property
     def label(self) -> str:
-        """Its filter, and what else it does to the readings."""
+        """Filter and all else that changes the readings, for titles."""
         parts = [f"{self.kind} of order {self.order}, {self.bandwidth:g} Hz"]
         if self.noise:
             parts.append(f"noise {self.noise:g} (m/s2)/sqrt(Hz) with seed {self.seed}")
@@ -115,14 +115,14 @@ class Sensor:
         return ", ".join([*parts, *([] if self.antialiasing else ["no filter against aliasing"])])
 
     def analog_filter(self) -> AnalogFilter:
-        """Of the sensor and against aliasing, in series."""
+        """Return the filters of the sensor and against aliasing, in series."""
         parts = [low_pass(self.kind, self.order, self.bandwidth)]
         if self.antialiasing:
             parts.append(anti_aliasing(self.rate))
         return in_series(parts)
 
     def digitised(self, values: Floats, channel: int) -> Floats:
-        """Filtered values with noise, limits and digits.
+        """Add noise to filtered values, limit them and round them to the converter's digits.
 
         Parameters
         ----------
@@ -142,7 +142,7 @@ class Sensor:
 
 
 def checked_whole(name: str, value: object, minimum: int, maximum: int) -> int:
-    """A whole number in a range."""
+    """Return a whole number; raise if it is outside its range."""
     number = plain(value)
     whole = isinstance(number, (int, np.integer)) and not isinstance(number, bool)
     if not whole or not minimum <= number <= maximum:
@@ -156,7 +156,7 @@ def measure(
     *,
     excitation: ExcitationSignal | None = None,
 ) -> xr.Dataset:
-    """What accelerometers on the box and on both masses read.
+    """Compute what accelerometers on the box and on both masses read.
 
     Parameters
     ----------
@@ -226,7 +226,7 @@ def measure(
 
 
 def channel(parts: SmoothParts, motion: Motion, name: str, sensor: Sensor) -> Floats:
-    """What a sensor's filter gives on the box or a mass, m/s2."""
+    """Compute what a sensor's filter gives on the box or on a mass, m/s2."""
     structure = motion.structure
     cells, jumps = {
         "box_acceleration": (parts.box, 0.0 * motion.impulses),
@@ -237,7 +237,7 @@ def channel(parts: SmoothParts, motion: Motion, name: str, sensor: Sensor) -> Fl
 
 
 def pieces_for(history: xr.Dataset, excitation: ExcitationSignal | None) -> Pieces:
-    """The box's acceleration as pieces, from the history's beginning on."""
+    """Return the box's acceleration as pieces, from the history's beginning on."""
     if excitation is not None:
         if excitation.label != history.attrs.get("excitation"):
             text = f"expected {history.attrs.get('excitation', 'none')}, which made the history"
@@ -252,7 +252,7 @@ def pieces_for(history: xr.Dataset, excitation: ExcitationSignal | None) -> Piec
 
 
 def sensors_of(sensor: Sensor | Mapping[str, Sensor]) -> dict[str, Sensor]:
-    """Sensors by channel."""
+    """Return the sensor of each channel, by name."""
     if isinstance(sensor, Sensor):
         return dict.fromkeys(CHANNELS, sensor)
     fits = isinstance(sensor, Mapping) and all(isinstance(s, Sensor) for s in sensor.values())
@@ -267,7 +267,7 @@ def sensors_of(sensor: Sensor | Mapping[str, Sensor]) -> dict[str, Sensor]:
 
 
 def structure_of(history: xr.Dataset, needed: tuple[str, ...] = NEEDED) -> Structure:
-    """The structure that moves in a history with the variables ``needed``.
+    """Return the structure of a history; raise if one of the variables ``needed`` is missing.
 
     Raises
     ------

@@ -36,13 +36,13 @@ DECAYED = 1e-3  # what is left of the free vibration from the start where it cou
 
 @lru_cache(maxsize=4)
 def pieces_of(excitation: ExcitationSignal, accuracy: float) -> Pieces:
-    """An excitation's pieces, made once a process."""
+    """Return an excitation's pieces, made once per process."""
     return excitation.pieces(accuracy)
 
 
 @dataclass(frozen=True, kw_only=True)
 class ShakeJob(Question):
-    """A motion under an excitation of any kind, in parts that go on from each other's end.
+    """Job that computes a motion under any excitation, each part from the end of the one before.
 
     Attributes
     ----------
@@ -60,31 +60,31 @@ class ShakeJob(Question):
     accuracy: float
     start: tuple[float, ...] = REST
     asked: ClassVar[str] = "shake"
-    chunk: ClassVar[int] = 20_000
+    chunk_size: ClassVar[int] = 20_000
     sequential: ClassVar[bool] = True
     item: ClassVar[str] = "piece"
 
     @property
     def pieces(self) -> Pieces:
-        """The excitation as the FMU takes it."""
+        """Excitation as cubic pieces, which the FMU takes."""
         return pieces_of(self.excitation, self.accuracy)
 
     def parameters(self) -> dict[str, Any]:
-        """With the excitation's kind."""
+        """Return the parameters, with the excitation's kind."""
         found = super().parameters()
         found["excitation"] = {"kind": type(self.excitation).__name__, **found["excitation"]}
         return found
 
     def count(self) -> int:
-        """Number of pieces."""
+        """Return the number of pieces."""
         return len(self.pieces.derivatives)
 
     def items(self, inputs: Inputs) -> Sequence[int]:
-        """The pieces."""
+        """Return the indices of the pieces."""
         return range(self.count())
 
     def times(self, first: float = 0.0, end: float = math.inf) -> NDArray[np.float64]:
-        """When the motion is read from a time on, and before another, s."""
+        """Return the sampling times from ``first`` up to, not including, ``end``, s."""
         rate, duration = self.sample_rate, self.pieces.duration
         last = math.floor(duration * rate * (1.0 + 1e-14))
         stop = last if end == math.inf else min(last, math.ceil(end * rate) + 1)
@@ -94,7 +94,7 @@ class ShakeJob(Question):
         return times[(times >= first) & (times < end) & (times <= duration)]
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
-        """The motion over some pieces, and the FMU's state to go on from."""
+        """Compute the motion over some pieces, and the FMU's state to go on from."""
         pieces, first, last = self.pieces, items[0], items[-1] + 1
         nodes = pieces.nodes[first : last + 1]
         samples = self.times(nodes[0], math.inf if last == self.count() else nodes[-1])
@@ -114,7 +114,7 @@ class ShakeJob(Question):
         }
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Histories, impacts, and what is known of the excitation."""
+        """Return histories, impacts, and what is known of the excitation."""
         import xarray as xr
 
         columns = [*PLAYED, "a1_abs", "a2_abs", "box_acceleration"]
@@ -139,7 +139,7 @@ class ShakeJob(Question):
 
 
 def transient_time(structure: Structure) -> float:
-    """How long the slowest free vibration takes to decay to a thousandth, s.
+    """Return how long the slowest free vibration takes to decay to a thousandth, s.
 
     Of either mass alone and of both together; infinite without damping, and where a damper is so
     strong that it creeps, by the slower of both roots.

@@ -66,16 +66,16 @@ class Shock(ExcitationSignal):
 
     @property
     def label(self) -> str:
-        """Its shape, peak and length."""
+        """Shape, peak and length, for titles."""
         return f"{self.shape} shock, {self.peak:.4g} m/s2 for {1e3 * self.length:.4g} ms"
 
     @property
     def usual_rate(self) -> float:
-        """A hundred samples in the pulse, Hz."""
+        """Default sampling rate, Hz: a hundred samples in the pulse."""
         return 100.0 / self.length
 
     def pieces(self, accuracy: float = 1e-6) -> Pieces:
-        """The pulse between its corners, and quiet."""
+        """Return the pulse as pieces between its corners, and quiet before and after it."""
         edges, error = self._edges(accuracy)
         begin, end = self.delay, self.delay + self.length
         nodes = np.unique([0.0, *(begin + edges), end, self.duration])
@@ -84,7 +84,7 @@ class Shock(ExcitationSignal):
         return Pieces(nodes, np.where(inside[:, None], found.derivatives, 0.0), error)
 
     def _edges(self, accuracy: float) -> tuple[Floats, float]:
-        """Where pieces begin, s after the pulse's beginning, and their error."""
+        """Return where pieces begin, s after the pulse's beginning, and their error."""
         if self.shape == "trapezoid":
             return self.length * np.array([0.0, 0.1, 0.9]), 0.0
         if self.shape == "sawtooth":
@@ -94,7 +94,7 @@ class Shock(ExcitationSignal):
         return self.length * angles[:-1] / math.pi, error
 
     def _pulse(self) -> Callable[[Floats], Floats]:
-        """The pulse as a function of the time."""
+        """Return the pulse as a function of time."""
 
         def pulse(time: Floats) -> Floats:
             part = (time - self.delay) / self.length

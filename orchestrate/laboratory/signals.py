@@ -27,13 +27,13 @@ DENSITY = Quantity("psd", "m2/s4/Hz", "", 0.0, 1e24)
 
 
 def checked(quantity: Quantity, name: str, value: object) -> float:
-    """A number in a quantity's range, named as the user named it."""
+    """Return a number; raise, by the user's name for it, if it is outside its quantity's range."""
     own = Quantity(name, quantity.unit, "", quantity.minimum, quantity.maximum)
     return own.check(value)
 
 
 def checked_profile(name: str, given: object, quantity: Quantity) -> Profile:
-    """Break points (Hz, value) with ascending frequencies."""
+    """Return break points (Hz, value); raise unless their frequencies ascend."""
     expected = "expected pairs (Hz, value) with ascending frequencies, at least two"
     try:
         pairs = [(float(f), float(value)) for f, value in given]  # type: ignore[attr-defined]
@@ -51,7 +51,7 @@ def checked_profile(name: str, given: object, quantity: Quantity) -> Profile:
 
 
 def checked_level(name: str, given: object, low: float, high: float) -> float | Profile:
-    """A peak acceleration in m/s2, or its profile, which has to reach from ``low`` to ``high`` Hz.
+    """Return a peak acceleration, m/s2, or its profile, which must cover ``low`` to ``high``.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def checked_level(name: str, given: object, low: float, high: float) -> float | 
 
 
 def along_profile(profile: Profile, frequency: Floats) -> Floats:
-    """A profile's values, straight between break points in log-log scales; 0 outside."""
+    """Interpolate a profile between break points in log-log scales; 0 outside."""
     corners, values = np.log(np.array(profile)).T
     inside = (frequency >= profile[0][0]) & (frequency <= profile[-1][0])
     with np.errstate(divide="ignore"):
@@ -91,16 +91,16 @@ class ExcitationSignal(ABC):
     @property
     @abstractmethod
     def label(self) -> str:
-        """What it is in a few words, for titles and names of files."""
+        """Short description for titles and names of files."""
 
     @property
     @abstractmethod
     def usual_rate(self) -> float:
-        """A sampling rate that shows all of it, Hz."""
+        """Default sampling rate, Hz, at which all of the signal is seen."""
 
     @abstractmethod
     def pieces(self, accuracy: float = 1e-6) -> Pieces:
-        """The acceleration as cubic pieces.
+        """Return the acceleration as cubic pieces.
 
         Parameters
         ----------
@@ -114,20 +114,20 @@ class ExcitationSignal(ABC):
         """
 
     def __add__(self, other: ExcitationSignal) -> SumOfSignals:
-        """Both together."""
+        """Return the sum of both signals."""
         if not isinstance(other, ExcitationSignal):
             return NotImplemented
         return SumOfSignals((*parts_of(self), *parts_of(other)))
 
 
 def parts_of(signal: ExcitationSignal) -> tuple[ExcitationSignal, ...]:
-    """A sum's parts, or the signal itself."""
+    """Return a sum's parts, or the signal itself."""
     return signal.parts if isinstance(signal, SumOfSignals) else (signal,)
 
 
 @dataclass(frozen=True)
 class SumOfSignals(ExcitationSignal):
-    """Signals together, over the longest of them; made by ``+``."""
+    """A sum of signals, over the longest of them; made by ``+``."""
 
     parts: tuple[ExcitationSignal, ...]
     duration: float = field(init=False)
@@ -137,14 +137,14 @@ class SumOfSignals(ExcitationSignal):
 
     @property
     def label(self) -> str:
-        """All of them."""
+        """Labels of all parts."""
         return " + ".join(part.label for part in self.parts)
 
     @property
     def usual_rate(self) -> float:
-        """The highest that one of the parts needs, Hz."""
+        """Default sampling rate, Hz: the highest that one of the parts needs."""
         return max(part.usual_rate for part in self.parts)
 
     def pieces(self, accuracy: float = 1e-6) -> Pieces:
-        """The pieces of all parts, on all their nodes."""
+        """Return the pieces of the sum, on the nodes of all parts."""
         return reduce(add, (part.pieces(accuracy) for part in self.parts))

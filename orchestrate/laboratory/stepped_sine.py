@@ -76,7 +76,7 @@ class SteppedSine(ExcitationSignal):
         put(self, "duration", float(self._changes()[0][-1]))
 
     def _changes(self) -> tuple[Floats, Floats]:
-        """Times in s and phases in rad at which the frequency changes, with beginning and end."""
+        """Return times, s, and phases, rad, of the changes of frequency, with beginning and end."""
         cycles = np.full(len(self.frequencies), self.settle_cycles + self.measured_cycles, float)
         cycles[0] += 0.25
         times = np.cumsum([0.0, *(cycles / np.array(self.frequencies))])
@@ -84,53 +84,53 @@ class SteppedSine(ExcitationSignal):
 
     @property
     def label(self) -> str:
-        """Its frequencies and duration."""
+        """Frequencies and duration, for titles."""
         first, last, count = self.frequencies[0], self.frequencies[-1], len(self.frequencies)
         over = f"{first:g} to {last:g} Hz in {count} steps" if count > 1 else f"{first:g} Hz"
         return f"stepped sine {over} and {self.duration:.4g} s"
 
     @property
     def usual_rate(self) -> float:
-        """Twenty samples in the shortest period, Hz."""
+        """Default sampling rate, Hz: twenty samples in the shortest period."""
         return 20.0 * max(self.frequencies)
 
     def measured_times(self) -> Floats:
-        """Beginning and end of what is measured at each frequency, s; shape (n, 2)."""
+        """Return beginning and end of the measured part at each frequency, s; shape (n, 2)."""
         ends = self._changes()[0][1:]
         return np.stack([ends - self.measured_cycles / np.array(self.frequencies), ends], axis=1)
 
     def _step_at(self, time: ArrayLike) -> NDArray[np.int_]:
-        """Which frequency is played at a time."""
+        """Return the index of the frequency that is played at a time."""
         changes = self._changes()[0][1:-1]
         return np.searchsorted(changes, np.asarray(time, dtype=float), side="right")
 
     def frequency(self, time: ArrayLike) -> Floats:
-        """The frequency at a time, Hz."""
+        """Return the frequency at a time, Hz."""
         return np.array(self.frequencies)[self._step_at(time)]
 
     def phase(self, time: ArrayLike) -> Floats:
-        """The phase at a time, rad."""
+        """Return the phase at a time, rad."""
         t = np.asarray(time, dtype=float)
         times, phases = self._changes()
         step = self._step_at(t)
         return np.asarray(phases[step] + TURN * self.frequency(t) * (t - times[step]))
 
     def level(self, time: ArrayLike) -> Floats:
-        """The peak acceleration at a time, m/s2."""
+        """Return the peak acceleration at a time, m/s2."""
         return self._levels()[self._step_at(time)]
 
     def _levels(self) -> Floats:
-        """Peak acceleration of each frequency, m/s2."""
+        """Return the peak acceleration of each frequency, m/s2."""
         if isinstance(self.acceleration, float):
             return np.full(len(self.frequencies), self.acceleration)
         return along_profile(self.acceleration, np.array(self.frequencies))
 
     def __call__(self, time: ArrayLike) -> Floats:
-        """The acceleration at a time, m/s2."""
+        """Return the acceleration at a time, m/s2."""
         return np.asarray(self.level(time) * np.sin(self.phase(time)))
 
     def pieces(self, accuracy: float = 1e-6) -> Pieces:
-        """Pieces of equal phase at each frequency."""
+        """Return pieces of equal phase at each frequency."""
         times, phases = self._changes()
         longest = phase_step(accuracy)
         if phases[-1] > MOST_PIECES * longest:
@@ -143,7 +143,7 @@ class SteppedSine(ExcitationSignal):
 
 
 def checked_frequencies(given: Any) -> tuple[float, ...]:
-    """Frequencies in Hz, one at least.
+    """Return frequencies in Hz as floats; raise unless there is one at least.
 
     Raises
     ------

@@ -84,50 +84,50 @@ class SweptSine(ExcitationSignal):
         put(self, "duration", checked(SECONDS, "duration", self.duration))
 
     def _span(self) -> float:
-        """Hz where linear; octaves, times a minute, where logarithmic."""
+        """Return the range swept: Hz if linear, 60 times the octaves if logarithmic."""
         if self.spacing == "linear":
             return abs(self.last - self.first)
         return 60.0 * abs(math.log2(self.last / self.first))
 
     @property
     def label(self) -> str:
-        """Its frequencies and duration."""
+        """Frequencies and duration, for titles."""
         return f"swept sine {self.first:g} to {self.last:g} Hz in {self.duration:.4g} s"
 
     @property
     def usual_rate(self) -> float:
-        """Twenty samples in the shortest period, Hz."""
+        """Default sampling rate, Hz: twenty samples in the shortest period."""
         return 20.0 * max(self.first, self.last)
 
     @property
     def _growth(self) -> float:
-        """Of the frequency: Hz/s where linear, ln(f1/f0)/T in 1/s where logarithmic."""
+        """Rate of the frequency: Hz/s if linear, ln(f1/f0)/T in 1/s if logarithmic."""
         if self.spacing == "linear":
             return (self.last - self.first) / self.duration
         return math.log(self.last / self.first) / self.duration
 
     def frequency(self, time: ArrayLike) -> Floats:
-        """The frequency at a time, Hz."""
+        """Return the frequency at a time, Hz."""
         t = np.asarray(time, dtype=float)
         if self.spacing == "linear":
             return np.asarray(self.first + self._growth * t)
         return np.asarray(self.first * np.exp(self._growth * t))
 
     def phase(self, time: ArrayLike) -> Floats:
-        """The phase at a time, rad."""
+        """Return the phase at a time, rad."""
         t = np.asarray(time, dtype=float)
         if self.spacing == "linear":
             return np.asarray(TURN * t * (self.first + 0.5 * self._growth * t))
         return np.asarray(TURN * self.first / self._growth * np.expm1(self._growth * t))
 
     def time_of(self, frequency: float) -> float:
-        """When it has a frequency, Hz; s."""
+        """Return the time, s, at which the sine has a frequency, Hz."""
         if self.spacing == "linear":
             return (frequency - self.first) / self._growth
         return math.log(frequency / self.first) / self._growth
 
     def _times_of(self, phase: Floats) -> Floats:
-        """When it has phases, rad; s."""
+        """Return the times, s, at which the sine has phases, rad."""
         growth, turns = self._growth, phase / TURN
         if self.spacing == "linear":
             root = np.sqrt(np.maximum(self.first**2 + 2.0 * growth * turns, 0.0))
@@ -135,18 +135,18 @@ class SweptSine(ExcitationSignal):
         return np.asarray(np.log1p(growth * turns / self.first) / growth)
 
     def level(self, time: ArrayLike) -> Floats:
-        """The peak acceleration at a time, m/s2."""
+        """Return the peak acceleration at a time, m/s2."""
         if isinstance(self.acceleration, float):
             return np.full(np.shape(time), self.acceleration)
         low, high = self.acceleration[0][0], self.acceleration[-1][0]
         return along_profile(self.acceleration, np.clip(self.frequency(time), low, high))
 
     def __call__(self, time: ArrayLike) -> Floats:
-        """The acceleration at a time, m/s2."""
+        """Return the acceleration at a time, m/s2."""
         return np.asarray(self.level(time) * np.sin(self.phase(time)))
 
     def pieces(self, accuracy: float = 1e-6) -> Pieces:
-        """Pieces of equal phase, shorter ones where the frequency changes within them."""
+        """Return pieces of equal phase, shorter where the frequency changes within them."""
         end = float(self.phase(self.duration))
         if end > MOST_PIECES * phase_step(accuracy):
             text = f"expected less than {MOST_PIECES * phase_step(accuracy) / TURN:.3g}"
@@ -161,19 +161,19 @@ class SweptSine(ExcitationSignal):
         return Pieces.interpolate(nodes, self, float(self._bounds(nodes).max()))
 
     def _peak(self) -> float:
-        """The largest level, m/s2; 1 where there is none."""
+        """Return the largest level, m/s2; 1 if the level is zero."""
         ends = np.array([0.0, *self._corners(), self.duration])
         return float(self.level(ends).max()) or 1.0
 
     def _corners(self) -> list[float]:
-        """When the profile has its break points, s."""
+        """Return the times at which the profile has its break points, s."""
         if isinstance(self.acceleration, float):
             return []
         times = [self.time_of(f) for f, _ in self.acceleration]
         return [time for time in times if 0.0 < time < self.duration]
 
     def _bounds(self, nodes: Floats) -> Floats:
-        """The bound of :mod:`.pieces`, from the largest fourth derivative, of each piece.
+        """Return each piece's error bound (:mod:`.pieces`) from the largest fourth derivative.
 
         Of ``A sin(phase)`` by Leibniz's and Faa di Bruno's rules, each term at its largest.
         """
@@ -190,7 +190,7 @@ class SweptSine(ExcitationSignal):
         return np.asarray(np.diff(nodes) ** 4 * np.sum(terms, axis=0) / ERROR)
 
     def _level_bounds(self, ends: Floats, lowest: Floats) -> list[Floats]:
-        """Largest derivatives of the level of orders 0 to 4 on each piece, A ~ f^p there."""
+        """Return the largest derivatives (orders 0 to 4) of the level A ~ f^p on each piece."""
         top = self.level(ends).max(axis=0)
         if isinstance(self.acceleration, float):
             return [top, *(np.zeros_like(top) for _ in range(4))]

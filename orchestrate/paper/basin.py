@@ -56,7 +56,9 @@ class EvenBasinJob(BasinJob):
         return float(data.eta.values[(clear if clear.max() > 0.0 else share).argmax()])
 
     def plane(self, inputs: Inputs) -> Plane:
-        """Return what is looked at, at that frequency and to its scale."""
+        """Return the plane of starts at that frequency, scaled to the largest gap of the sweep
+        there.
+        """
         eta = self.frequency(inputs)
         scale = float(inputs[self.sweep].xi_rel_max.sel(eta=eta, method="nearest"))
         x, y = (

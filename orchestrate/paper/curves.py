@@ -48,12 +48,12 @@ class Panel:
 
     @property
     def point(self) -> Point:
-        """Structure and excitation."""
+        """Structure and excitation of the panel."""
         excitation = Excitation.nondimensional(self.eta, self.structure)
         return Point(self.structure, excitation)
 
     def numbers(self) -> list[float]:
-        """Return what a panel is, in the order of ``NUMBERS``."""
+        """Return the panel's numbers in the order of ``NUMBERS``."""
         return [self.structure.e, self.structure.get("D"), self.eta, self.multiplicity]
 
 
@@ -96,7 +96,7 @@ class CurvesJob(Job):
         """Return the responses."""
 
     def settled(self, fmu: Path, panel: Panel) -> Panel:
-        """The response that a panel shows, in a worker, with the multiplicity that it has then."""
+        """Compute the response that a panel shows, in a worker, with its multiplicity."""
         settling = AttractorSettings(transient=self.skip, settle=0.0)
         with Instance(fmu) as instance:
             response, _ = run_until_settled(instance, panel.point, panel.start, settling)

@@ -112,7 +112,7 @@ class LargestJob(Job):
         return COUNT
 
     def items(self, inputs: Inputs) -> Sequence[Searched]:
-        """Return the regions, each with its candidates; none where it holds no frequency."""
+        """Return the regions, each with the start candidates; a region may have none."""
         exponents = inputs[self.exponents].sortby("eta")
         ends = inputs[self.settled].sortby("eta").end_state
         searched = []
@@ -197,7 +197,7 @@ class Largest(NamedTuple):
     others: tuple[str, ...]
 
     def text(self) -> str:
-        """As it is printed, with what was not steady in brackets."""
+        """Return the exponent as it is printed; what was not steady is in brackets."""
         if np.isnan(self.exponent):
             value = "undecided"
         else:

@@ -35,7 +35,7 @@ COUNTS = {
 
 
 def points() -> tuple[Point, ...]:
-    """Figure 6's structure at some frequencies; then structures that are alike, and one almost."""
+    """Return Figure 6's structure at some frequencies, then structures of alike halves."""
     etas = np.round(np.arange(0.45, 8.0, 0.15), 3).tolist()
     alike = [ELASTIC.replace(mu=mu, kappa=kappa) for mu, kappa in ((1, 1), (2, 2), (2, 2.2))]
     points_along = [Point(ELASTIC, Excitation.nondimensional(eta, ELASTIC)) for eta in etas]
@@ -57,7 +57,7 @@ class LowSpeedJob(Job):
     points: tuple[Point, ...] = points()
     periods: int = 2000
     gamma: float = 1e-4
-    chunk: ClassVar[int] = 10
+    chunk_size: ClassVar[int] = 10
 
     def count(self) -> int:
         """Return the number of motions."""
@@ -75,7 +75,7 @@ class LowSpeedJob(Job):
             return {"rows": np.array([self.counted(instance, point) for point in items])}
 
     def counted(self, instance: EventInstance, point: Point) -> list[int]:
-        """Return what is counted of one motion, by ``COUNTS``."""
+        """Count events of one motion; return the counts in the order of ``COUNTS``."""
         begin(instance, *point, REST)
         impacts = follow_impacts(instance, point, REST, self.periods)
         form = ClosedForm.from_structure(*point)
@@ -87,7 +87,7 @@ class LowSpeedJob(Job):
         return [len(state), int(impacts.sticks.sum()), int(slow.sum()), int(pulled.sum())]
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Counts over the motions."""
+        """Return the counts over the motions."""
         import xarray as xr
 
         variables = {

@@ -66,7 +66,7 @@ class MapPeakJob(DerivedJob):
         )
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return its statistics, its largest impulse (15), and what its exponent says."""
+        """Return the response's statistics, its largest impulse (15), and its verdict."""
         structure = self.question(inputs).structure
         answer = super().dataset(table, inputs)
         factor = (1.0 + structure.e) * structure.mu / (1.0 + structure.mu)

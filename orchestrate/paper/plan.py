@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from ..dynamics.attractors import AttractorsJob
-from ..dynamics.basins import Side
+from ..dynamics.basins import PlaneAxis
 from ..dynamics.clusters import AttractorSettings
 from ..dynamics.following import OnwardQuestion
 from ..dynamics.impact_statistics import ImpactStatisticsJob
@@ -89,7 +89,7 @@ class Plan:
         for name in asked:
             if name not in self.parts:
                 known = ", ".join(self.parts)
-                raise InputError(f"figures: {name or 'nothing'} is none; expected some of {known}")
+                raise InputError(f"unknown figure {name!r}; choose from {known}")
         return [part for name, part in self.parts.items() if name in asked]
 
 
@@ -112,14 +112,14 @@ def follow(kind: type[Followers], sweep: SweepJob, name: str, **fields: Any) -> 
 
 
 def settled_job(sweep: SweepJob, resolution: Resolution) -> SettledJob:
-    """Return what each fifth response of an up-sweep settles to; below 0.43 most have contact."""
+    """Make the job that settles every fifth response of an up-sweep from eta = 0.43 on."""
     etas = tuple(eta for eta in resolution.etas() if eta >= 0.43)[::5]
     settings = AttractorSettings(transient=0, settle=0.0, longest=resolution.longest)
     return follow(SettledJob, sweep, "settled", eta=etas, settings=settings)
 
 
 def later_jobs(sweep: SweepJob, resolution: Resolution) -> list[LaterJob]:
-    """A sweep's responses later: of all frequencies, and of a few drawn by chance later still."""
+    """Return jobs that continue a sweep's responses: all for some time, a random few for longer."""
     done = sweep.transient + sweep.samples
     few = np.random.default_rng(500).choice(np.array(resolution.etas()), FEW, replace=False)
     asked = {
@@ -145,7 +145,7 @@ def exponent_job(settled: SettledJob, resolution: Resolution) -> LyapunovJob:
 
 
 def own_runs(sweep: SweepJob, settled: Sequence[SettledJob], resolution: Resolution) -> list[Job]:
-    """Runs of their own of what is largest of many: exponents by region, impulses of the maps."""
+    """Return jobs that compute maxima once more: exponents by region, impulses of the maps."""
     jobs: list[Job] = [
         LargestJob(
             name=job.name.replace("settled", "largest").removesuffix("_up"),
@@ -192,8 +192,8 @@ def basin_job(attractors: AttractorsJob, sweep: SweepJob, resolution: Resolution
         name="basin",
         structure=sweep.structure,
         excitation=Excitation.nondimensional(1.0, sweep.structure),  # replaced by what is found
-        x=Side("x_rel", 0.0, 3.0, side),
-        y=Side("v_rel", -3.0, 3.0, side),
+        x=PlaneAxis("x_rel", 0.0, 3.0, side),
+        y=PlaneAxis("v_rel", -3.0, 3.0, side),
         settings=attractors.settings,
         attractors=attractors.name,
         sweep=sweep.name,
@@ -255,7 +255,7 @@ def make(resolution: Resolution) -> Plan:
 def further_jobs(
     ups: Sequence[SweepJob], settled: Sequence[SettledJob], resolution: Resolution
 ) -> dict[str, list[Job]]:
-    """Return what goes beyond the paper's figures, by part."""
+    """Make the jobs beyond the paper's figures, by part."""
     first = ups[0]
     attractors = AttractorsJob(
         name="attractors",

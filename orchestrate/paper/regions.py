@@ -33,7 +33,7 @@ class Region(NamedTuple):
 
     @property
     def is_window(self) -> bool:
-        """Whether one orbit is stable in all of it."""
+        """Whether one orbit is stable in the whole region."""
         return " to " not in self.name
 
     @property
@@ -50,7 +50,7 @@ def nearest_window(limits: xr.Dataset, case: str, orbit: str, inside: float) -> 
 
 
 def regions(limits: xr.Dataset, case: str) -> list[Region]:
-    """From the loss of contact to 8: windows with two impacts and one, and what lies between.
+    """Return windows with two impacts and one, and the regions between them, up to eta = 8.
 
     Irregular regions of the paper are between the exact limits of two windows.
 

@@ -74,7 +74,7 @@ class Resolution:
         return tuple(float(eta) for eta in np.arange(100, 8001) / 1000.0)
 
     def attractor_etas(self) -> tuple[float, ...]:
-        """Frequencies of the random starts: finest around 1.07 to 1.37, coarsely from 1.4 on."""
+        """Return the frequencies of the random starts: dense around 1.07 to 1.37."""
         step, fine = self.attractor_step, self.fine_step
         ranges = [(0.44, 1.4, step), (1.06, 1.38, fine), (1.4, 8.0, 10 * step)]
         etas = np.concatenate([np.arange(*ends) for ends in ranges])
@@ -82,7 +82,7 @@ class Resolution:
 
     @property
     def decides(self) -> bool:
-        """Whether it has the paper's 500 periods at each frequency, and counts are dense enough."""
+        """Whether transients have the paper's 500 periods, so that claims can be decided."""
         return self.transient >= 500
 
 

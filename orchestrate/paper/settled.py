@@ -41,7 +41,7 @@ class SettledJob(OnwardQuestion):
     """
 
     settings: AttractorSettings = AttractorSettings(transient=0, settle=0.0)
-    chunk: ClassVar[int] = 20
+    chunk_size: ClassVar[int] = 20
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Followed], previous: Table | None
@@ -62,7 +62,7 @@ class SettledJob(OnwardQuestion):
         return {"rows": np.array(rows), "end": np.array(ends), "contact": np.array(contacts)}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return what they are, over the parameter."""
+        """Return the settled responses over the parameter: features, contact and end state."""
         import xarray as xr
 
         along = self.series.name

@@ -44,7 +44,7 @@ class LaterJob(OnwardQuestion):
     transient: int = 4300
     samples: int = 201
     tolerance: float = 1e-2
-    chunk: ClassVar[int] = 20
+    chunk_size: ClassVar[int] = 20
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Followed], previous: Table | None
@@ -61,7 +61,7 @@ class LaterJob(OnwardQuestion):
         return {"rows": np.array(rows)}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return what they are then, over the parameter."""
+        """Return the later responses' features over the parameter."""
         import xarray as xr
 
         along = self.series.name

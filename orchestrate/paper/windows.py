@@ -28,14 +28,14 @@ def simple(sweep: xr.Dataset, n: int) -> np.ndarray:
 
 
 def window(sweep: xr.Dataset, n: int) -> tuple[float, float] | None:
-    """First and last eta of the longest window of period nT with one impact in it, or None."""
+    """Return first and last eta of the longest window nT with one impact; None without one."""
     run = longest(simple(sweep, n))
     etas = sweep.eta.values
     return None if run is None else (float(etas[run[0]]), float(etas[run[1]]))
 
 
 def relative_peak(sweep: xr.Dataset, n: int) -> float | None:
-    """The eta of the largest local maximum of the largest gap inside the window of period nT."""
+    """Return the eta of the largest local maximum of the gap in the window of period nT."""
     limits = window(sweep, n)
     if limits is None:
         return None

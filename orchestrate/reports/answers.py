@@ -19,7 +19,7 @@ MOST_ROWS = 60
 
 
 def sections_of(answer: xr.Dataset) -> list[Section]:
-    """The sections of an answer."""
+    """Return the sections of an answer."""
     kind = question_of(answer)
     if kind == "detect":
         return verdict_sections(answer)
@@ -29,7 +29,7 @@ def sections_of(answer: xr.Dataset) -> list[Section]:
 
 
 def picture_of(answer: xr.Dataset, words: str) -> Picture | None:
-    """The picture of an answer; none where there is none."""
+    """Draw the picture of an answer; None if that kind of answer has no picture."""
     try:
         return Picture.from_figure(plot(answer), words)
     except InputError:
@@ -37,14 +37,14 @@ def picture_of(answer: xr.Dataset, words: str) -> Picture | None:
 
 
 def study_section(answer: xr.Dataset) -> Section:
-    """Picture and numbers of an answer."""
+    """Return a section with the picture and the numbers of an answer."""
     title = str(answer.attrs.get("title") or question_of(answer))
     tables = [table for table in (scalar_table(answer), parameter_table(answer)) if table.rows]
     return Section(title, picture=picture_of(answer, title), tables=tables)
 
 
 def scalar_table(answer: xr.Dataset) -> Table:
-    """All that is one number in an answer."""
+    """Return a table of all scalar variables of an answer."""
     rows = []
     for name, array in as_shown(answer).data_vars.items():
         if not array.dims and array.dtype.kind in "iufb":
@@ -54,14 +54,14 @@ def scalar_table(answer: xr.Dataset) -> Table:
 
 
 def word_of(array: xr.DataArray) -> str:
-    """The word that a flag stands for; empty where it is none."""
+    """Return the word that a flag stands for; empty if the variable is no flag."""
     words = str(array.attrs.get("flag_meanings", "")).split()
     numbers = [int(number) for number in array.attrs.get("flag_values", [])]
     return words[numbers.index(int(array))] if words and int(array) in numbers else ""
 
 
 def parameter_table(answer: xr.Dataset) -> Table:
-    """Parameters of the structure, and what else was asked, from the attributes."""
+    """Return a table of structure and excitation, from an answer's attributes."""
     from ..structures.ranges import EXCITATION, STRUCTURE
 
     known = {**STRUCTURE, **EXCITATION}
@@ -76,17 +76,17 @@ def parameter_table(answer: xr.Dataset) -> Table:
 
 
 def is_known(one: xr.Dataset) -> bool:
-    """Whether the record shows a sign."""
+    """Return whether the record decides a sign for any sensor."""
     return bool((one.exceeds >= 0).any())
 
 
 def in_a_row(values: Iterable[float]) -> str:
-    """Numbers of several sensors in one cell."""
+    """Format the numbers of several sensors for one cell."""
     return " · ".join(text_of(float(value)) for value in values)
 
 
 def signs_section(answer: xr.Dataset) -> Section:
-    """Signs with their floors, and what else moves those that stand out."""
+    """Return a section on signs: values, noise floors, and what else moves those that stand out."""
     shown = [one for sign in answer.sign.values if is_known(one := answer.sel(sign=sign))]
     rows = [
         (

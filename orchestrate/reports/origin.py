@@ -19,7 +19,7 @@ LONGEST = 160  # letters of an attribute
 
 
 def origin(answers: Sequence[xr.Dataset]) -> Section:
-    """Versions and identities of all answers of a page."""
+    """Return a section with versions and identities of all answers of a page."""
     rows: list[tuple[str, str]] = []
     for number, answer in enumerate(answers, 1):
         begin = f"{number}. " if len(answers) > 1 else ""
@@ -30,7 +30,7 @@ def origin(answers: Sequence[xr.Dataset]) -> Section:
 
 
 def described(answer: xr.Dataset) -> list[tuple[str, str]]:
-    """What an answer's attributes say of its origin."""
+    """Return what an answer's attributes say of its origin, as names with texts."""
     attributes = {str(name): str(text) for name, text in answer.attrs.items()}
     shown = [
         ("title", "title"),
@@ -56,12 +56,12 @@ def described(answer: xr.Dataset) -> list[tuple[str, str]]:
 
 
 def shortened(text: str) -> str:
-    """A text of a length that fits a page."""
+    """Shorten a text to a length that fits a page."""
     return text if len(text) <= LONGEST else f"{text[:LONGEST]} ..."
 
 
 def installed(name: str) -> str:
-    """Version of a package; empty where it is not installed."""
+    """Return the version of a package; empty if it is not installed."""
     try:
         return version(name)
     except PackageNotFoundError:

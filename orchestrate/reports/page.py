@@ -22,7 +22,7 @@ TONES = ("bad", "good", "unclear", "open")  # of a verdict, for its colour
 
 @dataclass(frozen=True)
 class Picture:
-    """A picture inside the page.
+    """A picture inside the page, as PNG with a text.
 
     Attributes
     ----------
@@ -36,12 +36,12 @@ class Picture:
 
     @classmethod
     def from_figure(cls, figure: Any, words: str) -> Picture:
-        """Of a :class:`matplotlib.figure.Figure`."""
+        """Make a picture from a :class:`matplotlib.figure.Figure`."""
         return cls(png_of(figure), words)
 
     @property
     def source(self) -> str:
-        """The picture as an address."""
+        """PNG file as a ``data:`` address."""
         return f"data:image/png;base64,{base64.b64encode(self.png).decode()}"
 
     @property
@@ -72,7 +72,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Section:
-    """A part of the page.
+    """A part of the page: title, texts, picture and tables.
 
     Attributes
     ----------
@@ -93,7 +93,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What the page says first.
+    """The verdict at the top of the page.
 
     Attributes
     ----------
@@ -110,7 +110,7 @@ class Verdict:
 
 @dataclass(frozen=True)
 class Page:
-    """A report.
+    """A report: all that its HTML is made of.
 
     Attributes
     ----------
@@ -130,7 +130,7 @@ class Page:
     signed: bool = False
 
     def html(self) -> str:
-        """The page."""
+        """Return the page as HTML."""
         environment = jinja2.Environment(
             loader=jinja2.PackageLoader("orchestrate.reports"),
             autoescape=True,
@@ -147,7 +147,7 @@ class Page:
 
 
 def content_security_policy(style: str) -> str:
-    """What a browser lets the page do: show its own pictures in its own style, and nothing else."""
+    """Return the policy for the browser: own pictures, own style, nothing else."""
     digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
     allowed = f"default-src 'none'; style-src 'sha256-{digest}'; img-src data:"
     return f"{allowed}; base-uri 'none'; form-action 'none'"
@@ -157,7 +157,7 @@ def content_security_policy(style: str) -> str:
 
 
 def text_of(value: float, unit: str = "", digits: int = 3) -> str:
-    """A number for a person, a dash where there is none.
+    """Format a number with its unit; a dash for NaN or infinity.
 
     Examples
     --------
@@ -171,7 +171,7 @@ def text_of(value: float, unit: str = "", digits: int = 3) -> str:
 
 
 def with_error(value: float, error: float, unit: str = "") -> str:
-    """A number with its standard error, as many digits as that has two of.
+    """Format a number with its standard error, to two digits of the error.
 
     Examples
     --------
@@ -189,7 +189,7 @@ def with_error(value: float, error: float, unit: str = "") -> str:
 
 
 def scaled(size: float, unit: str) -> tuple[float, str]:
-    """A factor, and the unit that it makes of one: short lengths are in micrometres."""
+    """Return the factor and the unit that a number is shown in: short lengths in micrometres."""
     if unit == "m" and 0.0 < size < 1e-3:
         return 1e-6, "µm"
     return 1.0, "" if unit == "1" else unit.replace("s2", "s²")

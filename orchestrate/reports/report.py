@@ -82,5 +82,5 @@ def report(
 
 
 def is_verdict(answer: xr.Dataset) -> bool:
-    """Whether an answer is a verdict on a beam."""
+    """Return whether an answer is a verdict on a beam."""
     return question_of(answer) == "detect"

@@ -29,7 +29,7 @@ BEST = 3  # hypotheses in the table of parameters
 
 
 def verdict_of(answer: xr.Dataset) -> Verdict:
-    """The verdict in one sentence."""
+    """Return the verdict in one sentence."""
     word = str(answer.verdict.values)
     return Verdict(
         f"{word[0].upper()}{word[1:]}.", SENTENCES[word](answer), TONES.get(word, "open")
@@ -37,14 +37,14 @@ def verdict_of(answer: xr.Dataset) -> Verdict:
 
 
 def range_text(answer: xr.Dataset) -> str:
-    """Levels and frequencies that the record has."""
+    """Format the levels and frequencies that the record covers."""
     low, high = number(answer, "frequency_low"), number(answer, "frequency_high")
     level = number(answer, "level_high")
     return f"up to {text_of(level)} m/s² over {text_of(low)} to {text_of(high)} Hz"
 
 
 def delaminated(answer: xr.Dataset) -> str:
-    """What is said of a delaminated beam."""
+    """Format the statement on a delaminated beam."""
     ratio = number(answer, "ratio")
     better = "" if math.isnan(ratio) else f", {text_of(ratio)} times closer than any sound one"
     return (
@@ -54,7 +54,7 @@ def delaminated(answer: xr.Dataset) -> str:
 
 
 def no_opening(answer: xr.Dataset) -> str:
-    """What is said where nothing opens; never that the beam is intact."""
+    """Format the statement where nothing opens; it never says that the beam is intact."""
     smallest = number(answer, "smallest_opening")
     seen = ""
     if math.isfinite(smallest):
@@ -63,7 +63,7 @@ def no_opening(answer: xr.Dataset) -> str:
 
 
 def not_described(answer: xr.Dataset) -> str:
-    """What is said where no hypothesis fits."""
+    """Format the statement where no hypothesis fits."""
     return (
         "None of the structures that were tried, sound or delaminated, describes this record: "
         "the beam, its clamp or the sensors do something else."
@@ -71,7 +71,7 @@ def not_described(answer: xr.Dataset) -> str:
 
 
 def undecided(answer: xr.Dataset) -> str:
-    """What is said where it is close."""
+    """Format the statement where the evidence does not suffice."""
     return "This record does not tell a delaminated beam from a sound one."
 
 
@@ -84,18 +84,18 @@ SENTENCES = {
 
 
 def number(answer: xr.Dataset, name: str) -> float:
-    """A single number of an answer, NaN where it has none."""
+    """Return a scalar variable of an answer; NaN if it has none of that name."""
     return float(answer[name]) if name in answer else math.nan
 
 
 def verdict_sections(answer: xr.Dataset) -> list[Section]:
-    """All that a verdict rests on."""
+    """Return all sections on which a verdict rests."""
     made = [decision(answer), fits(answer), misfits(answer), parameters(answer), assumed(answer)]
     return [section for section in made if section is not None]
 
 
 def decision(answer: xr.Dataset) -> Section:
-    """What decided, and what would change it."""
+    """Return a section on what decided, and what would change it."""
     reason, settle = (str(answer.attrs.get(name, "")) for name in ("reason", "settle"))
     points = [f"What decided: {full(reason)}"] if reason else []
     odds = number(answer, "odds")
@@ -110,7 +110,7 @@ def decision(answer: xr.Dataset) -> Section:
 
 
 def ratio_of(odds: float) -> str:
-    """Odds as people give them.
+    """Format odds as a ratio, "24 to 1".
 
     Examples
     --------
@@ -122,7 +122,7 @@ def ratio_of(odds: float) -> str:
 
 
 def full(words: str) -> str:
-    """Words as a sentence: a capital at the beginning, a point at the end.
+    """Make a sentence of words: a capital at the beginning, a full stop at the end.
 
     Examples
     --------
@@ -133,7 +133,7 @@ def full(words: str) -> str:
 
 
 def fits(answer: xr.Dataset) -> Section | None:
-    """The measurement over the fits."""
+    """Return a section with the measurement over the fits; None if the answer has no fits."""
     if "measured" not in answer or "fitted" not in answer:
         return None
     words = "What was measured, and what the best structures of each kind do, order by order"
@@ -145,7 +145,7 @@ def fits(answer: xr.Dataset) -> Section | None:
 
 
 def misfits(answer: xr.Dataset) -> Section | None:
-    """The misfit over the frequency."""
+    """Return a section with the misfit over frequency; None if the answer has none."""
     if "misfit_at" not in answer:
         return None
     words = "How far each structure is from the measurement, over the frequency"
@@ -155,7 +155,7 @@ def misfits(answer: xr.Dataset) -> Section | None:
 
 
 def hypotheses(answer: xr.Dataset) -> Table:
-    """The hypotheses, the best first."""
+    """Return a table of the hypotheses, the best first."""
     ordered = answer.sortby("misfit")
     rows = []
     for position in range(ordered.sizes["hypothesis"]):
@@ -169,13 +169,13 @@ def hypotheses(answer: xr.Dataset) -> Table:
 
 
 def decided(answer: xr.Dataset, names: Sequence[str]) -> list[int]:
-    """Places of the hypotheses that the verdict goes by, the best first."""
+    """Return the indices of the hypotheses on which the verdict rests."""
     parted = {"delaminated": True, "no opening seen": False}.get(str(answer.verdict.values))
     return [place for place, name in enumerate(names) if name.startswith(PARTED) == parted]
 
 
 def parameters(answer: xr.Dataset) -> Section | None:
-    """Parameters with their errors, of the best structures."""
+    """Return a section with the best structures' parameters and errors; None without any."""
     if "value" not in answer or "parameter" not in answer.dims:
         return None
     shown = by_misfit(answer)
@@ -208,7 +208,7 @@ def parameters(answer: xr.Dataset) -> Section | None:
 
 
 def by_misfit(answer: xr.Dataset) -> list[xr.Dataset]:
-    """The hypotheses of an answer one by one, the best first; itself where it has one only."""
+    """Return the hypotheses of an answer one by one, the best first."""
     if "hypothesis" not in answer.dims:
         return [answer]
     ordered = answer.sortby("misfit")
@@ -216,7 +216,7 @@ def by_misfit(answer: xr.Dataset) -> list[xr.Dataset]:
 
 
 def parameter_text(at: xr.Dataset, unit: str) -> str:
-    """A parameter of one hypothesis, with its error."""
+    """Format a parameter of one hypothesis with its error; a dash if it has none."""
     value = float(at.value)
     return (
         with_error(value, number(at, "standard_error"), unit) if math.isfinite(value) else MISSING
@@ -224,7 +224,7 @@ def parameter_text(at: xr.Dataset, unit: str) -> str:
 
 
 def assumed(answer: xr.Dataset) -> Section:
-    """What was assumed."""
+    """Return a section with the assumptions."""
     own = [text.strip() for text in str(answer.attrs.get("assumed", "")).split(";")]
     points = [*ALWAYS_ASSUMED, *guessed(answer), *map(full, filter(None, own))]
     return Section("What was assumed", points=points)

@@ -53,7 +53,7 @@ class ResonanceLevelsJob(Question):
     prominence: float = 0.1
     jump: float = 0.15
     asked: ClassVar[str] = "resonance_levels"
-    chunk: ClassVar[int] = ResonanceJob.chunk
+    chunk_size: ClassVar[int] = ResonanceJob.chunk_size
     sequential: ClassVar[bool] = True
     warmup_items: ClassVar[int] = ResonanceJob.warmup_items
 

@@ -59,7 +59,7 @@ class SweepJob(SeriesQuestion):
     start: tuple[float, ...] = REST
     peak_periods: int = 8
     asked: ClassVar[str] = "sweep"
-    chunk: ClassVar[int] = 100
+    chunk_size: ClassVar[int] = 100
     sequential: ClassVar[bool] = True
     warmup_items: ClassVar[int] = 16  # most responses forget where they came from within as many
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..checks import REQUIRES_DELAMINATED
 from ..errors import InputError
 from ..running.job import brief
 from ..structures import Structure
@@ -207,7 +208,7 @@ def contact_threshold(
     import xarray as xr
 
     if checked_structure(structure).bonded:
-        raise InputError("bonded = True: expected a structure whose masses can part")
+        raise InputError(REQUIRES_DELAMINATED)
     asked = {"eta": numbers("eta", eta), "frequency": numbers("frequency", frequency)}
     given = {name: values for name, values in asked.items() if values is not None}
     if len(given) != 1:

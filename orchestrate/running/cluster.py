@@ -97,7 +97,7 @@ class Cluster:
         return 2 * max(1, self._cores())
 
     def close(self, in_haste: bool) -> None:
-        """Disconnect from the scheduler; what it still computes for us is cancelled."""
+        """Disconnect from the scheduler and cancel what it still computes for this process."""
         with suppress(Exception):
             self.executor.shutdown(wait=not in_haste)
         with suppress(Exception):

@@ -95,7 +95,7 @@ class Workers(Protocol):
 
     @property
     def executor(self) -> Executor:
-        """Takes the calls."""
+        """Executor that takes the calls."""
 
     @property
     def remote(self) -> bool:
@@ -103,7 +103,7 @@ class Workers(Protocol):
 
     @property
     def losses(self) -> Mapping[type[BaseException], str]:
-        """Exceptions that show that workers are lost, and what has happened then."""
+        """Exceptions that show that workers are lost, each with a text for the user."""
 
     def max_in_flight(self) -> int:
         """Return how many chunks should be submitted at once."""

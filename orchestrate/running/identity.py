@@ -27,19 +27,19 @@ class Fmu(Protocol):
 
     @property
     def path(self) -> Path:
-        """The FMU file."""
+        """Path of the FMU file."""
 
     @property
     def name(self) -> str:
-        """The model name."""
+        """Name of the model."""
 
     @property
     def guid(self) -> str:
-        """The GUID, or instantiation token."""
+        """GUID (FMI 2.0) or instantiation token (FMI 3.0)."""
 
     @property
     def fmi_version(self) -> str:
-        """The FMI version, such as 3.0."""
+        """Version of FMI, such as 3.0."""
 
 
 Identity = dict[str, Any]

@@ -30,15 +30,15 @@ class Chunk:
     Attributes
     ----------
     index : int
-    first, last : int
-        Its items: from the first up to, not including, the last.
+    start, stop : int
+        Its items: from ``start`` up to, not including, ``stop``.
     after : int, optional
         The chunk whose result it starts from.
     """
 
     index: int
-    first: int
-    last: int
+    start: int
+    stop: int
     after: int | None
 
 
@@ -54,7 +54,7 @@ class Job(ABC):
 
     name: str
     models: ClassVar[tuple[str, ...]] = ("TwoMassImpactOscillator",)
-    chunk: ClassVar[int] = 1
+    chunk_size: ClassVar[int] = 1
     sequential: ClassVar[bool] = False
     has_final_chunk: ClassVar[bool] = (
         False  # a sequential job's last chunk starts from all before it
@@ -63,7 +63,7 @@ class Job(ABC):
     warmup_items: ClassVar[int] = (
         0  # items after which a sequential job has forgotten its beginning
     )
-    item: ClassVar[str] = "it"  # what the progress bar counts
+    item: ClassVar[str] = "item"  # what the progress bar counts
 
     def needs(self) -> tuple[str, ...]:
         """Return the names of the jobs whose results this one starts from."""
@@ -136,9 +136,9 @@ class Job(ABC):
         chunks: list[Chunk] = []
         for number in range(series):
             begin, end = number * count // series, (number + 1) * count // series
-            for first in range(begin, end, self.chunk):
+            for first in range(begin, end, self.chunk_size):
                 after = len(chunks) - 1 if self.sequential and first > begin else None
-                chunks.append(Chunk(len(chunks), first, min(first + self.chunk, end), after))
+                chunks.append(Chunk(len(chunks), first, min(first + self.chunk_size, end), after))
         if self.gathers:
             chunks.append(Chunk(len(chunks), count, count + 1, len(chunks) - 1))
         return chunks

@@ -112,7 +112,7 @@ class Progress:
 
     @property
     def complete(self) -> bool:
-        """Whether the result is there."""
+        """Whether the job's result is complete."""
         return self.result is not None
 
     def done(self) -> int:
@@ -121,7 +121,7 @@ class Progress:
 
     def size(self, index: int) -> int:
         """Return the number of items of a chunk."""
-        return self.chunks[index].last - self.chunks[index].first
+        return self.chunks[index].stop - self.chunks[index].start
 
     def start(self, inputs: Mapping[str, xr.Dataset]) -> None:
         """Make the items, once the needed results are there."""
@@ -195,9 +195,9 @@ class Progress:
         first, last = max(self.gaps(), key=lambda gap: gap[1] - gap[0], default=(0, 0))
         if self.job.warmup_items and last - first >= MIN_GAP:
             chunk = self.chunks[(first + last) // 2]
-            begin = self.chunks[first].first
+            begin = self.chunks[first].start
             warmup_items = self.item_range(
-                max(chunk.first - self.job.warmup_items, begin), chunk.first
+                max(chunk.start - self.job.warmup_items, begin), chunk.start
             )
             yield Task(chunk, self.items_of(chunk), None, warmup_items, True)
 
@@ -215,7 +215,7 @@ class Progress:
 
     def items_of(self, chunk: Chunk) -> Sequence[Any]:
         """Return a chunk's items."""
-        return self.item_range(chunk.first, chunk.last)
+        return self.item_range(chunk.start, chunk.stop)
 
     def item_range(self, first: int, last: int) -> Sequence[Any]:
         """Return the items from ``first`` up to, not including, ``last``."""

@@ -228,7 +228,7 @@ class Runner:
                     break
                 chosen = {model: fmus[model] for model in state.job.models}
                 state.under_way.add(task.chunk.index)
-                self.describe(bar, state.job.progress_note(task.chunk.first))
+                self.describe(bar, state.job.progress_note(task.chunk.start))
                 code = state.identity["code"] if workers.remote else None
                 future = workers.executor.submit(
                     compute, state.job, chosen, task.items, task.previous, task.warmup_items, code

@@ -225,7 +225,7 @@ class Disk(Store):
 
     @property
     def journal(self) -> Journal:
-        """The journal, of a job that is not finished."""
+        """Journal of a job that is not finished."""
         assert self._journal is not None, "finished"
         return self._journal
 

@@ -1,4 +1,4 @@
-"""What a TOML file describes can be read from one: how is said where all of its kinds are known."""
+"""Base class of what a TOML file describes: ``from_file`` by a reader that `.files` registers."""
 
 from __future__ import annotations
 

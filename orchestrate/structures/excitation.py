@@ -1,4 +1,8 @@
-"""The harmonic motion of the box that shakes a structure."""
+"""The harmonic motion of the box that shakes a structure.
+
+Excitations of all other kinds (sines that sweep, random vibration, shocks, records) are in
+:mod:`orchestrate.laboratory`.
+"""
 
 from __future__ import annotations
 

@@ -101,7 +101,7 @@ def resonance(structure: Structure, drive: Drive) -> float:
 
 
 def half_width(structure: Structure, drive: Drive) -> float:
-    """Return half the width of that resonance at half its power: its decay rate over omega."""
+    """Return half the resonance's width at half power over omega: its decay rate."""
     roots = free_roots(structure, drive)
     return float(-roots[np.argmax(np.abs(roots))].real)
 
@@ -241,7 +241,7 @@ def torus_points(
 
 
 def losses(structure: Structure, drive: Drive) -> tuple[Place | None, Place | None]:
-    """Return where a slow ramp up and one down lose their stable motion: by a fold, or before it.
+    """Return where slow ramps up and down lose their stable motion: at a fold or before it.
 
     Returns
     -------

@@ -62,7 +62,7 @@ class System(NamedTuple):
 
 @dataclass(frozen=True)
 class CaptureJob(Job):
-    """Starts from rest, one item one value of the parameter; as in :func:`orchestrate.capture`.
+    """Job of starts from rest, one value of the parameter per item.
 
     Attributes
     ----------
@@ -98,7 +98,7 @@ class CaptureJob(Job):
         return [with_value(system, self.over, value) for value in self.values] or [system]
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[System], previous: Any) -> Table:
-        """Compute the outcomes at all voltages, and the border, of some values."""
+        """Compute the outcomes at all voltages, and the threshold, for some values."""
         rows, borders = [], []
         for system in items:
             start = partial(self.start, fmus, system)
@@ -124,7 +124,7 @@ class CaptureJob(Job):
         return self.time or usual_limit(*system, distance)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return passed, captured or undecided over voltage and parameter, and the border."""
+        """Return passed, captured or undecided over voltage and parameter, and the threshold."""
         import xarray as xr
 
         kept = (slice(None),) if self.over else (0,)
@@ -190,7 +190,7 @@ def run_until_settled(
 
 
 class End(NamedTuple):
-    """End of the border's interval: a voltage, V, and the speed at which it settles, rad/s."""
+    """One end of the threshold's interval: voltage, V, and the speed reached there, rad/s."""
 
     voltage: float = math.nan
     speed: float = math.nan
@@ -251,7 +251,7 @@ def with_value(system: System, over: str, value: float) -> System:
 
 
 def axis(over: str, values: ArrayLike) -> Variable:
-    """Return the coordinate along a parameter."""
+    """Return the coordinate along a parameter, for a dataset."""
     if over in DRIVE:
         numbers = np.asarray(values, dtype=float)
         return variable(over, numbers, DRIVE[over].unit, DRIVE[over].description)
@@ -272,7 +272,7 @@ def voltages_of(voltage: tuple[float, float], count: int) -> tuple[float, ...]:
 
 
 def values_of(over: str | None, values: ArrayLike | None, system: System) -> tuple[float, ...]:
-    """Return the parameter's values, each tried on the system."""
+    """Check the parameter's values, each with the system, and return them."""
     if (over is None) != (values is None):
         raise InputError(f"over = {over!r} and values = {values!r}: expected both, or none of them")
     if over is None:

@@ -24,7 +24,7 @@ typedef struct {
     double box_position, box_velocity, box_acceleration, box_jerk, angle, speed, motor_energy, box_damper_energy, box_force_work, stored_energy;
 } Shaking;
 
-typedef struct {  /* as Master.memory() has it */
+typedef struct {  /* as Master.get_state() returns it */
     double time, voltage, slope, force_before, h_before, acceleration_before, jerk_before, level;
     Motion motion;
     Shaking shaking;

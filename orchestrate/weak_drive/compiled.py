@@ -31,7 +31,7 @@ SOURCE = Path(__file__).with_suffix(".c")
 PLACES = tuple(Revolution.__dataclass_fields__)
 
 
-class Side(ctypes.Structure):
+class FmuSide(ctypes.Structure):
     """Instance as the library calls it."""
 
     _fields_ = [
@@ -48,8 +48,8 @@ class Pair(ctypes.Structure):
     """Both instances, the structure, and the scheme."""
 
     _fields_ = [
-        ("oscillator", Side),
-        ("shaker", Side),
+        ("oscillator", FmuSide),
+        ("shaker", FmuSide),
         *((name, c_double) for name in ("m1", "m2", "k1", "k2", "d1", "d2")),
         *((name, c_double) for name in ("preload", "rest_1", "rest_2", "balance")),
         *((name, c_double) for name in ("tolerance", "easy", "converged")),
@@ -173,11 +173,11 @@ def pair_of(oscillator: Channel, shaker: Channel, structure: Structure, scheme: 
     return pair
 
 
-def side_of(channel: Channel) -> Side:
+def side_of(channel: Channel) -> FmuSide:
     """Return one instance; its channel has to live as long."""
     pointers = channel.pointers()
     counts = len(pointers.inputs), len(pointers.outputs)
-    return Side(
+    return FmuSide(
         *(pointers.instance, *pointers.functions),
         *(pointers.inputs, pointers.outputs),
         *(*counts, pointer(pointers.saved_state)),

@@ -48,7 +48,7 @@ HOLD, HOLD_OF_ROTOR = 4000.0, 200.0  # usual longest hold: in 1/omega, and in th
 class CoupleJob(CoupledRun):
     """Run of the coupled system as a job, a chunk of steps after the other."""
 
-    chunk: ClassVar[int] = 4_000
+    chunk_size: ClassVar[int] = 4_000
     sequential: ClassVar[bool] = True
     has_final_chunk: ClassVar[bool] = True
     item: ClassVar[str] = "step"
@@ -74,14 +74,14 @@ class CoupleJob(CoupledRun):
         chunks: list[Table] = []
         for chunk in self.chunks():
             previous = chunks[-1] if chunks else None
-            if chunk.first == self.steps():
+            if chunk.start == self.steps():
                 previous = concatenate_tables(chunks)
-            chunks.append(self.work(fmus, range(chunk.first, chunk.last), previous))
+            chunks.append(self.work(fmus, range(chunk.start, chunk.stop), previous))
         return concatenate_tables(chunks)
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Compute a chunk of steps, or the verdicts at the end."""
-        return self.work_on(fmus, items, previous, self.chunk, lambda run: run.revolve(items))
+        return self.work_on(fmus, items, previous, self.chunk_size, lambda run: run.revolve(items))
 
     def work_on(
         self,
@@ -112,12 +112,11 @@ class CoupleJob(CoupledRun):
             return {**revolve(run), **run.get_state(), **no_verdicts()}
 
     def progress_note(self, first: int) -> str:
-        """Return a note for the verdicts: they are no step, and may take as long as many."""
+        """Return the note that the progress bar shows during the held-voltage test."""
         return "voltages held where a jump is in doubt" if first == self.steps() else ""
 
     def verdicts(self, fmus: Mapping[str, Path], table: Table, every: int) -> np.ndarray:
-        """Return the results of the held-voltage test in both directions, shape (2, 3), where the
-        record does not decide.
+        """Run the held-voltage test where the record does not decide; shape (2, 3).
 
         Parameters
         ----------
@@ -168,9 +167,7 @@ class CoupleJob(CoupledRun):
         return Passing(row, before, after, rows_in_leg.look, half)
 
     def doubt(self, table: Table, up: bool) -> tuple[Passing, tuple[int, int]] | None:
-        """Return a passing that the record does not tell from a steep branch, by steps of the run,
-        and the steps between which the voltage goes that way.
-        """
+        """Return a doubtful passing in steps, and the first and last step of its sweep."""
         passing = None if self.control else self.passing(table, up)
         theory = theories(self.structure, self.drive)[UPWARD.index(up)]
         if passing is None or not is_doubtful(passing, self.structure.bonded, theory):
@@ -194,8 +191,8 @@ class CoupleJob(CoupledRun):
 
         if not len(table["time"]):
             raise InputError(
-                f"not one revolution of the motor in {self.schedule.duration:g} s: "
-                "expected a voltage that turns it, and time"
+                f"the motor completed no revolution in {self.schedule.duration:g} s: "
+                "raise the voltage or the duration"
             )
         variables: dict[str, Any] = {
             name: ("revolution", table[name], {"units": unit, "long_name": text})
@@ -227,7 +224,7 @@ class CoupleJob(CoupledRun):
         """Return the jumps up and down, or why there is none; if bonded, the averaged theory's
         too.
         """
-        held = [Verdict(*row) for row in table["verdicts"][-1]]
+        held = [Verdict(int(row[0]), *row[1:]) for row in table["verdicts"][-1]]
         theory, volts = theories(self.structure, self.drive), self.drive.volts(self.structure)
         final = list(held)
         if self.structure.bonded:
@@ -242,7 +239,7 @@ class CoupleJob(CoupledRun):
             if passing is None:
                 reasons.append(self.why_none(table, UPWARD[i]))
             elif jumps[i] is None:
-                ends = self.ends_within(table, UPWARD[i]) if held[i].what == UNDECIDED else ""
+                ends = self.ends_within(table, UPWARD[i]) if held[i].outcome == UNDECIDED else ""
                 reasons.append(ends or reason(passing, held[i], verdict, theory[i], self.hold))
             else:
                 reasons.append("")
@@ -278,9 +275,7 @@ class CoupleJob(CoupledRun):
         return why_none(self.sweep_leg(table, up)[0], up, resonance)
 
     def ends_within(self, table: Table, up: bool) -> str:
-        """Return that the voltage ceases to go a way before the speed is beyond both the bonded
-        resonance and the structure's own; empty where it is.
-        """
+        """Return why a direction is undecided: the sweep ends short of a resonance; else empty."""
         leg, rows = self.sweep_leg(table, up)
         low, high = own_resonance.dividing_speeds(self.structure, self.drive)
         end = float(leg.Omega[-LAST_REVOLUTIONS:].mean())
@@ -317,7 +312,7 @@ def concatenate_tables(tables: Sequence[Table]) -> Table:
 
 def held_columns(verdicts: Sequence[Verdict]) -> dict[str, Variable]:
     """Return the results of the held-voltage test, and between which voltages."""
-    codes = [int(verdict.what) for verdict in verdicts]
+    codes = [int(verdict.outcome) for verdict in verdicts]
     middles = [0.5 * (verdict.low + verdict.high) for verdict in verdicts]
     errors = [0.5 * abs(verdict.high - verdict.low) for verdict in verdicts]
     text = "voltage at which the motion is lost though it is held; where held voltages decide"

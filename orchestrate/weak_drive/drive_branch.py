@@ -109,11 +109,11 @@ class DriveBranchJob(Job):
 
     @property
     def settings(self) -> ContinuationSettings:
-        """Those of the tracer, which does not count the start as a point."""
+        """Settings of the tracer, which does not count the start as a point."""
         return ContinuationSettings(self.longest, self.most - 1)
 
     def max_turns(self, structure: Structure) -> int:
-        """Return the most revolutions after which a motion may repeat."""
+        """Return the largest period that is followed, in revolutions."""
         return 1 if structure.bonded else self.period
 
     def legs(self, fmus: tuple[Instance, Instance], structure: Structure) -> list[Leg]:
@@ -175,7 +175,7 @@ class DriveBranchJob(Job):
         return trace_branch(shooter, start, speeds, self.settings)
 
     def numbers(self, motions: Sequence[Motion]) -> np.ndarray:
-        """Return numbers of motions, NaN beyond them, shape (most, numbers)."""
+        """Return the columns of motions, padded with NaN, shape (most, numbers)."""
         table = np.full((self.most, len(COLUMNS) + MULTIPLIERS), np.nan, dtype=complex)
         volts, omega = self.drive.volts(self.structure), self.structure.omega
         for row, motion in zip(table, motions, strict=False):
@@ -186,7 +186,7 @@ class DriveBranchJob(Job):
         return table
 
     def codes(self, leg: Leg) -> np.ndarray:
-        """Return the kinds of a leg's bifurcations as numbers, -1 beyond them."""
+        """Return the kinds of a leg's bifurcations as numbers, padded with -1."""
         numbers = np.full(self.most, -1)
         codes = [BIFURCATIONS.index(each.kind) for each in leg.bifurcations][: self.most]
         numbers[: len(codes)] = codes
@@ -226,7 +226,7 @@ def labels(unit: str, text: str) -> dict[str, str]:
 
 
 def motion_variables(dims: tuple[str, ...], numbers: np.ndarray) -> dict[str, Variable]:
-    """Return numbers of motions as variables: the last axis is that of ``COLUMNS``."""
+    """Return columns of motions as variables of a dataset."""
     variables: dict[str, Variable] = {
         name: (dims, numbers[..., i].real, labels(unit, text))
         for i, (name, (unit, text)) in enumerate(COLUMNS.items())

@@ -43,7 +43,7 @@ SHARES = (0.6, 0.45, 0.3, 0.15)  # of the way from the jump down to the jump up:
 
 @dataclass(frozen=True)
 class DriveSpectraJob(Job):
-    """Spectra of both structures; what is not said here as in :func:`orchestrate.drive_spectra`.
+    """Job of the spectra of both structures; fields as in :func:`orchestrate.drive_spectra`.
 
     Attributes
     ----------
@@ -97,8 +97,8 @@ class DriveSpectraJob(Job):
             ends = run.revolve(steps)["time"][-self.revolutions - 1 :]
             if len(ends) < 2:
                 raise InputError(
-                    f"not two revolutions of the motor at {self.approach.last:g} V: expected a "
-                    "voltage that turns it, and time"
+                    f"the motor completed no two revolutions at {self.approach.last:g} V: "
+                    "raise the voltage or the duration"
                 )
             speed = TURN * (len(ends) - 1) / (ends[-1] - ends[0])
             return self.sample(run, TURN / speed / self.points), float(speed)
@@ -117,9 +117,7 @@ class DriveSpectraJob(Job):
         return np.array([motion.x1 - rest_1 + box, motion.x2 - rest_2 + box])
 
     def hangs(self, fmus: Mapping[str, Path]) -> bool:
-        """Return whether the delaminated structure, which jumps earlier, is still at the
-        resonance.
-        """
+        """Return whether the delaminated structure, the first to jump, is still at resonance."""
         short, structure = replace(self, revolutions=8, points=4), self.structure.as_delaminated()
         divide = own_resonance.dividing_speed(structure, self.drive) * structure.omega
         return short.record(fmus, structure)[1] < divide

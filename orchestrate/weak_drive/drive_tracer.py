@@ -81,17 +81,17 @@ class Motion(NamedTuple):
 
     @property
     def place(self) -> Floats:
-        """Voltage over K omega and speed over omega."""
+        """Position on the branch: voltage over K omega and speed over omega."""
         return self.root.unknowns[-2:]
 
 
 class ShooterStepper(ArclengthStepper[Shooter]):
-    """A stepper whose every try begins with the Jacobian of the motion where it is."""
+    """Arclength stepper that starts every attempt with the Jacobian of the current motion."""
 
     jacobian: Floats
 
     def put_to(self, motion: Motion) -> None:
-        """Go on from a motion."""
+        """Move the stepper to a motion."""
         self.root, self.jacobian = motion.root, motion.matrix
 
     def root_after(self, length: float) -> Root:
@@ -144,11 +144,11 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         return motion_at(self.shooter, root, self.stepper.root.tangent)
 
     def limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
-        """Return those of the speed."""
+        """Return the limits of the speed."""
         return self.shooter.size + 1, [self.speeds]
 
     def go_on_from(self, point: Motion) -> Motion:
-        """Put the stepper to a motion, begun far from impacts."""
+        """Move the stepper to a motion whose period begins far from impacts."""
         motion = start_far_from_impacts(self.shooter, point)
         self.stepper.put_to(motion)
         self.shot = self.shooter.shoot(motion.root.unknowns)
@@ -163,7 +163,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         return self.shooter.shoot(root.unknowns).like(self.shot)
 
     def test(self, point: Motion, kind: BifurcationKind) -> float:
-        """Return how the voltage changes, or a product of the multipliers."""
+        """Evaluate a test function: change of the voltage, or a product of multipliers."""
         values = point.multipliers
         if kind == FOLD:
             return float(point.root.tangent[-2])
@@ -172,16 +172,16 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         return float(np.prod([1.0 - a * b for a, b in combinations(values, 2)]).real)
 
     def confirms(self, kind: BifurcationKind, point: Motion, part: float) -> bool:
-        """Return whether it is a pair that leaves the circle: two real ones of product 1 do not."""
+        """Return whether a torus is one: its pair is complex, not two real ones of product 1."""
         pairs = point.multipliers[np.abs(point.multipliers.imag) > COMPLEX]
         return kind != TORUS or bool((np.abs(np.abs(pairs) - 1.0) < ON_CIRCLE).any())
 
     def location_tolerances(self, length: float) -> dict[str, float]:
-        """Return them as a part of the step: each motion on the way takes many periods."""
+        """Return the tolerances of a bifurcation's location, as parts of the step."""
         return {"xtol": ACCURACY * length}
 
     def end_before(self, step: BranchStep[Motion]) -> tuple[str, Iterable[Motion]]:
-        """Return that the branch ends where a motion of half the period is passed.
+        """Return why a branch ends where a motion of half the period is passed; else empty.
 
         Beyond it come the same motions again, half a period later.
         """
@@ -189,7 +189,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         return (HALVED if self.half_period_change @ change < 0.0 else ""), ()
 
     def end_without_root(self, segment: BranchSegment[Motion]) -> None:
-        """Say why a branch ends where Newton's method finds no motion further on.
+        """Return why a branch ends where Newton's method finds no motion further on.
 
         Steps are short there: one motion stands for all that are too near to be seen in a plot.
         """
@@ -216,7 +216,7 @@ def trace_branch(
 
 
 def motion_at(shooter: Shooter, root: Root, direction: Floats) -> Motion:
-    """Return a root that has just been solved for as a motion, its tangent along a direction."""
+    """Make a motion of a root just solved for, its tangent along a direction."""
     along = root if root.tangent @ direction > 0.0 else root.reversed()
     values = shooter.multipliers()
     period = shooter.observe_period(root.unknowns)
@@ -286,5 +286,5 @@ def half_period_change(shooter: Shooter, root: Root) -> Floats:
 
 
 def distance_between(first: Motion, second: Motion) -> float:
-    """Return the distance of motions: in voltage over K omega and speed over omega."""
+    """Return the distance of two motions in (voltage over K omega, speed over omega)."""
     return float(np.linalg.norm(first.place - second.place))

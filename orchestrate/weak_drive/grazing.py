@@ -24,7 +24,7 @@ BACK = 3  # motions over which the slope of a margin is taken
 
 
 class Margins(NamedTuple):
-    """What falls to 0 at a grazing, over the unit of length.
+    """Distances to grazing of a motion's gaps and impacts, over the unit of length.
 
     Attributes
     ----------
@@ -86,7 +86,7 @@ def turning_gap(
 def next_grazing(
     shooter: Shooter, motions: Sequence[tuple[Floats, float]]
 ) -> tuple[BifurcationKind | None, float]:
-    """Return what grazes next along a branch, and how far on, from its last motions.
+    """Extrapolate from a branch's last motions what grazes next, and how far on.
 
     A margin is taken to fall as it did over the last motions. The very last ones may be beyond.
 

@@ -51,7 +51,7 @@ class Verdict(NamedTuple):
 
     Attributes
     ----------
-    what : int
+    outcome : int
         ``NOT_ASKED``, ``LOST``, ``FOLLOWS``, ``LEFT_BEFORE`` or ``UNDECIDED``.
     low, high : float
         The last voltage at which the motion stays and the first at which it is lost, V; of an
@@ -59,7 +59,7 @@ class Verdict(NamedTuple):
         else.
     """
 
-    what: float
+    outcome: int
     low: float = math.nan
     high: float = math.nan
 
@@ -243,7 +243,7 @@ class HeldVoltageTest:
         up: bool,
         resonance: tuple[float, float] | None = None,
     ) -> Verdict:
-        """Say whether a motion is lost on the way through the resonance.
+        """Classify whether a motion is lost on the way through the resonance.
 
         Parameters
         ----------
@@ -282,16 +282,14 @@ class HeldVoltageTest:
         if not beyond(points[-1]):
             return Verdict(UNDECIDED, points[-1].voltage, target)
         verdict = self.between(list(points), sign)
-        if verdict.what == FOLLOWS and not (beyond(points[-1], far) and self.comes_back(points)):
+        if verdict.outcome == FOLLOWS and not (beyond(points[-1], far) and self.comes_back(points)):
             return Verdict(UNDECIDED, low.voltage, points[-1].voltage)
         return verdict
 
     def further(
         self, point: Settled, voltage: float, last: int, sign: float, speed: float
     ) -> list[Settled]:
-        """Go on from a voltage in steps until a speed is well past, but no further than the run
-        goes; those where nothing settles are left out.
-        """
+        """Go on in steps until a speed is well past, as far as the run went; return points."""
         end, points = self.voltage(last), [point]
         step, missing = sign * self.settings.stair * self.volts, sign * (speed - point.speed)
         left = self.settings.max_stairs + math.ceil(max(missing, 0.0) / self.settings.stair)
@@ -313,7 +311,7 @@ class HeldVoltageTest:
         return min(past, end) if sign > 0.0 else max(past, end)
 
     def comes_back(self, points: list[Settled]) -> bool:
-        """Go the same steps back: whether the speeds are the same, as far as they settle."""
+        """Go the same steps back; return whether the speeds are the same, as far as they settle."""
         last = points[-1]
         for point in reversed(points[:-1]):
             back = self.step_from(last, point.voltage)
@@ -323,7 +321,7 @@ class HeldVoltageTest:
         return True
 
     def stairs(self, low: Settled, target: float) -> list[Settled]:
-        """Go to a voltage in steps; those where nothing settles are left out."""
+        """Go to a voltage in steps; return the first point and those that settled."""
         span = abs(target - low.voltage) / self.volts
         count = max(1, min(math.ceil(span / self.settings.stair), self.settings.max_stairs))
         points = [low]
@@ -334,9 +332,7 @@ class HeldVoltageTest:
         return points
 
     def falls_back(self, low: Settled, sign: float) -> bool:
-        """Return whether a held speed goes back from the ramp's, which lags: then to another
-        motion.
-        """
+        """Return whether a held speed falls behind the ramp's: then it went to another motion."""
         allowed = 2.0 * self.settings.distinct + 3.0 * low.error
         return sign * (low.speed - low.begin) < -allowed
 
@@ -377,7 +373,7 @@ class HeldVoltageTest:
         return min(settings.smallest_jump + noise(low, high), settings.largest_scatter)
 
     def inside(self, low: Settled, high: Settled) -> Iterator[Settled]:
-        """Yield voltages between two, held: the middle first."""
+        """Hold voltages between two points and yield the results: the middle first."""
         for part in (0.5, 0.25, 0.75):
             yield self.step_from(low, low.voltage + part * (high.voltage - low.voltage))
 
@@ -401,16 +397,16 @@ class HeldVoltageTest:
         return point
 
     def is_within(self, low: Settled, high: Settled, width: float) -> bool:
-        """Return whether two voltages are as close as is asked for, over K omega."""
+        """Return whether two voltages are closer than a width, over K omega."""
         return abs(high.voltage - low.voltage) <= width * self.volts
 
     def differ(self, point: Settled, other: Settled) -> bool:
-        """Return whether both have settled, at different speeds."""
+        """Return whether both points have settled, at different speeds."""
         return abs(point.speed - other.speed) > self.settings.distinct + noise(point, other)
 
 
 def noise(point: Settled, other: Settled) -> float:
-    """Return three errors of the difference of two speeds."""
+    """Return three standard errors of the difference of two speeds."""
     return 3.0 * math.hypot(point.error, other.error)
 
 
@@ -431,8 +427,7 @@ def block_means(speeds: np.ndarray, settings: HoldSettings) -> np.ndarray:
 
 
 def settled_speed(means: np.ndarray, settings: HoldSettings) -> tuple[float, float]:
-    """Return the speed that a motion settles at, by its mean speeds, and the error of an irregular
-    one; NaN where they do not say.
+    """Return the speed that block means settle at, and its error; NaN where they do not settle.
 
     Means that approach a limit as an exponential say it before they are there (Aitken's process):
     three such limits in turn must agree. By a fold the approach is slower than any exponential, and
@@ -465,9 +460,9 @@ def settled_speed(means: np.ndarray, settings: HoldSettings) -> tuple[float, flo
 
 
 def with_final_chunk(chunks: list[Chunk]) -> list[Chunk]:
-    """Return chunks with the last item, which is not a step, as one of its own."""
+    """Return chunks with the final item, the held-voltage test, as a chunk of its own."""
     last = chunks[-1]
-    if last.last - last.first == 1:
+    if last.stop - last.start == 1:
         return chunks
-    steps = Chunk(last.index, last.first, last.last - 1, last.after)
-    return [*chunks[:-1], steps, Chunk(last.index + 1, last.last - 1, last.last, last.index)]
+    steps = Chunk(last.index, last.start, last.stop - 1, last.after)
+    return [*chunks[:-1], steps, Chunk(last.index + 1, last.stop - 1, last.stop, last.index)]

@@ -172,8 +172,7 @@ class JumpVoltagesJob(Job):
         return xr.Dataset(variables, coordinates, {"title": "Jump voltages of the weak drive"})
 
     def missed(self, bonded: np.ndarray) -> np.ndarray:
-        """Return how far jumps of the bonded structure at rate 0, up and down, are from their
-        folds, V.
+        """Return the distance of bonded jumps at rate 0 from the theory's folds, up and down, V.
 
         0 where there is no jump, or the averaged theory has no folds.
         """

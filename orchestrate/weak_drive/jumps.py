@@ -36,7 +36,7 @@ class SweepLeg(NamedTuple):
 
 
 class Passing(NamedTuple):
-    """How the speed passes the resonance, by rows.
+    """How the speed passes the resonance, as row indices of the run.
 
     Attributes
     ----------
@@ -156,7 +156,7 @@ def lag_difference(values: np.ndarray, width: int) -> np.ndarray:
 
 
 def extent(runs: np.ndarray, top: int) -> tuple[int, int]:
-    """Return first and last index of the stretch of true values around ``top``."""
+    """Return first and last index of the stretch of true values that contains ``top``."""
     breaks = np.flatnonzero(~runs)
     before, after = breaks[breaks < top], breaks[breaks > top]
     return (

@@ -51,9 +51,7 @@ STATE_INDEX = {  # of what is remembered
 def parts_of(
     numbers: Any,
 ) -> tuple[Any, OscillatorOutputs, ShakerOutputs, Any]:
-    """Return the master's own part of its state, both outputs, the balance's; of columns of many
-    too.
-    """
+    """Split a state into the master's own part, both outputs, and the balance's."""
     motion, shaking = (
         STATE_INDEX[OscillatorOutputs._fields[0]],
         STATE_INDEX[ShakerOutputs._fields[0]],
@@ -64,7 +62,7 @@ def parts_of(
 
 
 class Algorithm(NamedTuple):
-    """Way to do a communication step.
+    """Algorithm of a communication step.
 
     Attributes
     ----------
@@ -148,17 +146,17 @@ class Scheme:
 
     @property
     def passes(self) -> int:
-        """How often a step is done."""
+        """Number of times that a step is done."""
         return ALGORITHMS[self.algorithm].passes
 
     @property
     def goes_back(self) -> bool:
-        """Whether states are saved and restored."""
+        """Whether FMU states are saved and restored."""
         return self.passes > 1
 
 
 class Master:
-    """Two initialised instances, stepped together.
+    """Co-simulation master of two initialised instances.
 
     :class:`.compiled.CompiledMaster` does the same with the same bits, faster.
 
@@ -229,7 +227,7 @@ class Master:
         h: float | None = None,
         kept: np.ndarray | None = None,
     ) -> int:
-        """Do intervals one after the other, up to the first that completes the revolution.
+        """Do intervals one after the other until a revolution is complete.
 
         Parameters
         ----------
@@ -239,7 +237,7 @@ class Master:
             The one to begin with.
         h : float, optional
             Their length, s, where it is not the scheme's.
-        kept : ndarray, shape (len(voltages), len(memory())), optional
+        kept : ndarray, shape (len(voltages), len(get_state())), optional
             Takes the memory after each.
 
         Returns
@@ -311,7 +309,7 @@ class Master:
         return abs(defect) / exchanged if exchanged else 0.0
 
     def _advance(self, done: Step, h: float) -> None:
-        """Go to the step's end."""
+        """Take the step's end as the present point, and account for its energies."""
         if self.revolution:
             ends = self.motion, self.shaking
             self.revolution.add(self.structure, ends, done, self.time, h)
@@ -417,7 +415,7 @@ class Master:
         return Step(acceleration, motion, self._shaking())
 
     def _pass(self, acceleration: Cubic, h: float) -> tuple[OscillatorOutputs, Cubic]:
-        """Step both once; return the structure's end, and the force passed to the shaker."""
+        """Step structure and shaker once; return the structure's end and the shaker's force."""
         self.oscillator.put(*acceleration)
         self.oscillator.step(self.time, h)
         motion = self._motion()

@@ -117,14 +117,14 @@ def dividing_speeds(structure: Structure, drive: Drive) -> tuple[float, float]:
 
 
 def shift(structure: Structure, drive: Drive) -> float:
-    """Return how far the structure's resonance lies beyond that of the bonded one, over omega."""
+    """Return the structure's resonance minus the bonded one's, over omega."""
     if structure.bonded:
         return 0.0
     return elastic_resonance(structure, drive) - averaged.resonance(structure, drive)
 
 
 def clear_shift(structure: Structure, drive: Drive) -> float:
-    """Return :func:`shift` where it is clear, else 0."""
+    """Return :func:`shift` if it exceeds the widths of fold range and resonance, else 0."""
     distance = shift(structure, drive)
     folds = averaged.folds(structure, drive) if distance else []
     half = 0.5 * (folds[-1].Omega - folds[0].Omega) if folds else 0.0

@@ -62,7 +62,7 @@ KEPT = "sampled "  # before the names of samples in a table that has revolutions
 
 @dataclass(frozen=True)
 class PassageJob(Job):
-    """Run of the coupled system with all its communication points.
+    """Job of a run that keeps all its communication points.
 
     Attributes
     ----------
@@ -75,7 +75,7 @@ class PassageJob(Job):
     around: float | None
 
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
-    chunk: ClassVar[int] = 10_000
+    chunk_size: ClassVar[int] = 10_000
     sequential: ClassVar[bool] = True
     has_final_chunk: ClassVar[bool] = True
     item: ClassVar[str] = "step"
@@ -102,7 +102,7 @@ class PassageJob(Job):
             names = (KEPT + name for name in SAMPLES)
             return {**revolutions, **dict(zip(names, columns, strict=True))}
 
-        return self.run.work_on(fmus, items, previous, self.chunk, revolve)
+        return self.run.work_on(fmus, items, previous, self.chunk_size, revolve)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Return samples over time, and the jumps."""
@@ -300,7 +300,7 @@ def waterfall(
 
 
 def over_angle(data: xr.Dataset, mass: int, points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return times and displacements in space at equal angles, ``points`` per revolution.
+    """Interpolate displacements in space at equal angles; return them with their times.
 
     Where the motor turns back for a moment, samples are left out until it has come as far again.
     """

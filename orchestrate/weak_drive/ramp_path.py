@@ -25,7 +25,7 @@ MOST_EVENTS = 12
 
 @dataclass
 class Path:
-    """What a slow ramp meets, in one direction.
+    """Path of a slow ramp in one direction.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class Path:
 
 
 class Motions(NamedTuple):
-    """A leg from where the ramp comes on it, in its direction: each shape (n,)."""
+    """Motions of a leg from where the ramp meets it, in its direction: each shape (n,)."""
 
     voltage: np.ndarray
     speed: np.ndarray
@@ -56,7 +56,7 @@ class Motions(NamedTuple):
     end: str
 
     def from_index(self, first: int, forward: bool) -> Motions:
-        """Return those from an index on, in one direction; backward to where the leg was begun."""
+        """Return the motions from an index on, forward or backward."""
         rows = slice(first, None) if forward else slice(first, None, -1)
         end = self.end if forward else LIMIT
         columns = (self.voltage, self.speed, self.stable, self.revolutions)
@@ -138,7 +138,7 @@ class Branches:
         return None if turned else leg.from_index(begin, forward=True)
 
     def follow(self, motions: Motions, path: Path, sign: float) -> Motions | None:
-        """Go on to where the ramp leaves its motions; those it goes on with, None at the end."""
+        """Follow motions to where the ramp leaves them; return the next ones, None at the end."""
         lost = False  # slowly, at a Neimark-Sacker point: a ramp does not see it
         for i in range(len(motions.speed) - 1):
             turned = sign * (motions.voltage[i + 1] - motions.voltage[i]) < 0.0
@@ -153,13 +153,13 @@ class Branches:
             if fold is not None or turned:
                 return self.jump(fold, path, sign)
             if not lost:
-                return self.double(flip, motions, i, path, sign)
+                return self.leg_after_period_doubling(flip, motions, i, path, sign)
         if motions.end != LIMIT:
             path.end = f"its motion ends at {motions.voltage[-1]:.5f} V: {motions.end}"
         return None
 
     def jump(self, fold: int | None, path: Path, sign: float) -> Motions | None:
-        """Return the motions that a ramp jumps to, from where it lands."""
+        """Return the motions that a ramp jumps to at a fold; None if the path ends there."""
         if fold is None:
             path.end = "its motion turns back at a fold that was not located"
             return None
@@ -189,15 +189,15 @@ class Branches:
 
     @staticmethod
     def landing_speed(motions: Motions, i: int, voltage: float) -> float:
-        """Return the speed at a voltage between two motions, rad/s."""
+        """Interpolate the speed at a voltage between two motions, rad/s."""
         low, high = motions.voltage[i : i + 2]
         part = (voltage - low) / (high - low) if high != low else 0.0
         return float(motions.speed[i] + part * (motions.speed[i + 1] - motions.speed[i]))
 
-    def double(
+    def leg_after_period_doubling(
         self, flip: int | None, motions: Motions, i: int, path: Path, sign: float
     ) -> Motions | None:
-        """Return the stable motions of twice the period that go on from a period doubling."""
+        """Return the traced leg of twice the period; without one say why the path ends."""
         voltage = float(motions.voltage[i])
         if flip is not None:
             voltage = float(self.places[flip][0])

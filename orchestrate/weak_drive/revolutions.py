@@ -51,7 +51,7 @@ class Revolutions:
         self._now = master.revolution = Revolution.begin(master.motion, master.shaking)
 
     def add(self) -> tuple[float, ...] | None:
-        """Take the state after a step into account.
+        """Add the state after a step; return a row if it completes a revolution.
 
         Returns
         -------

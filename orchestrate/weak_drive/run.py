@@ -84,9 +84,7 @@ class Run:
         return float(self.oscillator.get("impact_count")[0])
 
     def voltage(self, i: int) -> float:
-        """Return the voltage over a step, constant: the mean of a ramp, or a controller's part of
-        it.
-        """
+        """Return a step's voltage: the schedule's mean, or the controller's part of it."""
         h, control = self.job.scheme.h, self.job.control
         available = self.job.schedule.voltage((i + 0.5) * h)
         if control is None:
@@ -118,14 +116,14 @@ class Run:
         return dict(zip(COLUMNS, table.T.copy(), strict=True))
 
     def at_once(self, steps: Sequence[int]) -> Iterator[array[float]]:
-        """Voltages of steps that follow each other unseen: all, or one where a controller looks."""
+        """Yield the voltages of steps done in one call: of all, or of one with a controller."""
         if self.job.control is None:
             yield array("d", map(self.voltage, steps))
         else:
             yield from (array("d", (self.voltage(i),)) for i in steps)
 
     def get_state(self) -> Table:
-        """Return everything that a run goes on from, one row."""
+        """Return the complete state of a run as one row."""
         states = {
             "oscillator_state": np.frombuffer(self.oscillator.save_state(), dtype=np.uint8),
             "shaker_state": np.frombuffer(self.shaker.save_state(), dtype=np.uint8),

@@ -65,7 +65,7 @@ class Outcome(NamedTuple):
 
 
 class Settled(NamedTuple):
-    """The last stretch of a speed that has settled.
+    """Last stretch of a speed that has settled.
 
     Attributes
     ----------
@@ -84,7 +84,7 @@ class Settled(NamedTuple):
 
 @dataclass(frozen=True)
 class SettlingTest:
-    """Settings of what counts as settled.
+    """Settings of the test for a settled speed.
 
     Attributes
     ----------

@@ -37,7 +37,7 @@ HEAVY = 1e6  # times its inertia, a rotor that keeps its speed
 
 
 class Period(NamedTuple):
-    """What is seen of a motion over a period.
+    """Observations of a motion over one period.
 
     Attributes
     ----------
@@ -66,7 +66,7 @@ class Period(NamedTuple):
 
 
 class Shot(NamedTuple):
-    """Both FMUs after a period.
+    """State of both FMUs after a period.
 
     Attributes
     ----------
@@ -83,7 +83,7 @@ class Shot(NamedTuple):
     contact: bool
 
     def like(self, other: Shot) -> bool:
-        """Return whether no grazing lies between two motions: the end is smooth between them.
+        """Return whether the motion is smoothly connected to another: no grazing between them.
 
         In a chattering that ends in contact the last impacts come and go with next to no speed.
         """
@@ -149,7 +149,7 @@ class Shooter:
         self.begin_together(structure.bonded)
 
     def begin_together(self, together: bool) -> None:
-        """Set whether periods begin with the masses in contact from now on."""
+        """Set whether periods begin with the masses in contact."""
         self.together = together
         structure, drive, length = self.structure, self.drive, self.length
         omega = structure.omega
@@ -166,12 +166,12 @@ class Shooter:
         self._last: tuple[Floats, Floats] | None = None
 
     def repeat_after(self, revolutions: int) -> None:
-        """Set after how many revolutions motions are to repeat from now on."""
+        """Set the number of revolutions in a period."""
         self.turns, self.count = revolutions, self.count // self.turns * revolutions
         self.matrix, self._last = np.empty((0, 0)), None
 
     def change_in(self, unknowns: Floats, revolutions: int) -> Floats:
-        """Return the change of the state in some of the revolutions after which it repeats."""
+        """Return the change of the state after a part of the period's revolutions."""
         turns, matrix, last = self.turns, self.matrix, self._last
         self.repeat_after(revolutions)
         try:
@@ -276,7 +276,7 @@ class Shooter:
         return Shot(end, int(self.fmus[0].get("impact_count")[0]), contact)
 
     def observe_period(self, unknowns: Floats) -> Period:
-        """Run a motion over a period, and return what is seen of it."""
+        """Run a motion over a period and return its observations."""
         master, voltage = self.begin_period(unknowns)
         ends = master.motion, master.shaking
         revolution = master.revolution = Revolution.begin(*ends, turn=math.nan)  # never complete
@@ -289,8 +289,7 @@ class Shooter:
         return Period(amplitude, impacts, self.turns, *self.best_start(kept[:-1]))
 
     def best_start(self, kept: Floats) -> tuple[int, float, bool, bool]:
-        """Return where a period is best begun, as :class:`Period` has it: ``clear``, ``share``,
-        ``together``; and ``sticks``.
+        """Return a period's best start: ``clear``, ``share``, ``together``, ``sticks``.
 
         Parameters
         ----------
@@ -321,9 +320,7 @@ class Shooter:
         return np.where(inside, np.maximum(force, 0.0), 0.0)
 
     def begin_later(self, unknowns: Floats, steps: int, together: bool) -> Floats:
-        """Begin periods some steps later from now on, together or apart; the unknowns of the same
-        motion there.
-        """
+        """Begin periods some steps later; return the same motion's unknowns there."""
         master, voltage = self.begin_period(unknowns)
         master.run([voltage] * steps)
         self.angle = master.shaking.angle % TURN
@@ -363,11 +360,11 @@ class Shooter:
         return self.matrix
 
     def restart(self, root: Floats, matrix: Floats) -> None:
-        """Go on from a root with its Jacobian, whatever has been tried from there."""
+        """Restart from a root with its Jacobian; what was tried since is dropped."""
         self.matrix, self._last = matrix, (root, np.zeros(self.size + 1))
 
     def renew_jacobian(self, unknowns: Floats) -> Floats:
-        """Make the Jacobian anew by differences, at a root or near one.
+        """Compute the Jacobian anew by differences, at a root or near one.
 
         Raises
         ------
@@ -385,7 +382,7 @@ class Shooter:
         return self.matrix
 
     def derivative(self, unknowns: Floats, which: int, base: Shot) -> Floats:
-        """Return the derivative of a period's end by one unknown.
+        """Compute the derivative of a period's end by one unknown.
 
         Raises
         ------
@@ -395,8 +392,8 @@ class Shooter:
         """
         known: dict[float, Shot] = {0.0: base}
 
-        def end(change: float) -> Floats | None:
-            """Return the end after a change; None where a grazing lies between."""
+        def end_state_shifted_by(change: float) -> Floats | None:
+            """Return the period's end state with this unknown shifted; None across a grazing."""
             if change not in known:
                 moved = unknowns.copy()
                 moved[which] += change
@@ -406,7 +403,8 @@ class Shooter:
         for change in CHANGES:
             for difference in (central, one_sided):
                 for size in (change,) if difference is central else (change, -change):
-                    fine, coarse = difference(end, size), difference(end, 2.0 * size)
+                    fine = difference(end_state_shifted_by, size)
+                    coarse = difference(end_state_shifted_by, 2.0 * size)
                     if fine is None or coarse is None:
                         continue
                     if np.abs(fine - coarse).max() <= AGREEMENT * max(1.0, np.abs(fine).max()):
@@ -429,7 +427,7 @@ class Shooter:
         return np.asarray(flow[:count] - np.outer(drift[:count], flow[count]) / drift[count])
 
     def flip_direction(self) -> Floats:
-        """Return the direction of length 1 of the state that the map reverses: multiplier -1."""
+        """Return the unit eigenvector of the multiplier -1."""
         values, vectors = np.linalg.eig(self.map_derivative())
         direction = vectors[:, np.argmin(np.abs(values + 1.0))].real
         return fix_sign(np.asarray(direction / np.linalg.norm(direction)))
@@ -439,15 +437,13 @@ Ends = Callable[[float], "Floats | None"]  # of a period, by a change of an unkn
 
 
 def central(end: Ends, change: float) -> Floats | None:
-    """Return a derivative by central differences; None if an end is of another kind."""
+    """Compute a derivative by central differences; None across a grazing."""
     after, before = end(change), end(-change)
     return None if after is None or before is None else (after - before) / (2.0 * change)
 
 
 def one_sided(end: Ends, change: float) -> Floats | None:
-    """Return a derivative by one-sided differences of the same order; None if an end is of another
-    kind.
-    """
+    """Compute a derivative by one-sided differences of order two; None across a grazing."""
     here, near, far = end(0.0), end(change), end(2.0 * change)
     if here is None or near is None or far is None:
         return None

@@ -46,7 +46,7 @@ Values = Mapping[str, float | bool]
 
 
 def tag(prefix: str, name: str) -> str:
-    """Return a qualified name."""
+    """Return an XML name with its namespace."""
     return f"{{{NAMESPACES[prefix]}}}{name}"
 
 
@@ -60,7 +60,7 @@ def document(root: ET.Element) -> bytes:
 
 
 def ssv(component: str) -> str:
-    """Return where the parameters of a component are."""
+    """Return the path of a component's parameter file in the package."""
     return f"resources/{component}.ssv"
 
 
@@ -120,7 +120,7 @@ def system_description(
 
 
 def parameter_values(values: Values) -> bytes:
-    """Return parameters of a component; what is false is left to its default."""
+    """Return a component's parameter file; false parameters keep their defaults."""
     root = ET.Element(tag("ssv", "ParameterSet"), version="1.0", name=SET)
     group = ET.SubElement(root, tag("ssv", "Parameters"))
     for variable, value in values.items():

@@ -75,20 +75,20 @@ def check_against_theory(verdict: Verdict, theory: Theory, volts: float) -> Verd
     """Return the verdict on a bonded structure, undecided where the averaged theory contradicts
     it.
     """
-    if theory.narrow or verdict.what not in (LOST, FOLLOWS):
+    if theory.narrow or verdict.outcome not in (LOST, FOLLOWS):
         return verdict
-    if verdict.what == FOLLOWS:
+    if verdict.outcome == FOLLOWS:
         return verdict if not theory.losses else Verdict(UNDECIDED)
     if theory.losses:
         low, high = sorted(abs(voltage) / volts for voltage in (verdict.low, verdict.high))
         first, last = min(theory.losses) - THEORY_ERROR, max(theory.losses) + THEORY_ERROR
         if low <= last and high >= first:
             return verdict
-    return verdict._replace(what=UNDECIDED)
+    return verdict._replace(outcome=UNDECIDED)
 
 
 def reason(passing: Passing, held: Verdict, final: Verdict, theory: Theory, hold: float) -> str:
-    """Return why there is no jump, or none is reported, though the speed passes the resonance.
+    """Format why no jump is reported, though the speed passes the resonance.
 
     Parameters
     ----------
@@ -99,17 +99,17 @@ def reason(passing: Passing, held: Verdict, final: Verdict, theory: Theory, hold
     hold : float
         Time for which voltages were held at most, s.
     """
-    if final.what == UNDECIDED:
+    if final.outcome == UNDECIDED:
         return undecided(held, theory, hold)
     if passing.look == UNFINISHED:
         return "the ramp ends while the speed passes the resonance"
     texts = {FOLLOWS: FOLLOWS_TEXT, LEFT_BEFORE: LEFT_BEFORE_TEXT}
-    return texts.get(int(final.what), SMOOTH_TEXT)
+    return texts.get(int(final.outcome), SMOOTH_TEXT)
 
 
 def undecided(held: Verdict, theory: Theory, hold: float) -> str:
-    """Return why nothing is reported, and what helps."""
-    if held.what == UNDECIDED:
+    """Format why nothing is reported, and what helps."""
+    if held.outcome == UNDECIDED:
         known = math.isfinite(held.low) and math.isfinite(held.high)
         between = f" between {held.low:.5g} and {held.high:.5g} V" if known else ""
         return (
@@ -117,23 +117,23 @@ def undecided(held: Verdict, theory: Theory, hold: float) -> str:
             "hold may"
         )
     middle = 0.5 * (held.low + held.high)
-    ours = f"lose the motion at {middle:.5g} V" if held.what == LOST else "lose no motion"
-    theirs = "loses it elsewhere" if held.what == LOST and theory.losses else "loses it"
+    ours = f"lose the motion at {middle:.5g} V" if held.outcome == LOST else "lose no motion"
+    theirs = "loses it elsewhere" if held.outcome == LOST and theory.losses else "loses it"
     theirs = theirs if theory.losses else "does not"
     return f"undecided: held voltages {ours}, the averaged theory {theirs}; see drive_branch"
 
 
 def how_decided(passing: Passing | None, final: Verdict) -> str:
-    """Return how jump or none was decided; empty where the speed does not pass the resonance."""
+    """Format how jump or none was decided; empty where the speed does not pass the resonance."""
     if passing is None:
         return ""
-    if final.what == UNDECIDED:
+    if final.outcome == UNDECIDED:
         return "undecided"
-    return "by the record" if final.what == NOT_ASKED else "by held voltages"
+    return "by the record" if final.outcome == NOT_ASKED else "by held voltages"
 
 
 def is_jump(passing: Passing | None, final: Verdict) -> bool:
     """Return whether the speed jumps."""
     if passing is None:
         return False
-    return final.what == LOST or (final.what == NOT_ASKED and passing.look == JUMP)
+    return final.outcome == LOST or (final.outcome == NOT_ASKED and passing.look == JUMP)

@@ -10,7 +10,7 @@ from . import tutorial
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Do what the command line says."""
+    """Run the command line."""
     parser = argparse.ArgumentParser(prog="python -m tools.benches", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
     one = commands.add_parser("tutorial", help="write the CSV files of the manual's tutorial")

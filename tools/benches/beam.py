@@ -24,14 +24,14 @@ AXIAL, DEFLECTION, SLOPE = range(3)  # of a node's displacements
 
 @dataclass(frozen=True, kw_only=True)
 class Section:
-    """A rectangular cross-section: stiffness EI in N m2, EA in N, mass in kg/m."""
+    """Cross-section per length: stiffness EI in N m2, EA in N, mass in kg/m."""
 
     bending: float
     axial: float
     mass: float
 
     def stiffness(self, length: float) -> Floats:
-        """Of an element, for (u, w, slope) at both ends."""
+        """Return an element's stiffness matrix, for (u, w, slope) at both ends."""
         b = self.bending / length**3
         k = np.zeros((6, 6))
         k[np.ix_([0, 3], [0, 3])] = self.axial / length * np.array([[1.0, -1.0], [-1.0, 1.0]])
@@ -46,7 +46,7 @@ class Section:
         return k
 
     def inertia(self, length: float) -> Floats:
-        """Consistent masses of an element, without rotary inertia."""
+        """Return an element's consistent mass matrix, without rotary inertia."""
         m = np.zeros((6, 6))
         m[np.ix_([0, 3], [0, 3])] = self.mass * length / 6.0 * np.array([[2.0, 1.0], [1.0, 2.0]])
         a, b, c = 22.0 * length, 13.0 * length, length**2
@@ -62,7 +62,7 @@ class Section:
 
 @dataclass(frozen=True, kw_only=True)
 class DelaminatedBeam:
-    """A beam clamped at one end or at both, delaminated between two places.
+    """A beam clamped at one end or both, delaminated between two positions.
 
     Attributes
     ----------
@@ -92,7 +92,7 @@ class DelaminatedBeam:
     elements: int = 40
 
     def section(self, share: float) -> Section:
-        """Of a part of the thickness."""
+        """Return the section of a share of the thickness."""
         h = share * self.thickness
         area = h * self.width
         inertia = self.width * h**3 / 12.0
@@ -103,7 +103,7 @@ class DelaminatedBeam:
 
     @cached_property
     def nodes(self) -> Floats:
-        """Places of the nodes, m: the delamination's ends are among them."""
+        """Positions of the nodes, m; the delamination's ends are among them."""
         ends = np.unique([0.0, self.first, self.last, 1.0])
         counts = [max(2, round(part * self.elements)) for part in np.diff(ends)]
         parts = [
@@ -114,11 +114,11 @@ class DelaminatedBeam:
 
     @property
     def is_delaminated(self) -> bool:
-        """Whether there is a delamination at all."""
+        """Whether the beam has a delamination."""
         return self.last > self.first
 
     def is_inside(self, place: Floats) -> NDArray[np.bool_]:
-        """Whether places lie in the delamination, its ends counted."""
+        """Return whether positions lie in the delamination, its ends included."""
         margin = 1e-9
         low, high = self.first - margin, self.last + margin
         share = place / self.length
@@ -134,16 +134,16 @@ class DelaminatedBeam:
         return {pair: number for number, pair in enumerate(pairs)}
 
     def axis(self, layer: int) -> float:
-        """Height of a layer's axis above that of the whole beam, m."""
+        """Return the height of a layer's axis above the whole beam's, m."""
         return {0: 0.0, 1: 1.0 - self.share, 2: -self.share}[layer] * 0.5 * self.thickness
 
     def sections(self) -> dict[int, Section]:
-        """By layer."""
+        """Return the sections by layer: whole beam, upper half, lower half."""
         return {i: self.section(s) for i, s in enumerate((1.0, self.share, 1.0 - self.share))}
 
     @cached_property
     def matrices(self) -> tuple[Floats, Floats, Floats]:
-        """Stiffness, masses, and the base's pull, of the displacements that are free.
+        """Stiffness, mass matrix and base excitation of the free displacements.
 
         The pull is the inertia times a unit displacement of base and beam.
         """
@@ -162,7 +162,7 @@ class DelaminatedBeam:
         return kept.T @ stiffness @ kept, kept.T @ inertia @ kept, kept.T @ inertia @ rigid
 
     def placed(self, layer: int, node: int) -> Floats:
-        """(3, all) matrix that gives a layer's displacements at a node.
+        """Return the (3, all) matrix that gives a layer's displacements at a node.
 
         Where the whole beam ends at a node that belongs to the layers, they are those of layer 1,
         referred to its own axis.
@@ -177,7 +177,7 @@ class DelaminatedBeam:
         return matrix
 
     def kept(self) -> Floats:
-        """(all, free) matrix: clamps hold their nodes, and layers share their last sections."""
+        """Return the (all, free) matrix of the constraints by clamps and delamination tips."""
         size = 3 * len(self.places)
         matrix, dropped = np.eye(size), []
         inside, last = self.is_inside(self.nodes), len(self.nodes) - 1
@@ -195,13 +195,13 @@ class DelaminatedBeam:
         return np.delete(matrix, dropped, axis=1)
 
     def is_tip(self, node: int, inside: NDArray[np.bool_]) -> bool:
-        """Whether the delamination ends at a node inside the beam."""
+        """Return whether the delamination ends at a node inside the beam."""
         before = node > 0 and not inside[node - 1]
         after = node < len(inside) - 1 and not inside[node + 1]
         return bool(inside[node] and (before or after))
 
     def modes(self, count: int) -> tuple[Floats, Floats, Floats]:
-        """The lowest modes of the beam without contact.
+        """Compute the lowest modes of the beam without contact.
 
         Returns
         -------
@@ -216,7 +216,7 @@ class DelaminatedBeam:
         return np.sqrt(squares), self.kept() @ shapes, shapes.T @ pull
 
     def deflection_rows(self, shapes: Floats, layer: int, places: Floats) -> Floats:
-        """(places, modes): deflection of a layer, linear between the nodes."""
+        """Return a layer's deflections at positions by modes, shape (places, modes)."""
         values = []
         for node in range(len(self.nodes)):
             known = (layer, node) if (layer, node) in self.places else (0, node)
@@ -225,7 +225,7 @@ class DelaminatedBeam:
         return np.array([np.interp(places, self.nodes, column) for column in table.T]).T
 
     def where_it_moves_as_one(self) -> float:
-        """The place where the intact beam's first mode moves as a mass on a spring would, m."""
+        """Return the position at which mode 1 moves as a mass on a spring would, m."""
         whole = replace(self, first=0.0, last=0.0)
         _, shapes, participation = whole.modes(1)
         moved = participation[0] * whole.deflection_rows(shapes, 0, whole.nodes)[:, 0]
@@ -240,7 +240,7 @@ class DelaminatedBeam:
         sensor: float | None = None,
         contact_every: int = 1,
     ) -> ModalSystem:
-        """Modes with contact at the delamination's nodes.
+        """Return the beam as modes with contacts at the delamination's nodes.
 
         Parameters
         ----------
@@ -267,7 +267,7 @@ class DelaminatedBeam:
         )
 
     def contacts(self, faces: Faces, shapes: Floats, every: int) -> Contacts | None:
-        """Pairs of nodes in the delamination; none where there is no delamination."""
+        """Return contacts at pairs of nodes; None without a delamination."""
         inside = self.is_inside(self.nodes)
         apart = [i for i, split in enumerate(inside) if split and not self.is_tip(i, inside)]
         pairs = [i for i in reversed(apart) if i > 0][::every]
@@ -284,7 +284,7 @@ class DelaminatedBeam:
 
 
 def intact_frequency(beam: DelaminatedBeam) -> float:
-    """First natural frequency of the intact beam in closed form, Hz."""
+    """Compute the intact beam's first natural frequency in closed form, Hz."""
     root = 4.730040744862704 if beam.clamped_both else 1.8751040687119611
     whole = beam.section(1.0)
     return root**2 / beam.length**2 * math.sqrt(whole.bending / whole.mass) / TURN

@@ -25,7 +25,7 @@ BASE = 1.0 / 3000.0  # s: longest step, for what the base does
 
 @dataclass(frozen=True, kw_only=True)
 class Bench:
-    """What a beam is measured with.
+    """A shaker with sensors: how a beam is measured.
 
     Attributes
     ----------
@@ -46,12 +46,12 @@ class Bench:
     steps: float = STEPS
 
     def factor_for(self, system: ModalSystem) -> int:
-        """Steps of the integration in a sample."""
+        """Return the number of integration steps per sample."""
         fastest = math.sqrt(highest_stiffness(system)) / (2.0 * math.pi)
         return math.ceil(max(self.steps * fastest, 1.0 / BASE, 8.0 * self.rate) / self.rate)
 
     def move(self, system: ModalSystem) -> tuple[Floats, Motion, int]:
-        """The base's acceleration and the motion at all steps, and how many make a sample."""
+        """Compute the base's acceleration and the motion; return them with the steps per sample."""
         factor = self.factor_for(system)
         step = 1.0 / (factor * self.rate)
         samples = int(self.excitation.duration * self.rate)
@@ -64,7 +64,7 @@ class Bench:
         return base[::2], integrate(system, base, step), factor
 
     def measure(self, system: ModalSystem, seed: int) -> tuple[xr.Dataset, Motion]:
-        """Shake, and record.
+        """Shake a system and record what the sensors read.
 
         Parameters
         ----------

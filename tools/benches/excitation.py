@@ -16,20 +16,20 @@ TURN = 2.0 * math.pi
 
 
 class Excitation(Protocol):
-    """A base's acceleration over a duration, s."""
+    """Acceleration of a base over a duration in s."""
 
     @property
     def duration(self) -> float:
-        """s"""
+        """Duration, s."""
         ...
 
     def __call__(self, time: Floats) -> Floats:
-        """The acceleration, m/s2."""
+        """Return the acceleration at times, m/s2."""
         ...
 
 
 def ramped(time: Floats, ramp: float, duration: float) -> Floats:
-    """From 0 to 1 in the first ``ramp`` seconds, and back in the last ones, as shakers do."""
+    """Return a window that rises from 0 to 1 in the first ``ramp`` seconds and falls at the end."""
     values = np.ones(time.shape)
     ends = (time < ramp) | (time > duration - ramp)
     inside = np.clip(np.minimum(time[ends], duration - time[ends]) / ramp, 0.0, 1.0)
@@ -49,7 +49,7 @@ class Swept:
     ramp: float = 0.25
 
     def phase(self, time: Floats) -> Floats:
-        """rad"""
+        """Return the phase at times, rad."""
         rate = (self.last - self.first) / self.duration
         if not self.log:
             return np.asarray(TURN * (self.first + 0.5 * rate * time) * time)
@@ -57,13 +57,13 @@ class Swept:
         return np.asarray(TURN * self.first / growth * np.expm1(growth * time))
 
     def __call__(self, time: Floats) -> Floats:
-        """The acceleration."""
+        """Return the acceleration at times, m/s2."""
         return self.level * ramped(time, self.ramp, self.duration) * np.sin(self.phase(time))
 
 
 @dataclass(frozen=True)
 class Stepped:
-    """A sine of ``steps`` frequencies in equal steps, each held as long; the phase goes on."""
+    """A sine in ``steps`` equal steps of frequency, equally long, with continuous phase."""
 
     first: float
     last: float
@@ -73,7 +73,7 @@ class Stepped:
     ramp: float = 0.25
 
     def __call__(self, time: Floats) -> Floats:
-        """The acceleration."""
+        """Return the acceleration at times, m/s2."""
         held = self.duration / self.steps
         frequency = np.linspace(self.first, self.last, self.steps)
         number = np.minimum((time / held).astype(int), self.steps - 1)
@@ -95,7 +95,7 @@ class Random:
 
     @cached_property
     def spline(self) -> CubicSpline:
-        """Through samples at twenty times the highest frequency."""
+        """Cubic spline through samples at twenty times the highest frequency."""
         rate = 20.0 * self.last
         count = int(rate * (self.duration + 2.0 * self.ramp)) + 8
         rng = np.random.default_rng(self.seed)
@@ -106,6 +106,6 @@ class Random:
         return CubicSpline(np.arange(count) / rate, values / values.std())
 
     def __call__(self, time: Floats) -> Floats:
-        """The acceleration."""
+        """Return the acceleration at times, m/s2."""
         ramp = ramped(time, self.ramp, self.duration)
         return np.asarray(self.level * ramp * self.spline(time))

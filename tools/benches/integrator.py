@@ -45,7 +45,7 @@ class CSystem(ctypes.Structure):
 
 @functools.cache
 def run_function() -> Any:
-    """The library's function, loaded once in a process.
+    """Load the library's function, once per process.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def run_function() -> Any:
 
 
 def pointer_to(values: Floats) -> Any:
-    """Address of contiguous numbers."""
+    """Return the address of contiguous numbers."""
     return values.ctypes.data_as(NUMBERS)
 
 
@@ -72,7 +72,7 @@ def integrate(
     position: Floats | None = None,
     velocity: Floats | None = None,
 ) -> Motion:
-    """Integrate with equal steps.
+    """Integrate a system's motion with equal steps.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def integrate(
 
 
 def passed_system(system: ModalSystem) -> tuple[list[Floats], CSystem]:
-    """The arrays, to be kept, and the structure that points at them."""
+    """Return the system as a C structure, and the arrays it points at, to be kept alive."""
     n, empty = system.modes, np.zeros(0)
     contacts = system.contacts or no_contacts(n)
     springs = system.springs or no_springs(n)
@@ -135,7 +135,7 @@ def passed_system(system: ModalSystem) -> tuple[list[Floats], CSystem]:
 
 
 def equilibrium(system: ModalSystem) -> Floats:
-    """Positions of the modes at rest: those where a critically damped motion ends.
+    """Compute the modes' positions at rest, as the end of a critically damped motion.
 
     Zero where no contact is closed there.
     """
@@ -154,7 +154,7 @@ def equilibrium(system: ModalSystem) -> Floats:
 
 
 def highest_stiffness(system: ModalSystem) -> float:
-    """Bound of the largest w**2 of the structure with all contacts closed, (rad/s)**2.
+    """Return a bound of the largest w**2 with all contacts closed, (rad/s)**2.
 
     For Hertz's law at a depth of 1 mm.
     """

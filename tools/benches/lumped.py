@@ -16,7 +16,7 @@ TURN = 2.0 * math.pi
 
 @dataclass(frozen=True, kw_only=True)
 class Faces:
-    """How two faces touch.
+    """Contact law of two faces.
 
     Attributes
     ----------
@@ -41,7 +41,7 @@ class Faces:
     friction: float = 0.0
 
     def contacts(self, rows: Floats, clearance: Floats, mass: float) -> Contacts:
-        """Contacts along rows, between bodies of the reduced mass ``mass``, kg."""
+        """Return contacts along rows, between bodies of the reduced mass ``mass``, kg."""
         w = TURN * self.frequency
         if self.law == "linear":
             damping = 2.0 * restitution.linear_ratio(self.restitution) * w * mass
@@ -63,7 +63,7 @@ class Faces:
 
 @dataclass(frozen=True, kw_only=True)
 class Halves:
-    """Both halves of a beam.
+    """Both halves of a beam as masses on springs.
 
     Attributes
     ----------
@@ -83,7 +83,7 @@ class Halves:
     zeta2: float = 0.008
 
     def delaminated(self, faces: Faces, cubic: float = 0.0) -> ModalSystem:
-        """Two masses that touch.
+        """Return a system of two masses that touch.
 
         Parameters
         ----------
@@ -108,7 +108,7 @@ class Halves:
         )
 
     def bonded(self, cubic: float = 0.0, friction: float = 0.0, sag: float = 0.0) -> ModalSystem:
-        """One mass, on which both sensors are.
+        """Return a system of one mass that carries both sensors.
 
         Parameters
         ----------
@@ -134,7 +134,7 @@ class Halves:
         )
 
     def whole(self) -> Whole:
-        """Both glued together."""
+        """Return the bonded beam of both halves."""
         masses, turns = np.array([self.m1, self.m2]), TURN * np.array([self.f1, self.f2])
         mass, stiffness = masses.sum(), (masses * turns**2).sum()
         damper = (2.0 * masses * turns * [self.zeta1, self.zeta2]).sum()
@@ -142,7 +142,7 @@ class Halves:
         return Whole(float(mass), w / TURN, float(damper / (2.0 * mass * w)))
 
     def in_rattling_clamp(self, clamp: Clamp) -> ModalSystem:
-        """Both glued together, held by a clamp that has play."""
+        """Return a system of the bonded beam in a clamp with play."""
         whole = self.whole()
         root = clamp.mass * whole.mass
         spring = whole.mass * (TURN * whole.f) ** 2
@@ -198,7 +198,7 @@ class Clamp:
 
 
 def cubic_for(change: float, f: float, amplitude: float) -> float:
-    """The cubic stiffness over mass, N/(kg m3), of a relative change of the frequency.
+    """Return the cubic stiffness over mass, N/(kg m3), for a relative change of frequency.
 
     By the first approximation of Duffing's oscillator, ``w**2 = w0**2 + 3/4 cubic amplitude**2``.
 
@@ -215,5 +215,5 @@ def cubic_for(change: float, f: float, amplitude: float) -> float:
 
 
 def change_of(cubic: float, f: float, amplitude: float) -> float:
-    """The relative change of :func:`cubic_for` at another amplitude, m."""
+    """Return the relative change of :func:`cubic_for` at another amplitude, m."""
     return math.sqrt(max(1.0 + 0.75 * cubic * amplitude**2 / (TURN * f) ** 2, 0.0)) - 1.0

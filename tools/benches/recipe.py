@@ -52,7 +52,7 @@ class Setup:
 
 @dataclass(frozen=True, kw_only=True)
 class Truth:
-    """What is so, whatever is said of the record.
+    """The truth about a specimen and its record.
 
     Attributes
     ----------
@@ -96,7 +96,7 @@ class Truth:
 
 @dataclass(frozen=True)
 class Case:
-    """A record, what is guessed of the beam before it is looked at, and the truth."""
+    """A record, the guess of the beam before it is tested, and the truth."""
 
     record: xr.Dataset
     guess: Structure
@@ -105,7 +105,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Specimen:
-    """A beam, and what is known about it before it is shaken."""
+    """A beam, and what is known about it before it is tested."""
 
     system: ModalSystem
     m1: float
@@ -122,7 +122,7 @@ class Specimen:
 
 @dataclass(frozen=True, kw_only=True)
 class Conditions:
-    """Of a test, beside the beam. Ranges are drawn from evenly in the logarithm.
+    """Conditions of a test; ranges are drawn from uniformly in the logarithm.
 
     Attributes
     ----------
@@ -148,12 +148,12 @@ class Conditions:
 
 
 def between(rng: np.random.Generator, low: float, high: float) -> float:
-    """A number drawn evenly in the logarithm."""
+    """Draw a number uniformly in its logarithm."""
     return float(np.exp(rng.uniform(math.log(low), math.log(high))))
 
 
 def halves(rng: np.random.Generator) -> Halves:
-    """Two halves whose bonded beam is well inside the sweep."""
+    """Draw two halves whose bonded beam is well inside the sweep."""
     middle, apart = rng.uniform(33.0, 62.0), rng.uniform(1.06, 1.4)
     slow, fast = middle / math.sqrt(apart), middle * math.sqrt(apart)
     f1, f2 = (slow, fast) if rng.random() < 0.5 else (fast, slow)
@@ -165,7 +165,7 @@ def halves(rng: np.random.Generator) -> Halves:
 
 
 def faces(rng: np.random.Generator, clearance: float = 0.0) -> Faces:
-    """A contact law with its numbers; one in four slides with friction."""
+    """Draw a contact law; one in four slides with friction."""
     return Faces(
         law=str(rng.choice(["linear", "hunt-crossley", "hertz"])),
         frequency=between(rng, 500.0, 1500.0),
@@ -176,30 +176,30 @@ def faces(rng: np.random.Generator, clearance: float = 0.0) -> Faces:
 
 
 def split(own: Halves, touching: Faces) -> Specimen:
-    """Two masses that touch."""
+    """Return a specimen of two masses that touch."""
     numbers = (own.m1, own.m2, own.f1, own.f2, own.zeta1, own.zeta2)
     return Specimen(own.delaminated(touching), *numbers, touching.clearance)
 
 
 def whole(own: Halves, system: ModalSystem, cubic: float = 0.0) -> Specimen:
-    """A bonded beam."""
+    """Return a specimen of a bonded beam."""
     one = own.whole()
     numbers = (own.m1, own.m2, one.f, one.f, one.zeta, one.zeta)
     return Specimen(system, *numbers, cubic=cubic, sound=True)
 
 
 def delaminated(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
-    """Halves that lie upon each other."""
+    """Draw a specimen of halves that lie upon each other."""
     return split(halves(rng), faces(rng))
 
 
 def with_gap(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
-    """Halves with a gap of 0.1 to 2 mm at rest."""
+    """Draw halves with a gap of 0.1 to 2 mm at rest."""
     return split(halves(rng), faces(rng, between(rng, 1e-4, 2e-3)))
 
 
 def preloaded(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
-    """Halves pressed together by 0.1 to 1.6 times the force that opens them at the resonance."""
+    """Draw halves pressed together by 0.1 to 1.6 times the force that opens them at resonance."""
     own = halves(rng)
     k1, k2 = own.m1 * (TURN * own.f1) ** 2, own.m2 * (TURN * own.f2) ** 2
     one = own.whole()
@@ -210,13 +210,13 @@ def preloaded(rng: np.random.Generator, level: float, conditions: Conditions) ->
 
 
 def sound(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
-    """A bonded beam."""
+    """Draw a bonded beam."""
     own = halves(rng)
     return whole(own, own.bonded())
 
 
 def hardening(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
-    """A bonded beam whose frequency at the peak is up to 30 % higher, or 15 % lower."""
+    """Draw a bonded beam whose frequency at the peak is up to 30 % higher, or 15 % lower."""
     own = halves(rng)
     one = own.whole()
     change = rng.uniform(0.03, 0.3) if rng.random() < 0.7 else -rng.uniform(0.02, 0.15)
@@ -226,7 +226,7 @@ def hardening(rng: np.random.Generator, level: float, conditions: Conditions) ->
 
 
 def sagging(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
-    """A bonded beam that hardens by up to 15 %, and is stiffer to one side than to the other."""
+    """Draw a bonded beam that hardens by up to 15 %, and is stiffer to one side."""
     own = halves(rng)
     one = own.whole()
     change = rng.uniform(0.02, 0.15)
@@ -238,13 +238,13 @@ def sagging(rng: np.random.Generator, level: float, conditions: Conditions) -> S
 
 
 def friction(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
-    """A bonded beam with dry friction of 5 to 50 % of what moves it."""
+    """Draw a bonded beam with dry friction of 5 to 50 % of what moves it."""
     own = halves(rng)
     return whole(own, own.bonded(friction=level * rng.uniform(0.05, 0.5)))
 
 
 def clamp(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
-    """A bonded beam that knocks against its clamp, pressed against one side of it or loose."""
+    """Draw a bonded beam in a clamp with play, pressed against one side of it or loose."""
     own = halves(rng)
     play = between(rng, 2e-5, 3e-4) * (-1.0 if rng.random() < 0.3 else 1.0)
     stops = Faces(frequency=between(rng, 400.0, 1000.0), restitution=rng.uniform(0.3, 0.8))
@@ -259,7 +259,7 @@ def clamp(rng: np.random.Generator, level: float, conditions: Conditions) -> Spe
 
 
 def elements(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
-    """A cantilever of finite elements, delaminated from its free end on."""
+    """Draw a cantilever of finite elements, delaminated from its free end on."""
     size = rng.uniform(*conditions.size)
     share = 0.5 + float(rng.choice([-1.0, 1.0])) * rng.uniform(0.03, 0.2)
     thickness = DelaminatedBeam.thickness * rng.uniform(0.9, 1.5)
@@ -272,7 +272,7 @@ def elements(rng: np.random.Generator, level: float, conditions: Conditions) -> 
 
 
 def intact_elements(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
-    """The same cantilever without a delamination."""
+    """Draw the same cantilever without a delamination."""
     thickness = DelaminatedBeam.thickness * rng.uniform(0.9, 1.5)
     beam = DelaminatedBeam(first=0.0, last=0.0, thickness=thickness)
     system = beam.system(Faces(), between(rng, 0.005, 0.02), modes=4)
@@ -296,7 +296,7 @@ KINDS: Mapping[str, Maker] = {
 
 
 def excitation(rng: np.random.Generator, name: str, level: float) -> tuple[str, Excitation]:
-    """What the base does, and its name where any may be drawn."""
+    """Draw a base excitation of a kind, of any kind by name ``"any"``; return the kind with it."""
     if name == "any":
         name = str(rng.choice(EXCITATIONS, p=(0.6, 0.15, 0.1, 0.1, 0.05)))
     ends = (LAST, FIRST) if name == "down" else (FIRST, LAST)
@@ -308,13 +308,13 @@ def excitation(rng: np.random.Generator, name: str, level: float) -> tuple[str, 
 
 
 def sensor(rng: np.random.Generator, noise: float, bandwidth: float) -> Sensor:
-    """Gain off by 3 %, a delay of up to 50 us beside that of the filter."""
+    """Draw a sensor: gain off by 3 %, a delay of up to 50 us beside the filter's."""
     gain, delay = rng.uniform(0.97, 1.03), rng.uniform(0.0, 5e-5)
     return Sensor(bandwidth=bandwidth, gain=gain, delay=delay, noise=noise)
 
 
 def guess(rng: np.random.Generator, own: Specimen, off: float) -> Structure:
-    """Masses and frequencies off by some percent, damping by a factor of up to two.
+    """Draw a guess: masses and frequencies off by some percent, damping up to a factor of two.
 
     Of a sound beam the guess has two halves a little apart, as one who asks has to assume.
     """
@@ -378,7 +378,7 @@ def draw(
 
 
 def truth_of(kind: str, own: Specimen, motion: Motion, setup: Setup) -> Truth:
-    """The truth, by what was drawn and how it moved."""
+    """Return the truth, by what was drawn and how it moved."""
     two_masses = math.isnan(own.size) and len(motion.restitution) == 1
     peak = float(motion.spring_peaks.max()) if own.cubic else 0.0
     gap = float(motion.largest_gap.max()) if len(motion.largest_gap) else 0.0

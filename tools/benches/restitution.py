@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 
 
 def linear(ratio: float) -> float:
-    """Restitution of a spring with a dashpot that never pulls.
+    """Compute the restitution of a spring with a dashpot that never pulls.
 
     Parameters
     ----------
@@ -24,12 +24,12 @@ def linear(ratio: float) -> float:
 
 
 def linear_ratio(e: float) -> float:
-    """The damping ratio of :func:`linear` for a restitution above exp(-2)."""
+    """Compute the damping ratio of :func:`linear` for a restitution above exp(-2)."""
     return float(brentq(lambda ratio: linear(ratio) - e, 0.0, 1.0 - 1e-9))
 
 
 def hunt_crossley(damping: float, speed: float) -> float:
-    """Restitution of ``k d**n (1 + damping d')`` at a closing speed, for any k and n.
+    """Compute the restitution of ``k d**n (1 + damping d')`` at a closing speed, for any k, n.
 
     Notes
     -----
@@ -48,5 +48,5 @@ def hunt_crossley(damping: float, speed: float) -> float:
 
 
 def hunt_crossley_damping(e: float, speed: float) -> float:
-    """The damping, s/m, with which a closing speed has a restitution below 1."""
+    """Compute the damping, s/m, that gives a closing speed a restitution below 1."""
     return float(brentq(lambda c: hunt_crossley(c, speed) - e, 1e-6 / speed, 100.0 / speed))

@@ -59,7 +59,7 @@ class Sensor:
 
 
 def delayed(taps: Floats, steps: float) -> Floats:
-    """A symmetric filter that delays by some steps, between two whole numbers linearly."""
+    """Return a symmetric filter delayed by some steps, linear between whole numbers."""
     whole, part = int(steps), steps % 1.0
     long = np.pad(taps, whole + 1)
     return np.asarray((1.0 - part) * np.roll(long, whole) + part * np.roll(long, whole + 1))
@@ -67,6 +67,6 @@ def delayed(taps: Floats, steps: float) -> Floats:
 
 @functools.cache
 def against_aliasing(factor: int) -> Floats:
-    """Symmetric filter of a digitiser: it delays nothing, since the digitiser counts its delay."""
+    """Return a digitiser's symmetric anti-aliasing filter, whose delay is compensated."""
     count = 2 * (TAPS * factor // 2) + 1
     return np.asarray(firwin(count, PASSED / factor, window=("kaiser", 7.9)))

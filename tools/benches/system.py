@@ -13,7 +13,7 @@ LAWS = ("linear", "hunt-crossley", "hertz")  # in the order of integrator.c
 
 @dataclass(frozen=True)
 class Contacts:
-    """Places that touch where their gap is closed; they push and never pull.
+    """Contacts that push where their gap is closed, and never pull.
 
     Attributes
     ----------
@@ -80,19 +80,19 @@ class Frictions:
 
 
 def no_contacts(modes: int) -> Contacts:
-    """Of a structure without any."""
+    """Return contacts for a structure that has none."""
     empty = np.zeros(0)
     return Contacts(np.zeros((0, modes)), empty, empty, empty)
 
 
 def no_springs(modes: int) -> CubicSprings:
-    """Of a structure without any."""
+    """Return cubic springs for a structure that has none."""
     return CubicSprings(np.zeros((0, modes)), np.zeros(0), np.zeros(0))
 
 
 @dataclass(frozen=True)
 class ModalSystem:
-    """A linear structure as mass-normalised modes, and what is not linear about it.
+    """A linear structure as mass-normalised modes, with its nonlinear forces.
 
     Attributes
     ----------
@@ -118,13 +118,13 @@ class ModalSystem:
 
     @property
     def modes(self) -> int:
-        """How many."""
+        """Number of modes."""
         return len(self.frequency)
 
 
 @dataclass(frozen=True)
 class Motion:
-    """What the integration gives.
+    """Result of an integration.
 
     Attributes
     ----------

@@ -45,7 +45,7 @@ COLUMNS = "Time [s];Base [g];Acc 1 [g]\n"
 
 @dataclass(frozen=True)
 class Beam:
-    """One of the tutorial's beams: what it is called, what it is, and the seed of its noise."""
+    """A beam of the tutorial: its name, its system, and the seed of its noise."""
 
     name: str
     system: Callable[[], ModalSystem]
@@ -60,7 +60,7 @@ BEAMS: Mapping[str, Beam] = {
 
 
 def text_of(record: xr.Dataset, name: str) -> str:
-    """A record as text: headings, semicolons, decimal commas, accelerations in g."""
+    """Return a record as text: headings, semicolons, decimal commas, accelerations in g."""
     head = HEADING.format(
         **{"first": SWEEP.first, "last": SWEEP.last, "duration": SWEEP.duration},
         **{"level": LEVEL, "name": name, "rate": RATE},
@@ -72,7 +72,7 @@ def text_of(record: xr.Dataset, name: str) -> str:
 
 
 def write(folder: Path = FOLDER, bench: Bench = BENCH) -> list[Path]:
-    """Shake the three beams and write what is recorded.
+    """Shake the three beams and write the records; return their paths.
 
     Parameters
     ----------

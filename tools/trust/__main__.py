@@ -21,7 +21,7 @@ from orchestrate.running.provenance import with_provenance
 from orchestrate.running.runner import answer
 from orchestrate.running.store import open_store
 
-from . import page, records
+from . import ledger_page, records
 from .campaign import Campaign
 from .job import CampaignJob, sources
 from .registry import CAMPAIGNS
@@ -30,7 +30,7 @@ STORE = Path(__file__).resolve().parents[2] / "results" / "trust"
 
 
 def listed() -> None:
-    """Campaigns with their targets."""
+    """Print the campaigns with their targets."""
     for campaign in CAMPAIGNS.values():
         print(f"{campaign.name:10s}{campaign.target:>14,} {campaign.unit}: {campaign.title}")
 
@@ -85,14 +85,14 @@ def job_of(campaign: Campaign, seed: int, budget: int) -> CampaignJob:
 
 
 def write_page() -> None:
-    """The page and its pictures, from all records."""
-    page.draw(records.read())
-    text = page.text(records.read())
-    write_whole(page.PAGE, lambda place: place.write_text(text, "utf-8"))
+    """Write the page and its pictures, from all records."""
+    ledger_page.draw(records.read())
+    text = ledger_page.text(records.read())
+    write_whole(ledger_page.PAGE, lambda place: place.write_text(text, "utf-8"))
 
 
 def parse(arguments: list[str] | None) -> argparse.Namespace:
-    """Return the command line."""
+    """Parse the command line."""
     parser = argparse.ArgumentParser(prog="python -m tools.trust", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
     commands.add_parser("list", help="campaigns and their targets")
@@ -110,7 +110,7 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Do what the command line says; 1 where something was found."""
+    """Run the command line; return 1 if a campaign had findings."""
     options = parse(arguments)
     if options.command == "list":
         listed()

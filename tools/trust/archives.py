@@ -19,13 +19,13 @@ CROWD = 70_000  # files
 
 
 def content(fmu: Path) -> dict[str, bytes]:
-    """Return files of an FMU."""
+    """Return the files in an FMU by name."""
     with zipfile.ZipFile(fmu) as archive:
         return {name: archive.read(name) for name in archive.namelist()}
 
 
 def pack(place: Path, files: dict[str, bytes], attributes: dict[str, int] | None = None) -> None:
-    """An FMU of files; attributes say which are links."""
+    """Write an FMU of files; ``attributes`` say which of them are links."""
     with zipfile.ZipFile(place, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, data in files.items():
             entry = zipfile.ZipInfo(name)
@@ -36,7 +36,7 @@ def pack(place: Path, files: dict[str, bytes], attributes: dict[str, int] | None
 
 
 def traversal(fmu: Path, place: Path, chance: random.Random) -> None:
-    """A file that would lie outside."""
+    """Write an FMU with a file whose path leads out of the archive."""
     ups = "../" * chance.randint(1, 12)
     name = chance.choice(
         (
@@ -56,7 +56,7 @@ def traversal(fmu: Path, place: Path, chance: random.Random) -> None:
 
 
 def link(fmu: Path, place: Path, chance: random.Random) -> None:
-    """A link out of the archive, and a file behind it."""
+    """Write an FMU with a link out of the archive, and a file behind it."""
     name = chance.choice(("resources", "binaries/out", "link"))
     target = chance.choice(("/tmp", "../..", "/etc/passwd", ".")).encode()
     files = {**content(fmu), name: target, f"{name}/escaped": b"escaped"}
@@ -66,13 +66,13 @@ def link(fmu: Path, place: Path, chance: random.Random) -> None:
 
 
 def bomb(fmu: Path, place: Path, chance: random.Random) -> None:
-    """A megabyte that becomes more than one gigabyte, in one file or in many."""
+    """Write an FMU of a megabyte that unpacks to more than one gigabyte, in one file or in many."""
     place.write_bytes(made_bomb(fmu, chance.randrange(3)))
 
 
 @functools.cache
 def made_bomb(fmu: Path, kind: int) -> bytes:
-    """Return one large file, many of them, or a large one that says it is small."""
+    """Return one large file, many of them, or a large one that claims to be small."""
     zeros, stream = bytes(1 << 24), io.BytesIO()
     count = BOMB >> 24
     files, parts = (count, 1) if kind == 1 else (1, count)
@@ -89,13 +89,13 @@ def made_bomb(fmu: Path, kind: int) -> bytes:
 
 
 def crowd(fmu: Path, place: Path, chance: random.Random) -> None:
-    """More files than any model has."""
+    """Write an FMU with more files than any model has."""
     extra = {f"resources/{i:x}": b"" for i in range(CROWD)}
     pack(place, {**content(fmu), **extra})
 
 
 def entities(fmu: Path, place: Path, chance: random.Random) -> None:
-    """A document that grows while it is read, or reads other files."""
+    """Write an FMU whose XML grows while it is read, or reads other files."""
     files = content(fmu)
     levels = "".join(
         f'<!ENTITY e{i} "{"&e" + str(i - 1) + ";" if i else "lol"}'
@@ -115,7 +115,7 @@ def entities(fmu: Path, place: Path, chance: random.Random) -> None:
 
 
 def name_in_xml(fmu: Path, place: Path, chance: random.Random) -> None:
-    """A name that is a path, or a line of its own, or markup."""
+    """Write an FMU with a name that is a path, has a line break, or is markup."""
     files = content(fmu)
     text = files[XML].decode()
     attribute = chance.choice(("modelIdentifier", "modelName", "instantiationToken", "fmiVersion"))
@@ -136,7 +136,7 @@ def name_in_xml(fmu: Path, place: Path, chance: random.Random) -> None:
 
 
 def nested(fmu: Path, place: Path, chance: random.Random) -> None:
-    """Elements in elements, or attributes of a size that nobody expects."""
+    """Write an FMU with deeply nested elements, or huge attributes."""
     files = content(fmu)
     depth = chance.choice((1000, 100_000))
     if chance.random() < 0.5:
@@ -148,7 +148,7 @@ def nested(fmu: Path, place: Path, chance: random.Random) -> None:
 
 
 def damaged(fmu: Path, place: Path, chance: random.Random) -> None:
-    """Cut short, or with bytes changed."""
+    """Write an FMU that is cut short, or has bytes changed."""
     data = bytearray(fmu.read_bytes())
     if chance.random() < 0.4:
         place.write_bytes(data[: chance.randrange(len(data))])
@@ -161,7 +161,7 @@ def damaged(fmu: Path, place: Path, chance: random.Random) -> None:
 
 
 def foreign(fmu: Path, place: Path, chance: random.Random) -> None:
-    """No archive at all, or one without what makes an FMU."""
+    """Write a file that is no archive, or an archive that lacks parts of an FMU."""
     files = content(fmu)
     kind = chance.randrange(5)
     if kind == 0:
@@ -177,7 +177,7 @@ def foreign(fmu: Path, place: Path, chance: random.Random) -> None:
 
 
 def twice(fmu: Path, place: Path, chance: random.Random) -> None:
-    """Two descriptions of one name: who reads the first, who the last?"""
+    """Write an FMU with two descriptions of one name, which readers may choose from."""
     files = content(fmu)
     other = files[XML].replace(b'modelName="', b'modelName="Another')
     with zipfile.ZipFile(place, "w") as archive:

@@ -43,7 +43,7 @@ class Drawn:
 
 
 def draw(rng: np.random.Generator) -> Drawn:
-    """Ratios over a decade and more, light damping as in the paper, any restitution."""
+    """Draw a random structure and two frequency ratios, with light damping as in the paper."""
     mu, kappa = (decade(rng, 0.3, 4.0) for _ in range(2))
     one, two = (decade(rng, 0.003, 0.06) for _ in range(2))
     e, eta = float(rng.uniform(0.02, 0.95)), float(rng.uniform(0.3, 4.0))
@@ -52,7 +52,7 @@ def draw(rng: np.random.Generator) -> Drawn:
 
 
 def decade(rng: np.random.Generator, low: float, high: float) -> float:
-    """Return a number uniform in its logarithm."""
+    """Draw a number uniformly in its logarithm."""
     return float(np.exp(rng.uniform(math.log(low), math.log(high))))
 
 
@@ -80,7 +80,7 @@ class Motion:
         self.gap = float(reported.xi_rel_max) * self.excitation.length(structure)
 
     def strobed(self) -> Floats:
-        """States at phase 0 after 0, 1, ... periods."""
+        """Return the states at phase 0 after 0, 1, ... periods."""
         states, period = [self.state], self.excitation.period
         with Instance(self.fmu) as instance:
             begin(instance, self.structure, self.excitation, self.state)
@@ -90,7 +90,7 @@ class Motion:
         return np.array(states)
 
     def away(self, one: Floats, other: Floats) -> float:
-        """How far two states are from each other, over the motion's size; gaps over the gap."""
+        """Return the distance of two states over the motion's size; of gaps over the gap."""
         frequency = self.excitation.frequency
         x1, x2, v1, v2 = (one - other) / (1.0, 1.0, frequency, frequency)
         size, gap = self.size or 1.0, max(self.gap, 1e-6 * self.size) or 1.0
@@ -112,7 +112,7 @@ class Motion:
         yield from self.wrong_by_orbit()
 
     def counted(self) -> int:
-        """Impacts of some times its periods, from the middle of the longest flight or contact."""
+        """Count impacts over some periods, from the middle of the longest flight or contact."""
         span = self.periods * self.excitation.period
         with EventInstance(self.fmu) as instance:
             begin(instance, self.structure, self.excitation, self.state)
@@ -169,7 +169,7 @@ class Attractors(Campaign):
     unit, target, batch, package = "structures", 2_000, 20, True
 
     def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Return one structure after the other."""
+        """Check the attractors of ``count`` structures."""
         rng, notes, counts, wrong = np.random.default_rng(seed), [], Counter[str](), 0
         for number in range(count):
             drawn = draw(rng)

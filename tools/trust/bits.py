@@ -39,12 +39,12 @@ Bits = tuple[str, ...]
 
 
 def hexadecimal(values: Sequence[float]) -> Bits:
-    """Return numbers to the last bit; all that are not numbers alike."""
+    """Return numbers as texts with all bits; all NaNs alike."""
     return tuple("nan" if math.isnan(value) else float(value).hex() for value in values)
 
 
 def by_fmu(fmu: Path, drawn: ParameterSet, grid: Sequence[float]) -> Bits:
-    """Return the outputs at the end, by an FMU."""
+    """Compute the outputs at the end of a grid with an FMU."""
     values = {**drawn.values, "bonded": bool(drawn.values.get("bonded"))}
     with Instance(fmu) as instance:
         try:
@@ -68,7 +68,7 @@ def web_module() -> Any:
 
 
 def by_web(drawn: ParameterSet, grid: Sequence[float]) -> Bits:
-    """Return the outputs at the end, by the WebAssembly module."""
+    """Compute the outputs at the end of a grid with the WebAssembly module."""
     web = web_module()
     size = 8 * web.slots["SIZE"]
     web.exports["memory"].write(web.store, bytes(size), web.address)
@@ -88,7 +88,7 @@ def by_web(drawn: ParameterSet, grid: Sequence[float]) -> Bits:
 
 @functools.cache
 def arm() -> Any:
-    """The importer in C and the FMU's binary for 64-bit ARM; None where nothing runs them here."""
+    """Return the C importer with the FMU's 64-bit ARM binary; None where nothing runs them here."""
     from fmu_src.export import forms
     from tests.native import importers
 
@@ -105,7 +105,7 @@ def arm() -> Any:
 
 
 def by_arm(drawn: ParameterSet, grid: Sequence[float]) -> Bits:
-    """Return the outputs at the end, by the ARM binary under an emulator."""
+    """Compute the outputs at the end of a grid with the ARM binary under an emulator."""
     names, values = (*STATE, *STEP), {k: float(v) for k, v in drawn.values.items()}
     settings = [f"{name}={value.hex()}" for name, value in values.items()]
     program, times = arm(), [drawn.start_time, *grid]
@@ -119,7 +119,7 @@ def by_arm(drawn: ParameterSet, grid: Sequence[float]) -> Bits:
 
 
 def reachable(start: float, grid: Sequence[float]) -> list[float]:
-    """Return those of a grid's points that a step arrives at to the last bit, from the one before.
+    """Return the grid points that a step from the one before reaches to the last bit.
 
     A master's step ends at ``time + (target - time)``, which may be the number beside the target;
     the end would then be another one on another grid.
@@ -135,7 +135,7 @@ def reachable(start: float, grid: Sequence[float]) -> list[float]:
 
 
 def differences(drawn: ParameterSet, on_arm: bool) -> list[str]:
-    """Return where one motion has other bits than another: a line each."""
+    """Return a line for each pair of computations of a motion that differ in a bit."""
     wrong: list[str] = []
     grids = [reachable(drawn.start_time, grid) for grid in drawn.grids()]
     first = [by_fmu(find(OSCILLATOR).path, drawn, grid) for grid in grids]
@@ -163,7 +163,7 @@ def different(one: Bits, other: Bits) -> str:
 
 
 class Grids(Campaign):
-    """Bits."""
+    """Campaign: a motion has the same bits on all grids, forms and platforms."""
 
     name = "bits"
     title = "Grids, forms and platforms"
@@ -180,7 +180,7 @@ class Grids(Campaign):
     unit, target, batch = "parameter sets", 10_000, 250
 
     def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Compare."""
+        """Compute ``count`` motions in all ways and compare their bits."""
         notes: list[str] = []
         findings, on_arm = 0, 0
         for number in range(count):

@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a batch found.
+    """Result of a batch.
 
     Attributes
     ----------
@@ -40,7 +40,7 @@ class Outcome:
 
 
 class Campaign(ABC):
-    """One promise, and how it is attacked.
+    """A promise, and how a campaign attacks it.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class Campaign(ABC):
 
     @abstractmethod
     def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Attack.
+        """Attack the promise with ``count`` units of a seed.
 
         Parameters
         ----------
@@ -85,9 +85,9 @@ class Campaign(ABC):
         """
 
     def report(self, rows: Sequence[Sequence[Any]]) -> list[str]:
-        """Return lines of Markdown for the page, from the rows of all its runs."""
+        """Return lines of Markdown for the ledger's page, from the rows of all its runs."""
         return []
 
     def draw(self, rows: Sequence[Sequence[Any]], folder: Path) -> list[Path]:
-        """Draw what the report shows as pictures into the folder of the page; return them."""
+        """Draw the campaign's pictures into the page's folder; return their paths."""
         return []

@@ -27,7 +27,7 @@ PATIENCE = 60.0  # s
 
 @dataclass(frozen=True)
 class Ended:
-    """How a command ended.
+    """Result of a command that has ended.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class Ended:
 
 
 class Child:
-    """A command under way.
+    """A command that runs in a forked child.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ class Child:
         self.ended: Ended | None = None
 
     def running(self) -> bool:
-        """Whether it has not ended."""
+        """Return whether the command still runs."""
         if self.ended is None:
             pid, status = os.waitpid(self.pid, os.WNOHANG)
             if pid:
@@ -90,13 +90,13 @@ class Child:
         return self.ended is None
 
     def send(self, number: int) -> None:
-        """A signal to it and all that it has started."""
+        """Send a signal to the child and to all that it has started."""
         if self.running():
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(self.pid, number)
 
     def wait(self, patience: float = PATIENCE) -> Ended:
-        """Its end; where it does not end, it is killed."""
+        """Wait for the end and return it; kill the child after ``patience`` s."""
         stop = time.monotonic() + patience
         while self.running():
             if time.monotonic() > stop:
@@ -123,7 +123,7 @@ def live(
     prepare: Callable[[], object] | None,
     environment: Mapping[str, str],
 ) -> None:
-    """The child's life; it does not return."""
+    """Run the command in the forked child; does not return."""
     code = 70
     try:
         os.setsid()
@@ -148,7 +148,7 @@ def live(
 
 
 def call(arguments: list[str]) -> int:
-    """The command's exit code; what it does not catch is printed, as the interpreter would."""
+    """Run a command; return its exit code and print uncaught errors as the interpreter does."""
     from orchestrate.cli import main
 
     try:
@@ -164,7 +164,7 @@ def call(arguments: list[str]) -> int:
 
 
 def in_little_memory() -> None:
-    """For what may try to take all of it: so much more than there is already."""
+    """Limit memory and file size of this process, for input that may exhaust them."""
     pages = int(Path("/proc/self/statm").read_text().split()[0])
     most = pages * resource.getpagesize() + MEMORY
     resource.setrlimit(resource.RLIMIT_AS, (most, most))
@@ -173,7 +173,7 @@ def in_little_memory() -> None:
 
 
 def import_all() -> None:
-    """What every command imports, once for all children."""
+    """Import what every command needs, once for all children."""
     import matplotlib.pyplot
     import xarray
 

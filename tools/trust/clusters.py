@@ -20,7 +20,7 @@ CONNECTING = 1.0  # s
 
 
 def forked(life: Callable[[], Coroutine[Any, Any, None]], log: Path) -> int:
-    """A process that lives so; returns its id."""
+    """Fork a process that runs a coroutine; return its process id."""
     pid = os.fork()
     if pid:
         return pid
@@ -51,7 +51,7 @@ class Nodes:
         self.start()
 
     def start(self) -> None:
-        """Begin, at an address of their own."""
+        """Start the scheduler at an address of its own, and its workers."""
         place = self.folder / "address"
         place.unlink(missing_ok=True)
         self.scheduler = forked(lambda: schedule(place), self.folder / "log")
@@ -64,14 +64,14 @@ class Nodes:
         self.workers = [self.start_worker() for _ in range(2)]
 
     def start_worker(self, version: str = "") -> int:
-        """One more; where a version is given, its sources are others."""
+        """Start one more worker; ``version`` makes its sources differ."""
         folder = str(self.folder)
         pid = forked(lambda: work(self.address, folder, version), self.folder / "log")
         self.pids.append(pid)
         return pid
 
     def kill(self, pid: int) -> None:
-        """kill -9."""
+        """Kill a process by SIGKILL."""
         if pid in self.pids:
             self.pids.remove(pid)
             with suppress(ProcessLookupError):
@@ -79,13 +79,13 @@ class Nodes:
             os.waitpid(pid, 0)
 
     def close(self) -> None:
-        """End them all."""
+        """End all processes."""
         for pid in list(self.pids):
             self.kill(pid)
 
 
 async def schedule(place: Path) -> None:
-    """A scheduler's life."""
+    """Run a scheduler."""
     from distributed import Scheduler
 
     async with Scheduler(host="127.0.0.1", port=0, dashboard=False) as scheduler:
@@ -96,7 +96,7 @@ async def schedule(place: Path) -> None:
 
 
 async def work(address: str, folder: str, version: str) -> None:
-    """A worker's life."""
+    """Run a worker."""
     from distributed import Worker
 
     if version:
@@ -111,21 +111,21 @@ async def work(address: str, folder: str, version: str) -> None:
 
 @dataclass
 class OnCluster(Trial):
-    """One fault of a command that computes on a cluster."""
+    """Trial of a command that computes on a cluster."""
 
     nodes: Nodes
 
     def arguments(self) -> list[str]:
-        """The command."""
+        """Return the arguments of the command."""
         return [*super().arguments(), "--cluster", self.nodes.address]
 
     def wait_a_moment(self) -> None:
-        """Any moment of the command, which has to connect first."""
+        """Wait for a random moment of the command, after it has connected."""
         time.sleep(self.chance.uniform(0.0, self.seconds + CONNECTING))
 
 
 def worker_killed(trial: OnCluster) -> str:
-    """One of two; another one comes later."""
+    """Kill one of two workers; another one joins later."""
     child = trial.start()
     trial.wait_a_moment()
     trial.nodes.kill(trial.nodes.workers.pop(trial.chance.randrange(2)))
@@ -135,7 +135,7 @@ def worker_killed(trial: OnCluster) -> str:
 
 
 def scheduler_killed(trial: OnCluster) -> str:
-    """The command gives up in a line; another cluster, and the same command goes on."""
+    """Kill the scheduler: the command ends with one line; on another cluster it goes on."""
     child = trial.start()
     trial.wait_a_moment()
     trial.nodes.kill(trial.nodes.scheduler)
@@ -146,7 +146,7 @@ def scheduler_killed(trial: OnCluster) -> str:
 
 
 def wrong_version(trial: OnCluster) -> str:
-    """A worker with other sources joins: its chunks are refused, not mixed in."""
+    """Let a worker with other sources join: its chunks must be refused."""
     pid = trial.nodes.start_worker("0.0.1")
     child = trial.start()
     trial.wait_a_moment()
@@ -156,7 +156,7 @@ def wrong_version(trial: OnCluster) -> str:
 
 
 class Clusters(Disturbances):
-    """Dask under faults."""
+    """Campaign: faults of a Dask cluster."""
 
     name = "cluster"
     title = "Dask"
@@ -177,7 +177,7 @@ class Clusters(Disturbances):
 
     @contextmanager
     def trials(self, holder: Path) -> Iterator[Callable[..., Trial]]:
-        """With a cluster around them."""
+        """Start a cluster and return what makes trials on it."""
         import distributed
 
         assert distributed.Scheduler and distributed.Worker  # imported once, for all that is forked

@@ -38,7 +38,7 @@ VISIBLE = 2e-5  # m: a gap that opens less may be overlooked
 
 
 class Diagnosis(Campaign):
-    """The promise about verdicts."""
+    """Campaign: verdicts on random beams."""
 
     name = "diagnosis"
     title = "Is this beam delaminated?"
@@ -61,7 +61,7 @@ class Diagnosis(Campaign):
     package = True
 
     def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Draw beams, shake them, and ask."""
+        """Draw beams, shake them, and diagnose their records."""
         rows, notes, counts = [], [], Counter[str]()
         for number in range(count):
             case = case_of(seed, number)
@@ -76,20 +76,20 @@ class Diagnosis(Campaign):
         return Outcome(count, len(notes), worst, dict(counts), tuple(notes), tuple(rows))
 
     def report(self, rows: Sequence[Sequence[Any]]) -> list[str]:
-        """Tables for the page."""
+        """Return the tables for the page."""
         from . import diagnosis_tables
 
         return diagnosis_tables.lines(rows)
 
     def draw(self, rows: Sequence[Sequence[Any]], folder: Path) -> list[Path]:
-        """The curves."""
+        """Draw the curves for the page."""
         from . import diagnosis_tables
 
         return [diagnosis_tables.draw(rows, folder / diagnosis_tables.PICTURE)]
 
 
 def case_of(seed: int, number: int) -> Case:
-    """A beam of a batch; its kind comes from its place and its batch."""
+    """Draw a beam of a batch; its kind follows from its number and its seed."""
     rng = np.random.default_rng([seed, number])
     kind = KINDS[(seed + number) % len(KINDS)]
     noise = USUAL if rng.random() < PART_USUAL else WIDE
@@ -97,7 +97,7 @@ def case_of(seed: int, number: int) -> Case:
 
 
 def judged(case: Case) -> dict[str, Any]:
-    """A row of the results: what was so, what the signs and the detector say."""
+    """Return a row of the results: the truth, the signs, and the detector's verdict."""
     truth, setup = case.truth, case.truth.setup
     begin = time.process_time()
     verdict, parameters, message = asked(case)
@@ -130,7 +130,7 @@ def judged(case: Case) -> dict[str, Any]:
 
 
 class Answer(NamedTuple):
-    """What the detector says.
+    """The detector's answer.
 
     Attributes
     ----------
@@ -148,7 +148,7 @@ class Answer(NamedTuple):
 
 
 def asked(case: Case) -> Answer:
-    """What the detector says of a case."""
+    """Run the detector on a case."""
     try:
         answer = orchestrate.detect(case.record, case.guess, jobs=1, progress=False)
     except VibroimpactError as error:
@@ -165,7 +165,7 @@ def asked(case: Case) -> Answer:
 
 
 def errors_of(parameters: Mapping[str, float], truth: Truth) -> dict[str, float | None]:
-    """Relative errors of the frequencies of two masses; of finite elements there are none."""
+    """Return the relative errors of the frequencies of two masses; finite elements have none."""
     if not math.isnan(truth.size) or not truth.is_delaminated:
         return {}
     return {
@@ -190,7 +190,7 @@ def deviations_of(parameters: Mapping[str, float], truth: Truth) -> dict[str, fl
 
 
 def wrong_in(verdict: str, truth: Truth, message: str = "") -> str:
-    """What is wrong with a verdict; empty where nothing is."""
+    """Return what is wrong with a verdict; empty where nothing is."""
     if verdict == FAILED or (verdict == REFUSED and truth.setup.excitation != "random"):
         return f"{verdict}: {message}"
     if verdict == DELAMINATED and not truth.is_delaminated:
@@ -204,7 +204,7 @@ def wrong_in(verdict: str, truth: Truth, message: str = "") -> str:
 
 
 def described(truth: Truth) -> str:
-    """A beam in some words."""
+    """Format a beam in a few words."""
     setup = truth.setup
     text = f"{truth.kind}, {setup.excitation}, {setup.level:.3g} m/s2, noise {setup.noise:.2g}"
     text += f", {setup.sensors} sensors"
@@ -214,5 +214,5 @@ def described(truth: Truth) -> str:
 
 
 def rounded(value: float) -> float | None:
-    """Three digits; None where there is no number."""
+    """Round to three digits; None for NaN."""
     return float(f"{value:.3g}") if math.isfinite(value) else None

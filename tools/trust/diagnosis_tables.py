@@ -36,12 +36,12 @@ FALSE = 0.05  # part of false ones at which signs are compared
 
 
 def table_of(rows: Sequence[Sequence[Any]]) -> pd.DataFrame:
-    """Rows with their names."""
+    """Return rows as a table with named columns."""
     return pd.DataFrame(list(rows), columns=list(COLUMNS))
 
 
 def lines(rows: Sequence[Sequence[Any]]) -> list[str]:
-    """All tables."""
+    """Return the lines of all tables."""
     table = table_of(rows)
     return [
         *verdict_lines(table),
@@ -56,7 +56,7 @@ def lines(rows: Sequence[Sequence[Any]]) -> list[str]:
 
 
 def verdict_lines(table: pd.DataFrame) -> list[str]:
-    """Verdicts by kind of beam."""
+    """Return the lines of the table of verdicts by kind of beam."""
     head = " | ".join(VERDICTS)
     found = [f"| beam | {head} | wrong |", "|---" * (len(VERDICTS) + 2) + "|"]
     for kind, own in table.groupby("kind", sort=True):
@@ -67,7 +67,7 @@ def verdict_lines(table: pd.DataFrame) -> list[str]:
 
 
 def target_lines(table: pd.DataFrame) -> list[str]:
-    """What the targets are about."""
+    """Return the lines on the quantities that have targets."""
     usual = table[table.noise.between(*USUAL) & (table.verdict != REFUSED)]
     compliant = usual[usual.kind.isin(("sound", "delaminated"))]
     nonlinear = usual[usual.kind.isin(NONLINEAR)]
@@ -109,7 +109,7 @@ def deviation_lines(table: pd.DataFrame) -> list[str]:
 
 
 def curve_lines(table: pd.DataFrame) -> list[str]:
-    """Areas under the curves of the signs, and the detector's rates, by noise, level and size."""
+    """Return the lines on areas under the signs' curves and the detector's rates, by group."""
     found = [
         "Beams that opened against sound ones: of each sign, and of the ratio of misfits by which "
         "the detector decides, the area under its curve with its standard error, and the part of "
@@ -120,7 +120,7 @@ def curve_lines(table: pd.DataFrame) -> list[str]:
         "called delaminated: opened | sound |",
         "|---|---|---|---|---|---|---|",
     ]
-    for name, own in (*groups(table), *further_groups(table)):
+    for name, own in (*groups(table), *groups_by_setup(table)):
         if not has_both(own):
             continue
         opened, sound = own[own.opened == 1], own[own.delaminated == 0]
@@ -132,7 +132,7 @@ def curve_lines(table: pd.DataFrame) -> list[str]:
 
 
 def sign_cell(table: pd.DataFrame, sign: str) -> str:
-    """A sign's area and its rate."""
+    """Format a sign's area and its rate."""
     found = curve_of(table, sign)
     if found is None:
         return "none"
@@ -143,7 +143,7 @@ def sign_cell(table: pd.DataFrame, sign: str) -> str:
 
 
 def curve_of(table: pd.DataFrame, sign: str) -> roc.Curve | None:
-    """Opened beams against sound ones by a sign, where it is known of both."""
+    """Return the curve of a sign for opened against sound beams; None without both."""
     known = table[table[sign].notna() & ((table.opened == 1) | (table.delaminated == 0))]
     positive = known.opened.to_numpy() == 1
     if not len(known) or positive.all() or not positive.any():
@@ -152,7 +152,7 @@ def curve_of(table: pd.DataFrame, sign: str) -> roc.Curve | None:
 
 
 def groups(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
-    """All beams, and those of equal noise, level, or length of the delamination."""
+    """Group rows: all beams, then intervals of noise, level and length of the delamination."""
     masses = table[table["size"].isna()]
     found = [("all", table), ("two masses", masses)]
     for low, high in roc.bins(NOISE):
@@ -169,8 +169,8 @@ def groups(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
     return found
 
 
-def further_groups(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
-    """Two masses by excitation and sensors, and beside sound beams that are not linear."""
+def groups_by_setup(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
+    """Group two-mass rows by excitation, number of sensors, and kind of nonlinear sound beam."""
     masses = table[table["size"].isna()]
     found = [(f"excitation: {name}", own) for name, own in masses.groupby("excitation", sort=True)]
     found += [(f"sensors: {count}", own) for count, own in masses.groupby("sensors", sort=True)]
@@ -181,13 +181,13 @@ def further_groups(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
 
 
 def within(table: pd.DataFrame, name: str, low: float, high: float) -> pd.DataFrame:
-    """Rows with a number in an interval."""
+    """Return the rows with a number in an interval."""
     values = table[name].astype(float)
     return table[(values >= low) & (values < high)]
 
 
 def draw(rows: Sequence[Sequence[Any]], path: Path) -> Path:
-    """Curves of both signs and the detector's rates: by noise, level and size of delamination."""
+    """Draw the signs' curves and the detector's rates by noise, level and delamination size."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -209,12 +209,12 @@ def draw(rows: Sequence[Sequence[Any]], path: Path) -> Path:
 
 
 def has_both(table: pd.DataFrame) -> bool:
-    """Whether there are opened and sound beams."""
+    """Return whether there are opened and sound beams."""
     return bool((table.opened == 1).sum() > 1 and (table.delaminated == 0).sum() > 1)
 
 
 def draw_panel(panel: Any, name: str, table: pd.DataFrame) -> None:
-    """One group: the curve of each sign, the detector as a point with its 95 % intervals."""
+    """Draw one group: a curve per sign, the detector as a point with 95 % intervals."""
     opened, sound = table[table.opened == 1], table[table.delaminated == 0]
     for sign, (label, colour) in SIGNS.items():
         found = curve_of(table, sign)

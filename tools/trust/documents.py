@@ -12,7 +12,7 @@ LINES = "one\ntwo\r\nTraceback (most recent call last):\x1b[2J"
 
 
 def toml(place: Path, chance: random.Random) -> None:
-    """A file of parameters."""
+    """Write a hostile file of parameters."""
     depth = chance.choice((100, 1000, 100_000))
     digits = chance.choice((5000, 100_000))
     texts = (
@@ -48,7 +48,7 @@ def toml(place: Path, chance: random.Random) -> None:
 
 
 def course(place: Path, chance: random.Random) -> None:
-    """A file of voltages over time."""
+    """Write a hostile file of voltages over time."""
     count, digits = chance.choice((1000, 1_000_000)), chance.choice((400, 100_000))
     texts = (
         "0,1\n" * count,
@@ -77,12 +77,12 @@ def course(place: Path, chance: random.Random) -> None:
 
 
 def result(place: Path, chance: random.Random, good: Path) -> None:
-    """A file of results."""
+    """Write a hostile file of results."""
     (damage if chance.random() < 0.4 else forged)(place, chance, good)
 
 
 def damage(place: Path, chance: random.Random, good: Path) -> None:
-    """A good one cut short, or noise."""
+    """Write a good file cut short, or noise."""
     data = good.read_bytes()
     kind = chance.randrange(3)
     if kind == 0:
@@ -94,7 +94,7 @@ def damage(place: Path, chance: random.Random, good: Path) -> None:
 
 
 def forged(place: Path, chance: random.Random, good: Path) -> None:
-    """A file of the right format that says what no result says."""
+    """Write a file of the right format with content that no result has."""
     import netCDF4
 
     kind = chance.randrange(8)

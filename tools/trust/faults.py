@@ -18,20 +18,20 @@ from .trials import COMMANDS, Disturbances, Trial, format_end, in_a_line
 
 
 def killed(trial: Trial) -> str:
-    """kill -9 at any moment, up to three times."""
+    """Kill the command by SIGKILL at random moments, up to three times."""
     for _ in range(trial.chance.randint(1, 3)):
         trial.struck(signal.SIGKILL)
     return trial.goes_on()
 
 
 def terminated(trial: Trial) -> str:
-    """SIGTERM at any moment."""
+    """Send SIGTERM at a random moment."""
     trial.struck(signal.SIGTERM)
     return trial.goes_on()
 
 
 def interrupted(trial: Trial) -> str:
-    """Ctrl-C at any moment: a line, and exit code 130."""
+    """Press Ctrl-C at a random moment: expect one line and exit code 130."""
     ended = trial.struck(signal.SIGINT)
     if ended.code not in (0, 130, -signal.SIGINT) or (ended.code == 130 and len(ended.lines) > 1):
         return format_end(ended)
@@ -39,7 +39,7 @@ def interrupted(trial: Trial) -> str:
 
 
 def full(trial: Trial) -> str:
-    """No file may grow beyond a size: a disk that is full."""
+    """Limit the size of files, as a full disk does."""
     largest = max(map(len, trial.expected.values()))
     most = trial.chance.randrange(max(largest, 40_000))
 
@@ -56,7 +56,7 @@ def full(trial: Trial) -> str:
 
 
 def read_only(trial: Trial) -> str:
-    """A folder that cannot be written: one line; a place that is a file where no folder can be."""
+    """Run in a folder that cannot be written, or is a file: expect one line."""
     if trial.chance.random() < 0.5:
         trial.output.write_text("mine")
         ended = trial.start().wait()
@@ -74,7 +74,7 @@ def read_only(trial: Trial) -> str:
 
 
 def as_nobody() -> None:
-    """Root may write everywhere: give up that right (Linux's capabilities 1 and 2)."""
+    """Drop root's right to write everywhere (Linux's capabilities 1 and 2)."""
     if os.geteuid() != 0:
         return
     libc = ctypes.CDLL(None, use_errno=True)
@@ -86,7 +86,7 @@ def as_nobody() -> None:
 
 
 def twice(trial: Trial) -> str:
-    """The same command two times at once: one computes; the other does too, or says why not."""
+    """Run the same command twice at once: one computes; the other does too, or says why not."""
     first = trial.start()
     time.sleep(trial.chance.uniform(0.0, 0.5 * trial.seconds))
     second = trial.start()
@@ -97,7 +97,7 @@ def twice(trial: Trial) -> str:
 
 
 def damaged_journal(trial: Trial) -> str:
-    """Bytes of what was kept are changed: it is computed anew, or named with its remedy."""
+    """Change bytes of the journal: expect a new computation, or an error with its remedy."""
     trial.struck(signal.SIGKILL)
     journals = sorted(trial.output.glob("*.journal*")) if trial.output.exists() else []
     for path in journals:
@@ -112,7 +112,7 @@ def damaged_journal(trial: Trial) -> str:
 
 
 def damaged_result(trial: Trial) -> str:
-    """Bytes of a finished result are changed: it is the same still, or named with its remedy."""
+    """Change bytes of a finished result: expect the same numbers, or an error with its remedy."""
     trial.start().wait()
     for path in trial.output.glob("*.nc"):
         spoil(path, trial.chance)
@@ -127,7 +127,7 @@ def damaged_result(trial: Trial) -> str:
 
 
 def same_content(trial: Trial) -> bool:
-    """Whether results on disk hold the numbers that they should."""
+    """Return whether results on disk hold the expected numbers."""
     import xarray as xr
 
     other = trial.folder / "expected.nc"
@@ -140,7 +140,7 @@ def same_content(trial: Trial) -> bool:
 
 
 def spoil(path: Path, chance: random.Random) -> None:
-    """Flip a bit, cut off the end, or write noise over a part."""
+    """Damage a file: flip a bit, cut off the end, or write noise over a part."""
     data = bytearray(path.read_bytes())
     if not data:
         return
@@ -168,7 +168,7 @@ FAULTS: dict[str, Callable[[Trial], str]] = {
 
 
 class Faults(Disturbances):
-    """Everything that may happen to a command."""
+    """Campaign: faults of a single command."""
 
     name = "faults"
     title = "Faults"
@@ -186,5 +186,5 @@ class Faults(Disturbances):
     commands = (*(name for name in COMMANDS for _ in range(3) if name != "paper"), "paper")
 
     def trials(self, holder: Path) -> AbstractContextManager[Callable[..., Trial]]:
-        """With nothing around them."""
+        """Return what makes trials; nothing is needed around them."""
         return nullcontext(Trial)

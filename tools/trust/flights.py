@@ -30,9 +30,7 @@ CONTACT = 6  # the kind that is no flight
 
 @dataclass(frozen=True)
 class Flight:
-    """A flight as ``roots`` prints it: verdict of the dense search, whether it ends in an impact,
-    and when.
-    """
+    """A flight as ``roots`` prints it: the dense search's verdict, impact or not, and its time."""
 
     kind: int
     verdict: int
@@ -42,14 +40,14 @@ class Flight:
 
     @classmethod
     def read(cls, line: str) -> Flight:
-        """From a line."""
+        """Parse a line of the program's output."""
         _, kind, verdict, impact, end, *row = line.split()
         values = dict(zip(NAMES, map(float.fromhex, row), strict=True))
         return cls(int(kind), int(verdict), impact == "1", float.fromhex(end), values)
 
 
 class Roots(Campaign):
-    """The certified walk against a dense search."""
+    """Campaign: the certified root search against a dense search."""
 
     name = "roots"
     title = "Missed roots"
@@ -65,7 +63,7 @@ class Roots(Campaign):
     unit, target, batch = "flights", 100_000_000, 1_000_000
 
     def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Fly."""
+        """Compute flights and compare both searches."""
         counts, done, findings, notes = {}, 0, 0, []
         for line in programs.run(fmu, "roots", seed, count).splitlines():
             if line.startswith("FLIGHT"):
@@ -81,7 +79,7 @@ class Roots(Campaign):
 
 
 class Energy(Campaign):
-    """Momentum and energy of impacts."""
+    """Campaign: momentum and energy balances of impacts."""
 
     name = "energy"
     title = "Momentum and energy"
@@ -99,7 +97,7 @@ class Energy(Campaign):
     BOUND = 1e-12
 
     def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Let them collide."""
+        """Compute impacts and check their balances."""
         line = programs.run(fmu, "energy", seed, count).split()
         done, runs, failed = map(int, line[:3])
         parts = dict(
@@ -112,7 +110,7 @@ class Energy(Campaign):
 
 
 class Impacts(Campaign):
-    """Ends of flights against 50 digits."""
+    """Campaign: ends of flights against 50 digits."""
 
     name = "impacts"
     title = "Impacts against 50 digits"
@@ -130,7 +128,7 @@ class Impacts(Campaign):
     measures = "deviation in parts of the bound"
 
     def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Fly and compare."""
+        """Compute flights and compare their ends."""
         done, worst, notes = 0, 0.0, []
         for flight in flights(fmu, seed, count):
             part = deviation(flight)
@@ -141,7 +139,7 @@ class Impacts(Campaign):
 
 
 def flights(fmu: Path, seed: int, count: int) -> Iterator[Flight]:
-    """So many flights, contacts left out."""
+    """Yield flights of a seed, contacts left out."""
     checked = 0
     for line in programs.run(fmu, "roots", seed, 2 * count, "show").splitlines():
         if line.startswith("FLIGHT") and checked < count:
@@ -152,7 +150,7 @@ def flights(fmu: Path, seed: int, count: int) -> Iterator[Flight]:
 
 
 def deviation(flight: Flight) -> float:
-    """Return how far a flight's end is from the truth, in parts of what is allowed."""
+    """Return a flight's error over the error that is allowed."""
     from mpmath import mp
 
     from tests.kernels.oscillator import truth
@@ -174,7 +172,7 @@ def deviation(flight: Flight) -> float:
 
 
 def size(signal: Any, t: float) -> float:
-    """Return the sum of a signal's terms, which rounding is a part of."""
+    """Return the sum of the magnitudes of a signal's terms, to which rounding is proportional."""
     size, power = sum(abs(complex(c)) for c, _ in signal.terms), 1.0
     for k, part in enumerate(signal.polynomial):
         size += abs(float(part)) * power

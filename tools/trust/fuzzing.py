@@ -19,7 +19,7 @@ COVERAGE = 400  # sequences of the build that counts branches
 
 @functools.cache
 def importer(fmu: Path, version: str, model: str, options: tuple[str, ...]) -> Any:
-    """Return the importer of the tests for a model, with options in it and in the shim."""
+    """Compile the tests' importer for a model, with sanitizer options in it and in the shim."""
     from tests.native import test_fuzz
 
     folder = temporary() / f"{version}-{model}-{len(options)}{options[0][2:10]}"
@@ -27,7 +27,7 @@ def importer(fmu: Path, version: str, model: str, options: tuple[str, ...]) -> A
 
 
 class Fuzzing(Campaign):
-    """Any function in any order with any argument."""
+    """Campaign: any function in any order with any argument."""
 
     name = "fuzzing"
     title = "Call sequences"
@@ -44,7 +44,7 @@ class Fuzzing(Campaign):
     measures = "share of the shim's branches that random calls alone leave out, in percent"
 
     def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Call, and see that nothing breaks."""
+        """Make random calls; count those that a sanitizer objects to."""
         from tests.native import importers
 
         counts, notes, done = {}, [], 0
@@ -64,7 +64,7 @@ class Fuzzing(Campaign):
 
 
 def left_out(fmu: Path, seed: int) -> float:
-    """Return the percent of the shim's branches that random calls of both versions do not take."""
+    """Return the percentage of the shim's branches that random calls of no version take."""
     from tests.native import importers, test_fuzz
 
     branches: dict[object, bool] = {}

@@ -21,7 +21,7 @@ SETTLED = 1e-3  # of omega: mean speeds of the last two quarters of a hold
 
 
 class System(NamedTuple):
-    """A structure and what shakes it."""
+    """A structure and its drive."""
 
     structure: Structure
     drive: Drive
@@ -36,7 +36,7 @@ class System(NamedTuple):
 def held_speeds(
     system: System, first: float, voltages: Sequence[float], part: float = 1.0
 ) -> np.ndarray:
-    """Return mean speeds at the ends of holds, one after the other.
+    """Compute mean speeds at the ends of consecutive holds.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def held_speeds(
 
 
 def settled(time: np.ndarray, speed: np.ndarray, end: float, hold: float) -> float:
-    """The mean speed over the last quarter of a hold; NaN where the one before has another."""
+    """Return the mean speed over the last quarter of a hold; NaN if it still changes."""
     before, last = (
         speed[(time > end - quarters * hold / 4.0) & (time <= end - (quarters - 1) * hold / 4.0)]
         for quarters in (2, 1)

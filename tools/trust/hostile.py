@@ -7,10 +7,10 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from . import archives, documents, pages
+from . import archives, documents, forged_results
 from .campaign import Campaign, Outcome
 from .children import Child, Ended, import_all, in_little_memory
-from .pages import Window, window
+from .forged_results import Window, window
 
 SLOW = 30.0  # s
 WRONG = 0.2  # of the forged results have numbers that make no sense too
@@ -18,7 +18,7 @@ LONG = 2000  # letters of a line that a person reads
 
 
 class Hostile(Campaign):
-    """Input that somebody has made to do harm."""
+    """Campaign: malicious input."""
 
     name = "hostile"
     title = "Malicious input"
@@ -38,7 +38,7 @@ class Hostile(Campaign):
     package = True
 
     def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Hand it to the commands."""
+        """Hand hostile files to the commands."""
         from orchestrate.access import MODELS
         from orchestrate.access.webassembly import web_kernel
 
@@ -65,7 +65,7 @@ class Hostile(Campaign):
 
 
 def good_results(folder: Path) -> tuple[Path, Path]:
-    """Return a sweep and a branch, to be damaged and forged."""
+    """Compute a sweep and a branch, to be damaged and forged."""
     import orchestrate
 
     places = folder / "good.nc", folder / "branch.nc"
@@ -79,33 +79,33 @@ def good_results(folder: Path) -> tuple[Path, Path]:
 def opened(
     folder: Path, good: Path, branch: Path, chance: random.Random, seen: Window
 ) -> tuple[Ended, str]:
-    """Forge a result that becomes a page, and open that; what is wrong, empty where nothing is."""
+    """Forge a result, make a page of it and open that; return the end, and what is wrong."""
     from orchestrate.running.store import load
 
     result, branches, page = (folder / name for name in ("f.nc", "b.nc", "page.html"))
-    pages.forged(result, chance, load(good), seen.address)
+    forged_results.forged(result, chance, load(good), seen.address)
     wrong = chance.random() < WRONG
     if wrong:
-        pages.with_wrong_numbers(result, chance)
+        forged_results.with_wrong_numbers(result, chance)
     command = ["explore", str(result), "--no-open", "--output", str(page)]
     if chance.random() < 0.3:
-        pages.forged_branch(branches, chance, load(branch), seen.address)
+        forged_results.forged_branch(branches, chance, load(branch), seen.address)
         command += ["--branches", str(branches)]
     ended = Child(command, folder / "temporary", in_little_memory).wait(2.0 * SLOW)
     reason = verdict(ended, [])
     if not reason:
-        fragment = pages.fragment(chance, seen.address)
+        fragment = forged_results.fragment(chance, seen.address)
         made = ended.code == 0
         lost = "" if wrong else f"no page: {' / '.join(ended.lines)[:200]}"
         reason = seen.verdict(page, fragment) if made else lost
-    pages.clean_up(result, branches, page)
+    forged_results.clean_up(result, branches, page)
     return ended, reason
 
 
 def prepare(
     folder: Path, fmu: Path, good: Path, chance: random.Random, number: int
 ) -> tuple[str, list[str]]:
-    """Return an input's kind, and the command that reads it."""
+    """Write a hostile input; return its kind, and the command that reads it."""
     turn = number % 4
     if turn in (0, 1):
         kind = list(archives.KINDS)[(number // 2) % len(archives.KINDS)]
@@ -134,20 +134,20 @@ def prepare(
 
 
 def hand(arguments: list[str], folder: Path) -> tuple[Ended, list[str]]:
-    """Run the command; how it ended, and what it wrote where it should not."""
+    """Run the command; return how it ended, and the files it wrote outside its folder."""
     temporary = folder / "temporary"
     before = {path for path in outside(folder) if path.exists()}
     ended = Child(arguments, temporary, in_little_memory).wait(2.0 * SLOW)
     strays = [str(path) for path in outside(folder) if path.exists() and path not in before]
     left = [path.name for path in temporary.iterdir()] if temporary.exists() else []
-    pages.clean_up(folder / "page.html")
+    forged_results.clean_up(folder / "page.html")
     shutil.rmtree(temporary, ignore_errors=True)
     shutil.rmtree(folder / "results", ignore_errors=True)
     return ended, strays + left
 
 
 def outside(folder: Path) -> list[Path]:
-    """Return where a file of the attacks would show, had it escaped."""
+    """Return the paths where an escaped file of the attacks would be."""
     places = (Path("/"), Path("/tmp"), *folder.parents, folder, Path.cwd(), *Path.cwd().parents)
     return [place / "escaped" for place in dict.fromkeys(places)]
 

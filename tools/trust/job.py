@@ -25,20 +25,18 @@ TOLD = 20  # notes of a batch that are kept
 
 
 def batch_seed(seed: int, batch: int) -> int:
-    """Return the seed of a batch: those of neighbours have nothing in common."""
+    """Return the seed of a batch; seeds of neighbouring batches are independent."""
     return int.from_bytes(hashlib.sha256(f"{seed} {batch}".encode()).digest()[:6], "big")
 
 
 def sources() -> str:
-    """Return a digest of the sources of all campaigns and benches: other sources, another
-    question.
-    """
+    """Return a digest of all campaigns' and benches' sources."""
     return digest(HERE, HERE.parent / "benches")
 
 
 @dataclass(frozen=True)
 class CampaignJob(Job):
-    """A campaign as a job of the runner, a batch an item."""
+    """Job that runs a campaign, one batch per item."""
 
     campaign: str = ""
     seed: int = 0
@@ -58,7 +56,7 @@ class CampaignJob(Job):
         return [(batch_seed(self.seed, i), min(self.size, n)) for i, n in enumerate(left)]
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[Any], previous: Table | None) -> Table:
-        """Run batches."""
+        """Run some batches."""
         campaign, rows = CAMPAIGNS[self.campaign], []
         for seed, count in items:
             clock = processor_time()
@@ -74,7 +72,7 @@ class CampaignJob(Job):
         }
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return batches side by side."""
+        """Return a dataset of all batches."""
         about = {
             "done": ("1", "units done"),
             "findings": ("1", "units where the promise did not hold"),
@@ -92,13 +90,13 @@ class CampaignJob(Job):
 
 
 def without_places(note: str) -> str:
-    """Return a note for a record: where things lie on this machine is nobody else's matter."""
+    """Return a note without this machine's paths."""
     for folder in (HERE.parents[1], Path(sys.prefix), Path.home()):
         note = note.replace(f"{folder}{os.sep}", "")
     return note
 
 
 def processor_time() -> float:
-    """Return the seconds that this process and its ended children have used."""
+    """Return the processor time of this process and its ended children, s."""
     spent = os.times()
     return spent.user + spent.system + spent.children_user + spent.children_system

@@ -19,7 +19,7 @@ LARGEST = (
 
 
 class Leaks(Campaign):
-    """Flat memory."""
+    """Campaign: memory stays flat."""
 
     name = "leaks"
     title = "Leaks"
@@ -34,7 +34,7 @@ class Leaks(Campaign):
     measures = "bytes a frequency"
 
     def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Take and give back."""
+        """Create, step and free instances; compare the memory before and after."""
         number = max(10, count // PER_STEP)
         grown, more, failed = map(int, programs.run(fmu, "leaks", number, count).split())
         notes = [
@@ -55,7 +55,7 @@ class Leaks(Campaign):
 
 
 def peak(fmu: Path, number: int) -> int:
-    """Bytes that a process had at most, which a sweep of so many frequencies was computed in."""
+    """Compute a sweep in a child; return the child's peak memory, bytes."""
     reader, writer = os.pipe()
     child = os.fork()
     if child == 0:
@@ -73,7 +73,7 @@ def peak(fmu: Path, number: int) -> int:
 
 
 def sweep(fmu: Path, number: int) -> None:
-    """Frequencies, one after the other, kept on disk."""
+    """Compute a sweep of some frequencies, stored on disk."""
     import numpy as np
 
     import orchestrate

@@ -53,7 +53,7 @@ PATIENCE = 600.0  # s; who takes longer is noticed too
 
 
 def places(tree: ast.AST) -> Iterator[tuple[int, str]]:
-    """Yield nodes that can be changed, by their number in a walk, and how."""
+    """Yield the nodes of a syntax tree that can be mutated: number in a walk, and how."""
     for number, node in enumerate(ast.walk(tree)):
         if isinstance(node, (ast.BinOp, ast.AugAssign)) and type(node.op) in OTHER:
             yield number, "operator"
@@ -68,7 +68,7 @@ def places(tree: ast.AST) -> Iterator[tuple[int, str]]:
 
 
 def change(tree: ast.AST, number: int) -> str:
-    """Change a node in place; returns where and what."""
+    """Mutate a node in place; return where and what."""
     node = list(ast.walk(tree))[number]
     before = ast.unparse(node)
     if isinstance(node, (ast.BinOp, ast.AugAssign, ast.BoolOp)):
@@ -83,14 +83,14 @@ def change(tree: ast.AST, number: int) -> str:
 
 
 def mutant(source: str, chance: random.Random) -> tuple[str, str]:
-    """Return a source with one change, and what was changed."""
+    """Return a source with one mutation, and its description."""
     tree = ast.parse(source)
     note = change(tree, chance.choice(list(places(tree)))[0])
     return ast.unparse(ast.fix_missing_locations(tree)), note
 
 
 def copied(folder: Path) -> Path:
-    """Return a copy of the sources and tests, to be changed."""
+    """Copy sources and tests, to be mutated; return the copy's folder."""
     for name in TREES:
         place = ROOT / name
         if place.is_dir():
@@ -102,7 +102,7 @@ def copied(folder: Path) -> Path:
 
 
 def noticed(folder: Path, tests: tuple[str, ...]) -> bool:
-    """Return whether some test fails, or does not end."""
+    """Run the tests on a mutant; return whether one fails or does not end."""
     command = [sys.executable, "-m", "pytest", "-x", "-q", "-n", "0", "-p", "no:cacheprovider"]
     surroundings = {**os.environ, "PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
     try:
@@ -119,7 +119,7 @@ def noticed(folder: Path, tests: tuple[str, ...]) -> bool:
 
 
 class Mutants(Campaign):
-    """Would the tests notice?"""
+    """Campaign: tests notice mutations of the sources."""
 
     name = "mutants"
     title = "Mutants"
@@ -135,7 +135,7 @@ class Mutants(Campaign):
     package = True
 
     def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Change and test."""
+        """Mutate sources and run their tests."""
         chance, notes, counts = random.Random(seed), [], {"noticed:": 0, "survived:": 0}
         with tempfile.TemporaryDirectory(prefix="vibroimpact-trust-") as holder:
             folder = copied(Path(holder) / "copy")

@@ -22,7 +22,7 @@ Draw = Callable[[np.random.Generator, Values], None]
 
 @dataclass(frozen=True)
 class ParameterSet:
-    """A structure, its start, its box and a length of time.
+    """A structure, its start, its excitation and a duration.
 
     Attributes
     ----------
@@ -40,9 +40,7 @@ class ParameterSet:
     duration: float
 
     def grids(self) -> Iterator[list[float]]:
-        """Communication points of grids that all end at the same time: one step, two, uneven
-        ones, 24 equal ones.
-        """
+        """Yield communication grids with one end: one step, two, uneven ones, 24 equal ones."""
         start, end = self.start_time, self.start_time + self.duration
         cuts = (), (0.5,), (0.001, 0.7, 0.7000001, 0.95), tuple(i / 24 for i in range(1, 24))
         for parts in cuts:
@@ -51,27 +49,27 @@ class ParameterSet:
 
 
 def decades(rng: np.random.Generator, low: float, high: float) -> float:
-    """A number between two powers of ten, uniform in its logarithm."""
+    """Draw a number between two powers of ten, uniformly in its logarithm."""
     return float(10.0 ** rng.uniform(low, high))
 
 
 def either(rng: np.random.Generator, *choices: float) -> float:
-    """One of several numbers."""
+    """Draw one of several numbers."""
     return choices[int(rng.integers(len(choices)))]
 
 
 def sign(rng: np.random.Generator) -> float:
-    """-1 or 1."""
+    """Draw -1 or 1."""
     return either(rng, -1.0, 1.0)
 
 
 def omegas(values: Values) -> tuple[float, float]:
-    """Natural frequencies of the two masses, rad/s."""
+    """Return the natural frequencies of the two masses, rad/s."""
     return math.sqrt(values["k1"] / values["m1"]), math.sqrt(values["k2"] / values["m2"])
 
 
 def ordinary(rng: np.random.Generator) -> Values:
-    """What every class begins with: a structure in chattering, impacts and contact."""
+    """Draw a structure with chattering, impacts and contact, from which every class starts."""
     return {
         "m1": 1.0,
         "m2": decades(rng, -1.5, 1.5),
@@ -92,7 +90,7 @@ def ordinary(rng: np.random.Generator) -> Values:
 
 
 def nearly_equal(rng: np.random.Generator, values: Values) -> None:
-    """Oscillators that differ in the last digits, impacts that lose next to nothing."""
+    """Draw oscillators that differ in the last digits, with almost lossless impacts."""
     differs = [either(rng, 0.0, 1.0) * sign(rng) * decades(rng, -17.0, -2.0) for _ in range(2)]
     values["k2"] = values["k1"] * values["m2"] / values["m1"] * (1.0 + differs[0])
     values["d2"] = values["d1"] * values["m2"] / values["m1"] * (1.0 + differs[1])
@@ -103,7 +101,7 @@ def nearly_equal(rng: np.random.Generator, values: Values) -> None:
 
 
 def next_to_nothing(rng: np.random.Generator, values: Values) -> None:
-    """A damping, a drive or a frequency that is subnormal or nearly so."""
+    """Draw a damping, a drive or a frequency that is subnormal or nearly so."""
     for name in ("d1", "d2", "box_amplitude", "box_frequency", "x2_start", "v2_start"):
         if rng.random() < 0.4:
             values[name] = either(rng, 5e-324, 1e-310, decades(rng, -323.0, -20.0))
@@ -111,14 +109,14 @@ def next_to_nothing(rng: np.random.Generator, values: Values) -> None:
 
 
 def of_all_sizes(rng: np.random.Generator, values: Values) -> None:
-    """Starts far below and far above the box's motion."""
+    """Draw starts far below and far above the box's motion."""
     for name in ("x1_start", "x2_start", "v1_start", "v2_start"):
         values[name] *= either(rng, 0.0, 1.0, 1.0) * decades(rng, -150.0, 60.0)
     values["x1_start"], values["x2_start"] = sorted((values["x1_start"], values["x2_start"]))
 
 
 def one_small_start(rng: np.random.Generator, values: Values) -> None:
-    """Nearly at rest on the boundary, under a drive of ordinary size."""
+    """Draw a start nearly at rest on the boundary, under an ordinary drive."""
     values["x1_start"] = values["x2_start"] = either(rng, 0.0, 1.0) * decades(rng, -20.0, 0.0)
     values["v1_start"] = either(rng, 0.0, 1.0) * decades(rng, -20.0, 0.0)
     values["v2_start"] = values["v1_start"] + either(rng, 0.0, 1.0) * decades(rng, -20.0, 0.0)
@@ -126,7 +124,7 @@ def one_small_start(rng: np.random.Generator, values: Values) -> None:
 
 
 def heavy(rng: np.random.Generator, values: Values) -> None:
-    """A gamma of one and unequal masses: impacts that nearly stick."""
+    """Draw a gamma of one and unequal masses: impacts that nearly stick."""
     values["gamma"] = either(rng, 1.0, 0.99, 0.5)
     values["m2"] = either(rng, 25.0, 0.04, 1000.0, 0.001)
     values["k2"] = values["m2"] * decades(rng, -1.0, 1.0)
@@ -134,7 +132,7 @@ def heavy(rng: np.random.Generator, values: Values) -> None:
 
 
 def steep(rng: np.random.Generator, values: Values) -> None:
-    """Dampers about and far beyond critical."""
+    """Draw dampers about and far beyond critical."""
     for name, mass, stiffness in (("d1", "m1", "k1"), ("d2", "m2", "k2")):
         critical = 2.0 * math.sqrt(values[mass] * values[stiffness])
         factor = 1.0 + sign(rng) * decades(rng, -16.0, -3.0)
@@ -144,7 +142,7 @@ def steep(rng: np.random.Generator, values: Values) -> None:
 
 
 def resonant(rng: np.random.Generator, values: Values) -> None:
-    """A drive on a natural frequency, or next to it, with no damping or next to none."""
+    """Draw a drive at or next to a natural frequency, with little or no damping."""
     together = math.sqrt((values["k1"] + values["k2"]) / (values["m1"] + values["m2"]))
     natural = either(rng, *omegas(values), together)
     beside = either(rng, 0.0, 1.0) * sign(rng) * decades(rng, -17.0, -3.0)
@@ -157,11 +155,11 @@ def resonant(rng: np.random.Generator, values: Values) -> None:
 
 
 def late(rng: np.random.Generator, values: Values) -> None:
-    """Nothing but the clock is unusual."""
+    """Draw an ordinary structure at a late start time."""
 
 
 def cubic(rng: np.random.Generator, values: Values) -> None:
-    """A box pushed by other models, over scales."""
+    """Draw a box acceleration given as cubics, over scales."""
     for name in ("box_acceleration", "box_jerk", "box_snap", "box_crackle"):
         values[name] = either(rng, 0.0, 1.0) * sign(rng) * decades(rng, -12.0, 2.0)
     if rng.random() < 0.5:
@@ -170,7 +168,7 @@ def cubic(rng: np.random.Generator, values: Values) -> None:
 
 
 def pressed(rng: np.random.Generator, values: Values) -> None:
-    """Long chattering: a constant push, impacts that lose little, a small gamma."""
+    """Draw long chattering: a constant push, little loss in impacts, a small gamma."""
     values["k2"] = values["m2"] * decades(rng, -0.5, 0.5)
     values["box_acceleration"] = sign(rng) * decades(rng, -2.0, 2.0)
     values["e"] = 1.0 - decades(rng, -3.0, 0.0)
@@ -178,13 +176,13 @@ def pressed(rng: np.random.Generator, values: Values) -> None:
 
 
 def fast_or_slow(rng: np.random.Generator, values: Values) -> None:
-    """A drive far from the natural frequencies."""
+    """Draw a drive far from the natural frequencies."""
     values["box_frequency"] = either(rng, decades(rng, 0.5, 3.0), decades(rng, -12.0, -1.0))
     values["box_amplitude"] = decades(rng, -3.0, 1.0) / (values["box_frequency"] + 0.01) ** 2
 
 
 def of_all_scales(rng: np.random.Generator, values: Values) -> None:
-    """Masses and stiffnesses over decades, the SI units of watches and of ships."""
+    """Draw masses and stiffnesses over decades, in the SI units of watches and of ships."""
     mass, stiffness = decades(rng, -9.0, 9.0), decades(rng, -9.0, 9.0)
     rate = math.sqrt(stiffness / mass)
     for name in ("m1", "m2"):
@@ -198,7 +196,7 @@ def of_all_scales(rng: np.random.Generator, values: Values) -> None:
 
 
 def set_clearance(rng: np.random.Generator, values: Values) -> None:
-    """A gap or a preload of the motion's size, or of any other; start positions to fit."""
+    """Set a random clearance or preload, and a start position that fits."""
     size = max(abs(values[name]) for name in ("x1_start", "x2_start", "box_amplitude"))
     spread = either(rng, decades(rng, -3.0, 1.0), decades(rng, -12.0, 12.0))
     values["clearance"] = sign(rng) * min(size * spread, 1e100)
@@ -209,9 +207,7 @@ def set_clearance(rng: np.random.Generator, values: Values) -> None:
 
 
 def set_added(rng: np.random.Generator, values: Values) -> None:
-    """Other parameters that came later than the paper's: of the size that matters to the motion, or
-    of any other.
-    """
+    """Set the parameters that are not in the paper to sizes that matter to the motion, or any."""
     for name in ADDED:
         if name != "clearance" and rng.random() < 0.4:
             quantity = STRUCTURE[name]
@@ -221,7 +217,7 @@ def set_added(rng: np.random.Generator, values: Values) -> None:
 
 
 def unit_of_motion(values: Values, dimension: Mapping[str, int]) -> float:
-    """What mass 1, its frequency and the largest length make of a dimension."""
+    """Return the unit that mass 1, its frequency and the largest length give a dimension."""
     lengths = [abs(values[name]) for name in ("x1_start", "x2_start", "box_amplitude")]
     units = {"kg": values["m1"], "m": max(*lengths, 1e-60), "s": 1.0 / omegas(values)[0]}
     return math.prod(units[base] ** exponent for base, exponent in dimension.items())
@@ -244,7 +240,7 @@ KINDS: dict[str, Draw] = {
 
 
 def draw(seed: int, number: int) -> ParameterSet:
-    """The parameter set of a number under a seed: the same on every machine.
+    """Draw the parameter set of a number under a seed; the same on every machine.
 
     One in four belongs to a second class besides its own; one in four begins at a clock of up to
     1e12 s, all in the class ``late``; four in ten have a clearance, as many each of what was

@@ -20,14 +20,14 @@ CALLS = ("-fno-math-errno", "-fno-trapping-math", "-fcx-limited-range")
 
 
 def compiler() -> list[str]:
-    """Return the machine's own C compiler, else ziglang's."""
+    """Return the command of the machine's own C compiler, else of ziglang's."""
     own = shutil.which("cc") or shutil.which("gcc")
     return [own] if own else [sys.executable, "-m", "ziglang", "cc"]
 
 
 @functools.cache
 def compiled(fmu: Path, name: str) -> Path:
-    """``native/NAME.c`` against an FMI 3.0 FMU.
+    """Compile ``native/NAME.c`` against an FMI 3.0 FMU; return the program.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def compiled(fmu: Path, name: str) -> Path:
 
 @functools.cache
 def temporary() -> Path:
-    """Return a folder of this process, removed at its end."""
+    """Return a temporary folder, removed when the process ends."""
     holder = tempfile.TemporaryDirectory(prefix="vibroimpact-trust-")
     _kept.append(holder)
     return Path(holder.name)
@@ -64,13 +64,13 @@ _kept: list[tempfile.TemporaryDirectory[str]] = []
 
 
 def library(fmu: Path) -> Path:
-    """Return the FMU's binary for this machine, unpacked."""
+    """Unpack the FMU's binary for this machine; return its path."""
     description = describe(fmu)
     return unpacked(description) / "binaries" / "x86_64-linux" / f"{description.identifier}.so"
 
 
 def run(fmu: Path, name: str, *arguments: object, success: bool = True) -> str:
-    """Return what a program prints."""
+    """Run a program; return what it prints."""
     command = [str(compiled(fmu, name)), str(library(fmu)), *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, text=True)
     if success and done.returncode:

@@ -82,18 +82,18 @@ class Record:
     rows: list[list[Any]] = field(default_factory=list)
 
     def command(self) -> str:
-        """Return what does it again."""
+        """Return the command that repeats the run."""
         return (
             f"python -m tools.trust run {self.campaign} --seed {self.seed} --budget {self.budget}"
         )
 
     def is_copy(self, other: Record) -> bool:
-        """Return whether another record is of this very run, its stored result read once more."""
+        """Return whether another record is a copy of this run, its stored result read again."""
         return {**asdict(self), "date": ""} == {**asdict(other), "date": ""}
 
 
 def record_of(campaign: str, seed: int, budget: int, answer: xr.Dataset) -> Record:
-    """Return a finished run's record."""
+    """Make the record of a finished run."""
     told = [json.loads(str(text)) for text in answer.told.values]
     counts: Counter[str] = Counter()
     for part in told:
@@ -130,7 +130,7 @@ def digest(*folders: Path) -> str:
 
 
 def machine() -> str:
-    """Return the machine in a line: nothing that names its owner."""
+    """Return a description of the machine in one line, without its owner."""
     try:
         text = Path("/proc/cpuinfo").read_text("utf-8")
         model = re.findall(r"model name\s*: (.*)", text)[0]
@@ -147,7 +147,7 @@ def read(path: Path = RECORDS) -> list[Record]:
 
 
 def append(record: Record, path: Path = RECORDS) -> bool:
-    """Add a run's record; false where it is there already."""
+    """Append a run's record to the file; return False if it is there already."""
     if any(record.is_copy(other) for other in read(path)):
         return False
     row: dict[str, Any] = asdict(record)

@@ -37,7 +37,7 @@ Values = dict[str, float]
 
 @dataclass(frozen=True)
 class Course:
-    """What an undisturbed run does: start values, then inputs to be set and a time to step to."""
+    """An undisturbed run: start values, then inputs to be set and times to step to."""
 
     model: str
     values: Values
@@ -46,18 +46,18 @@ class Course:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Outputs that are compared; those of a point of time first."""
+        """Names of the compared outputs; those at a point of time first."""
         return (*POINT[self.model], *OF_STEP[self.model])
 
 
 @functools.cache
 def path_of(model: str, form: str) -> Path:
-    """Return an FMU of the present sources, looked for once."""
+    """Return the path of an FMU of the present sources."""
     return find(model, form).path
 
 
 def drawn_course(seed: int, number: int) -> Course:
-    """Return the course of a number under a seed."""
+    """Draw the course of a number under a seed."""
     rng = random.Random(f"{seed} {number}")
     if number % SHAKER_EVERY == 0:
         values = {"voltage": rng.uniform(2.0, 12.0), "armature_inductance": rng.choice((0.0, 0.05))}
@@ -83,12 +83,12 @@ def drawn_course(seed: int, number: int) -> Course:
 
 
 def force(rng: random.Random) -> Values:
-    """Return a force on the shaker's box, as a cubic."""
+    """Draw a force on the shaker's box, as a cubic."""
     return {name: rng.uniform(-2.0, 2.0) * 5.0**i for i, name in enumerate(FORCE)}
 
 
 def motor(rng: random.Random) -> list[Values]:
-    """Return what may be set of the shaker on the way."""
+    """Return inputs of the shaker that may be set on the way."""
     single = [{name: value} for name, value in force(rng).items()]
     return [*single, force(rng), {"voltage": rng.uniform(2.0, 12.0)}]
 
@@ -96,7 +96,7 @@ def motor(rng: random.Random) -> list[Values]:
 def steps_of(
     rng: random.Random, start: float, duration: float, inputs: Sequence[Values]
 ) -> tuple[tuple[Values, float], ...]:
-    """Steps of any length, before one in three of which something is set; the same again, too."""
+    """Draw steps of any length, a third of them with inputs set before."""
     parts = sorted(rng.random() for _ in range(STEPS))
     return tuple(
         (rng.choice(inputs) if rng.random() < 0.35 else {}, start + duration * part)
@@ -105,13 +105,13 @@ def steps_of(
 
 
 def given(values: Values) -> dict[str, Any]:
-    """Return the values as the FMU takes them."""
+    """Return the values as keywords for an instance."""
     flags = {name: bool(values[name]) for name in ("bonded", "x_rel_max_on") if name in values}
     return {**values, **flags}
 
 
 def advance(instance: Instance, time: float, target: float) -> None:
-    """To a time: with early returns where there are any; a step of no length is one, too."""
+    """Step to a time through early returns; a step of length 0 counts too."""
     if isinstance(instance, EventInstance) and target > time:
         instance.advance(time, target)
     else:
@@ -119,7 +119,7 @@ def advance(instance: Instance, time: float, target: float) -> None:
 
 
 def undisturbed(course: Course, path: Path) -> list[Bits]:
-    """Return the outputs after each step; up to the first that cannot be done."""
+    """Compute the outputs after each step, up to the first that fails."""
     rows: list[Bits] = []
     with Instance(path) as instance:
         try:
@@ -136,12 +136,12 @@ def undisturbed(course: Course, path: Path) -> list[Bits]:
 
 
 def outputs(instance: Instance, names: Sequence[str]) -> Bits:
-    """Return outputs, to the last bit."""
+    """Return the instance's outputs as texts with all bits."""
     return hexadecimal([float(value) for value in instance.get(*names)])
 
 
 def wander(rng: random.Random, instance: Instance, course: Course, time: float) -> None:
-    """Do what is to leave no trace: other inputs, other steps, or another run."""
+    """Change inputs, step or start another run: what a restore must undo."""
     try:
         if rng.random() < 0.1:
             instance.reset()
@@ -169,7 +169,7 @@ def in_event_mode(rng: random.Random, instance: EventInstance, course: Course) -
 def advance_disturbed(
     rng: random.Random, instance: EventInstance, course: Course, time: float, end: float
 ) -> int:
-    """To ``end`` with early returns, and with states restored in event mode; says how many were.
+    """Step to ``end`` with restores in event mode; return their number.
 
     -1 where no step size of 53 bits leads from an impact to ``end``: another time is not compared.
     Where the clock's last digit puts an impact at ``end``, a step of no length follows: an early
@@ -191,7 +191,7 @@ def advance_disturbed(
 
 
 def in_memory(rng: random.Random, instance: Instance, course: Course, time: float) -> None:
-    """Save, go astray, and back; not serialised."""
+    """Save a state in memory, wander, and restore it."""
     get, _, _, put, free = instance.state_calls()
     state = instance.call(get)
     try:
@@ -204,7 +204,7 @@ def in_memory(rng: random.Random, instance: Instance, course: Course, time: floa
 def moved(
     rng: random.Random, instance: Instance, others: Sequence[Instance], course: Course, time: float
 ) -> Instance:
-    """Save, go astray, and back; in the same instance, or, serialised, in another one."""
+    """Save, wander and restore: in the same instance, or serialised in another."""
     if rng.random() < 0.4:
         in_memory(rng, instance, course, time)
         return instance
@@ -218,7 +218,7 @@ def moved(
 def disturbed(
     rng: random.Random, course: Course, rows: Sequence[Bits], pool: Sequence[Instance]
 ) -> tuple[int, str]:
-    """Restores of a run with a restored state before each step, and what is wrong with it."""
+    """Compute a run with a restore before each step; return their number, and what is wrong."""
     here, time, restored = pool[0], course.start_time, 0
     here.initialize(course.start_time, **given(course.values))
     for number, ((inputs, target), row) in enumerate(zip(course.steps, rows, strict=False)):
@@ -249,7 +249,7 @@ def disturbed(
 
 
 def pools(course: Course, number: int, rows: Sequence[Bits]) -> list[list[tuple[type, str]]]:
-    """Return kinds of instances among which states may wander."""
+    """Return the kinds of instances among which states may be moved."""
     native: list[tuple[type, str]] = [(Instance, "fmi3"), (Instance, "fmi2"), (Instance, "fmi3")]
     if course.model == OSCILLATOR:
         impacts = float.fromhex(rows[-1][STATE.index("impact_count")])
@@ -261,7 +261,7 @@ def pools(course: Course, number: int, rows: Sequence[Bits]) -> list[list[tuple[
 
 
 class Restores(Campaign):
-    """Saved states."""
+    """Campaign: saved states restore the run to the last bit."""
 
     name = "restores"
     title = "Saved and restored states"
@@ -279,7 +279,7 @@ class Restores(Campaign):
     unit, target, batch = "restores", 1_000_000, 5_000
 
     def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Restore, and compare."""
+        """Compute courses with and without restores and compare them."""
         done, findings, number, notes = 0, 0, 0, []
         counts = {"courses:": 0, "in the pythonfmu form:": 0, "of MotorShaker:": 0}
         while done < count:
@@ -305,7 +305,7 @@ class Restores(Campaign):
         rows: Sequence[Bits],
         kinds: Sequence[tuple[type, str]],
     ) -> tuple[int, str]:
-        """Restores of a course by a pool of instances, and what is wrong."""
+        """Compare a course in a pool of instances; return restores, and what is wrong."""
         rng = random.Random(f"{seed} {number} {kinds[0][1]}")
         with ExitStack() as stack:
             pool = [stack.enter_context(k(path_of(course.model, form))) for k, form in kinds]

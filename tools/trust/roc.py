@@ -12,7 +12,7 @@ Floats = NDArray[np.float64]
 
 
 class Curve(NamedTuple):
-    """Rates over thresholds that fall.
+    """Rates of true and false positives over falling thresholds.
 
     Attributes
     ----------
@@ -27,16 +27,16 @@ class Curve(NamedTuple):
 
     @property
     def area(self) -> float:
-        """Chance that a positive case has the larger number, ties half."""
+        """Area under the curve: chance that a positive case has the larger number, ties half."""
         return float(np.trapezoid(self.true, self.false))
 
     def true_at(self, false: float) -> float:
-        """Largest part of the positive cases at no more than a part of false ones."""
+        """Return the largest rate of true positives at no more than a rate of false ones."""
         return float(self.true[self.false <= false].max())
 
 
 def curve(numbers: ArrayLike, is_positive: ArrayLike) -> Curve:
-    """The curve of a sign.
+    """Compute the receiver operating characteristic of a sign.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def curve(numbers: ArrayLike, is_positive: ArrayLike) -> Curve:
 
 
 def area_error(area: float, positive: int, negative: int) -> float:
-    """Standard error of an area (Hanley and McNeil 1982)."""
+    """Return the standard error of an area (Hanley and McNeil 1982)."""
     both = area / (2.0 - area), 2.0 * area**2 / (1.0 + area)
     square = area * (1.0 - area)
     square += (positive - 1) * (both[0] - area**2) + (negative - 1) * (both[1] - area**2)
@@ -65,7 +65,7 @@ def area_error(area: float, positive: int, negative: int) -> float:
 
 
 def interval(count: int, of: int) -> tuple[float, float]:
-    """Wilson's 95 % interval of a part."""
+    """Return Wilson's 95 % interval of a share."""
     if not of:
         return 0.0, 1.0
     z, part = 1.96, count / of
@@ -83,5 +83,5 @@ def part(count: int, of: int) -> str:
 
 
 def bins(edges: Sequence[float]) -> list[tuple[float, float]]:
-    """Neighbouring pairs."""
+    """Return neighbouring pairs of edges."""
     return list(zip(edges[:-1], edges[1:], strict=True))

@@ -18,7 +18,7 @@ CHANNEL = "acceleration1"
 
 
 def order_ratio(record: xr.Dataset) -> float:
-    """Order 2 over order 1 of mass 1, of the whole sweep: roots of the sums of squares.
+    """Compute order 2 over order 1 of mass 1, as roots of sums of squares over the sweep.
 
     NaN where there is no sweep.
     """
@@ -31,7 +31,7 @@ def order_ratio(record: xr.Dataset) -> float:
 
 
 def kurtosis_above(record: xr.Dataset) -> float:
-    """Kurtosis of the acceleration of mass 1 above 300 Hz: 3 for normal noise."""
+    """Compute the kurtosis of mass 1's acceleration above 300 Hz: 3 for normal noise."""
     rate = float(record.attrs["sample_rate"])
     sections = butter(6, ABOVE, "highpass", fs=rate, output="sos")
     edge = int(BEGIN * rate)

@@ -96,32 +96,32 @@ class Trial:
 
     @property
     def output(self) -> Path:
-        """Where the results go."""
+        """Folder of the results."""
         return self.folder / "results"
 
     def arguments(self) -> list[str]:
-        """Return the command."""
+        """Return the arguments of the command."""
         given = str(self.folder.parent / GIVEN)
         named = [given if text == GIVEN else text for text in COMMANDS[self.name]]
         return [*named, "--output", str(self.output)]
 
     def start(self, prepare: Callable[[], object] | None = None) -> Child:
-        """Return the command under way."""
+        """Start the command in a child."""
         return Child(self.arguments(), self.folder / "temporary", prepare)
 
     def wait_a_moment(self) -> None:
-        """Any moment of the command."""
+        """Wait for a random moment of the command."""
         time.sleep(self.chance.uniform(0.0, self.seconds))
 
     def struck(self, number: int) -> Ended:
-        """Return how the command ends at a signal that comes at any moment."""
+        """Send a signal at a random moment; return how the command ends."""
         child = self.start()
         self.wait_a_moment()
         child.send(number)
         return child.wait()
 
     def goes_on(self) -> str:
-        """See that the same command ends well with the same bytes; else what is wrong."""
+        """Run the same command again: return empty if it ends with the same bytes, else why not."""
         ended = self.start().wait()
         return f"the same command again: {format_end(ended)}" if ended.code else self.verdict()
 
@@ -137,7 +137,7 @@ KINDS = (".nc", ".png", ".pdf", ".html")  # of files that a command leaves
 
 
 def format_end(ended: Ended) -> str:
-    """Return how a command ended, in a line."""
+    """Format how a command ended, as one line."""
     return f"exit code {ended.code}: {' / '.join(ended.lines)[:300]}"
 
 
@@ -154,7 +154,7 @@ def in_a_line(ended: Ended) -> str:
 
 
 def undisturbed(name: str, holder: Path) -> tuple[dict[str, bytes], float]:
-    """Results of a command to which nothing happens, and how long it takes."""
+    """Run a command undisturbed; return its results and its duration, s."""
     folder = holder / "undisturbed"
     if name in BEFORE:
         before = [*BEFORE[name], "--store", str(holder / GIVEN), "--output", str(folder)]
@@ -168,7 +168,7 @@ def undisturbed(name: str, holder: Path) -> tuple[dict[str, bytes], float]:
 
 
 class Disturbances(Campaign):
-    """A campaign of faults, each of one command.
+    """Campaign of faults, each during one command.
 
     Attributes
     ----------
@@ -184,10 +184,10 @@ class Disturbances(Campaign):
 
     @abstractmethod
     def trials(self, holder: Path) -> AbstractContextManager[Callable[..., Trial]]:
-        """Return what makes a trial, with all it needs around it."""
+        """Return a context that provides a maker of trials."""
 
     def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Return one fault after the other."""
+        """Run ``count`` faults one after the other."""
         import_all()
         chance, counts, notes = random.Random(seed), dict.fromkeys(self.faults, 0), []
         known: dict[str, tuple[dict[str, bytes], float]] = {}

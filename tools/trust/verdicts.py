@@ -36,7 +36,7 @@ SLOPES = (-0.6, 0.3)  # least slopes d eta0 / d Omega of drives that nearly have
 
 
 class Truth(NamedTuple):
-    """Where a slow ramp loses its motion.
+    """Where a slow ramp loses its motion, from the branches.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class Truth(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """What ``couple`` says of one direction; voltages over K omega.
+    """Answer of ``couple`` for one direction; voltages over K omega.
 
     Attributes
     ----------
@@ -71,7 +71,7 @@ class Answer(NamedTuple):
 
 
 def draw(rng: np.random.Generator) -> System:
-    """Return a random structure with a random drive."""
+    """Draw a random structure with a random drive."""
     damping = rng.uniform(0.006, 0.03)
     b = float(np.exp(rng.uniform(np.log(0.01), np.log(0.5))))
     mu, kappa = rng.uniform(0.5, 2.0), rng.uniform(1.05, 2.0)
@@ -84,7 +84,7 @@ def draw(rng: np.random.Generator) -> System:
 
 
 def with_folds(rng: np.random.Generator) -> System:
-    """Return one whose folds, by the averaged theory, are not too close."""
+    """Draw systems until the averaged theory has folds that are not too close."""
     while True:
         system = draw(rng)
         folds = averaged.folds(*system)
@@ -93,7 +93,7 @@ def with_folds(rng: np.random.Generator) -> System:
 
 
 def with_slope(system: System, slope: float) -> System:
-    """The same with another unbalance, so that the least slope d eta0 / d Omega is ``slope``."""
+    """Return the system with the unbalance that makes the least slope d eta0/d Omega ``slope``."""
     structure, drive = system
     share = (1.0 - slope) / (1.0 - averaged.least_slope(*system))
     numbers = {
@@ -103,7 +103,7 @@ def with_slope(system: System, slope: float) -> System:
 
 
 def ends_of(system: System) -> tuple[float, float]:
-    """Return ends of the ramps over K omega: past both jumps, with what a fast ramp is late."""
+    """Return the ends of ramps over K omega: past both jumps, and past a fast ramp's lag."""
     folds = averaged.folds(*system)
     at = averaged.resonance(*system)
     places = [fold.eta0 for fold in folds] or [float(averaged.no_load_speed(*system, at))]
@@ -111,7 +111,7 @@ def ends_of(system: System) -> tuple[float, float]:
 
 
 def answers(system: System, rate: float) -> tuple[Answer, ...]:
-    """Return what ``couple`` says at a rate, up and down."""
+    """Run ``couple`` at a rate; return its answers up and down."""
     structure, drive = system
     volts = drive.volts(structure)
     first, last = (end * volts for end in ends_of(system))
@@ -121,7 +121,7 @@ def answers(system: System, rate: float) -> tuple[Answer, ...]:
 
 
 def answer_of(at: xr.Dataset, volts: float) -> Answer:
-    """Return the answer in one direction."""
+    """Return the answer in one direction from the dataset."""
     code, held, error = (float(at[name]) for name in ("held_verdict", "held_jumps", "held_error"))
     jump = float(at.jumps) / volts
     if code == LOST:
@@ -136,7 +136,7 @@ def answer_of(at: xr.Dataset, volts: float) -> Answer:
 
 
 def truths(system: System) -> dict[tuple[str, str], Truth]:
-    """Return where both structures lose their motion, by their branches, up and down."""
+    """Return where both structures lose their motion, up and down, from their branches."""
     structure, drive = system
     folds, omega = averaged.folds(*system), structure.omega
     at = averaged.resonance(*system)
@@ -159,7 +159,7 @@ def truths(system: System) -> dict[tuple[str, str], Truth]:
 
 
 def fold_that_is_met(system: System, branch: xr.Dataset, way: str) -> Truth:
-    """Return the fold of delaminated branches at which a slow course of held voltages jumps.
+    """Return the delaminated fold at which a slow course of held voltages jumps.
 
     Branches have more folds than a ramp meets; and where it meets one it may go on with another
     motion of nearly the same speed. So voltages are held closely before and past each fold, in one
@@ -183,7 +183,7 @@ def fold_that_is_met(system: System, branch: xr.Dataset, way: str) -> Truth:
 
 
 def folds_of(system: System, branch: xr.Dataset, way: str) -> list[tuple[float, float]]:
-    """Return voltages over K omega and speeds over omega of delaminated folds that end one way."""
+    """Return voltages over K omega and speeds over omega of folds that end motions one way."""
     structure, drive = system
     units = drive.volts(structure), structure.omega
     legs = branch.sel(structure="delaminated")
@@ -212,17 +212,17 @@ def folds_of(system: System, branch: xr.Dataset, way: str) -> list[tuple[float, 
 
 
 def first_of(system: System, way: str) -> float:
-    """Return where a course in a direction begins, over K omega."""
+    """Return the start of a course in a direction, over K omega."""
     return ends_of(system)[WAYS.index(way)]
 
 
 def ordered(voltages: Sequence[float], way: str) -> list[float]:
-    """Return the voltages in the order in which they are met."""
+    """Return the voltages in the order of a course's direction."""
     return sorted(voltages, reverse=way == "down")
 
 
 def refuted(system: System, answer: Answer, way: str) -> str:
-    """What voltages that are held by themselves say against an answer; empty where nothing."""
+    """Hold voltages by themselves; return what they say against an answer, or empty."""
     if answer.said == "lost" and answer.held:
         return refuted_bracket(system, answer, way)
     return refuted_by_grid(system, answer, way) if answer.said in ("lost", "none") else ""
@@ -352,7 +352,7 @@ def judged(
 
 
 class Verdicts(Campaign):
-    """Random drives at four rates, bonded and delaminated, with folds and near their edge."""
+    """Campaign: verdicts on random drives at four rates, with folds and near their edge."""
 
     name, title = "verdicts", "Jump, none, or undecided"
     asks = (
@@ -372,7 +372,7 @@ class Verdicts(Campaign):
     unit, target, batch, package = "drives", 40, 1, True
 
     def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Return one drive after the other."""
+        """Check the verdicts on ``count`` drives."""
         rng, counts, notes = np.random.default_rng(seed), Counter[str](), []
         wrong = 0
         for number in range(count):
@@ -392,7 +392,7 @@ class Verdicts(Campaign):
         return Outcome(count, wrong, counts=+counts, notes=tuple(notes))
 
     def judge(self, system: System, rates: Sequence[float]) -> Iterator[tuple[str, str]]:
-        """Yield both structures of a drive."""
+        """Judge both structures of a drive; yield each answer's name, and what is wrong with it."""
         known = truths(system)
         for kind in KINDS:
             of_kind = {way: known[kind, way] for way in WAYS}

@@ -20,7 +20,7 @@ FEWEST_LINES = 8  # samples in a segment
 
 @dataclass(frozen=True)
 class Averaging:
-    """Segments of a record.
+    """How a record is divided into segments for Welch's method.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class Averaging:
 
     @property
     def independent(self) -> float:
-        """How many independent segments have the same random error.
+        """Number of independent segments that would have the same random error.
 
         Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70-73: overlapping segments are
         correlated by the squared correlation of the window with itself.
@@ -70,7 +70,7 @@ class Averaging:
 def averaging(
     channels: Channels, resolution: float | None, window: str, overlap: float, fewest: int = 1
 ) -> Averaging:
-    """Divide a record into segments.
+    """Divide a record into overlapping windowed segments.
 
     Parameters
     ----------

@@ -29,7 +29,7 @@ RATE_TOLERANCE = 0.01  # between the attribute sample_rate and the time's steps
 
 @dataclass(frozen=True)
 class Channels:
-    """Channels of a record as one array.
+    """Acceleration channels of a record as one array.
 
     Attributes
     ----------
@@ -97,13 +97,13 @@ class Channels:
         return len(self.time) / self.sample_rate
 
     def responses(self) -> tuple[tuple[str, ...], Floats]:
-        """Names and values of all channels but the box's."""
+        """Return names and values of all channels but the box's."""
         chosen = [i for i, name in enumerate(self.names) if name != BOX]
         return tuple(self.names[i] for i in chosen), self.values[chosen]
 
 
 def channel_variable(record: xr.Dataset, name: str) -> xr.DataArray | None:
-    """A record's channel by its name, or by the name that :func:`orchestrate.shake` gives it."""
+    """Return a record's channel by its name, or by its name in :func:`orchestrate.shake`."""
     for candidate in (name, CHANNELS[name]):
         if candidate in record and record[candidate].dims == ("time",):
             return record[candidate]
@@ -111,7 +111,7 @@ def channel_variable(record: xr.Dataset, name: str) -> xr.DataArray | None:
 
 
 def sample_rate(time: Floats, stated: Any) -> float:
-    """The sampling rate of equal steps, as it is stated where the steps agree with that; Hz.
+    """Return the sampling rate of equally spaced times, Hz; the stated one if they agree with it.
 
     Raises
     ------
@@ -140,7 +140,7 @@ def sample_rate(time: Floats, stated: Any) -> float:
 
 
 def finite(name: str, array: xr.DataArray, time: Floats) -> Floats:
-    """A channel's values.
+    """Return a channel's values as floats; raise if one is not finite.
 
     Raises
     ------
@@ -158,24 +158,24 @@ def finite(name: str, array: xr.DataArray, time: Floats) -> Floats:
 
 
 def channel_coordinate(names: Sequence[str]) -> dict[str, Variable]:
-    """The coordinate along the channels."""
+    """Return the coordinate along the channels, for a dataset."""
     return {"channel": ("channel", np.array(names), {"long_name": "channel of the record"})}
 
 
 def frequency_coordinate(frequency: Floats) -> dict[str, Variable]:
-    """The coordinate along frequencies."""
+    """Return the coordinate along frequencies, for a dataset."""
     return {"frequency": variable("frequency", frequency, "Hz", "frequency")}
 
 
 def attributes(analysis: str, heading: str, title: str, **settings: Any) -> dict[str, Any]:
-    """Attributes of a result: which analysis it is, of what, with which settings."""
+    """Return a result's attributes: which analysis it is, of what, with which settings."""
     return {"analysis": analysis, "title": f"{heading}: {title}", **settings}
 
 
 def checked_number(
     name: str, value: Any, low: float, high: float, unit: str = "", open_end: bool = False
 ) -> float:
-    """A number in a range.
+    """Return a number as a float; raise if it is outside its range.
 
     Parameters
     ----------

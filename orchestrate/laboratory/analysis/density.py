@@ -17,7 +17,7 @@ PARTS = 16  # of the record, for standard errors
 
 
 def probability_density(record: xr.Dataset, *, bins: int = 100) -> xr.Dataset:
-    """The probability density of the acceleration of each channel of a record.
+    """Estimate the probability density of the acceleration of each channel of a record.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def probability_density(record: xr.Dataset, *, bins: int = 100) -> xr.Dataset:
 
 
 def histograms(values: Floats, bins: int) -> tuple[Floats, Floats]:
-    """Middles of the bins and densities of each channel, both of shape (channels, bins)."""
+    """Return bin centres and densities of each channel, both of shape (channels, bins)."""
     middles, densities = [], []
     for channel in values:
         density, edges = np.histogram(channel, bins, density=True)
@@ -82,7 +82,7 @@ def histograms(values: Floats, bins: int) -> tuple[Floats, Floats]:
 
 
 def statistics(values: Floats) -> dict[str, tuple[Floats, str, str]]:
-    """Moments of channels, with unit and long name; values of shape (channels,)."""
+    """Compute moments of channels, each with unit and long name; shape (channels,)."""
     shape = {"skewness": third(values), "kurtosis": fourth(values)}
     parts = np.array_split(values, PARTS, axis=1)
     errors = {
@@ -100,7 +100,7 @@ def statistics(values: Floats) -> dict[str, tuple[Floats, str, str]]:
 
 
 def third(values: Floats) -> Floats:
-    """Skewness along the last axis; NaN where nothing moves."""
+    """Compute the skewness along the last axis; NaN for a constant signal."""
     from scipy.stats import skew
 
     with warnings.catch_warnings():
@@ -109,7 +109,7 @@ def third(values: Floats) -> Floats:
 
 
 def fourth(values: Floats) -> Floats:
-    """Kurtosis along the last axis, 3 for a Gaussian signal; NaN where nothing moves."""
+    """Compute the kurtosis along the last axis, 3 for a Gaussian signal; NaN for a constant one."""
     from scipy.stats import kurtosis
 
     with warnings.catch_warnings():

@@ -121,7 +121,7 @@ def frf(
 
 
 def estimate(box: Floats, response: Floats, cross: Floats) -> Floats:
-    """H1, H2 and Hv from spectra of the box, of the responses, and between them.
+    """Estimate H1, H2 and Hv from spectra of the box, of the responses, and between them.
 
     Parameters
     ----------

@@ -25,7 +25,7 @@ def harmonics(
     periods: float = 16.0,
     overlap: float = 0.5,
 ) -> xr.Dataset:
-    """Harmonics and total harmonic distortion of a record of a swept sine.
+    """Compute harmonics and total harmonic distortion of a record of a swept sine.
 
     Parameters
     ----------

@@ -35,7 +35,7 @@ NO_SINE = 0.5  # rms of what the box does beside its sine, over the rms of the s
 
 @dataclass(frozen=True)
 class Window:
-    """A part of a record that is fitted.
+    """One window of a record, in which the orders are fitted.
 
     Attributes
     ----------
@@ -153,7 +153,7 @@ def fit_windows(
     periods: float,
     overlap: float,
 ) -> tuple[list[Window], Floats, Floats]:
-    """Fit orders in all windows of a record.
+    """Divide a record into windows and fit the orders in each, by least squares.
 
     Returns
     -------
@@ -187,7 +187,7 @@ def fit_windows(
 
 
 def checked_orders(orders: int | Sequence[float]) -> tuple[float, ...]:
-    """The orders that are tracked; the first one is always among them.
+    """Return the orders to track as floats, 1 always first; raise if they are no orders.
 
     Raises
     ------
@@ -212,7 +212,7 @@ def checked_orders(orders: int | Sequence[float]) -> tuple[float, ...]:
 
 
 def given_phase(channels: Channels, phase: SweptSine | SteppedSine | ArrayLike | None) -> Floats:
-    """The phase at each sample as the caller knows it, rad.
+    """Return the excitation's phase at each sample as the user gives it, rad.
 
     Raises
     ------
@@ -235,7 +235,7 @@ def given_phase(channels: Channels, phase: SweptSine | SteppedSine | ArrayLike |
 
 
 def measured_phase(channels: Channels) -> Floats:
-    """The phase of the box's acceleration as a sine, by its analytic signal; rad.
+    """Return the phase of the box's acceleration as a sine, by its analytic signal; rad.
 
     Raises
     ------
@@ -255,7 +255,7 @@ def measured_phase(channels: Channels) -> Floats:
 def against_box(
     channels: Channels, amplitudes: Floats, residual: Floats, orders: tuple[float, ...]
 ) -> Floats:
-    """Complex amplitudes, with the phase of the box's own order 1 as phase.
+    """Refer complex amplitudes to the phase of the box's own order 1.
 
     Raises
     ------
@@ -305,7 +305,7 @@ def divide(
 
 
 def dwells(channels: Channels, stepped: SteppedSine, phase: Floats) -> Iterator[Window]:
-    """The windows of a stepped sine: what is measured at each frequency that the record has whole.
+    """Yield a stepped sine's windows: the measured part of each frequency recorded whole.
 
     Raises
     ------
@@ -325,7 +325,7 @@ def dwells(channels: Channels, stepped: SteppedSine, phase: Floats) -> Iterator[
 
 
 def window(channels: Channels, phase: Floats, part: slice, smooth: bool) -> Window:
-    """One window: its weights, and phase and frequency in it."""
+    """Make one window of a part of a record: its weights, phase and frequency."""
     time, angle = channels.time[part], phase[part]
     middle, half = 0.5 * (time[0] + time[-1]), 0.5 * (time[-1] - time[0])
     offset = (time - middle) / half
@@ -342,7 +342,7 @@ def window(channels: Channels, phase: Floats, part: slice, smooth: bool) -> Wind
 
 
 def fit(channels: Channels, window: Window, orders: tuple[float, ...]) -> tuple[Floats, Floats]:
-    """Fit orders in a window.
+    """Fit orders in a window by least squares.
 
     Returns
     -------

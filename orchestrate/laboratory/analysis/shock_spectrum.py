@@ -30,7 +30,7 @@ HIGHEST = 0.1  # of the sampling rate, as ISO 18431-4 advises
 def shock_spectrum(
     record: xr.Dataset, *, frequencies: ArrayLike | None = None, damping: float = 0.05
 ) -> xr.Dataset:
-    """Shock response spectra of a record's channels.
+    """Compute the shock response spectra of a record's channels.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def shock_spectrum(
 
 
 def natural_frequencies(channels: Channels, given: ArrayLike | None) -> Floats:
-    """Natural frequencies of the oscillators, Hz.
+    """Return the natural frequencies of the oscillators, Hz: those given, or a default range.
 
     Raises
     ------
@@ -117,7 +117,7 @@ def natural_frequencies(channels: Channels, given: ArrayLike | None) -> Floats:
 
 
 def peaks(channels: Channels, frequency: float, damping: float) -> tuple[Floats, Floats]:
-    """The largest absolute responses of an oscillator, during and after the record.
+    """Compute an oscillator's largest absolute response during and after the record.
 
     Parameters
     ----------
@@ -148,7 +148,7 @@ def peaks(channels: Channels, frequency: float, damping: float) -> tuple[Floats,
 
 
 def straight_between(values: Floats, parts: int) -> Floats:
-    """Samples with intermediate points on the straight lines between them."""
+    """Insert points on the straight lines between samples."""
     if parts == 1:
         return values
     shares = np.arange(parts) / parts
@@ -159,7 +159,7 @@ def straight_between(values: Floats, parts: int) -> Floats:
 def ramp_invariant(
     frequency: float, damping: float, rate: float
 ) -> tuple[list[float], list[float]]:
-    """Filter from the base's acceleration to that of an oscillator, for input that is straight.
+    """Make the ramp-invariant digital filter from base acceleration to an oscillator's response.
 
     Parameters
     ----------

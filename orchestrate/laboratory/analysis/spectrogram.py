@@ -30,7 +30,7 @@ def spectrogram(
     spectra: int = 200,
     window: str = "hann",
 ) -> xr.Dataset:
-    """Amplitude spectra of short parts of a record.
+    """Compute amplitude spectra of short parts of a record.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ LEAST = 0.01  # share of chaotic or neutral responses from which a region is cal
 
 
 def regions(datasets: Mapping[str, xr.Dataset]) -> list[dict[str, str]]:
-    """The verdict on each region of each case, between exact limits, as a list of dicts of text.
+    """Return the verdict on each region of each case, between exact limits, as texts.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def strongest(data: xr.Dataset, run_on: xr.Dataset, parameter: str) -> str:
 
 
 def coexisting(data: xr.Dataset) -> str:
-    """Return what the basin picture holds."""
+    """Format the attractors of the basin picture, with their shares of the plane."""
     kinds = []
     for k in range(min(4, data.sizes["attractor"])):
         n = int(data.multiplicity[k])

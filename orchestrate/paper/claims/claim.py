@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from ..plain import plain
+from ..readable import plain
 from .results import Edges, Limit, Results
 
 YES, PARTLY, NO, UNDECIDED = "yes", "partly", "no", "undecided"
@@ -111,7 +111,7 @@ def claim(
 
 
 def half_unit(printed: str) -> float:
-    """Half a unit of the last digit of a printed number: what rounds to it lies that near."""
+    """Return half a unit of the last printed digit: numbers that round to it are that near."""
     return 0.5 * 10.0 ** -len(printed.partition(".")[2])
 
 
@@ -123,7 +123,7 @@ def rounds_to(value: float, printed: str) -> bool:
 def border(
     edges: Edges, limit: Limit, printed: str, why: str = "", slack: float | None = None
 ) -> Finding:
-    """Return the finding for a limit: where the sweep passes it, and where it is.
+    """Return the finding for a limit: where the sweep passes it, and its exact position.
 
     Parameters
     ----------

@@ -49,7 +49,7 @@ class Limit(NamedTuple):
 
     @property
     def digits(self) -> int:
-        """That are known: the loss of permanent contact depends on gamma."""
+        """Number of known digits; the loss of permanent contact depends on gamma."""
         return 6 if "contact" in self.kind else 8
 
 
@@ -92,7 +92,7 @@ class Results:
         return largest_of(self.of("largest", case), region.name)
 
     def settled(self, case: str) -> xr.Dataset:
-        """Return what the up-sweep's responses settle to."""
+        """Return the dataset of the settled responses of a case's up-sweep."""
         return self.of("settled", case, "_up")
 
     def get(self, name: str) -> xr.Dataset:
@@ -127,7 +127,7 @@ def between(data: xr.Dataset, low: float, high: float) -> xr.Dataset:
 
 
 def impacts_in_response(data: xr.Dataset) -> np.ndarray:
-    """Impacts in a response period; 0 where the state or the number of impacts does not repeat.
+    """Return the impacts in a response period; 0 where the response does not repeat.
 
     A sweep counts those of a response that has repeated over its own period: n times them is a
     whole number. Where that is undecided their mean over the samples may miss it a little.

@@ -28,7 +28,7 @@ DEVICES = 2 * 1.9  # kg, exciter and counter mass
     "density of the wood",
 )
 def beam_mass(results: Results) -> Finding:
-    """Compare the set ``beam`` with what the paper says of the beam."""
+    """Compare unbalance and mass of the set ``beam`` with what the paper's beam weighs."""
     structure, drive = Structure.from_file(BEAM), Drive.from_file(BEAM)
     low, high = (VOLUME * density + DEVICES for density in RAMIN)
     own = drive.box_mass + structure.m1 + structure.m2
@@ -63,7 +63,7 @@ def sommerfeld(results: Results) -> Finding:
 
 
 def linear_curve(numbers: np.ndarray, speed: np.ndarray) -> np.ndarray:
-    """Steady amplitude of a linear oscillator that an unbalance shakes: size, resonance, D."""
+    """Compute the steady amplitude of a linear oscillator shaken by an unbalance."""
     size, resonance, damping = numbers
     ratio = speed / resonance
     curve: np.ndarray = size * ratio**2 / np.hypot(1.0 - ratio**2, 2.0 * damping * ratio)
@@ -93,7 +93,7 @@ def fitted(speed: np.ndarray, amplitude: np.ndarray) -> tuple[np.ndarray, float]
 
 
 def up_to_the_break(run: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Speeds over omega and amplitudes in mm on the way up, to the largest one or the jump."""
+    """Return speeds over omega and amplitudes, mm, up to the largest one or the jump."""
     speed, amplitude = run.Omega.values, 1000.0 * run.amplitude.values
     jump = float(run.jumps.sel(jump="up"))
     on_branch = np.arange(len(speed)) <= int(amplitude.argmax())
@@ -112,7 +112,7 @@ def up_to_the_break(run: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
     full=True,
 )
 def like_a_linear_one(results: Results) -> Finding:
-    """How near the amplitudes of bonded and delaminated structure are to linear ones' (2(a))."""
+    """Measure how near both structures' amplitudes are to a linear oscillator's (2(a))."""
     text, worst, tops = [], {}, {}
     for kind in ("bonded", "delaminated"):
         speed, amplitude = up_to_the_break(results.get(f"ramp_{kind}"))

@@ -28,7 +28,7 @@ def misprint(equation: str, text: str) -> Callable[[Check], Check]:
 
 
 def compared(what: str, printed: float, right: float, form: str) -> Finding:
-    """Return the finding for a misprint: what is left over with each form."""
+    """Return the finding for a misprint: the residual of the printed form and of the right one."""
     text = f"{what}: {printed:.2g} as printed, {right:.2g} with {form}"
     verdict = YES if printed < ROUNDING else NO
     why = "" if right < ROUNDING else "The corrected form does not fulfil it either."
@@ -36,7 +36,7 @@ def compared(what: str, printed: float, right: float, form: str) -> Finding:
 
 
 def residual(motion: Callable[[np.ndarray], np.ndarray]) -> float:
-    """Return what is left of (6) at some instants, the motion's derivatives by differences."""
+    """Return the largest residual of (6) along a motion, its derivatives by differences."""
     step = 1e-4
     here, after, before = motion(TAUS), motion(TAUS + step), motion(TAUS - step)
     rate, curvature = (after - before) / (2.0 * step), (after - 2.0 * here + before) / step**2
@@ -111,7 +111,7 @@ def momentum(results: Results) -> Finding:
     "ratios of times 1e-6; counts one impact",
 )
 def chattering(results: Results) -> Finding:
-    """(16): whether impacts go on without end for each restitution, their times tending to zero."""
+    """Check (16) for each restitution: impacts without end, their intervals tending to zero."""
     data = results.get("chattering")
     every = data.e.values.tolist()
     holding = [e for e in every if endless(data.sel(e=e), e)]
@@ -138,7 +138,7 @@ def chattering(results: Results) -> Finding:
 
 
 def endless(rows: xr.Dataset, e: float) -> bool:
-    """Whether impacts of one restitution go on as a geometric sequence, as far as gamma allows.
+    """Return whether impacts of one restitution form a geometric sequence, down to gamma.
 
     Parameters
     ----------

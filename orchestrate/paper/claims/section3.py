@@ -87,7 +87,7 @@ def most_unfavourable(results: Results) -> Finding:
     "Figure 5's data",
 )
 def three_states(results: Results) -> Finding:
-    """Figure 5's three states."""
+    """Check that the response of Figure 5 has all three states."""
     kinds = results.get("figure5").kind.values
     steady = results.steady("elastic").sel(eta=0.4, method="nearest")
     text = (
@@ -126,7 +126,7 @@ def two_loops(results: Results) -> Finding:
     "1e-6 of the largest gap and velocity",
 )
 def many_loops(results: Results) -> Finding:
-    """Figure 5(b): loops of the relative motion, and where each begins and ends."""
+    """Count the loops of the relative motion in Figure 5(b), and where each begins and ends."""
     data = results.get("figure5")
     state, kinds, tau = data.state.values, data.kind.values, data.tau.values
     gap, rate = state[:, 1] - state[:, 0], state[:, 3] - state[:, 2]
@@ -209,13 +209,13 @@ def enough_periods(results: Results) -> Finding:
 
 
 def first_sample(up: xr.Dataset, later: xr.Dataset) -> int:
-    """Return the number n of the period at which a sweep's responses are looked at again."""
+    """Return the number of the period at which a sweep's later samples begin."""
     done = int(up.attrs["transient"]) + up.sizes["sample"]
     return done + int(later.attrs["transient"]) + 1
 
 
 def count_changed(up: xr.Dataset, later: xr.Dataset) -> tuple[int, int, str]:
-    """Return how many responses of a sweep are others later, of how many, and what they are."""
+    """Count the responses of a sweep that are others later; return count, total and kinds."""
     kinds = {what: int(part.sum()) for what, part in changed(up, later, CHANGE).items()}
     named = ", ".join(f"{count} {what}" for what, count in kinds.items() if count)
     return sum(kinds.values()), later.sizes["eta"], f" ({named})" if named else ""

@@ -216,7 +216,7 @@ def non_unique(results: Results) -> Finding:
 
 
 def format_frequencies(etas: np.ndarray) -> str:
-    """Frequencies as a text: the first and last of each row without a gap larger than 0.006."""
+    """Format frequencies: first and last of each row without a gap larger than 0.006."""
     groups = np.split(etas, np.flatnonzero(np.diff(etas) > 0.006) + 1)
     return ", ".join(f"{g[0]:.3f}" + (f" to {g[-1]:.3f}" if len(g) > 1 else "") for g in groups)
 
@@ -340,7 +340,7 @@ def chaos(results: Results) -> Finding:
     full=True,
 )
 def irregularities(results: Results) -> Finding:
-    """Irregular responses by where they lie: between windows nT and (n+1)T of one impact, or not.
+    """Count irregular responses between windows nT and (n+1)T of one impact, and elsewhere.
 
     Irregular are responses that do not repeat; of those how many are chaotic for sure.
     """

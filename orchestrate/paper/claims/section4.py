@@ -36,7 +36,7 @@ def all_periodic(case: str, low: float, high: float) -> Check:
 
 
 def as_before(case: str, low: float, high: float) -> Check:
-    """A check that windows and irregular regions alternate as in section 3 above a frequency."""
+    """Make a check that windows and irregular regions alternate as in section 3."""
 
     def check(results: Results) -> Finding:
         part = between(results.up(case), low, 8.0)

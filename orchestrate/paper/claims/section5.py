@@ -14,7 +14,7 @@ HOW = "impact by impact at each up-sweep's peak; impulse (1+e) mu/(1+mu) times t
 
 
 def largest(results: Results, case: str) -> tuple[float, float]:
-    """Largest impulse over m1 omega a eta^2 at a case's peak, and the sum of those in one T."""
+    """Return the largest impulse over m1 omega a eta^2 at a case's peak, and the sum in one T."""
     eta = float(results.up(case).xi_rel_max.idxmax())
     row = results.steady(case).sel(eta=eta, method="nearest")
     structure = CASES[case]

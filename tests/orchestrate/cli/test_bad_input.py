@@ -202,15 +202,15 @@ BORDER = [
     (["--start", "lost.nc", "--limits", "a:b,c:d"], ["--limits a:b"]),
 ]
 PAPER = [
-    (["--figures", ""], ["figures: nothing"]),
-    (["--figures", "5,x"], ["figures: x", "expected some of"]),
-    (["--figures", "12,13"], ["figures: 13"]),
-    (["--figures", "Basin"], ["figures: Basin"]),
+    (["--figures", ""], ["unknown figure ''"]),
+    (["--figures", "5,x"], ["unknown figure 'x'", "choose from"]),
+    (["--figures", "12,13"], ["unknown figure '13'"]),
+    (["--figures", "Basin"], ["unknown figure 'Basin'"]),
     (["--figures", "spectra", "--jobs", "-1"], ["jobs = -1"]),
     (["--figures", "spectra", "--jobs", "5000"], ["jobs = 5000", "1024"]),
     (["--figures", "spectra", "--fmu", "lost.fmu"], ["lost.fmu", "no such file"]),
-    (["--figures", "4"], ["figures: 4", "expected some of", "12", "maps"]),
-    (["--figures", "5,,7"], ["figures: nothing"]),
+    (["--figures", "4"], ["unknown figure '4'", "choose from", "12", "maps"]),
+    (["--figures", "5,,7"], ["unknown figure ''"]),
     (["--figures", "spectra", "--jobs", "0"], ["jobs = 0"]),
 ]
 SWEPT = ["--swept-sine", "8:20", "--g", "1"]

@@ -218,7 +218,7 @@ def test_a_border_that_is_not_to_be_trusted(capsys):
         },
         {"voltage": [1.4, 1.5, 1.6]},
     )
-    capture.report("bonded", data)
+    capture.print_result("bonded", data)
     border, undecided, warning = capsys.readouterr().out.splitlines()
     assert border == (
         "bonded: captured up to 1.49000 V, passes from 1.56000 V on, in at most 5 s as tried; "
@@ -227,7 +227,7 @@ def test_a_border_that_is_not_to_be_trusted(capsys):
     assert undecided.startswith("  at 1.5 V undecided")
     assert "warning: that is above the fold at 1.45000 V" in warning
     sure = data.assign(border_low=1.52496, border_high=1.52504, above_fold=0.0)
-    capture.report("bonded", sure.isel(voltage=[0, 2]))
+    capture.print_result("bonded", sure.isel(voltage=[0, 2]))
     (border,) = capsys.readouterr().out.splitlines()
     text = (
         "bonded: passes from 1.52500 V on (+- 4e-05 V), in at most 5 s as tried; 1.25 rad/s below"
@@ -266,11 +266,11 @@ def test_a_jump_that_no_ramp_has_is_said_to_be_none(capsys):
     each = {"structure": ["bonded", "delaminated"], "jump": ["up", "down"]}
     jumps, errors = [[1.5, np.nan], [np.nan] * 2], [[np.nan] * 2] * 2
     made = {"jumps": (tuple(each), jumps), "standard_error": (tuple(each), errors)}
-    jump_voltages.report(xr.Dataset(made, each), directions=("up", "down"))
+    jump_voltages.print_result(xr.Dataset(made, each), directions=("up", "down"))
     _, up, down, hint, more = capsys.readouterr().out.splitlines()
     assert up.split() == ["up", "1.5000", "none"] and down.split() == ["down", "none", "none"]
     assert "--rate" in hint and "drive-branch" in more
-    jump_voltages.report(xr.Dataset(made, each).isel(structure=[0, 0]), directions=("up",))
+    jump_voltages.print_result(xr.Dataset(made, each).isel(structure=[0, 0]), directions=("up",))
     assert "none" not in capsys.readouterr().out
 
 
@@ -298,7 +298,7 @@ def test_stationary_motions_are_told_with_what_they_mean(capsys):
     """Made-up: a branch with two folds, and one change of stability that was not located."""
     motions = [(1.0, 0.8, 0), (1.2, 0.9, 1), (1.4, 1.0, 1), (1.3, 1.1, 0), (1.2, 1.2, 0)]
     motions += [(1.35, 1.3, 1), (1.5, 1.4, 1)]
-    drive_branch.report(made_branch(motions, [("fold", 1.41, 1.03), ("fold", 1.19, 1.22)]))
+    drive_branch.print_result(made_branch(motions, [("fold", 1.41, 1.03), ("fold", 1.19, 1.22)]))
     up, down, end, count, change = capsys.readouterr().out.splitlines()
     meaning = "the jump up of a slow ramp, at rate 0, to 1.34 rad/s"
     assert up == f"bonded: fold at 1.41000 V, 1.03 rad/s: {meaning}"

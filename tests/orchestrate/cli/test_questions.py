@@ -32,7 +32,7 @@ QUESTIONS = {  # command line, words that must be said, pictures
     ),
     "attractors": (
         ("--eta", "1.3,1.4", "--starts", "5", *SHORT, "--settle", "20"),
-        ("found at eta = 1.3, of 5 starts", "of starts, repeats after", "a state on it"),
+        (" at eta = 1.3 (5 random starts)", "of starts, repeats after", "a state on it"),
         True,
     ),
     "basin": (

@@ -97,7 +97,7 @@ def test_a_file_of_ones_own_is_not_replaced_by_another_question(ask, folder):
     ask(*SWEEP, "--samples", "13", "--store", own).complaint(own, "different calculation", "force")
     own.unlink()
     for force in ([], ["--force"]):
-        ask(*SWEEP, "--store", own, *force).complaint("mine.png", "another --store, or remove it")
+        ask(*SWEEP, "--store", own, *force).complaint("mine.png", "choose another --store")
     assert fingerprint(folder) == {"mine.png": before["mine.png"]}
 
 

@@ -43,7 +43,7 @@ def test_a_state_on_an_attractor_stays_there(found, k):
 
 
 def test_the_same_seed_gives_the_same_starts(found):
-    with patch.object(AttractorsJob, "chunk", 7):
+    with patch.object(AttractorsJob, "chunk_size", 7):
         again = attractors(PAPER, **ASKED)
     np.testing.assert_allclose(again.features, found.features, rtol=1e-9)
     np.testing.assert_array_equal(again.attractor_of, found.attractor_of)
@@ -87,5 +87,5 @@ def test_units_do_not_matter():
 
 
 def test_a_bonded_structure_has_nothing_to_tell():
-    with pytest.raises(InputError, match="is bonded; expected one whose masses can part"):
+    with pytest.raises(InputError, match="bonded = True: requires a delaminated structure"):
         attractors(PAPER.as_bonded(), eta=1.0)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from orchestrate.access import OSCILLATOR, REST, Instance, find, finder
-from orchestrate.dynamics.basins import BasinJob, Plane, Side, Start, basin, run_to_phase_zero
+from orchestrate.dynamics.basins import BasinJob, Plane, PlaneAxis, Start, basin, run_to_phase_zero
 from orchestrate.errors import InputError
 from orchestrate.response.questions import Point
 from orchestrate.response.simulate import simulate
@@ -22,7 +22,7 @@ SIDES = {"x": ("x_rel", -0.4, 1.2, 5), "y": ("v_rel", -1.0, 1.0, 4)}
 
 
 def starts(x, y, at=AT):
-    states, phases = Plane(POINT, Side(*x), Side(*y), at).starts()
+    states, phases = Plane(POINT, PlaneAxis(*x), PlaneAxis(*y), at).starts()
     return states.reshape(y[3], x[3], 4), phases.reshape(y[3], x[3])
 
 
@@ -139,8 +139,8 @@ def test_a_job_may_find_its_plane_in_what_it_starts_from():
         name="b",
         structure=PAPER,
         excitation=POINT.excitation,
-        x=Side("x2", 0.0, 1.0, 2),
-        y=Side("v2", 0.0, 1.0, 2),
+        x=PlaneAxis("x2", 0.0, 1.0, 2),
+        y=PlaneAxis("v2", 0.0, 1.0, 2),
     )
     assert [item.state[0] for item in job.items({})[:-1]] == [-1.0] * 4
 
@@ -167,8 +167,8 @@ def test_what_is_known_is_told_though_no_start_of_the_plane_leads_there(found):
         name="basin",
         structure=PAPER,
         excitation=POINT.excitation,
-        x=Side("v1", one[2] - 1e-4, one[2] + 1e-4, 2),
-        y=Side("v2", one[3] - 1e-4, one[3] + 1e-4, 2),
+        x=PlaneAxis("v1", one[2] - 1e-4, one[2] + 1e-4, 2),
+        y=PlaneAxis("v2", one[3] - 1e-4, one[3] + 1e-4, 2),
         at=tuple(one.tolist()),
         known=(tuple(two.tolist()),),
     )

@@ -15,7 +15,7 @@ from orchestrate.dynamics.bifurcations import FOLD
 from orchestrate.dynamics.codimension_two import Characteristic, PointKind, points_between
 from orchestrate.dynamics.continuation import newton_correct, unit_vector
 from orchestrate.dynamics.families import Setting
-from orchestrate.dynamics.impact_sequence import ImpactSequence, PeriodicOrbit
+from orchestrate.dynamics.periodic_orbit import ImpactSequence, PeriodicOrbit
 from orchestrate.flags import flag_words
 
 from .single_impact import SingleImpact

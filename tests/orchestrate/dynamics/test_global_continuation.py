@@ -86,7 +86,7 @@ def test_any_number_of_workers_gives_the_same_bytes(monkeypatch, tmp_path):
 
 def test_a_run_that_was_interrupted_goes_on_to_the_same_bytes(monkeypatch, tmp_path):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
-    monkeypatch.setattr(module.AttractorsJob, "chunk", 20)
+    monkeypatch.setattr(module.AttractorsJob, "chunk_size", 20)
     asked = {"eta": [1.3, 1.32], "starts": 30, "transient": 200, "jobs": 1}
     attractors(PAPER, **asked, store=tmp_path / "whole.nc")
     with monkeypatch.context() as broken:

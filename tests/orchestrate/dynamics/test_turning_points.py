@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from orchestrate.dynamics.closed_form import ClosedForm
-from orchestrate.dynamics.impact_sequence import ImpactSequence, PeriodicOrbit
 from orchestrate.dynamics.orbits import orbit
+from orchestrate.dynamics.periodic_orbit import ImpactSequence, PeriodicOrbit
 from orchestrate.dynamics.turning_points import pressing_force
 from orchestrate.response.sweep import sweep
 from orchestrate.structures import Excitation, Structure

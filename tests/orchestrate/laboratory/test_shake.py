@@ -238,7 +238,7 @@ def test_the_record_does_not_change_the_motion(name):
 
 def test_parts_of_a_run_go_on_from_each_other(monkeypatch):
     whole = shake(BEAM, SWEEP, sample_rate=777.0, progress=False)
-    monkeypatch.setattr(ShakeJob, "chunk", 101)
+    monkeypatch.setattr(ShakeJob, "chunk_size", 101)
     parts = shake(BEAM, SWEEP, sample_rate=777.0, progress=False)
     assert whole.sizes["impact"] > 50
     assert whole.drop_attrs().identical(parts.drop_attrs())

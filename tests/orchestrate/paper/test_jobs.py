@@ -9,7 +9,7 @@ import pytest
 
 from orchestrate.access import OSCILLATOR, find, finder
 from orchestrate.dynamics.attractors import AttractorsJob
-from orchestrate.dynamics.basins import Side
+from orchestrate.dynamics.basins import PlaneAxis
 from orchestrate.dynamics.clusters import AttractorSettings
 from orchestrate.dynamics.lyapunov import LyapunovJob
 from orchestrate.paper.basin import EvenBasinJob
@@ -169,8 +169,8 @@ def test_basins_where_starts_are_shared(exported):
         name="basin",
         structure=PAPER,
         excitation=Excitation.nondimensional(1.0, PAPER),
-        x=Side("x_rel", 0.0, 3.0, 4),
-        y=Side("v_rel", -3.0, 3.0, 3),
+        x=PlaneAxis("x_rel", 0.0, 3.0, 4),
+        y=PlaneAxis("v_rel", -3.0, 3.0, 3),
         settings=settings,
         attractors="starts",
         sweep="sweep",

@@ -50,7 +50,7 @@ def test_what_a_part_needs():
 
 
 def test_an_unknown_part_is_refused():
-    with pytest.raises(InputError, match="figures: 4 is none; expected some of claims, 5"):
+    with pytest.raises(InputError, match="unknown figure '4'; choose from claims, 5"):
         plan.make(FULL).choose(["4"])
 
 

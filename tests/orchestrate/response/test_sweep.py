@@ -85,7 +85,7 @@ def test_more_samples_than_the_fmu_keeps_in_a_step():
 def test_chunks_change_no_bit(size):
     etas = np.linspace(1.1, 1.3, 7)
     whole = sweep(PAPER, eta=etas, direction="both", **SHORT)
-    with patch.object(SweepJob, "chunk", size):
+    with patch.object(SweepJob, "chunk_size", size):
         same(whole, sweep(PAPER, eta=etas, direction="both", **SHORT))
 
 

@@ -107,7 +107,11 @@ def test_forms_units_and_limits():
 @pytest.mark.parametrize(
     ("structure", "asked", "text"),
     [
-        (Structure(bonded=True, clearance=-1.0), {"eta": 1.0}, "bonded = True: expected"),
+        (
+            Structure(bonded=True, clearance=-1.0),
+            {"eta": 1.0},
+            "bonded = True: requires a delaminated structure",
+        ),
         (Structure(clearance=-1.0), {}, "expected eta= or frequency="),
         (Structure(clearance=-1.0), {"eta": 1.0, "frequency": 1.0}, "expected eta= or frequency="),
         (Structure(clearance=-1.0), {"eta": [1.0, -1.0]}, r"-1\.0: expected"),

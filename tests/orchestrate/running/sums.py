@@ -20,7 +20,7 @@ class Squares(Job):
     size: int = 10
     pause: float = 0.0
     fail_at: int = -1
-    chunk: ClassVar[int] = 3
+    chunk_size: ClassVar[int] = 3
 
     def count(self) -> int:
         return self.size
@@ -114,7 +114,7 @@ class Forgetful(Job):
     size: int = 240
     stubborn: tuple[int, int] = (0, 0)
     pause: float = 0.0
-    chunk: ClassVar[int] = 10
+    chunk_size: ClassVar[int] = 10
     sequential: ClassVar[bool] = True
     warmup_items: ClassVar[int] = 8
 

@@ -52,7 +52,7 @@ def test_lanes_know_nothing_of_each_other(find):
 @pytest.mark.parametrize("size", [1, 3, 10])
 def test_what_gathers_starts_when_all_others_are_there(find, size):
     job = Gathered("all", size=size)
-    assert [chunk.last - chunk.first for chunk in job.chunks()][-1] == 1
+    assert [chunk.stop - chunk.start for chunk in job.chunks()][-1] == 1
     assert float(answer(job, {}, find)["whole"]) == (np.arange(size) ** 2.0).sum()
 
 

@@ -32,7 +32,7 @@ ROOT = Path(__file__).resolve().parents[3]
 SCRIPT = Path(__file__).parent / "long_sweep.py"
 FIGURES = {"6": (0.7, 0.005), "10": (0.7, 0.05), "11": (0.3, 0.005)}  # e and D
 CHAOS = (1.0, 1.3)  # of Figure 6: irregular from 1.09 on
-shorter_chunks = patch.object(SweepJob, "chunk", 10)
+shorter_chunks = patch.object(SweepJob, "chunk_size", 10)
 
 
 def job(figure: str, direction: str, low: float = 0.1, high: float = 8.0, step: float = 0.02):

@@ -176,7 +176,10 @@ def test_a_finished_result_is_read(tmp_path):
         ({"tolerance": -1.0}, ["tolerance", ">= 0"]),
         ({"voltage": 1.5, "duration": 1e-10}, ["duration = 1e-10 s", "one communication step"]),
         ({"voltage": 1.5, "duration": 0.0}, ["duration = 0 s", "duration >= "]),
-        ({"voltage": 0.001, "duration": 10.0}, ["not one revolution", "expected a voltage"]),
+        (
+            {"voltage": 0.001, "duration": 10.0},
+            ["completed no revolution in 10 s", "raise the voltage"],
+        ),
         ({"fmu": {SHAKER: "nowhere.fmu"}}, ["nowhere.fmu: no such file"]),
     ],
 )

@@ -140,5 +140,5 @@ def test_mistakes():
         drive_spectra(*QUICK, revolutions=True)
     with pytest.raises(InputError, match="highest = 99: expected 0 < highest <= points/2 = 32"):
         drive_spectra(*QUICK, points=64, highest=99)
-    with pytest.raises(InputError, match="not two revolutions"):
+    with pytest.raises(InputError, match="completed no two revolutions"):
         drive_spectra(*QUICK, voltage=0.001, begin=0.0009, hold=1.0, progress=False)

@@ -71,7 +71,7 @@ def fold_of(slope, up=True):
 def test_a_fold(slope, up, start, rate):
     """It is bracketed, at each rate of the ramp; -0.02: the other one is 5e-4 away."""
     verdict = judged(slope, up, start, rate=rate)
-    assert verdict.what == LOST
+    assert verdict.outcome == LOST
     low, high = sorted((verdict.low, verdict.high))
     assert low - 5e-6 <= fold_of(slope, up) <= high + 5e-6 and high - low < 2e-4
 
@@ -84,7 +84,7 @@ NARROW = {"first": 1.47, "last": 1.53, "stiff": 2500.0}  # speeds change little 
 def test_folds_that_are_close_in_speed_too(up, start, rate):
     """1.1e-4 apart; the speed jumps by 0.0066: some rates said that it passes without a gap."""
     verdict = judged(-0.0365, up, start, rate=rate, **NARROW)
-    assert verdict.what == LOST
+    assert verdict.outcome == LOST
     fold = 1.5 + (1 if up else -1) * 2.0 / 3.0 * 0.0365 * (0.0365 / 7500.0) ** 0.5
     low, high = sorted((verdict.low, verdict.high))
     assert low - 5e-6 <= fold <= high + 5e-6 and high - low < 2e-4
@@ -94,7 +94,7 @@ def test_folds_that_are_close_in_speed_too(up, start, rate):
 def test_no_two_rates_contradict_each_other(slope):
     """A jump at one and none at another: what lies between the two is undecided at some."""
     rates = (2e-4, 1.3e-4, 1e-4, 5e-5)
-    said = {judged(slope, start=1.27, rate=rate, **NARROW).what for rate in rates}
+    said = {judged(slope, start=1.27, rate=rate, **NARROW).outcome for rate in rates}
     assert said <= {LOST, UNDECIDED} or said <= {FOLLOWS, UNDECIDED}
     assert said == {LOST} or slope > -0.035
     assert said == {FOLLOWS} or slope < 0.005
@@ -103,14 +103,14 @@ def test_no_two_rates_contradict_each_other(slope):
 def test_two_motions_of_nearly_the_same_speed_are_undecided():
     """The folds are wider apart than a bracket, their speeds less than told apart for sure."""
     settings = {"two_motions": 0.02, "smallest_jump": 0.005}
-    assert judged(-0.0365, start=1.27, **NARROW, **settings).what == UNDECIDED
+    assert judged(-0.0365, start=1.27, **NARROW, **settings).outcome == UNDECIDED
 
 
 @pytest.mark.parametrize("slope", [0.005, 0.02, 0.1])
 def test_a_steep_branch(slope):
     """Up to 200 times as steep as the voltage, but the speed comes back with it."""
     verdict = judged(slope, longest=2e5)
-    assert verdict.what == FOLLOWS and np.isnan(verdict.low)
+    assert verdict.outcome == FOLLOWS and np.isnan(verdict.low)
 
 
 @pytest.mark.parametrize("slope", [-0.02, -0.005, 0.0, 0.005])
@@ -118,12 +118,12 @@ def test_a_steep_branch(slope):
 def test_a_short_hold_is_never_wrong(slope, longest):
     """Near the edge of a fold speeds settle slowly: it may be undecided, not the other verdict."""
     lost = fold_of(slope) - fold_of(slope, up=False) > 1e-4 if slope < 0.0 else False
-    assert judged(slope, longest=longest).what in (UNDECIDED, LOST if lost else FOLLOWS)
+    assert judged(slope, longest=longest).outcome in (UNDECIDED, LOST if lost else FOLLOWS)
 
 
 def test_a_short_hold_is_undecided_and_a_longer_one_decides():
-    assert judged(-0.02, longest=1500.0).what == UNDECIDED
-    assert judged(-0.02, longest=2e4).what == LOST
+    assert judged(-0.02, longest=1500.0).outcome == UNDECIDED
+    assert judged(-0.02, longest=2e4).outcome == LOST
 
 
 class Scripted(HeldVoltageTest):
@@ -146,7 +146,7 @@ class Scripted(HeldVoltageTest):
         return self.at(voltage, self.back if voltage < point.voltage else 0.0)
 
     def verdict(self):
-        return self.classify(Passing(28, 15, 35, DOUBTFUL, 28.0), (0, 39), 1.3, True).what
+        return self.classify(Passing(28, 15, 35, DOUBTFUL, 28.0), (0, 39), 1.3, True).outcome
 
 
 def test_another_motion_on_the_way_back_is_undecided():
@@ -177,7 +177,7 @@ def test_an_irregular_motion_that_ends_by_chance_is_undecided(early, what):
     transient = Transient()
     points = transient.stairs(transient.at(1.5)._replace(error=1e-3), 1.56)
     verdict = transient.between(points, 1.0)
-    assert verdict.what == what
+    assert verdict.outcome == what
     if what == LOST:
         assert verdict.low - 1e-9 <= 1.52 - early <= verdict.high + 1e-9
 
@@ -219,30 +219,30 @@ def around(steps, passing, up=True, last=1.6, **settings):
 def test_the_held_course_goes_on_until_the_resonance_is_behind():
     """The record passes 1.17 early; the fold is at a speed of 1.27, where nobody looked."""
     early = (0.2, 0.1, 0.25)
-    assert around(early, 1.17).what == FOLLOWS
+    assert around(early, 1.17).outcome == FOLLOWS
     verdict = around(early, 1.17, resonance=(1.17, 1.3))
-    assert verdict.what == LOST
+    assert verdict.outcome == LOST
     assert verdict.low - 5e-6 <= fold_of(-0.05) <= verdict.high + 5e-6
 
 
 def test_the_held_course_begins_before_the_resonance():
     """On the way down the record passes 1.17 late, and the fold at 1.33 lies before."""
     late = (0.95, 0.85, 0.97)
-    assert around(late, 1.17, up=False).what == FOLLOWS
+    assert around(late, 1.17, up=False).outcome == FOLLOWS
     verdict = around(late, 1.17, up=False, resonance=(1.17, 1.36))
-    assert verdict.what == LOST
+    assert verdict.outcome == LOST
     assert verdict.high - 5e-6 <= fold_of(-0.05, up=False) <= verdict.low + 5e-6
 
 
 def test_a_run_that_ends_within_the_resonance_decides_nothing():
     early = (0.8, 0.4, 0.9)
-    assert around(early, 1.17, last=1.48).what == FOLLOWS
-    assert around(early, 1.17, last=1.48, resonance=(1.17, 1.3)).what == UNDECIDED
+    assert around(early, 1.17, last=1.48).outcome == FOLLOWS
+    assert around(early, 1.17, last=1.48, resonance=(1.17, 1.3)).outcome == UNDECIDED
 
 
 def test_what_has_left_before():
     """The first state of the way is beyond already."""
-    assert judged(-0.2, start=1.45, first=1.5).what == LEFT_BEFORE
+    assert judged(-0.2, start=1.45, first=1.5).outcome == LEFT_BEFORE
 
 
 BLOCKS = np.arange(30)

@@ -142,7 +142,7 @@ NONE = Theory((), False, 0.1)
 def test_a_verdict_that_the_averaged_theory_contradicts_is_not_given(verdict, theory, what):
     """Volts are 2: the theory loses the motion at 2.26 V."""
     final = check_against_theory(verdict, theory, 2.0)
-    assert final.what == what
+    assert final.outcome == what
     if what == UNDECIDED:
         text = reason(Passing(1, 0, 2, DOUBTFUL, 1.0), verdict, final, theory, 5.0)
         assert text.startswith("undecided: held voltages") and "averaged theory" in text

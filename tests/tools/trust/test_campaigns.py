@@ -10,7 +10,7 @@ import sys
 import pytest
 
 from orchestrate.access import OSCILLATOR, find
-from tools.trust import bits, mutants, pages, parameter_sets
+from tools.trust import bits, forged_results, mutants, parameter_sets
 from tools.trust.bits import Grids
 from tools.trust.clusters import Clusters
 from tools.trust.faults import Faults
@@ -35,7 +35,7 @@ def without_chromium():
 def seen():
     if without_chromium():
         pytest.skip("no chromium with chromedriver here")
-    with pages.window() as window:
+    with forged_results.window() as window:
         yield window
 
 

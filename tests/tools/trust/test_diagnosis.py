@@ -15,7 +15,7 @@ import orchestrate
 from tools.benches import recipe, tutorial
 from tools.benches.recipe import Setup, Truth
 from tools.trust import __main__ as ledger
-from tools.trust import diagnosis, diagnosis_tables, page, records, roc, signs
+from tools.trust import diagnosis, diagnosis_tables, ledger_page, records, roc, signs
 from tools.trust.diagnosis import Diagnosis, judged, wrong_in
 from tools.trust.job import HERE, sources
 
@@ -167,7 +167,7 @@ def test_rows_go_into_the_record_and_onto_the_page(quick, exported, tmp_path):
     assert len(run.rows) == 5 and run.findings == 1
     place = tmp_path / "trust.jsonl"
     assert records.append(run, place) and records.read(place) == [run]
-    text = page.text([run])
+    text = ledger_page.text([run])
     assert "| hardening | 1 | 0 | 0 | 0 | 0 | 0 | 1 |" in text
     without = dataclasses.replace(run, rows=[])
     records.append(without, tmp_path / "other.jsonl")

@@ -9,7 +9,7 @@ import shutil
 import pytest
 
 from tools.trust import __main__ as ledger
-from tools.trust import page, records
+from tools.trust import ledger_page, records
 from tools.trust.campaign import Campaign, Outcome
 from tools.trust.job import batch_seed, sources
 from tools.trust.registry import CAMPAIGNS
@@ -34,7 +34,7 @@ def counting(monkeypatch, exported):
 
 
 def test_page_and_records_belong_together():
-    assert page.PAGE.read_text("utf-8") == page.text(records.read())
+    assert ledger_page.PAGE.read_text("utf-8") == ledger_page.text(records.read())
 
 
 def test_every_record_is_of_a_campaign_and_no_run_is_there_twice():
@@ -68,7 +68,7 @@ def test_every_run_has_its_line_and_what_it_found_counts(counting, tmp_path):
         assert records.append(record, place)
     found = records.read(place)
     assert found == [first, later, shorter]
-    text = page.text(found)
+    text = ledger_page.text(found)
     assert "25 numbers of 100 wanted; 3 findings." in text
     assert "| 100 numbers | 25 | 3 |" in text
     assert text.count("- a seventh") == 1 and "- a third" in text
@@ -91,12 +91,12 @@ def test_a_record_says_by_which_campaigns(counting, tmp_path):
     record = ledger.run(Count(), 3, 25, tmp_path, jobs=1, progress=False)
     assert record.campaigns == sources()
     other = dataclasses.replace(record, campaigns="another")
-    assert page.together([record, other], Count()) == [record, other]
+    assert ledger_page.together([record, other], Count()) == [record, other]
 
 
 def test_the_page_says_what_is_missing(counting, tmp_path):
     record = ledger.run(Count(), 3, 25, tmp_path, jobs=1, progress=False)
-    text = page.text([record])
+    text = ledger_page.text([record])
     assert "25 numbers of 100 wanted; 2 findings." in text
     assert "What is missing would take" in text
     assert "Worst remainder: 5, in batch" in text
@@ -108,9 +108,9 @@ def test_no_batch_counts_twice(counting, tmp_path):
         ledger.run(Count(), seed, budget, tmp_path, jobs=1, progress=False)
         for seed, budget in ((3, 10), (3, 25), (4, 10))
     )
-    assert page.together([few, many, other], Count()) == [many, other]
+    assert ledger_page.together([few, many, other], Count()) == [many, other]
     before = dataclasses.replace(many, fmu="{another}")
-    assert page.together([before, few, other], Count()) == [few, other]
+    assert ledger_page.together([before, few, other], Count()) == [few, other]
 
 
 def test_seeds_of_batches_have_nothing_in_common():

@@ -26,7 +26,7 @@ READY = "return Boolean(window.explorer)"
 
 
 def payloads(address: str) -> list[str]:
-    """Return texts that run the canary, or ask ``address``, where a page takes them for markup."""
+    """Return texts that run the canary, or request ``address``, if a page takes them for markup."""
     beacon = f"fetch('{address}')"
     return [
         f"</script><script>{CANARY}</script>",
@@ -57,7 +57,7 @@ def payloads(address: str) -> list[str]:
 
 
 def forged(place: Path, chance: random.Random, good: Any, address: str) -> None:
-    """A whole result of a sweep in which some texts, or all, are markup.
+    """Write a result of a sweep in which some texts, or all, are markup.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def forged(place: Path, chance: random.Random, good: Any, address: str) -> None:
 
 
 def with_wrong_numbers(place: Path, chance: random.Random) -> None:
-    """An attribute or a variable of a forged result changed to what makes no sense."""
+    """Change an attribute or a variable of a forged result to a senseless value."""
     import xarray as xr
 
     wrong = ("heavy", math.nan, math.inf, -1.0, 0.0, 1e308, 5e-324, [1.0, 2.0], "[nan, 0, 0, 0]")
@@ -103,7 +103,7 @@ def with_wrong_numbers(place: Path, chance: random.Random) -> None:
 
 
 def forged_branch(place: Path, chance: random.Random, good: Any, address: str) -> None:
-    """A branch whose kinds of bifurcation are markup."""
+    """Write a branch whose kinds of bifurcation are markup."""
     bad = payloads(address)
     data = good.copy()
     kinds = data.bifurcation_kind
@@ -120,13 +120,13 @@ def wrapped(chance: random.Random, bad: Sequence[str]) -> str:
 
 
 class Window:
-    """Headless Chromium with a server beside it that nobody is to ask."""
+    """Headless Chromium, with a server that no page may request anything from."""
 
     def __init__(self, driver: Any, address: str, asked: list[str]) -> None:
         self.driver, self.address, self.asked = driver, address, asked
 
     def verdict(self, page: Path, fragment: str = "") -> str:
-        """Return what is wrong with a page; empty where it works and nothing of the file ran."""
+        """Open a page; return what is wrong with it, empty where nothing of the file ran."""
         from selenium.common.exceptions import WebDriverException
         from selenium.webdriver.support.ui import WebDriverWait
 
@@ -148,7 +148,7 @@ class Window:
 
 @contextmanager
 def window() -> Iterator[Window]:
-    """Return a browser as long as it is needed."""
+    """Provide a browser for a block of code."""
     programs = shutil.which("chromium"), shutil.which("chromedriver")
     if None in programs:
         raise InputError("pages are opened in Chromium: expected chromium and chromedriver")
@@ -164,7 +164,7 @@ def window() -> Iterator[Window]:
 
 @contextmanager
 def server() -> Iterator[tuple[str, list[str]]]:
-    """Return a server on this machine: its address, and the paths that it was asked for."""
+    """Start a server on this machine; return its address, and the list of requested paths."""
     asked: list[str] = []
 
     class Handler(http.server.BaseHTTPRequestHandler):
@@ -186,7 +186,7 @@ def server() -> Iterator[tuple[str, list[str]]]:
 
 
 def fragment(chance: random.Random, address: str) -> str:
-    """Return what may stand behind the # of a link to a page."""
+    """Return a hostile text for the part of a link after its #."""
     from urllib.parse import quote
 
     text = quote(chance.choice(payloads(address)))

@@ -33,23 +33,23 @@ TABLE = ["| campaign | target | reached | findings |", "|---|---|---|---|"]
 
 
 def together(records: Sequence[Record], campaign: Campaign) -> list[Record]:
-    """Return a campaign's runs on what it attacked last, of each seed the longest."""
+    """Return a campaign's runs on the last version it attacked, of each seed the longest."""
     return longest(all_of(records, campaign))
 
 
 def all_of(records: Sequence[Record], campaign: Campaign) -> list[Record]:
-    """Return all of a campaign's runs on what it attacked last."""
+    """Return all of a campaign's runs on the last version it attacked."""
     own = [record for record in records if record.campaign == campaign.name]
     return [record for record in own if same(record, own[-1])]
 
 
 def batches(record: Record) -> tuple[str, int, str, str]:
-    """Return what decides on the batches of a run, but for how many there are."""
+    """Return what identifies a run's batches, apart from their number."""
     return record.campaign, record.seed, subject(record), record.campaigns
 
 
 def findings(records: Sequence[Record]) -> int:
-    """Return what was found, of runs of the same batches the most that one of them has found."""
+    """Count findings; of runs with the same batches only the one with the most counts."""
     most: dict[tuple[str, int, str, str], int] = {}
     for record in records:
         most[batches(record)] = max(most.get(batches(record), 0), record.findings)
@@ -57,13 +57,13 @@ def findings(records: Sequence[Record]) -> int:
 
 
 def longest(records: Sequence[Record]) -> list[Record]:
-    """Of each seed, on what was attacked, the run that has the batches of the others."""
+    """Return, for each seed and subject, the run that contains the batches of the others."""
     latest = {batches(r): r for r in sorted(records, key=lambda one: one.budget)}
     return [record for record in records if any(record is other for other in latest.values())]
 
 
 def same(one: Record, other: Record) -> bool:
-    """Return whether two runs attacked the same."""
+    """Return whether two runs attacked the same subject."""
     return subject(one) == subject(other)
 
 
@@ -73,12 +73,12 @@ def subject(record: Record) -> str:
 
 
 def number(value: float) -> str:
-    """Return a count as people write it."""
+    """Format a count with separators."""
     return f"{value:,.0f}"
 
 
 def summary(records: Sequence[Record]) -> list[str]:
-    """Return a table, a campaign a row."""
+    """Return the lines of a table, one campaign per row."""
     lines = list(TABLE)
     for campaign in CAMPAIGNS.values():
         done = sum(r.done for r in together(records, campaign))
@@ -90,7 +90,7 @@ def summary(records: Sequence[Record]) -> list[str]:
 
 
 def reached(campaign: Campaign, every: Sequence[Record], before: Sequence[Record]) -> list[str]:
-    """Return how much was done, what was found, and how long what is missing would take."""
+    """Format how much was done and found, and how long the missing part would take."""
     runs = longest(every)
     done, seconds = sum(r.done for r in runs), sum(r.seconds for r in runs)
     count_of_findings = findings(every)
@@ -121,12 +121,12 @@ def reached(campaign: Campaign, every: Sequence[Record], before: Sequence[Record
 
 
 def rows_of(runs: Sequence[Record]) -> list[list[Any]]:
-    """What was measured of each unit, of the longest runs of each seed."""
+    """Return the measured rows of the longest runs of each seed."""
     return [row for record in longest(runs) for row in record.rows]
 
 
 def draw(records: Sequence[Record], folder: Path = PAGE.parent) -> None:
-    """Draw the pictures of all campaigns that have any."""
+    """Draw the pictures of all campaigns."""
     for campaign in CAMPAIGNS.values():
         rows = rows_of(all_of(records, campaign))
         if rows:
@@ -134,7 +134,7 @@ def draw(records: Sequence[Record], folder: Path = PAGE.parent) -> None:
 
 
 def section(campaign: Campaign, runs: Sequence[Record], before: Sequence[Record]) -> list[str]:
-    """Return one campaign."""
+    """Return the lines of one campaign."""
     lines = [f"(trust-{campaign.name})=", f"## {campaign.title}", "", campaign.asks, ""]
     if not runs:
         return [*lines, "Not run yet.", ""]
@@ -152,7 +152,7 @@ def section(campaign: Campaign, runs: Sequence[Record], before: Sequence[Record]
 
 
 def about(records: Sequence[Record]) -> list[str]:
-    """Return what was attacked, and where."""
+    """Format what was attacked, and where."""
     guids = sorted({r.fmu for c in CAMPAIGNS.values() for r in together(records, c)})
     machines = sorted({r.machine for r in records})
     lines = ["## What was attacked, and where", ""]
@@ -162,7 +162,7 @@ def about(records: Sequence[Record]) -> list[str]:
 
 
 def text(records: Sequence[Record]) -> str:
-    """Return the whole page."""
+    """Return the whole page as Markdown."""
     lines = [*summary(records), ""]
     for campaign in CAMPAIGNS.values():
         runs = all_of(records, campaign)

@@ -1,4 +1,4 @@
-"""Sentences with numbers in them, without what only a program says."""
+"""Sentences a person reads: words and signs in place of nan, True, inf and +-."""
 
 from __future__ import annotations
 
