@@ -10,7 +10,7 @@ import numpy as np
 from .errors import InputError
 
 MAX_COUNT = 1_000_000  # periods, samples, values: more is a typing error
-REQUIRES_DELAMINATED = "bonded = True: requires a delaminated structure (bonded = false)"
+REQUIRES_DELAMINATED = "bonded = True: expected a delaminated structure (bonded = false)"
 
 
 def checked_integer(name: str, value: Any, minimum: int, maximum: int = MAX_COUNT) -> int:

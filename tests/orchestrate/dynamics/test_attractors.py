@@ -87,5 +87,5 @@ def test_units_do_not_matter():
 
 
 def test_a_bonded_structure_has_nothing_to_tell():
-    with pytest.raises(InputError, match="bonded = True: requires a delaminated structure"):
+    with pytest.raises(InputError, match="bonded = True: expected a delaminated structure"):
         attractors(PAPER.as_bonded(), eta=1.0)

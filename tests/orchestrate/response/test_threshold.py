@@ -110,7 +110,7 @@ def test_forms_units_and_limits():
         (
             Structure(bonded=True, clearance=-1.0),
             {"eta": 1.0},
-            "bonded = True: requires a delaminated structure",
+            "bonded = True: expected a delaminated structure",
         ),
         (Structure(clearance=-1.0), {}, "expected eta= or frequency="),
         (Structure(clearance=-1.0), {"eta": 1.0, "frequency": 1.0}, "expected eta= or frequency="),
