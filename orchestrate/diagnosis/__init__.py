@@ -7,7 +7,7 @@ module                  idea
 :mod:`.signs`           the signs of a record, their floors, and those of a sound structure
 :mod:`.response_signs`  signs of accelerations over time
 :mod:`.drive_signs`     signs of a run on a weak drive
-:mod:`.sound`           the sound structure that a record is compared with
+:mod:`.undamaged`       the sound structure that a record is compared with
 :mod:`.opening`         the force that would open the faces of a sound structure, in closed form
 :mod:`.plan_test`       where the delaminated and the sound structure differ most
 :mod:`.orders`          orders of a record's channels in short windows, and the floor between them
@@ -21,7 +21,7 @@ module                  idea
 :mod:`.even_orders`     whether faces part: order 2 above its floor
 :mod:`.search_job`      all searches of a record as a job, beside each other
 :mod:`.fit`             the numbers of a structure from a record
-:mod:`.verdicts`        the rule by which fits and signs become a verdict
+:mod:`.decision_rule`   the rule by which fits and signs become a verdict
 :mod:`.detect`          the verdict on a record
 :mod:`.detect_all`      verdicts on many records, side by side
 ======================  ===========================================================================

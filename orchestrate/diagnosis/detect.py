@@ -14,10 +14,10 @@ from ..response.questions import checked_structure
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
+from .decision_rule import Findings, share_of_better
 from .fit import Results, checked_data, checked_free, delaminated_guess
 from .hypotheses import FREE
 from .search_job import SearchJob
-from .verdicts import Findings, share_of_better
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -120,7 +120,9 @@ class DetectJob(SearchJob):
             "verdict": ((), findings.verdict(), {"long_name": "verdict"}),
             "odds": variable((), findings.odds, "1", "odds of delaminated against sound"),
             "ratio": variable((), findings.ratio, "1", "misfit of sound over that of delaminated"),
-            "smallest_opening": variable((), findings.smallest, "m", "smallest opening seen"),
+            "smallest_opening": variable(
+                (), findings.smallest, "m", "smallest opening that would have been detected"
+            ),
             "level_low": variable((), findings.low, "m/s2", "lowest level of the base"),
             "level_high": variable((), findings.high, "m/s2", "highest level of the base"),
             "frequency_low": variable((), findings.first, "Hz", "lowest frequency"),
@@ -134,7 +136,7 @@ class DetectJob(SearchJob):
             analysis="detect",
             title=f"Verdict: {findings.verdict()}",
             reason=findings.reason(),
-            settle=findings.settle(),
+            settle=findings.next_measurement(),
             seen_up_to=findings.seen_up_to(),
             assumed="; ".join(ASSUMED),
         )

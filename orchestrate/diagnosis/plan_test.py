@@ -21,7 +21,7 @@ from ..response.labels import variable, yes_or_no
 from ..running.options import Running
 from ..structures import Structure
 from .opening import opening_force, sweep_rate
-from .sound import SoundStructure
+from .undamaged import SoundStructure
 
 if TYPE_CHECKING:
     import xarray as xr

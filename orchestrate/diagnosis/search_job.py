@@ -17,6 +17,7 @@ from ..laboratory.analysis.channels import Channels
 from ..laboratory.record import record as made_record
 from ..running.job import Inputs, Job, Table
 from ..structures import Structure
+from .decision_rule import SOUND_DESCRIBES
 from .errors import estimate
 from .even_orders import even_orders
 from .evidence import Evidence
@@ -24,7 +25,6 @@ from .fitting import ROUNDS, Search, Solution, distinct
 from .hypotheses import SOUND, SPLITS, Delaminated, DelaminatedWithClearance, Hypothesis
 from .misfit import misfit
 from .orders import RecordOrders, record_orders
-from .verdicts import SOUND_DESCRIBES
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -24,7 +24,7 @@ from .response_signs import (
     response_signs,
     sensor_differences,
 )
-from .sound import SoundStructure
+from .undamaged import SoundStructure
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from orchestrate.diagnosis.decision_rule import Findings, share_of_better
 from orchestrate.diagnosis.evidence import Evidence
 from orchestrate.diagnosis.fit import slopes_of
 from orchestrate.diagnosis.hypotheses import Delaminated
-from orchestrate.diagnosis.verdicts import Findings, share_of_better
 
 from .records import BEAM, record
 
@@ -55,8 +55,10 @@ def test_each_case_has_its_word(name):
     changes, expected = CASES[name]
     findings = replace(OPENED, **changes)
     assert findings.verdict() == expected
-    assert findings.settle()
-    assert "intact" not in f"{findings.settle()} {findings.reason()} {findings.seen_up_to()}"
+    assert findings.next_measurement()
+    assert (
+        "intact" not in f"{findings.next_measurement()} {findings.reason()} {findings.seen_up_to()}"
+    )
 
 
 def test_the_reason_has_the_numbers_that_decided():

@@ -104,7 +104,7 @@ class Findings:
         )
         return f"{signs}; {fits}: {self.ratio:.2g} times as much, where {RATIO:g} decides"
 
-    def settle(self) -> str:
+    def next_measurement(self) -> str:
         """What measurement would settle it, or could change it, in one sentence."""
         other = "an accelerometer on the other face" if self.sensors == 1 else "a slower sweep"
         return {
