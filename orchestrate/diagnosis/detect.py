@@ -43,7 +43,7 @@ def detect(
     free: Sequence[str] = FREE,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Say whether a record is that of a delaminated structure.
+    """Decide whether a record is that of a delaminated structure.
 
     Parameters
     ----------
@@ -107,10 +107,10 @@ def detect(
 
 @dataclass(frozen=True, kw_only=True)
 class DetectJob(SearchJob):
-    """All hypotheses fitted, and the verdict."""
+    """Fit all hypotheses to a record and decide which verdict they give."""
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """The verdict, what it goes by, and all fits."""
+        """Return the verdict, the quantities that it is based on, and all fits as a dataset."""
         import xarray as xr
 
         results = Results.from_table(self, table)
@@ -143,7 +143,7 @@ class DetectJob(SearchJob):
 
 
 def findings_of(results: Results) -> Findings:
-    """What the rule goes by, of the fits."""
+    """Collect the quantities that the decision rule needs from the results of the fits."""
     job, even = results.job, results.even
     count, evidence = len(job.sound), job.evidence
     sound = int(np.argmin(results.misfit[:count]))

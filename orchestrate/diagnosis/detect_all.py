@@ -27,7 +27,7 @@ def detect_all(
     free: Sequence[str] = FREE,
     **running: Unpack[Running],
 ) -> dict[str, xr.Dataset]:
-    """Say of many records whether each is that of a delaminated structure.
+    """Decide for each of many records whether it is that of a delaminated structure.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def detect_all(
 
 
 def job_of(name: str, record: xr.Dataset, guess: Structure, free: tuple[str, ...]) -> DetectJob:
-    """The job of one record.
+    """Check one record and return the job that decides on it.
 
     Raises
     ------

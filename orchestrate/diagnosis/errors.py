@@ -51,7 +51,7 @@ NOISE_ALONE = 1.3  # squares over those that noise makes: less of them has no ot
 
 @dataclass(frozen=True)
 class Estimate:
-    """Fitted numbers and how well they are known.
+    """Fitted numbers with their covariance, and the standard deviations by each cause.
 
     Attributes
     ----------
@@ -69,7 +69,7 @@ class Estimate:
 
 
 def estimate(search: Search, values: Mapping[str, float]) -> Estimate:
-    """The minimum of the misfit without its ruggedness, and how well the record determines it.
+    """Return the numbers at the minimum of the smoothed misfit, with their covariances.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def estimate(search: Search, values: Mapping[str, float]) -> Estimate:
 
 
 def errors_of(search: Search, values: dict[str, float], model: LinearModel) -> Estimate:
-    """Covariances by noise and by blocks, at the numbers."""
+    """Return the numbers with their covariances by noise, by blocks and by discrepancy."""
     count, rows, influence = len(values), model.weighted, model.influence
     changes = noisy(search, values)
     moved = np.stack([rows.T @ change.ravel() for change in changes])
@@ -110,8 +110,10 @@ def errors_of(search: Search, values: dict[str, float], model: LinearModel) -> E
 
 
 def contact_doubt(values: Mapping[str, float], beyond: float) -> Floats:
-    """Covariance of damping and restitution by what a real contact does: it loses energy in another
-    way at each speed, and a fit shares that out between both halves and the impacts.
+    """Return the covariance of damping and restitution that is due to real contacts.
+
+    A real contact loses energy in another way at each speed, and a fit shares that out between
+    both halves and the impacts.
 
     Parameters
     ----------
@@ -129,13 +131,13 @@ def contact_doubt(values: Mapping[str, float], beyond: float) -> Floats:
 
 
 def hidden_squares(residuals: Floats, changes: list[Floats]) -> float:
-    """The sum of squares of residuals beyond what noise makes of it; large ones by their size."""
+    """Return the sum of squared residuals (soft loss) beyond what noise explains."""
     by_noise = float(np.mean([soft_squares(change).sum() for change in changes]))
     return max(float(soft_squares(residuals).sum()) - NOISE_ALONE * by_noise, 0.0)
 
 
 def noisy(search: Search, values: Mapping[str, float]) -> list[Floats]:
-    """Changes of the residuals by noise of the base and of the sensors, simulated."""
+    """Simulate noise of base and sensors, and return the residuals' changes for each replicate."""
     evidence, rng = search.evidence, np.random.default_rng(SEED)
     sizes = noise_of_samples(evidence.orders)
     hypothesis, found = search.hypothesis, []
@@ -154,14 +156,14 @@ def noisy(search: Search, values: Mapping[str, float]) -> list[Floats]:
 
 
 def shaken_again(evidence: Evidence, noise: Floats) -> Evidence:
-    """The evidence with more noise on the base."""
+    """Return the evidence with simulated noise added to the base's acceleration."""
     base = evidence.orders.channels.box + noise
     pieces = Sampled(acceleration=tuple(base), sample_rate=evidence.rate).pieces()
     return replace(evidence, pieces=pieces)
 
 
 def noise_of_samples(orders: RecordOrders) -> dict[str, float]:
-    """Standard deviation of white noise that has a channel's floor, m/s2."""
+    """Return, by channel, the standard deviation of white noise that has its floor, m/s2."""
     squares = [np.sum(np.abs(s[:, len(ORDERS) :]) ** 2, axis=0) for s in orders.windows.solutions]
     share = math.sqrt(float(np.nanmean(squares)))
     return {

@@ -21,7 +21,7 @@ LEAST_APART = 0.03  # of order 1: what two sensors on one body may differ by
 
 @dataclass(frozen=True)
 class EvenOrders:
-    """Order 2 beyond what a linear structure makes of the base's, and its floor.
+    """Order 2 beyond what a linear structure makes of the base's, with the threshold for detection.
 
     Attributes
     ----------
@@ -38,28 +38,28 @@ class EvenOrders:
 
     @property
     def excess(self) -> float:
-        """Largest ratio over its threshold."""
+        """Largest ratio of order 2 over order 1, as a multiple of its threshold."""
         return float(np.nanmax(self.ratio / self.threshold))
 
     @property
     def largest(self) -> float:
-        """Largest ratio of those that are furthest above their threshold."""
+        """Ratio of order 2 over order 1 in the window where it exceeds its threshold most."""
         return float(self.ratio[np.nanargmax(self.ratio / self.threshold)])
 
     @property
     def seen(self) -> bool:
-        """Whether order 2 is there."""
+        """Whether order 2 exceeds its threshold in any window."""
         return self.excess > 1.0
 
     @property
     def moved_apart(self) -> float:
-        """Largest difference of two sensors over order 1 and three hundredths; 0 with one."""
+        """Largest difference of two sensors over its threshold; 0 with one sensor."""
         size = self.apart / np.maximum(self.threshold, LEAST_APART)
         return float(np.nanmax(size)) if np.isfinite(size).any() else 0.0
 
 
 def even_orders(evidence: Evidence, bonded: Complexes) -> EvenOrders:
-    """Order 2 of a record against that of a bonded structure.
+    """Compute order 2 of a record beyond that of a bonded structure, and its threshold.
 
     Parameters
     ----------
@@ -83,12 +83,12 @@ def even_orders(evidence: Evidence, bonded: Complexes) -> EvenOrders:
 
 
 def mean(values: Floats) -> Floats:
-    """Over neighbouring windows, of each sensor."""
+    """Return each sensor's values averaged over neighbouring windows."""
     return np.stack([smoothed(row, GROUP) for row in values])
 
 
 def difference(evidence: Evidence, quiet: NDArray[np.bool_]) -> Floats:
-    """How far two sensors' order 1 are apart but for a gain and a delay, over their size."""
+    """Return the relative difference of two sensors' order 1, best gain and delay taken out."""
     first = evidence.measured[:, 0]
     if len(first) < 2:
         return np.full(first.shape[1], np.nan)

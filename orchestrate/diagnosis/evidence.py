@@ -46,8 +46,7 @@ SENSORS = ("acceleration1", "acceleration2")
 
 
 def trimmed(orders: RecordOrders) -> tuple[Channels, float]:
-    """The channels from before the sweep comes near the resonance until it is away from it, and the
-    highest frequency there in Hz.
+    """Cut the channels to the time around the resonance; return them and the highest frequency, Hz.
 
     The rest is long and holds little: a fit would spend half its time there.
     """
@@ -66,7 +65,7 @@ def trimmed(orders: RecordOrders) -> tuple[Channels, float]:
 
 @dataclass(frozen=True)
 class Evidence:
-    """Orders of a record with weights, and the input of the motions that are compared with them.
+    """Orders of a record, their errors, and the input of the motions that are compared with them.
 
     Attributes
     ----------
@@ -83,12 +82,12 @@ class Evidence:
 
     @classmethod
     def from_record(cls, record: xr.Dataset) -> Evidence:
-        """Of a record; raises as :func:`.orders.record_orders`."""
+        """Compute the evidence of a record; raises as :func:`.orders.record_orders`."""
         return cls.from_orders(record_orders(record))
 
     @classmethod
     def from_orders(cls, orders: RecordOrders, kept: float = KEPT) -> Evidence:
-        """Of the orders of a whole record, as :func:`.orders.thinned` leaves them."""
+        """Build the evidence from a whole record's orders: cut and decimate it where possible."""
         channels, highest = trimmed(orders)
         thin = thinned(channels, highest, kept)
         if thin is not orders.channels:
@@ -99,7 +98,7 @@ class Evidence:
         )
 
     def near_resonance(self) -> Evidence:
-        """The part of it that a coarse search needs, where both resonances are."""
+        """Return the part of the evidence around both resonances, for a coarse search."""
         size = np.abs(self.measured[:, 0] - self.level) / self.frequency**2
         moving = self.frequency[np.unravel_index(np.argmax(size), size.shape)[1]]
         low, high = (end([*self.peaks, moving]) for end in (min, max))
@@ -127,51 +126,51 @@ class Evidence:
 
     @property
     def rate(self) -> float:
-        """Samples in a second, Hz."""
+        """Sampling rate, Hz."""
         return self.orders.channels.sample_rate
 
     @property
     def samples(self) -> int:
-        """How many of each channel."""
+        """Number of samples of each channel."""
         return len(self.orders.channels.time)
 
     @cached_property
     def masses(self) -> tuple[int, ...]:
-        """Which mass each sensor is on, 0 or 1."""
+        """Mass that each sensor is on, 0 or 1."""
         return tuple(SENSORS.index(name) for name in self.orders.sensors)
 
     @cached_property
     def used(self) -> NDArray[np.intp]:
-        """Windows that count: those after the start."""
+        """Numbers of the windows that are fitted: those after the start-up."""
         time = self.orders.windows.time - self.orders.channels.time[0]
         skipped = min(SKIPPED, 0.1 * self.orders.channels.duration)
         return np.flatnonzero(time > skipped)
 
     @cached_property
     def windows(self) -> OrderWindows:
-        """These windows, with the orders that are fitted."""
+        """Windows that are fitted, with the orders that are fitted."""
         return self.orders.windows.chosen(self.used, len(FITTED))
 
     @cached_property
     def frequency(self) -> Floats:
-        """Of the excitation in these windows, Hz."""
+        """Frequency of the excitation in each fitted window, Hz."""
         return self.orders.windows.frequency[self.used]
 
     @cached_property
     def level(self) -> Floats:
-        """Amplitude of the base's order 1 there, m/s2."""
+        """Amplitude of the base's order 1 in each fitted window, m/s2."""
         return self.orders.level[self.used]
 
     @cached_property
     def measured(self) -> Complexes:
-        """Orders 1, 2, 3 of the sensors, shape (sensors, 3, windows), m/s2."""
+        """Measured orders 1, 2, 3 of the sensors, shape (sensors, 3, windows), m/s2."""
         rows = [self.orders.channels.names.index(name) for name in self.orders.sensors]
         numbers = [ORDERS.index(order) for order in FITTED]
         return self.orders.amplitude[rows][:, numbers][:, :, self.used]
 
     @cached_property
     def size(self) -> Floats:
-        """Largest order 1 around each window, shape (sensors, windows), m/s2."""
+        """Largest amplitude of order 1 around each window, shape (sensors, windows), m/s2."""
         size = np.abs(self.measured[:, 0])
         width = 2 * NEIGHBOURS + 1
         padded = np.pad(size, ((0, 0), (NEIGHBOURS, NEIGHBOURS)), mode="edge")
@@ -179,15 +178,13 @@ class Evidence:
 
     @cached_property
     def noise(self) -> Floats:
-        """Standard deviation of order amplitudes by noise, shape (sensors,), m/s2."""
+        """Standard deviation of the orders' amplitudes by noise, shape (sensors,), m/s2."""
         rows = [self.orders.channels.names.index(name) for name in self.orders.sensors]
         return np.maximum(self.orders.noise[rows], 1e-9 * self.size.max())
 
     @cached_property
     def error(self) -> Floats:
-        """Weights: what is between the orders (noise, or motion that does not repeat) and what a
-        good model may miss, shape (sensors, 3, windows), m/s2.
-        """
+        """Standard deviations (model error and noise), shape (sensors, 3, windows), m/s2."""
         rows = [self.orders.channels.names.index(name) for name in self.orders.sensors]
         floor = np.maximum(IRREGULAR * self.orders.floor[rows][:, self.used], self.noise[:, None])
         model = np.array(self.relative)[:, None] * self.size[:, None, :]
@@ -200,7 +197,7 @@ class Evidence:
 
     @cached_property
     def operator(self) -> csr_array:
-        """From displacements in the base to parts of orders, see :meth:`computed`."""
+        """Sparse matrix from a displacement to its orders, see :meth:`orders_of_motion`."""
         from scipy.sparse import diags_array
 
         read = 1.0 / np.sinc(np.outer(FITTED, self.frequency) / self.rate) ** 2
@@ -216,7 +213,7 @@ class Evidence:
 
     @cached_property
     def peaks(self) -> tuple[float, ...]:
-        """The same of each sensor, Hz."""
+        """Frequency at which each sensor moves most for the base's amplitude, Hz."""
         response = np.abs(self.measured[:, 0]) / self.level
         return tuple(self.frequency[np.argmax(response, axis=1)].tolist())
 
@@ -227,7 +224,7 @@ class Evidence:
         return float((size / (TURN * self.frequency) ** 2).max())
 
     def computed(self, motion: Floats) -> Complexes:
-        """Orders 1, 2, 3 that sensors would read of a motion, shape (sensors, 3, windows).
+        """Compute orders 1, 2, 3 that sensors would read of a motion, shape (sensors, 3, windows).
 
         Parameters
         ----------
@@ -247,7 +244,7 @@ class Evidence:
         return found[:, :, 0] + 1j * found[:, :, 1] + self.base
 
     def matched(self, computed: Complexes) -> Complexes:
-        """The same with each sensor's gain and delay, as order 1 asks for them in closed form.
+        """Return computed orders corrected by each sensor's gain and delay, fitted to order 1.
 
         A delay that all channels share is none: the base's is in the input already.
         """
@@ -259,7 +256,7 @@ class Evidence:
         return found
 
     def sensor_error(self, row: int, computed: Complexes) -> tuple[float, float]:
-        """Gain and delay (s) of a sensor that bring a computed order 1 closest to the measured."""
+        """Fit the gain and delay (s) of a sensor to order 1, by least squares with a prior."""
         if not np.isfinite(computed).all():  # a motion without bounds
             return 1.0, 0.0
         weighted = computed / self.error[row, 0]
@@ -272,16 +269,17 @@ class Evidence:
         return gain, float(np.clip(DELAY * solution[1], -MOST_DELAY, MOST_DELAY))
 
     def residuals(self, motion: Floats) -> Floats:
-        """What a motion misses, over the errors; shape (sensors, 4, windows).
+        """Return a motion's orders less the measured ones, over the errors.
 
-        Order 1 as two numbers, the sizes of orders 2 and 3; 0 where an order is not resolved.
+        The shape is (sensors, 4, windows): order 1 as two numbers, then the sizes of orders 2 and
+        3; 0 where an order is not resolved.
         """
         if not np.isfinite(motion).all():
             return np.full((len(self.masses), 4, len(self.used)), LOST)
         return self.missed(self.matched(self.computed(motion)))
 
     def missed(self, computed: Complexes) -> Floats:
-        """What computed orders miss, over the errors; shape (sensors, 4, windows)."""
+        """Return computed less measured orders, over the errors; shape (sensors, 4, windows)."""
         first = (computed[:, 0] - self.measured[:, 0]) / self.error[:, 0]
         noise = self.noise[:, None, None]  # adds to both sizes alike
         size, wanted = np.abs(computed[:, 1:]), np.abs(self.measured[:, 1:])

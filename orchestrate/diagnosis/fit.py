@@ -120,12 +120,12 @@ def fit(
 
 
 def checked_hypothesis(hypothesis: str) -> str:
-    """A hypothesis by its name as an argument."""
+    """Check that a hypothesis has a known short name, and return it."""
     return checked_word("hypothesis", hypothesis, (DELAMINATED, *SHORT))
 
 
 def checked_free(free: Sequence[str]) -> tuple[str, ...]:
-    """Names of parameters to be fitted.
+    """Check the names of the parameters to be fitted, and return them as a tuple.
 
     Raises
     ------
@@ -142,7 +142,7 @@ def checked_free(free: Sequence[str]) -> tuple[str, ...]:
 
 
 def checked_data(record: xr.Dataset) -> RecordData:
-    """A record's channels, after a look at whether the base moves as a sine.
+    """Check that a record's base moves as a sine, and return its channels for a job.
 
     Raises
     ------
@@ -154,7 +154,7 @@ def checked_data(record: xr.Dataset) -> RecordData:
 
 
 def delaminated_guess(guess: Structure) -> Structure:
-    """The guess without a glue.
+    """Check that both halves of the guess have a spring, and return it as delaminated.
 
     Raises
     ------
@@ -173,7 +173,7 @@ def delaminated_guess(guess: Structure) -> Structure:
 
 @dataclass(frozen=True, kw_only=True)
 class FitJob(SearchJob):
-    """One hypothesis fitted.
+    """Fit one hypothesis to a record.
 
     Attributes
     ----------
@@ -183,7 +183,7 @@ class FitJob(SearchJob):
     kind: str
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Numbers, errors, and what is missed."""
+        """Return the fitted parameters, their errors, and the fitted orders as a dataset."""
         import xarray as xr
 
         results = Results.from_table(self, table)
@@ -202,7 +202,7 @@ class FitJob(SearchJob):
 
 @dataclass(frozen=True)
 class Results:
-    """The end of a search job as arrays, one row a hypothesis.
+    """Results of a search job as arrays, one row a hypothesis.
 
     Attributes
     ----------
@@ -221,23 +221,23 @@ class Results:
 
     @classmethod
     def from_table(cls, job: SearchJob, table: Table) -> Results:
-        """Of a finished job."""
+        """Read the results from the table of a finished job."""
         part = {name: table[f"end_{name}"][0] for name in ENDS}
         real, imaginary = np.moveaxis(part.pop("fitted"), 1, 0)
         return cls(job, fitted=real + 1j * imaginary, **part)
 
     @property
     def even(self) -> EvenOrders:
-        """Order 2 against that of the bonded structure."""
+        """Order 2 of the record beyond that of the fitted bonded structure."""
         return even_orders(self.job.evidence, self.fitted[0])
 
     def opened(self) -> bool:
-        """Whether faces are seen to part, or not to move as one."""
+        """Return whether the record shows faces that open, or two faces that move differently."""
         even = self.even
         return even.seen or even.moved_apart > 1.0
 
     def reason(self) -> str:
-        """Why the numbers of the halves are stated or not."""
+        """Return a sentence that says why the halves' numbers are stated or not."""
         even = self.even
         size = f"order 2 is up to {100 * even.largest:.2g} % of order 1"
         if self.opened():
@@ -245,7 +245,7 @@ class Results:
         return f"no opening is seen ({size}): the record does not hold f1 and f2"
 
     def numbers(self, place: int) -> dict[str, tuple[float, float]]:
-        """Values and standard errors of a hypothesis as a user knows them."""
+        """Return the reported parameters of a hypothesis, by name, as (value, standard error)."""
         hypothesis, evidence = self.job.hypotheses[place], self.job.evidence
         names = list(hypothesis.bounds(evidence))
         here = dict(zip(names, self.values[place].tolist(), strict=False))
@@ -261,7 +261,7 @@ class Results:
         return known
 
     def parameters(self) -> dict[str, Variable]:
-        """Values and standard errors; ``asked`` is 1 where a hypothesis has the parameter."""
+        """Return all hypotheses' values and errors; ``asked`` is 1 where one has the parameter."""
         every = [self.numbers(place) for place in range(len(self.values))]
         shape = (len(every), len(REPORTED))
         value, error, asked = np.full(shape, np.nan), np.full(shape, np.nan), np.full(shape, np.nan)
@@ -278,7 +278,7 @@ class Results:
         }
 
     def correlation(self, place: int, names: list[str]) -> tuple[Any, ...]:
-        """Of a hypothesis's numbers."""
+        """Return the correlation matrix of the errors of a hypothesis's reported parameters."""
         hypothesis, evidence = self.job.hypotheses[place], self.job.evidence
         fitted = list(hypothesis.bounds(evidence))
         here = dict(zip(fitted, self.values[place].tolist(), strict=False))
@@ -290,7 +290,7 @@ class Results:
         return variable(("parameter", "other_parameter"), known, "1", "correlation of errors")
 
     def comparison(self) -> tuple[dict[str, Variable], dict[str, Variable]]:
-        """What is measured and what is fitted, with coordinates."""
+        """Return measured and fitted orders with the misfits, and their coordinates."""
         evidence = self.job.evidence
         rows = [evidence.orders.channels.names.index(name) for name in evidence.orders.sensors]
         floor = evidence.orders.floor[rows][:, None, evidence.used].repeat(len(FITTED), axis=1)
@@ -333,7 +333,7 @@ class Results:
 
 
 def slopes_of(hypothesis: Hypothesis, here: Mapping[str, float], evidence: Evidence) -> Floats:
-    """Derivatives of what is reported by what is fitted."""
+    """Differentiate the reported parameters by the fitted ones (central differences)."""
     columns = []
     for name, value in here.items():
         step = 1e-5 * max(abs(value), 0.1)
@@ -349,5 +349,5 @@ ENDS = ("values", "covariance", "minima", "misfit", "residuals", "fitted", "eval
 
 
 def named(words: str) -> dict[str, str]:
-    """Attributes of a text coordinate."""
+    """Return the attributes of a text coordinate with this long name."""
     return {"long_name": words}

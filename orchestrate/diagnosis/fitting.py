@@ -30,7 +30,7 @@ SAME = 0.03  # relative difference of misfits below which two minima count as on
 
 @dataclass(frozen=True)
 class Solution:
-    """A minimum of the misfit.
+    """A minimum of the misfit of a hypothesis.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class Solution:
 
 @dataclass
 class Search:
-    """A hypothesis and a record, and how often the motion was computed.
+    """Search for the numbers of a hypothesis that fit a record; counts the computed motions.
 
     Attributes
     ----------
@@ -67,13 +67,13 @@ class Search:
     _last: tuple[dict[str, float], Floats] | None = field(default=None, init=False)
 
     def residuals(self, values: Mapping[str, float]) -> Floats:
-        """What the motion with these numbers misses, shape (sensors, 4, windows)."""
+        """Return the residuals of the motion with these numbers, shape (sensors, 4, windows)."""
         if self._last is None or self._last[0] != values:
             self._last = dict(values), self.computed_residuals(values)
         return self._last[1]
 
     def computed_residuals(self, values: Mapping[str, float]) -> Floats:
-        """The same, computed anew."""
+        """Compute the motion with these numbers and return its residuals, without the cache."""
         from ..errors import FmuError, InputError
 
         self.evaluations += 1
@@ -84,7 +84,7 @@ class Search:
         return self.evidence.residuals(motion)
 
     def derivatives(self, values: Mapping[str, float], bounds: Mapping[str, Any]) -> Floats:
-        """Differences of the residuals over those of the numbers, shape (residuals, numbers)."""
+        """Differentiate the residuals by the numbers, shape (residuals, numbers)."""
         here = self.residuals(values).ravel()
         columns = []
         for name in values:
@@ -96,7 +96,7 @@ class Search:
         return np.stack(columns, axis=1)
 
     def refine(self, start: Mapping[str, float], steps: int, tolerance: float) -> Solution:
-        """Go downhill from a start (trust region reflective, with bounds)."""
+        """Minimise the misfit from a start (trust region reflective, with bounds)."""
         from lmfit import Minimizer
 
         hypothesis, bounds = self.hypothesis, self.hypothesis.bounds(self.evidence)
@@ -118,7 +118,7 @@ class Search:
         return Solution(hypothesis.name, values, misfit(np.asarray(result.residual)))
 
     def polish(self, start: Solution, rounds: int = ROUNDS) -> Solution:
-        """Go on from a minimum by regressions over clouds of points.
+        """Improve a minimum by linear regressions over clouds of points.
 
         Impacts that come or stay away make the misfit rugged: a trust region that shrinks after a
         step that failed ends on the first of its bumps. Here each round computes a cloud, as long
@@ -141,7 +141,7 @@ class Search:
         return here
 
     def scan(self, starts: Sequence[Mapping[str, float]]) -> list[Solution]:
-        """The misfits of starts, the best first."""
+        """Compute the misfits at these starts, and return them as solutions, the best first."""
         names = self.hypothesis.bounds(self.evidence)
         found = []
         for start in starts:
@@ -157,7 +157,7 @@ class Search:
         coarse: int = 9,
         fine: int = 25,
     ) -> list[Solution]:
-        """The minima from the best starts, the best first, which is refined to the end.
+        """Minimise from the best starts, then refine the best; return the minima, the best first.
 
         Parameters
         ----------
@@ -176,12 +176,12 @@ class Search:
 
 
 def step_of(search: Search, name: str) -> float:
-    """Step of a number for differences."""
+    """Return the step of a number for finite differences."""
     return STEPS[name] * (search.evidence.resonance if name in ("f", "common") else 1.0)
 
 
 def distinct(solutions: Sequence[Solution]) -> list[Solution]:
-    """Minima that differ, the best first."""
+    """Return the minima whose misfits differ, the best first."""
     found: list[Solution] = []
     for one in sorted(solutions, key=lambda solution: solution.misfit):
         if not found or one.misfit > (1.0 + SAME) * found[-1].misfit:

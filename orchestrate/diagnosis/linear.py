@@ -24,7 +24,7 @@ DAMPINGS = (0.0, 0.01, 0.1, 1.0)
 
 @dataclass(frozen=True)
 class LinearModel:
-    """Residuals ``residuals + slopes (values - here)``.
+    """Linear regression of the residuals: ``residuals + slopes (values - here)``.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class LinearModel:
         covariance: Floats,
         seed: int = 0,
     ) -> LinearModel:
-        """Compute a cloud of points around numbers, and the regression over it.
+        """Compute the residuals at a cloud of points around these values, and their regression.
 
         Parameters
         ----------
@@ -97,24 +97,24 @@ class LinearModel:
 
     @property
     def information(self) -> Floats:
-        """``J'WJ``."""
+        """Matrix ``J'WJ`` of the normal equations."""
         return self.weighted.T @ self.slopes.reshape(-1, self.slopes.shape[-1])
 
     @property
     def influence(self) -> Floats:
-        """``-(J'WJ)^-1``, scaled so that no unit matters."""
+        """Matrix ``-(J'WJ)^-1``, from changes of ``J'W residuals`` to shifts of the minimum."""
         information = self.information
         size = np.sqrt(np.maximum(np.diag(information), 1e-300))
         scaled = information / np.outer(size, size)
         return -np.linalg.pinv(scaled, hermitian=True, rcond=1e-9) / np.outer(size, size)
 
     def valley(self) -> Floats:
-        """Covariance of a cloud in which the misfit grows by a given part."""
+        """Return the covariance of a cloud in which the squares grow by ``CLOUD_GROWTH``."""
         squares = float(np.sum(self.residuals.ravel() ** 2))
         return np.asarray(-self.influence * VALLEY * squares / len(self.influence))
 
     def minima(self, bounds: Bounds, values: Mapping[str, float]) -> list[dict[str, float]]:
-        """Numbers at the minimum of the model, with dampings from none to much."""
+        """Return the model's minimum within the bounds, for each damping from none to much."""
         information, slope = self.information, self.weighted.T @ self.residuals.ravel()
         size = np.diag(np.maximum(np.diag(information), 1e-300))
         found = []
@@ -126,5 +126,5 @@ class LinearModel:
 
 
 def clipped(value: float, bounds: tuple[float, float]) -> float:
-    """A number in its bounds."""
+    """Clip a number to its bounds."""
     return float(min(max(value, bounds[0]), bounds[1]))

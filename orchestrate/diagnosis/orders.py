@@ -72,7 +72,7 @@ class OrderWindows:
         return len(self.parts)
 
     def chosen(self, windows: NDArray[np.intp], count: int) -> OrderWindows:
-        """Return some of the windows with the first ``count`` orders, for many channels to come."""
+        """Return these windows with the first ``count`` orders, contiguous for fast products."""
         return OrderWindows(
             self.time[windows],
             self.frequency[windows],
@@ -85,7 +85,7 @@ class OrderWindows:
         )
 
     def of_displacements(self) -> csr_array:
-        """Return the matrix from displacements to the amplitudes of their accelerations.
+        """Return the sparse matrix from displacements to the orders of their accelerations.
 
         Rows are orders, real and imaginary parts, and windows, in this order. A channel's second
         differences at its samples stand for its acceleration; at both ends the next ones do.
@@ -109,13 +109,13 @@ class OrderWindows:
         return vstack(blocks).tocsr()
 
     def cut(self, windows: NDArray[np.intp], samples: slice) -> OrderWindows:
-        """Return some of the windows, of a record that is cut to some of its samples."""
+        """Return these windows, renumbered for a record that is cut to these samples."""
         some = self.chosen(windows, len(self.orders))
         parts = (slice(p.start - samples.start, p.stop - samples.start) for p in some.parts)
         return replace(some, parts=tuple(parts), samples=samples.stop - samples.start)
 
     def amplitudes(self, values: Floats, later: float = 0.0) -> Complexes:
-        """Complex amplitudes of channels, shape (channels, orders, windows).
+        """Compute the complex amplitudes of channels, shape (channels, orders, windows).
 
         Parameters
         ----------
@@ -134,7 +134,7 @@ class OrderWindows:
 
 @dataclass(frozen=True)
 class RecordOrders:
-    """Orders of a record.
+    """Orders of a record's channels, with the floor between the orders.
 
     Attributes
     ----------
@@ -155,7 +155,7 @@ class RecordOrders:
     noise: Floats
 
     def order(self, number: float, channel: str) -> Complexes:
-        """Complex amplitudes of an order in a channel, m/s2, shape (windows,)."""
+        """Return the complex amplitudes of an order in a channel, m/s2, shape (windows,)."""
         row = self.channels.names.index(channel)
         return np.asarray(self.amplitude[row, ORDERS.index(number)])
 
@@ -171,7 +171,7 @@ class RecordOrders:
 
 
 def record_orders(record: xr.Dataset) -> RecordOrders:
-    """Orders of a record of a swept or stepped sine.
+    """Compute the orders of a record of a swept or stepped sine.
 
     Parameters
     ----------
@@ -194,7 +194,7 @@ def record_orders(record: xr.Dataset) -> RecordOrders:
 
 
 def checked_channels(record: xr.Dataset) -> Channels:
-    """The channels of a record that has the base's and one of the structure's.
+    """Check that a record has the base's channel and one of the structure's, and return them.
 
     Raises
     ------
@@ -211,7 +211,7 @@ def checked_channels(record: xr.Dataset) -> Channels:
 
 
 def orders_of(channels: Channels) -> RecordOrders:
-    """Orders of channels; see :func:`record_orders`."""
+    """Compute the orders of channels and their floors; see :func:`record_orders`."""
     windows, amplitude = windows_of(channels)
     whole, off = amplitude[:, : len(ORDERS)], amplitude[:, len(ORDERS) :]
     squares = np.nanmean(np.abs(off) ** 2, axis=1)
@@ -220,7 +220,7 @@ def orders_of(channels: Channels) -> RecordOrders:
 
 
 def thinned(channels: Channels, highest: float, kept: float = KEPT) -> Channels:
-    """Every second, third, ... sample of channels, low-passed before, if enough of them are left.
+    """Low-pass and decimate channels by a whole factor, if enough samples are left.
 
     Parameters
     ----------
@@ -243,7 +243,7 @@ def thinned(channels: Channels, highest: float, kept: float = KEPT) -> Channels:
 
 
 def smoothed(values: Floats, width: int = 5) -> Floats:
-    """Mean over neighbouring windows."""
+    """Return the moving average over neighbouring windows."""
     kernel = np.ones(min(width, len(values)))
     return np.convolve(values, kernel, "same") / np.convolve(np.ones(len(values)), kernel, "same")
 
@@ -252,7 +252,7 @@ def smoothed(values: Floats, width: int = 5) -> Floats:
 
 
 def windows_of(channels: Channels) -> tuple[OrderWindows, Complexes]:
-    """Windows in which the base moves as a sine, and the amplitudes of all channels there.
+    """Find the windows in which the base moves as a sine, and all channels' amplitudes in them.
 
     Raises
     ------
@@ -284,7 +284,7 @@ def windows_of(channels: Channels) -> tuple[OrderWindows, Complexes]:
 
 
 def divided(channels: Channels, phase: Floats) -> list[Window]:
-    """Windows over a record that overlap by a half, each with the smoothed phase."""
+    """Divide a record into overlapping windows, each with its smoothed phase."""
     turns = (phase[-1] - phase[0]) / TURN
     usual = turns / channels.duration
     glide = GLIDE * usual / max(sweep_rate(phase, channels), 1e-12)
@@ -302,7 +302,7 @@ def divided(channels: Channels, phase: Floats) -> list[Window]:
 
 
 def sweep_rate(phase: Floats, channels: Channels) -> float:
-    """Usual size of the frequency's derivative, Hz/s."""
+    """Estimate the median size of the frequency's derivative, Hz/s."""
     marks = np.linspace(0, len(phase) - 1, 21).astype(int)
     frequency = np.diff(phase[marks]) / np.diff(marks) * channels.sample_rate / TURN
     return float(np.median(np.abs(np.diff(frequency)))) * 20.0 / channels.duration
@@ -311,7 +311,7 @@ def sweep_rate(phase: Floats, channels: Channels) -> float:
 def put_together(
     channels: Channels, windows: list[Window], solutions: list[Complexes]
 ) -> OrderWindows:
-    """Windows and their least squares."""
+    """Collect windows and their least-squares matrices in one object."""
     return OrderWindows(
         np.array([one.time for one in windows]),
         np.array([one.frequency for one in windows]),
@@ -325,7 +325,7 @@ def put_together(
 
 
 def solved(one: Window, sample_rate: float) -> Complexes:
-    """The least squares of a window as a matrix, shape (orders, samples); see :func:`.fit`."""
+    """Compute the least-squares matrix of a window, shape (orders, samples)."""
     orders = (*ORDERS, *OFF_ORDERS)
     resolved = [n for n in orders if n * one.frequency <= NYQUIST * sample_rate]
     columns, first = [np.ones_like(one.offset)], {}
@@ -345,14 +345,14 @@ def solved(one: Window, sample_rate: float) -> Complexes:
 
 
 def referenced(box: Floats, one: Window, solution: Complexes) -> Complexes:
-    """The same with the phase of the base's own order 1 as phase."""
+    """Refer the phases of a window's matrix to the base's own order 1."""
     shift = np.angle(solution[0] @ box[one.part])
     turn = np.exp(-1j * np.array([*ORDERS, *OFF_ORDERS]) * shift)
     return np.ascontiguousarray((solution * turn[:, None]).T)
 
 
 def rms_beside(box: Floats, one: Window, amplitude: Complexes) -> float:
-    """Weighted root mean square of what the base does beside its order 1, m/s2."""
+    """Return the weighted root mean square of the base's motion beside its order 1, m/s2."""
     values = box[one.part] - np.average(box[one.part], weights=one.weights)
     power = np.average(values**2, weights=one.weights)
     return float(np.sqrt(max(power - 0.5 * abs(amplitude[0]) ** 2, 0.0)))

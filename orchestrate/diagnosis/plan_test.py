@@ -60,7 +60,7 @@ class Sweep:
     level: float
 
     def at(self, level: float) -> Sweep:
-        """The same at another level, of a structure that is the same at all levels."""
+        """Scale the sweep to another level; valid for structures without clearance."""
         scale = level / self.level
         return Sweep(
             scale * self.delaminated,
@@ -73,7 +73,7 @@ class Sweep:
 
 @dataclass(frozen=True)
 class Noise:
-    """What sensors add to an order in a window.
+    """Noise and gain errors that sensors add to an order in a window.
 
     Attributes
     ----------
@@ -90,7 +90,7 @@ class Noise:
     gain_error: float
 
     def distances(self, sweep: Sweep, frequency: Floats) -> tuple[Floats, Floats]:
-        """Distance between both structures by order 1, and by orders 2 and 3.
+        """Compute the distance between both structures by order 1, and by orders 2 and 3.
 
         In standard deviations of a complex amplitude. Least squares with Hann's weights over n
         samples of a noise of variance s^2 have the variance 6 s^2/n; with a density of c^2 at the
@@ -195,7 +195,7 @@ def plan_test(
 
 @dataclass(frozen=True)
 class Test:
-    """What is computed of a structure under test.
+    """Compute sweeps of a structure and of its sound form at the planned frequencies.
 
     Attributes
     ----------
@@ -218,25 +218,25 @@ class Test:
 
     @property
     def sound(self) -> SoundStructure:
-        """The bonded structure."""
+        """Bonded form of the structure."""
         return SoundStructure.from_structure(self.structure)
 
     @property
     def duration(self) -> float:
-        """Of a sweep over all frequencies, s, as ISO 7626-2 asks for."""
+        """Duration of a sweep over all frequencies, s, as ISO 7626-2 asks for."""
         rate = max(sweep_rate(self.sound.f, self.sound.zeta), 1e-9)
         fewest = 4.0 * self.noise.periods / self.frequency[0]
         return max(float(self.frequency[-1] - self.frequency[0]) / rate, fewest)
 
     def at_levels(self, levels: Floats) -> list[Sweep]:
-        """A sweep at each level."""
+        """Compute the sweep at each level; without a clearance one is computed and scaled."""
         if self.structure.has_scale:
             return [self.computed(self.structure, level) for level in levels]
         computed = self.computed(self.structure, float(levels[-1]))
         return [computed.at(level) for level in levels]
 
     def largest_distances(self, highest: Sweep) -> Floats:
-        """Largest distances by orders 2 and 3 at the highest level, of each split in ``SPLITS``."""
+        """Return the largest distance by orders 2 and 3 for each of ``SPLITS``."""
         sweeps = [
             highest
             if part == 1.0
@@ -248,7 +248,7 @@ class Test:
         )
 
     def computed(self, structure: Structure, level: float) -> Sweep:
-        """A sweep over all frequencies, and its orders."""
+        """Simulate a sweep over all frequencies at this level, and return its orders."""
         f = self.frequency
         sine = SweptSine(
             first=float(f[0]),
@@ -280,7 +280,7 @@ class Test:
 
 
 def along(frequency: Floats, at: Floats, amplitudes: Floats) -> Floats:
-    """Amplitudes at other frequencies, straight between the windows."""
+    """Interpolate the windows' amplitudes linearly at other frequencies."""
     flat = amplitudes.reshape(-1, len(at))
     return np.array([np.interp(frequency, at, row) for row in flat]).reshape(
         *amplitudes.shape[:-1], len(frequency)
@@ -288,12 +288,12 @@ def along(frequency: Floats, at: Floats, amplitudes: Floats) -> Floats:
 
 
 def largest_gap(history: xr.Dataset, times: Floats) -> float:
-    """Largest gap of a history in a window, m."""
+    """Return the largest gap of a history within these times, m."""
     return float(history.x_rel.sel(time=slice(times[0], times[-1])).max())
 
 
 def with_split(structure: Structure, part: float) -> Structure:
-    """A structure whose halves differ by a part of what they did; bonded it is the same."""
+    """Scale the difference between a structure's halves, with the same bonded form."""
     share = structure.m1 / (structure.m1 + structure.m2)
     k, d = structure.k1 + structure.k2, structure.d1 + structure.d2
     k1 = share * k + part * (structure.k1 - share * k)
@@ -305,7 +305,7 @@ def with_split(structure: Structure, part: float) -> Structure:
 
 
 def checked_frequencies(frequencies: ArrayLike) -> Floats:
-    """Ascending frequencies, Hz.
+    """Check that frequencies ascend, and return them in Hz.
 
     Raises
     ------
@@ -319,12 +319,12 @@ def checked_frequencies(frequencies: ArrayLike) -> Floats:
 
 
 def checked_levels(levels: ArrayLike) -> Floats:
-    """Levels in ascending order, m/s2."""
+    """Check that levels are positive, and return them in ascending order, m/s2."""
     return np.unique(numbers("levels", levels, "m/s2"))
 
 
 def numbers(name: str, given: ArrayLike, unit: str) -> Floats:
-    """Numbers > 0.
+    """Check that all numbers are finite and > 0, and return them as an array.
 
     Raises
     ------
@@ -340,7 +340,7 @@ def numbers(name: str, given: ArrayLike, unit: str) -> Floats:
 
 
 def noise_of(sensors: dict[str, Sensor], periods: float, gain_error: float) -> Noise:
-    """Noise of the responses' sensors.
+    """Check that the responses' sensors have a noise, and return it with their gain error.
 
     Raises
     ------
@@ -364,7 +364,7 @@ def noise_of(sensors: dict[str, Sensor], periods: float, gain_error: float) -> N
 def dataset(
     test: Test, sweeps: Sequence[Sweep], limit: float, split_distances: Floats
 ) -> xr.Dataset:
-    """The answer, from a sweep at each level."""
+    """Assemble the dataset of a plan from a sweep at each level."""
     import xarray as xr
 
     f, levels = test.frequency, np.array([sweep.level for sweep in sweeps])
@@ -398,7 +398,7 @@ def dataset(
 def thresholds(
     test: Test, sweeps: Sequence[Sweep], limit: float, higher: Floats, opening: Floats
 ) -> dict[str, Any]:
-    """From which level and which opening on orders 2 and 3 count, and where readings are cut.
+    """Return the smallest levels and openings that count, and where sensors overload.
 
     Parameters
     ----------
@@ -426,7 +426,7 @@ def thresholds(
 
 
 def smallest_splits(levels: Floats, limit: float, distances: Floats) -> Floats:
-    """Smallest part of the guess's split that counts at each level; infinite where none does.
+    """Return the smallest part of the guess's split that counts at each level, or infinity.
 
     Between the computed splits the distance is a power of the split; below the smallest one it is
     taken to be proportional to it.
@@ -441,7 +441,7 @@ def smallest_splits(levels: Floats, limit: float, distances: Floats) -> Floats:
 
 
 def recommended(test: Test, answer: xr.Dataset) -> dict[str, Any]:
-    """A swept sine: the lowest level with a margin, over the frequencies that count there."""
+    """Recommend a swept sine: the lowest level with a margin, over the frequencies that count."""
     higher, limit = answer.distance_harmonics.values, float(answer.threshold)
     fits = np.flatnonzero(answer.overload.values == 0)
     enough = [i for i in fits if higher[i].max() >= MARGIN * limit]

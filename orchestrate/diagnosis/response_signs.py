@@ -83,7 +83,7 @@ class ResponseSigns:
 def response_signs(
     channels: Channels, swept: bool, periods: float, high_band: float | None
 ) -> ResponseSigns:
-    """The signs that one record has by itself.
+    """Compute the signs that one record has by itself, without comparison.
 
     Parameters
     ----------
@@ -111,14 +111,14 @@ def response_signs(
 
 
 def usual_band(channels: Channels, highest: float) -> float:
-    """Where the high band begins, Hz; NaN where the sampling rate does not reach so far."""
+    """Return where the high band begins, Hz; NaN where the sampling rate does not reach so far."""
     lowest, usual = (factor * highest for factor in ABOVE)
     edge = min(usual, USUAL * channels.sample_rate)
     return edge if edge >= lowest else math.nan
 
 
 def is_swept(channels: Channels, periods: float) -> bool:
-    """Whether the box moves as a sine whose orders can be tracked."""
+    """Return whether the box moves as a sine whose orders can be tracked."""
     box = Channels(channels.time, channels.sample_rate, (BOX,), channels.box[None], channels.title)
     try:
         fit_windows(box, (1.0,), None, periods, OVERLAP)
@@ -131,7 +131,7 @@ def is_swept(channels: Channels, periods: float) -> bool:
 
 
 def signs_of_orders(channels: Channels, periods: float) -> ResponseSigns:
-    """Orders over the first one, and the response of order 1."""
+    """Compute the orders over the first one, and the response of order 1, of a swept sine."""
     windows, amplitudes, _ = fit_windows(channels, ORDERS, None, periods, OVERLAP)
     box, rows = amplitudes[0], amplitudes[1:]
     frequency = np.array([window.frequency for window in windows])
@@ -152,19 +152,19 @@ def signs_of_orders(channels: Channels, periods: float) -> ResponseSigns:
 
 
 def mean(power: Floats) -> Floats:
-    """Mean value over the windows that have one; NaN where none has."""
+    """Average over the windows that have a value; NaN where none has."""
     known = np.isfinite(power)
     with np.errstate(invalid="ignore"):
         return np.asarray(np.where(known, power, 0.0).sum(axis=-1) / known.sum(axis=-1))
 
 
 def peak_of(power: Floats) -> NDArray[np.intp]:
-    """Number of the window with the largest value of each row."""
+    """Return the number of the window with the largest value, for each row."""
     return np.asarray(np.nan_to_num(power, nan=-1.0).argmax(axis=-1))
 
 
 def noise_of(windows: Sequence[Window], powers: Sequence[Floats]) -> Floats:
-    """Root mean square of a white noise that would give the off-orders what they have, m/s2.
+    """Estimate the root mean square of white noise from the off-orders, m/s2.
 
     Least squares with Hann's weights over n samples make of white noise of variance s^2 an
     amplitude whose square is 6 s^2/n on average, and 6 ln(2) s^2/n in the median: impacts raise few
@@ -176,7 +176,7 @@ def noise_of(windows: Sequence[Window], powers: Sequence[Floats]) -> Floats:
 
 
 def curves_of(windows: Sequence[Window], box: Floats, rows: Floats, floor: Floats) -> list[Curve]:
-    """Responses of order 1, upwards and downwards."""
+    """Split the response of order 1 into one curve upwards and one downwards."""
     frequency = np.array([window.frequency for window in windows])
     rate = smooth_rate(np.array([window.rate for window in windows]))
     curves = []
@@ -191,7 +191,7 @@ def curves_of(windows: Sequence[Window], box: Floats, rows: Floats, floor: Float
 
 
 def smooth_rate(rate: Floats) -> Floats:
-    """Running median of the sweep's rate, which noise on the box moves in single windows."""
+    """Smooth the sweep's rate by a running median: noise on the box moves single windows."""
     from scipy.ndimage import median_filter
 
     size = min(SMOOTHED, len(rate))
@@ -202,7 +202,7 @@ def smooth_rate(rate: Floats) -> Floats:
 
 
 def signs_of_spectra(channels: Channels) -> ResponseSigns:
-    """The response at the lines that the box excites; there are no orders."""
+    """Compute the response at the lines that the box excites; such a record has no orders."""
     frequency, box, rows, cross = spectra(channels)
     excited = is_excited(frequency, box)
     density = np.median(rows[:, in_noise_lines(frequency, channels.sample_rate)], axis=-1)
@@ -221,7 +221,7 @@ def signs_of_spectra(channels: Channels) -> ResponseSigns:
 
 
 def spectra(channels: Channels) -> tuple[Floats, Floats, Floats, Floats]:
-    """Frequencies, power densities of the box and of the rows, and between them."""
+    """Return frequencies, power densities of box and rows, and their cross densities (Welch)."""
     from scipy.signal import csd, welch
 
     options = averaging(channels, None, "hann", OVERLAP, fewest=2).options
@@ -236,18 +236,18 @@ def spectra(channels: Channels) -> tuple[Floats, Floats, Floats, Floats]:
 
 
 def is_excited(frequency: Floats, box: Floats) -> NDArray[np.bool_]:
-    """Lines that the box excites."""
+    """Return which lines the box excites, as a mask."""
     return np.asarray((box >= EXCITED * box.max()) & (frequency > 0.0))
 
 
 def in_noise_lines(frequency: Floats, rate: float) -> NDArray[np.bool_]:
-    """Lines that are taken for noise."""
+    """Return which lines are taken for noise, as a mask."""
     low, high = NOISE_LINES
     return np.asarray((frequency >= low * rate) & (frequency <= high * rate))
 
 
 def coherence_loss(channels: Channels, noise: Floats) -> tuple[Floats, Floats]:
-    """Mean of 1 less the coherence where the box excites the structure; and that of noise alone."""
+    """Return the mean of 1 less the coherence over the excited lines, and that of noise alone."""
     try:
         segments = averaging(channels, None, "hann", OVERLAP, fewest=2)
     except InputError:
@@ -266,7 +266,7 @@ def coherence_loss(channels: Channels, noise: Floats) -> tuple[Floats, Floats]:
 def signs_of_moments(
     channels: Channels, edge: float
 ) -> tuple[dict[str, Floats], dict[str, Floats]]:
-    """Kurtosis and skewness, of all and of what is above a frequency; and those of Gaussian noise.
+    """Compute kurtosis and skewness, of all and of the high band; and those of Gaussian noise.
 
     Parameters
     ----------
@@ -298,7 +298,7 @@ def signs_of_moments(
 
 
 def sensor_differences(curves: Sequence[Curve], channels: int) -> tuple[Floats, Floats]:
-    """Difference between two sensors, the best complex gain taken out; and what noise makes of it.
+    """Compute the difference between two sensors, best complex gain taken out, and its floor.
 
     Parameters
     ----------
@@ -325,8 +325,9 @@ def sensor_differences(curves: Sequence[Curve], channels: int) -> tuple[Floats, 
 
 
 def difference(one: Curve, other: Curve) -> Floats:
-    """Root mean square of the difference between two curves, over that of the first, of each row;
-    NaN where they have no frequency in common.
+    """Return the rms difference of two curves over that of the first, of each row.
+
+    It is NaN where they have no frequency in common.
     """
     low, high = other.frequency[0], other.frequency[-1]
     common = (one.frequency >= low) & (one.frequency <= high)
@@ -339,7 +340,7 @@ def difference(one: Curve, other: Curve) -> Floats:
 
 
 def differences(curves: Sequence[Curve]) -> Mapping[str, tuple[Floats, Floats]]:
-    """Largest differences over level and over direction, and what noise makes of them.
+    """Compute the largest differences over level and over direction, and their noise floors.
 
     Parameters
     ----------

@@ -48,7 +48,7 @@ ROWS, NUMBERS, MINIMA = 4, 6, 8  # of tables: solutions, values in each, misfits
 
 @dataclass(frozen=True)
 class RecordData:
-    """A record's channels as a job keeps them.
+    """Channels of a record as plain tuples, the form in which a job keeps them.
 
     Attributes
     ----------
@@ -66,12 +66,12 @@ class RecordData:
 
     @classmethod
     def from_channels(cls, channels: Channels) -> RecordData:
-        """Of channels that were checked."""
+        """Copy the samples of checked channels."""
         values = tuple(tuple(row.tolist()) for row in channels.values)
         return cls(channels.names, channels.sample_rate, float(channels.time[0]), values)
 
     def dataset(self) -> xr.Dataset:
-        """The record."""
+        """Return the record as a dataset."""
         named = dict(zip(self.names, self.channels, strict=True))
         time = self.begin + np.arange(len(self.channels[0])) / self.sample_rate
         return made_record(time=time, sample_rate=self.sample_rate, **named)  # type: ignore[arg-type]
@@ -79,27 +79,28 @@ class RecordData:
 
 @lru_cache(maxsize=2)
 def evidence_of(data: RecordData) -> Evidence:
-    """A record's evidence, made once a process."""
+    """Return a record's evidence, computed once per process."""
     return Evidence.from_orders(orders_of_data(data))
 
 
 @lru_cache(maxsize=2)
 def orders_of_data(data: RecordData) -> RecordOrders:
-    """The orders of the whole record."""
+    """Return the orders of the whole record, computed once per process."""
     return record_orders(data.dataset())
 
 
 @lru_cache(maxsize=2)
 def coarse_evidence_of(data: RecordData) -> Evidence:
-    """The part near the resonance with fewer samples: a motion takes a third of the time."""
+    """Return the evidence near the resonance with fewer samples: a third of the time per motion."""
     return Evidence.from_orders(orders_of_data(data), FEWER).near_resonance()
 
 
 @lru_cache(maxsize=2)
 def is_worth_a_search(data: RecordData) -> bool:
-    """Whether faces are seen to part, or not to move as one, or a linear beam does not describe it.
+    """Return whether the verdict may depend on the delaminated fit, by a short bonded fit.
 
-    Else no verdict depends on the delaminated fit, and its search is short.
+    It may where faces are seen to part or do not move as one, or where a linear beam does not
+    describe the record. Elsewhere the search is short.
     """
     evidence = evidence_of(data)
     search = Search(SOUND[0], evidence)
@@ -111,7 +112,7 @@ def is_worth_a_search(data: RecordData) -> bool:
 
 @dataclass(frozen=True, kw_only=True)
 class SearchJob(Job):
-    """Searches over hypotheses, the last item from the results of all others.
+    """Search for the minima of all hypotheses; the last item uses the results of all others.
 
     Attributes
     ----------
@@ -135,12 +136,12 @@ class SearchJob(Job):
 
     @property
     def evidence(self) -> Evidence:
-        """Of the record."""
+        """Evidence of the record."""
         return evidence_of(self.data)
 
     @property
     def hypotheses(self) -> tuple[Hypothesis, ...]:
-        """All of them, in the order of the results."""
+        """All hypotheses of the job, in the order of the results."""
         found: list[Hypothesis] = [SOUND[number] for number in self.sound]
         if self.delaminated:
             free = tuple(name for name in self.free if name != "clearance")
@@ -150,17 +151,17 @@ class SearchJob(Job):
         return tuple(found)
 
     def plan(self) -> list[tuple[str, float]]:
-        """What is searched beside each other: a sound hypothesis, or a part of the scan."""
+        """List the independent searches (sound hypotheses, parts of the scan), then the end."""
         sound = [("sound", float(place)) for place in range(len(self.sound))]
         scan = [("scan", split) for split in SPLITS] if self.delaminated else []
         return [*scan, *sound, ("end", 0.0)]
 
     def count(self) -> int:
-        """Number of searches."""
+        """Return the number of searches."""
         return len(self.plan())
 
     def items(self, inputs: Inputs) -> Sequence[tuple[str, float]]:
-        """The searches."""
+        """Return the searches as the items of the job."""
         return self.plan()
 
     def work(
@@ -169,7 +170,7 @@ class SearchJob(Job):
         items: Sequence[tuple[str, float]],
         previous: Table | None,
     ) -> Table:
-        """One search; the last refines the best of all others."""
+        """Do one search; the last one refines the best of all others."""
         kind, number = items[0]
         if kind == "sound":
             return self.search_sound(int(number))
@@ -180,7 +181,7 @@ class SearchJob(Job):
             return self.finish(previous, player)
 
     def search_sound(self, place: int) -> Table:
-        """Minima of a sound hypothesis."""
+        """Search for the minima of a sound hypothesis."""
         search = Search(self.hypotheses[place], self.evidence)
         starts = search.hypothesis.starts(self.evidence)
         found = search.best(starts, keep=3, coarse=10, fine=20)
@@ -189,7 +190,7 @@ class SearchJob(Job):
         return table_of(place, found, search.evaluations)
 
     def search_split(self, split: float, player: Player) -> Table:
-        """Minima of the delaminated one from the starts of one split of the halves."""
+        """Search for the delaminated minima from the starts with one split of the halves."""
         place = len(self.sound)
         search = Search(self.hypotheses[place], coarse_evidence_of(self.data), player)
         starts = [s for s in search.hypothesis.starts(self.evidence) if s["split"] == split]
@@ -198,7 +199,7 @@ class SearchJob(Job):
         return table_of(place, found, search.evaluations)
 
     def solutions(self, table: Table, place: int) -> list[Solution]:
-        """The solutions of a hypothesis in a table, the best first."""
+        """Read the solutions of a hypothesis from a table, the best first."""
         hypothesis = self.hypotheses[place]
         names = list(hypothesis.bounds(self.evidence))
         rows = table["solutions"][table["place"] == place].reshape(-1, 1 + NUMBERS)
@@ -211,7 +212,7 @@ class SearchJob(Job):
     # -- the end of it ----------------------------------------------------------------------------
 
     def finish(self, previous: Table, player: Player) -> Table:
-        """Refine the best delaminated ones, and say how far each hypothesis is from the record."""
+        """Refine the best delaminated solutions, and compute all misfits and errors."""
         sound = [self.minima(place, previous, player) for place in range(len(self.sound))]
         bonded = sound[0][1][0]
         sound = [(search, no_worse_than(bonded, search, found)) for search, found in sound]
@@ -233,13 +234,14 @@ class SearchJob(Job):
         return {name: np.stack([part[name] for part in made])[np.newaxis] for name in made[0]}
 
     def minima(self, place: int, previous: Table, player: Player) -> tuple[Search, list[Solution]]:
-        """Minima of a hypothesis, as the searches beside each other have left them."""
+        """Return a search for a hypothesis, and the minima that the independent searches found."""
         search = Search(self.hypotheses[place], self.evidence, player)
         return search, self.solutions(previous, place)
 
     def is_worth_polishing(self, sound: Sequence[tuple[Search, list[Solution]]]) -> bool:
-        """Whether a verdict may depend on the delaminated fit: no sound one describes the record,
-        or faces are seen to part.
+        """Return whether the verdict may depend on the delaminated fit, by the sound fits.
+
+        It may where no sound hypothesis describes the record, or where faces are seen to part.
         """
         search, found = sound[0]
         motion = search.hypothesis.displacements(found[0].values, self.evidence, None)
@@ -248,7 +250,7 @@ class SearchJob(Job):
         return even.seen or even.moved_apart > 1.0 or lowest > SOUND_DESCRIBES
 
     def polished(self, search: Search, starts: Sequence[Solution]) -> list[Solution]:
-        """The minima behind the best of coarse solutions: near the resonance, then of all."""
+        """Refine the best coarse solutions, first near the resonance, then on the whole record."""
         coarse = Search(search.hypothesis, coarse_evidence_of(self.data), search.player)
         chosen = apart(self.ranked(search, starts))[:CONTINUED]
         found = self.ranked(search, [coarse.refine(s.values, FURTHER, 3e-3) for s in chosen])
@@ -262,7 +264,7 @@ class SearchJob(Job):
         return [search.polish(best, rounds), *others]
 
     def ranked(self, search: Search, solutions: Sequence[Solution]) -> list[Solution]:
-        """Delaminated solutions, the best first: by misfit, and by how far from the guess they are.
+        """Sort delaminated solutions by misfit, with a penalty for distance from the guess.
 
         Of one sensor's record both halves may change places at nearly the same misfit; what is
         known of the halves before then decides, as far as a guess may be trusted.
@@ -278,8 +280,9 @@ class SearchJob(Job):
         return sorted(solutions, key=cost)
 
     def with_clearance(self, plain: dict[str, Any], player: Player, worth: bool) -> dict[str, Any]:
-        """The same with gaps and preloads: from the best without, and where that does not describe
-        the record already from its own starts.
+        """Search for gaps and preloads, from the best solution without them.
+
+        Where that does not describe the record already, the hypothesis's own starts are tried too.
         """
         search = Search(self.hypotheses[-1], self.evidence, player)
         names = list(search.hypothesis.bounds(self.evidence))
@@ -306,7 +309,7 @@ class SearchJob(Job):
         player: Player,
         with_errors: bool = True,
     ) -> dict[str, Any]:
-        """The best solution of a hypothesis with its errors, and what it computes."""
+        """Return the best solution of a hypothesis with its errors, residuals and fitted orders."""
         search, found = minima
         values, known = found[0].values, None
         if with_errors:
@@ -334,7 +337,7 @@ class SearchJob(Job):
 
 
 def apart(solutions: Sequence[Solution]) -> list[Solution]:
-    """Solutions without those that are near a better one: with another split or clearance."""
+    """Drop the solutions that have nearly the split and clearance of a better one."""
     found: list[Solution] = []
     for one in solutions:
         steps = ((one.values.get(n, 0.0), s, n) for n, s in APART.items())
@@ -345,7 +348,7 @@ def apart(solutions: Sequence[Solution]) -> list[Solution]:
 
 
 def table_of(place: int, solutions: Sequence[Solution], evaluations: int) -> Table:
-    """Solutions as numbers, one row each: misfit, then values in the bounds' order."""
+    """Convert solutions to a table, one row each: misfit, then values in the bounds' order."""
     rows = np.full((1, ROWS, 1 + NUMBERS), np.nan)
     for row, one in zip(rows[0], solutions, strict=False):
         row[: 1 + len(one.values)] = [one.misfit, *one.values.values()]
@@ -357,8 +360,9 @@ def table_of(place: int, solutions: Sequence[Solution], evaluations: int) -> Tab
 
 
 def no_worse_than(bonded: Solution, search: Search, found: list[Solution]) -> list[Solution]:
-    """Return the minima of a sound hypothesis, with one from the bonded solution where that is
-    better: each of them contains the linear spring, so none may be further from the record.
+    """Add the refined bonded solution to a sound hypothesis's minima where it is better.
+
+    Each of them contains the linear spring, so none may be further from the record.
     """
     names = search.hypothesis.bounds(search.evidence)
     (contained,) = search.scan([{name: bonded.values.get(name, 0.0) for name in names}])

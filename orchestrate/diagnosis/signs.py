@@ -44,7 +44,7 @@ def signs(
     periods: float = 16.0,
     high_band: float | None = None,
 ) -> xr.Dataset:
-    """Model-free signs of delamination in a record.
+    """Compute model-free signs of delamination in a record.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def signs(
 
 
 def other_records(other: xr.Dataset | Sequence[xr.Dataset] | None) -> list[xr.Dataset]:
-    """The records beside the first one."""
+    """Return the records beside the first one as a list."""
     import xarray as xr
 
     if other is None:
@@ -145,12 +145,12 @@ def other_records(other: xr.Dataset | Sequence[xr.Dataset] | None) -> list[xr.Da
 
 
 def noise_source(swept: bool) -> str:
-    """Where the noise comes from."""
+    """Return a phrase that says where the noise is estimated."""
     return "off-orders 2.37 and 3.37" if swept else "lines at 0.36 to 0.44 of the sampling rate"
 
 
 def checked_responses(every: Sequence[Channels]) -> tuple[str, ...]:
-    """Names of the responses, which all records must have.
+    """Check that all records have the same responses, and return their names.
 
     Raises
     ------
@@ -167,12 +167,12 @@ def checked_responses(every: Sequence[Channels]) -> tuple[str, ...]:
 
 
 def checked_band(high_band: float, rate: float) -> float:
-    """The frequency above which signs at high frequencies are taken, Hz."""
+    """Check the frequency above which signs at high frequencies are taken, and return it in Hz."""
     return checked_number("high_band", high_band, 1e-9, HIGHEST * rate, "Hz")
 
 
 def sound_of(structure: Structure | None, own: ResponseSigns, channels: Channels) -> SoundStructure:
-    """The sound structure: of the guess, or the oscillator nearest to the record.
+    """Return the sound structure: the bonded guess, or the oscillator nearest to the record.
 
     Raises
     ------
@@ -191,7 +191,7 @@ def sound_of(structure: Structure | None, own: ResponseSigns, channels: Channels
 def with_comparisons(
     own: Sequence[ResponseSigns], channels: int
 ) -> tuple[dict[str, Floats], dict[str, Floats]]:
-    """Values and floors of all signs, in the order of the table; NaN where there is none."""
+    """Return values and floors of all signs, those that compare included; NaN where unknown."""
     first = own[0]
     rows = len(first.noise)
     values, floors = dict(first.values), dict(first.floors)
@@ -219,7 +219,7 @@ def dataset(
     shown: Floats,
     described: dict[str, Any],
 ) -> xr.Dataset:
-    """The answer.
+    """Assemble the dataset of the signs.
 
     Parameters
     ----------
@@ -273,13 +273,13 @@ def dataset(
 
 
 def median(shown: Floats) -> Floats:
-    """Median over the seeds; NaN where there is none."""
+    """Return the median over the seeds; NaN where one of them has no value."""
     known = np.isfinite(shown).all(axis=0)
     return np.asarray(np.where(known, np.median(np.nan_to_num(shown), axis=0), np.nan))
 
 
 def peaks(own: ResponseSigns, names: Sequence[str]) -> Any:
-    """Where an order is largest, Hz."""
+    """Return the frequencies at which the orders are largest, Hz, as a variable."""
     unknown = np.full(len(names), np.nan)
     rows = np.stack([own.frequencies.get(name, unknown) for name in INDICATORS])
     text = "frequency of the excitation where it is largest"
@@ -287,7 +287,7 @@ def peaks(own: ResponseSigns, names: Sequence[str]) -> Any:
 
 
 def of_sound(sound: SoundStructure, noise: Floats) -> dict[str, Any]:
-    """The sound structure, and the noise on it."""
+    """Return the sound structure's parameters and the noise as variables."""
     return {
         "noise": variable("channel", noise, "m/s2", "root mean square of the noise"),
         "sound_f": variable((), sound.f, "Hz", "natural frequency of the sound structure"),
@@ -296,7 +296,7 @@ def of_sound(sound: SoundStructure, noise: Floats) -> dict[str, Any]:
 
 
 def signs_of_a_drive(run: xr.Dataset, others: Sequence[xr.Dataset]) -> xr.Dataset:
-    """Signs of a run on a weak drive.
+    """Compute the signs of a run on a weak drive, against that of the sound beam.
 
     Raises
     ------

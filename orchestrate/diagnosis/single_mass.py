@@ -31,7 +31,7 @@ LONGEST = 0.12  # rad of the natural vibration in a step: its amplitude errs by 
 
 @dataclass(frozen=True)
 class SingleMass:
-    """The numbers of the equation above.
+    """The parameters of a single mass on a nonlinear spring, see the equation above.
 
     Attributes
     ----------
@@ -61,13 +61,13 @@ class SingleMass:
     side: float = 1.0
 
     def numbers(self) -> tuple[float, ...]:
-        """As the steps take them."""
+        """Return the coefficients of the equation in the order that the integrator takes."""
         w = 2.0 * math.pi * self.f
         smooth = (w * w, 2.0 * self.zeta * w, self.square, self.cube, self.friction, self.slow)
         return (*smooth, self.stop, self.position, self.side)
 
     def displacements(self, cubics: Floats, step: float, bound: float = 1e3) -> Floats:
-        """Displacement in the base where each cubic begins, and at the end, m.
+        """Integrate the motion: relative displacement at each cubic's beginning and at the end, m.
 
         Parameters
         ----------
@@ -107,7 +107,7 @@ def run_function() -> Any:
 def run_slowly(
     numbers: tuple[float, ...], cubics: Floats, step: float, parts: int, bound: float, out: Floats
 ) -> int:
-    """The steps in Python, for machines without a compiler."""
+    """Integrate in Python, for machines without a compiler; return how many cubics were done."""
     stiffness, damping, square, cube, friction, slow, stop, position, side = numbers
 
     def acceleration(base: float, x: float, v: float) -> float:
