@@ -125,7 +125,7 @@ class Findings:
         )
 
 
-def share_of_better(sound: Floats, delaminated: Floats) -> float:
+def resampled_share(sound: Floats, delaminated: Floats) -> float:
     """Return the share of block-bootstrap samples in which the ratio of misfits is exceeded.
 
     Parameters

@@ -14,7 +14,7 @@ from ..response.questions import checked_structure
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .decision_rule import Findings, share_of_better
+from .decision_rule import Findings, resampled_share
 from .fit import Results, checked_data, checked_free, delaminated_guess
 from .hypotheses import FREE
 from .search_job import SearchJob
@@ -114,7 +114,7 @@ class DetectJob(SearchJob):
         import xarray as xr
 
         results = Results.from_table(self, table)
-        findings, even = findings_of(results), results.even
+        findings, even = findings_from_results(results), results.even
         every, coordinates = results.comparison()
         scalars = {
             "verdict": ((), findings.verdict(), {"long_name": "verdict"}),
@@ -142,7 +142,7 @@ class DetectJob(SearchJob):
         )
 
 
-def findings_of(results: Results) -> Findings:
+def findings_from_results(results: Results) -> Findings:
     """Collect the quantities that the decision rule needs from the results of the fits."""
     job, even = results.job, results.even
     count, evidence = len(job.sound), job.evidence
@@ -158,7 +158,7 @@ def findings_of(results: Results) -> Findings:
         sound_misfit=float(results.misfit[sound]),
         delaminated=job.hypotheses[other].name,
         delaminated_misfit=float(results.misfit[other]),
-        share=share_of_better(results.residuals[sound], results.residuals[other]),
+        share=resampled_share(results.residuals[sound], results.residuals[other]),
         sensors=len(evidence.masses),
         low=float(evidence.level.min()),
         high=float(evidence.level.max()),

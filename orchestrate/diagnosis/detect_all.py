@@ -65,11 +65,13 @@ def detect_all(
     if not isinstance(records, Mapping) or not records:
         raise InputError("records: expected one record or more, by names")
     chosen, structure = checked_free(free), delaminated_guess(guess)
-    jobs = [job_of(name, record, structure, chosen) for name, record in records.items()]
+    jobs = [checked_job(name, record, structure, chosen) for name, record in records.items()]
     return dict(zip(records, gather(jobs, running, finder(running)), strict=True))
 
 
-def job_of(name: str, record: xr.Dataset, guess: Structure, free: tuple[str, ...]) -> DetectJob:
+def checked_job(
+    name: str, record: xr.Dataset, guess: Structure, free: tuple[str, ...]
+) -> DetectJob:
     """Check one record and return the job that decides on it.
 
     Raises

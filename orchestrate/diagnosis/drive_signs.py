@@ -14,15 +14,15 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
-NEEDED = ("time", "speed", "voltage", "motor")
-FEWEST = 8  # speeds that both runs have
+REQUIRED_VARIABLES = ("time", "speed", "voltage", "motor")
+MIN_SPEEDS = 8  # speeds that both runs have
 
 
 def is_drive_run(data: object) -> bool:
     """Return whether a dataset is a run of a motor, one row a revolution."""
     return "revolution" in getattr(data, "dims", ()) and all(
         name in data.variables  # type: ignore[attr-defined]
-        for name in NEEDED
+        for name in REQUIRED_VARIABLES
     )
 
 
@@ -64,13 +64,13 @@ def jump_error(run: xr.Dataset) -> float:
 
 def extra_power(run: xr.Dataset, sound: xr.Dataset) -> tuple[float, float]:
     """Return the extra power relative to the sound beam at equal speeds, and its standard error."""
-    speeds, powers = below_the_jump(run)
-    other_speeds, other_powers = below_the_jump(sound)
-    if min(len(speeds), len(other_speeds)) < FEWEST:
+    speeds, powers = power_below_jump(run)
+    other_speeds, other_powers = power_below_jump(sound)
+    if min(len(speeds), len(other_speeds)) < MIN_SPEEDS:
         return math.nan, math.nan
     low, high = max(speeds[0], other_speeds[0]), min(speeds[-1], other_speeds[-1])
     common = (speeds >= low) & (speeds <= high)
-    if common.sum() < FEWEST:
+    if common.sum() < MIN_SPEEDS:
         return math.nan, math.nan
     reference = np.interp(speeds[common], other_speeds, other_powers)
     mean = float(reference.mean())
@@ -81,7 +81,7 @@ def extra_power(run: xr.Dataset, sound: xr.Dataset) -> tuple[float, float]:
     return float(rest.mean()) / mean, error
 
 
-def below_the_jump(run: xr.Dataset) -> tuple[Floats, Floats]:
+def power_below_jump(run: xr.Dataset) -> tuple[Floats, Floats]:
     """Return the mean speeds up to the jump, ascending, and the motor's power at each, in W."""
     time, work, voltage = (run[name].values for name in ("time", "motor", "voltage"))
     speed = run.speed.values

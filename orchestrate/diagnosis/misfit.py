@@ -8,17 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
-SOFT = 3.0  # residuals above count by their size, not its square: a jump may be a window off
+SOFT_LIMIT = 3.0  # residuals above count by their size, not its square: a jump may be a window off
 
 
 def soft_squares(residuals: Floats) -> Floats:
     """Return the soft l1 loss: squares of small residuals, sizes of large ones."""
-    return np.asarray(2.0 * SOFT**2 * (np.sqrt(1.0 + (residuals / SOFT) ** 2) - 1.0))
+    return np.asarray(2.0 * SOFT_LIMIT**2 * (np.sqrt(1.0 + (residuals / SOFT_LIMIT) ** 2) - 1.0))
 
 
 def soft_weights(residuals: Floats) -> Floats:
     """Return the derivative of the soft l1 loss over that of the plain squares."""
-    return np.asarray(1.0 / np.sqrt(1.0 + (residuals / SOFT) ** 2))
+    return np.asarray(1.0 / np.sqrt(1.0 + (residuals / SOFT_LIMIT) ** 2))
 
 
 def misfit(residuals: Floats) -> float:

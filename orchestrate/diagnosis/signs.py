@@ -17,10 +17,10 @@ from ..structures import Structure
 from .drive_signs import drive_signs, is_drive_run
 from .indicators import INDICATORS
 from .response_signs import (
-    HIGHEST,
+    MAX_EDGE,
     ResponseSigns,
-    differences,
     is_swept,
+    level_and_direction_differences,
     response_signs,
     sensor_differences,
 )
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
-EXCEEDS = 2.0  # times what noise and a sound structure show
+EXCEED_FACTOR = 2.0  # times what noise and a sound structure show
 MEANINGS = {-1: "unknown", 0: "no", 1: "yes"}
 
 
@@ -105,7 +105,7 @@ def signs(
     """
     others = other_records(other)
     if is_drive_run(record):
-        return signs_of_a_drive(record, others)
+        return signs_of_drive_run(record, others)
     length = checked_number("periods", periods, 2.0, 1e4)
     count = checked_integer("seeds", seeds, 1, 1000)
     every = [Channels.from_record(one, (BOX,)) for one in (record, *others)]
@@ -118,21 +118,23 @@ def signs(
         for channels, sine in zip(every, swept, strict=True)
     ]
     noises = [one.noise if level is None else np.full(len(names), level) for one in own]
-    sound = sound_of(structure, own[0], every[0])
-    values, floors = with_comparisons(own, len(names))
+    sound = sound_structure(structure, own[0], every[0])
+    values, floors = all_signs(own, len(names))
     made = [
         response_signs(sound.records(channels, rms, range(count)), sine, length, edge)
         for channels, rms, sine in zip(every, noises, swept, strict=True)
     ]
-    rows = np.stack(list(with_comparisons(made, len(names))[0].values()))
+    rows = np.stack(list(all_signs(made, len(names))[0].values()))
     shown = rows.reshape(len(rows), count, len(names)).transpose(1, 0, 2)
     described = {
         "seeds": f"0 to {count - 1}",
         "noise_from": "given" if level is not None else noise_source(swept[0]),
         "sound_from": "nearest oscillator" if structure is None else "the guess, bonded",
     }
-    answer = dataset(every[0].title, names, values, floors, shown, described)
-    return answer.assign(frequency=peaks(own[0], names), **of_sound(sound, noises[0]))
+    answer = signs_dataset(every[0].title, names, values, floors, shown, described)
+    return answer.assign(
+        frequency=peak_frequencies(own[0], names), **sound_variables(sound, noises[0])
+    )
 
 
 def other_records(other: xr.Dataset | Sequence[xr.Dataset] | None) -> list[xr.Dataset]:
@@ -168,10 +170,12 @@ def checked_responses(every: Sequence[Channels]) -> tuple[str, ...]:
 
 def checked_band(high_band: float, rate: float) -> float:
     """Check the frequency above which signs at high frequencies are taken, and return it in Hz."""
-    return checked_number("high_band", high_band, 1e-9, HIGHEST * rate, "Hz")
+    return checked_number("high_band", high_band, 1e-9, MAX_EDGE * rate, "Hz")
 
 
-def sound_of(structure: Structure | None, own: ResponseSigns, channels: Channels) -> SoundStructure:
+def sound_structure(
+    structure: Structure | None, own: ResponseSigns, channels: Channels
+) -> SoundStructure:
     """Return the sound structure: the bonded guess, or the oscillator nearest to the record.
 
     Raises
@@ -188,14 +192,14 @@ def sound_of(structure: Structure | None, own: ResponseSigns, channels: Channels
     return SoundStructure.nearest(curve.frequency, curve.response, channels)
 
 
-def with_comparisons(
+def all_signs(
     own: Sequence[ResponseSigns], channels: int
 ) -> tuple[dict[str, Floats], dict[str, Floats]]:
     """Return values and floors of all signs, those that compare included; NaN where unknown."""
     first = own[0]
     rows = len(first.noise)
     values, floors = dict(first.values), dict(first.floors)
-    compared = differences([curve for one in own for curve in one.curves])
+    compared = level_and_direction_differences([curve for one in own for curve in one.curves])
     for name, (value, floor) in compared.items():
         values[name], floors[name] = value, floor
     unknown = np.full(rows, np.nan)
@@ -211,7 +215,7 @@ def with_comparisons(
 # -- results --------------------------------------------------------------------------------------
 
 
-def dataset(
+def signs_dataset(
     title: str,
     names: Sequence[str],
     values: dict[str, Floats],
@@ -239,7 +243,7 @@ def dataset(
     over = ("sign", "channel")
     value, floor = np.stack(list(values.values())), np.stack(list(floors.values()))
     highest = np.fmax.reduce(shown)
-    limit = EXCEEDS * np.fmax(floor, highest)
+    limit = EXCEED_FACTOR * np.fmax(floor, highest)
     known = np.isfinite(value) & np.isfinite(highest)
     exceeds = np.where(known, value > limit, -1)
     texts = {
@@ -252,9 +256,13 @@ def dataset(
         {
             "value": variable(over, value, "1", "sign of the record"),
             "floor": variable(over, floor, "1", "what noise alone makes of it"),
-            "sound": variable(over, median(shown), "1", "the same of a sound structure, median"),
+            "sound": variable(
+                over, median_of_known(shown), "1", "the same of a sound structure, median"
+            ),
             "sound_highest": variable(over, highest, "1", "the same of a sound structure, largest"),
-            "exceeds": flags(over, exceeds, f"whether it is above {EXCEEDS:g} times all", MEANINGS),
+            "exceeds": flags(
+                over, exceeds, f"whether it is above {EXCEED_FACTOR:g} times all", MEANINGS
+            ),
         },
         {
             "sign": ("sign", np.array(list(INDICATORS)), {"long_name": "sign"}),
@@ -272,13 +280,13 @@ def dataset(
     )
 
 
-def median(shown: Floats) -> Floats:
+def median_of_known(shown: Floats) -> Floats:
     """Return the median over the seeds; NaN where one of them has no value."""
     known = np.isfinite(shown).all(axis=0)
     return np.asarray(np.where(known, np.median(np.nan_to_num(shown), axis=0), np.nan))
 
 
-def peaks(own: ResponseSigns, names: Sequence[str]) -> Any:
+def peak_frequencies(own: ResponseSigns, names: Sequence[str]) -> Any:
     """Return the frequencies at which the orders are largest, Hz, as a variable."""
     unknown = np.full(len(names), np.nan)
     rows = np.stack([own.frequencies.get(name, unknown) for name in INDICATORS])
@@ -286,7 +294,7 @@ def peaks(own: ResponseSigns, names: Sequence[str]) -> Any:
     return variable(("sign", "channel"), rows, "Hz", text)
 
 
-def of_sound(sound: SoundStructure, noise: Floats) -> dict[str, Any]:
+def sound_variables(sound: SoundStructure, noise: Floats) -> dict[str, Any]:
     """Return the sound structure's parameters and the noise as variables."""
     return {
         "noise": variable("channel", noise, "m/s2", "root mean square of the noise"),
@@ -295,7 +303,7 @@ def of_sound(sound: SoundStructure, noise: Floats) -> dict[str, Any]:
     }
 
 
-def signs_of_a_drive(run: xr.Dataset, others: Sequence[xr.Dataset]) -> xr.Dataset:
+def signs_of_drive_run(run: xr.Dataset, others: Sequence[xr.Dataset]) -> xr.Dataset:
     """Compute the signs of a run on a weak drive, against that of the sound beam.
 
     Raises
@@ -312,4 +320,6 @@ def signs_of_a_drive(run: xr.Dataset, others: Sequence[xr.Dataset]) -> xr.Datase
     itself = [0.0 if name in own else math.nan for name in INDICATORS]  # against itself
     shown = np.array(itself)[None, :, None]
     described = {"seeds": "none", "sound_from": "the run of the sound beam"}
-    return dataset(str(run.attrs.get("title", "run")), names, values, floors, shown, described)
+    return signs_dataset(
+        str(run.attrs.get("title", "run")), names, values, floors, shown, described
+    )

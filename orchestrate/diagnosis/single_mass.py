@@ -26,7 +26,8 @@ from ..access.c_library import loaded_function
 log = logging.getLogger(__name__)
 Floats = NDArray[np.float64]
 SOURCE = Path(__file__).with_suffix(".c")
-LONGEST = 0.12  # rad of the natural vibration in a step: its amplitude errs by 1e-7 in a period
+# Angle of the natural vibration in a step, rad: its amplitude errs by 1e-7 in a period
+MAX_STEP_ANGLE = 0.12
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,7 @@ class SingleMass:
     position: float = 0.0
     side: float = 1.0
 
-    def numbers(self) -> tuple[float, ...]:
+    def coefficients(self) -> tuple[float, ...]:
         """Return the coefficients of the equation in the order that the integrator takes."""
         w = 2.0 * math.pi * self.f
         smooth = (w * w, 2.0 * self.zeta * w, self.square, self.cube, self.friction, self.slow)
@@ -79,10 +80,10 @@ class SingleMass:
             Displacement beyond which the mass counts as gone, m: NaN from there on.
         """
         stiffest = self.f * math.sqrt(1.0 + max(self.stop, 0.0))
-        parts = max(1, math.ceil(2.0 * math.pi * stiffest * step / LONGEST))
+        parts = max(1, math.ceil(2.0 * math.pi * stiffest * step / MAX_STEP_ANGLE))
         found = np.full(len(cubics) + 1, np.nan)
-        run = run_function() or run_slowly
-        run(self.numbers(), np.ascontiguousarray(cubics), step, parts, bound, found)
+        run = run_function() or run_in_python
+        run(self.coefficients(), np.ascontiguousarray(cubics), step, parts, bound, found)
         return found
 
 
@@ -104,7 +105,7 @@ def run_function() -> Any:
     return call
 
 
-def run_slowly(
+def run_in_python(
     numbers: tuple[float, ...], cubics: Floats, step: float, parts: int, bound: float, out: Floats
 ) -> int:
     """Integrate in Python, for machines without a compiler; return how many cubics were done."""
