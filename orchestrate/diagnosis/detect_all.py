@@ -1,4 +1,4 @@
-"""Verdicts on many records, side by side."""
+"""Verdicts on many records, in parallel."""
 
 from __future__ import annotations
 

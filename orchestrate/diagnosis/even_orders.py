@@ -1,4 +1,4 @@
-"""Whether faces part: even orders above their floor, and faces that do not move as one."""
+"""Whether faces open: order 2 above its floor, or two faces whose order 1 differs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a record holds for a fit: orders with weights, and what a computed motion misses of them."""
+"""Orders of a record with their errors, and the residuals of computed motions against them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far a motion is from a record: one number of all residuals."""
+"""The distance of a motion from a record: the soft root mean square of its residuals."""
 
 from __future__ import annotations
 

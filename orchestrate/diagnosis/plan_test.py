@@ -1,4 +1,4 @@
-"""Where a test shows the difference between the delaminated and the sound structure best."""
+"""The frequencies and levels at which a test shows a delamination best."""
 
 from __future__ import annotations
 

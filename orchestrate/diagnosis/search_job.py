@@ -1,4 +1,4 @@
-"""The fits of a record as a job: sound hypotheses and parts of the scan beside each other."""
+"""The fits of a record as a job: sound hypotheses and parts of the scan in parallel."""
 
 from __future__ import annotations
 
