@@ -7,22 +7,22 @@ module                  idea
 :mod:`.signs`           the signs of a record, their floors, and those of a sound structure
 :mod:`.response_signs`  signs of accelerations over time
 :mod:`.drive_signs`     signs of a run on a weak drive
-:mod:`.sound`           the sound structure that a record is compared with
+:mod:`.undamaged`       the sound structure that a record is compared with: a linear oscillator
 :mod:`.opening`         the force that would open the faces of a sound structure, in closed form
-:mod:`.plan_test`       where the delaminated and the sound structure differ most
+:mod:`.plan_test`       the frequencies and levels at which a delamination shows best
 :mod:`.orders`          orders of a record's channels in short windows, and the floor between them
-:mod:`.evidence`        what a record holds for a fit: orders with weights, the base as input
+:mod:`.evidence`        orders of a record with their errors, and the base as input of motions
 :mod:`.single_mass`     a sound structure's motion: one mass on a spring that is not linear
 :mod:`.hypotheses`      what the structure may be: sound in several ways, or delaminated
-:mod:`.misfit`          how far a motion is from a record: one number of all residuals
+:mod:`.misfit`          the distance of a motion from a record: soft root mean square of residuals
 :mod:`.fitting`         the search for a hypothesis's numbers, from many starts
 :mod:`.linear`          residuals around a minimum as a linear model, by regression
 :mod:`.errors`          standard errors from simulated noise and from blocks of windows
-:mod:`.even_orders`     whether faces part: order 2 above its floor
-:mod:`.search_job`      all searches of a record as a job, beside each other
+:mod:`.even_orders`     whether faces open: order 2 above its floor
+:mod:`.search_job`      all searches of a record as a job, in parallel
 :mod:`.fit`             the numbers of a structure from a record
-:mod:`.verdicts`        the rule by which fits and signs become a verdict
+:mod:`.decision_rule`   the rule by which fits and signs become a verdict
 :mod:`.detect`          the verdict on a record
-:mod:`.detect_all`      verdicts on many records, side by side
+:mod:`.detect_all`      verdicts on many records, in parallel
 ======================  ===========================================================================
 """

@@ -14,10 +14,10 @@ from ..response.questions import checked_structure
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
+from .decision_rule import Findings, resampled_share
 from .fit import Results, checked_data, checked_free, delaminated_guess
 from .hypotheses import FREE
 from .search_job import SearchJob
-from .verdicts import Findings, share_of_better
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -43,7 +43,7 @@ def detect(
     free: Sequence[str] = FREE,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Say whether a record is that of a delaminated structure.
+    """Decide whether a record is that of a delaminated structure.
 
     Parameters
     ----------
@@ -107,20 +107,22 @@ def detect(
 
 @dataclass(frozen=True, kw_only=True)
 class DetectJob(SearchJob):
-    """All hypotheses fitted, and the verdict."""
+    """Fit all hypotheses to a record and decide which verdict they give."""
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """The verdict, what it goes by, and all fits."""
+        """Return the verdict, the quantities that it is based on, and all fits as a dataset."""
         import xarray as xr
 
         results = Results.from_table(self, table)
-        findings, even = findings_of(results), results.even
+        findings, even = findings_from_results(results), results.even
         every, coordinates = results.comparison()
         scalars = {
             "verdict": ((), findings.verdict(), {"long_name": "verdict"}),
             "odds": variable((), findings.odds, "1", "odds of delaminated against sound"),
             "ratio": variable((), findings.ratio, "1", "misfit of sound over that of delaminated"),
-            "smallest_opening": variable((), findings.smallest, "m", "smallest opening seen"),
+            "smallest_opening": variable(
+                (), findings.smallest, "m", "smallest opening that would have been detected"
+            ),
             "level_low": variable((), findings.low, "m/s2", "lowest level of the base"),
             "level_high": variable((), findings.high, "m/s2", "highest level of the base"),
             "frequency_low": variable((), findings.first, "Hz", "lowest frequency"),
@@ -134,14 +136,14 @@ class DetectJob(SearchJob):
             analysis="detect",
             title=f"Verdict: {findings.verdict()}",
             reason=findings.reason(),
-            settle=findings.settle(),
+            settle=findings.next_measurement(),
             seen_up_to=findings.seen_up_to(),
             assumed="; ".join(ASSUMED),
         )
 
 
-def findings_of(results: Results) -> Findings:
-    """What the rule goes by, of the fits."""
+def findings_from_results(results: Results) -> Findings:
+    """Collect the quantities that the decision rule needs from the results of the fits."""
     job, even = results.job, results.even
     count, evidence = len(job.sound), job.evidence
     sound = int(np.argmin(results.misfit[:count]))
@@ -156,7 +158,7 @@ def findings_of(results: Results) -> Findings:
         sound_misfit=float(results.misfit[sound]),
         delaminated=job.hypotheses[other].name,
         delaminated_misfit=float(results.misfit[other]),
-        share=share_of_better(results.residuals[sound], results.residuals[other]),
+        share=resampled_share(results.residuals[sound], results.residuals[other]),
         sensors=len(evidence.masses),
         low=float(evidence.level.min()),
         high=float(evidence.level.max()),

@@ -1,4 +1,4 @@
-"""Verdicts on many records, side by side."""
+"""Verdicts on many records, in parallel."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def detect_all(
     free: Sequence[str] = FREE,
     **running: Unpack[Running],
 ) -> dict[str, xr.Dataset]:
-    """Say of many records whether each is that of a delaminated structure.
+    """Decide for each of many records whether it is that of a delaminated structure.
 
     Parameters
     ----------
@@ -65,12 +65,14 @@ def detect_all(
     if not isinstance(records, Mapping) or not records:
         raise InputError("records: expected one record or more, by names")
     chosen, structure = checked_free(free), delaminated_guess(guess)
-    jobs = [job_of(name, record, structure, chosen) for name, record in records.items()]
+    jobs = [checked_job(name, record, structure, chosen) for name, record in records.items()]
     return dict(zip(records, gather(jobs, running, finder(running)), strict=True))
 
 
-def job_of(name: str, record: xr.Dataset, guess: Structure, free: tuple[str, ...]) -> DetectJob:
-    """The job of one record.
+def checked_job(
+    name: str, record: xr.Dataset, guess: Structure, free: tuple[str, ...]
+) -> DetectJob:
+    """Check one record and return the job that decides on it.
 
     Raises
     ------

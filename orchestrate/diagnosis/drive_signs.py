@@ -14,20 +14,20 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
-NEEDED = ("time", "speed", "voltage", "motor")
-FEWEST = 8  # speeds that both runs have
+REQUIRED_VARIABLES = ("time", "speed", "voltage", "motor")
+MIN_SPEEDS = 8  # speeds that both runs have
 
 
 def is_drive_run(data: object) -> bool:
-    """Whether a dataset is a run of a motor, one row a revolution."""
+    """Return whether a dataset is a run of a motor, one row a revolution."""
     return "revolution" in getattr(data, "dims", ()) and all(
         name in data.variables  # type: ignore[attr-defined]
-        for name in NEEDED
+        for name in REQUIRED_VARIABLES
     )
 
 
 def drive_signs(run: xr.Dataset, sound: xr.Dataset) -> tuple[dict[str, float], dict[str, float]]:
-    """Fall of the jump voltage and extra power of a run against one of the sound beam.
+    """Compute the fall of the jump voltage and the extra power of a run against the sound beam's.
 
     Parameters
     ----------
@@ -51,26 +51,26 @@ def drive_signs(run: xr.Dataset, sound: xr.Dataset) -> tuple[dict[str, float], d
 
 
 def jump_voltage(run: xr.Dataset) -> float:
-    """Voltage at which the speed jumps up, V; NaN where the run has none."""
+    """Return the voltage at which the speed jumps up, V; NaN where the run has no jump."""
     if "jumps" not in run or "jump" not in run.coords or "up" not in run.jump.values:
         return math.nan
     return float(run.jumps.sel(jump="up"))
 
 
 def jump_error(run: xr.Dataset) -> float:
-    """What the ramp has added to the voltage of the jump, V; NaN where that is not known."""
+    """Return the voltage by which the ramp delays the jump, V; NaN where that is not known."""
     return abs(float(run.jump_lag.sel(jump="up"))) if "jump_lag" in run else math.nan
 
 
 def extra_power(run: xr.Dataset, sound: xr.Dataset) -> tuple[float, float]:
-    """Mean power over that of the sound beam at the same speeds, less 1, and its standard error."""
-    speeds, powers = below_the_jump(run)
-    other_speeds, other_powers = below_the_jump(sound)
-    if min(len(speeds), len(other_speeds)) < FEWEST:
+    """Return the extra power relative to the sound beam at equal speeds, and its standard error."""
+    speeds, powers = power_below_jump(run)
+    other_speeds, other_powers = power_below_jump(sound)
+    if min(len(speeds), len(other_speeds)) < MIN_SPEEDS:
         return math.nan, math.nan
     low, high = max(speeds[0], other_speeds[0]), min(speeds[-1], other_speeds[-1])
     common = (speeds >= low) & (speeds <= high)
-    if common.sum() < FEWEST:
+    if common.sum() < MIN_SPEEDS:
         return math.nan, math.nan
     reference = np.interp(speeds[common], other_speeds, other_powers)
     mean = float(reference.mean())
@@ -81,8 +81,8 @@ def extra_power(run: xr.Dataset, sound: xr.Dataset) -> tuple[float, float]:
     return float(rest.mean()) / mean, error
 
 
-def below_the_jump(run: xr.Dataset) -> tuple[Floats, Floats]:
-    """Mean speeds up to the jump on the way up, ascending, and the motor's power at them."""
+def power_below_jump(run: xr.Dataset) -> tuple[Floats, Floats]:
+    """Return the mean speeds up to the jump, ascending, and the motor's power at each, in W."""
     time, work, voltage = (run[name].values for name in ("time", "motor", "voltage"))
     speed = run.speed.values
     if not len(time) > 1:

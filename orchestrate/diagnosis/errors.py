@@ -8,9 +8,9 @@ weights W of the soft loss. Three covariances of d are taken:
 * blocks: the residuals that are there, summed over blocks of neighbouring windows (a sandwich):
   what the model misses hangs together over neighbours and is no noise;
 * discrepancy: what a model misses beyond noise, it may also have hidden in its numbers, where no
-  residual shows it. Numbers at which the squares beyond noise are larger by ``HIDDEN`` of
-  themselves are one standard deviation away; damping and restitution are in doubt by ``CONTACT``
-  beside. Of records of the model itself nothing is left of it.
+  residual shows it. Numbers at which the squares beyond noise are larger by ``HIDDEN_SHARE`` of
+  themselves are one standard deviation away; damping and restitution are in doubt by
+  ``RESTITUTION_DOUBT`` beside. Of records of the model itself nothing is left of it.
 
 The variance is the sum of them: each sees a part of what there is, and the blocks are few. ``J'J``
 alone would take each window for an experiment of its own and the model for true; on real contacts
@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 from ..laboratory.analysis.channels import BOX
 from ..laboratory.sampled import Sampled
 from .evidence import Evidence
-from .fitting import Search, step_of
+from .fitting import Search, difference_step
 from .linear import LinearModel
 from .misfit import misfit, soft_squares
 from .orders import ORDERS
@@ -40,18 +40,19 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 REPLICATES = 16
-RUGGED = 1.05  # misfit after the last step over that before: more is a step too far
+MAX_INCREASE = 1.05  # misfit after the last step over that before: more is a step too far
 BLOCKS = 20  # of windows
 SEED = 20_241
-CONTACT = 0.12  # of a restitution; of damping ratios it is the mean of both halves'
-REAL = 0.3  # misfit beyond noise from which a contact is another than the model's for sure
-HIDDEN = 0.1  # part of the squares beyond noise by which they may be larger at the truth
-NOISE_ALONE = 1.3  # squares over those that noise makes: less of them has no other cause
+RESTITUTION_DOUBT = 0.12  # of a restitution; of damping ratios it is the mean of both halves'
+# Misfit beyond noise from which a contact is another than the model's for sure
+CONTACT_MISFIT = 0.3
+HIDDEN_SHARE = 0.1  # part of the squares beyond noise by which they may be larger at the truth
+NOISE_FACTOR = 1.3  # squares over those that noise makes: less of them has no other cause
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """Fitted numbers and how well they are known.
+    """Fitted numbers with their covariance, and the standard deviations by each cause.
 
     Attributes
     ----------
@@ -69,7 +70,7 @@ class Estimate:
 
 
 def estimate(search: Search, values: Mapping[str, float]) -> Estimate:
-    """The minimum of the misfit without its ruggedness, and how well the record determines it.
+    """Return the numbers at the minimum of the smoothed misfit, with their covariances.
 
     Parameters
     ----------
@@ -78,19 +79,23 @@ def estimate(search: Search, values: Mapping[str, float]) -> Estimate:
         At the minimum that was found.
     """
     here, bounds = dict(values), search.hypothesis.bounds(search.evidence)
-    steps = np.diag([step_of(search, name) ** 2 for name in here])
-    shape = 0.3 * LinearModel.around(search.residuals, bounds, here, 0.1 * steps).valley()
-    model = LinearModel.around(search.residuals, bounds, here, shape, seed=1)
-    moved = model.minima(bounds, here)[0]
+    steps = np.diag([difference_step(search, name) ** 2 for name in here])
+    shape = (
+        0.3 * LinearModel.from_cloud(search.residuals, bounds, here, 0.1 * steps).cloud_covariance()
+    )
+    model = LinearModel.from_cloud(search.residuals, bounds, here, shape, seed=1)
+    moved = model.damped_minima(bounds, here)[0]
     before, after = (misfit(search.residuals(one)) for one in (here, moved))
-    allowed = RUGGED if search.hypothesis.is_rugged else 1.0
-    return errors_of(search, moved if after <= allowed * before else here, model)
+    allowed = MAX_INCREASE if search.hypothesis.is_rugged else 1.0
+    return estimate_with_covariances(search, moved if after <= allowed * before else here, model)
 
 
-def errors_of(search: Search, values: dict[str, float], model: LinearModel) -> Estimate:
-    """Covariances by noise and by blocks, at the numbers."""
-    count, rows, influence = len(values), model.weighted, model.influence
-    changes = noisy(search, values)
+def estimate_with_covariances(
+    search: Search, values: dict[str, float], model: LinearModel
+) -> Estimate:
+    """Return the numbers with their covariances by noise, by blocks and by discrepancy."""
+    count, rows, influence = len(values), model.weighted_slopes, model.influence
+    changes = simulated_noise_changes(search, values)
     moved = np.stack([rows.T @ change.ravel() for change in changes])
     bumps = model.scatter @ rows
     by_noise = influence @ (moved.T @ moved / len(moved)) @ influence.T
@@ -101,17 +106,19 @@ def errors_of(search: Search, values: dict[str, float], model: LinearModel) -> E
     sums = np.stack([part.sum(axis=0) for part in parts])
     small = len(sums) / max(len(sums) - count, 1)
     by_blocks = small * influence @ (sums.T @ sums) @ influence.T
-    beyond = hidden_squares(residuals, changes)
-    hidden = contact_doubt(values, beyond / residuals.size) - HIDDEN * beyond * influence
+    beyond = squares_beyond_noise(residuals, changes)
+    hidden = contact_covariance(values, beyond / residuals.size) - HIDDEN_SHARE * beyond * influence
     noise, blocks, rest = (
         np.sqrt(np.maximum(np.diag(c), 0.0)) for c in (by_noise, by_blocks, hidden)
     )
     return Estimate(values, by_noise + by_blocks + hidden, noise, blocks, rest)
 
 
-def contact_doubt(values: Mapping[str, float], beyond: float) -> Floats:
-    """Covariance of damping and restitution by what a real contact does: it loses energy in another
-    way at each speed, and a fit shares that out between both halves and the impacts.
+def contact_covariance(values: Mapping[str, float], beyond: float) -> Floats:
+    """Return the covariance of damping and restitution that is due to real contacts.
+
+    A real contact loses energy in another way at each speed, and a fit shares that out between
+    both halves and the impacts.
 
     Parameters
     ----------
@@ -119,49 +126,51 @@ def contact_doubt(values: Mapping[str, float], beyond: float) -> Floats:
     beyond : float
         Mean square of the residuals beyond noise.
     """
-    size = min(1.0, math.sqrt(beyond) / REAL)
+    size = min(1.0, math.sqrt(beyond) / CONTACT_MISFIT)
     damping = {
         name: math.exp(values[name]) for name in ("log_zeta1", "log_zeta2") if name in values
     }
     doubt = {name: float(np.mean(list(damping.values()))) / zeta for name, zeta in damping.items()}
-    doubt["e"] = CONTACT
+    doubt["e"] = RESTITUTION_DOUBT
     return np.diag([(size * doubt.get(name, 0.0)) ** 2 for name in values])
 
 
-def hidden_squares(residuals: Floats, changes: list[Floats]) -> float:
-    """The sum of squares of residuals beyond what noise makes of it; large ones by their size."""
+def squares_beyond_noise(residuals: Floats, changes: list[Floats]) -> float:
+    """Return the sum of squared residuals (soft loss) beyond what noise explains."""
     by_noise = float(np.mean([soft_squares(change).sum() for change in changes]))
-    return max(float(soft_squares(residuals).sum()) - NOISE_ALONE * by_noise, 0.0)
+    return max(float(soft_squares(residuals).sum()) - NOISE_FACTOR * by_noise, 0.0)
 
 
-def noisy(search: Search, values: Mapping[str, float]) -> list[Floats]:
-    """Changes of the residuals by noise of the base and of the sensors, simulated."""
+def simulated_noise_changes(search: Search, values: Mapping[str, float]) -> list[Floats]:
+    """Simulate noise of base and sensors, and return the residuals' changes for each replicate."""
     evidence, rng = search.evidence, np.random.default_rng(SEED)
     sizes = noise_of_samples(evidence.orders)
     hypothesis, found = search.hypothesis, []
-    here = evidence.computed(hypothesis.displacements(values, evidence, search.player))
-    base = evidence.missed(evidence.matched(here))
+    here = evidence.orders_of_motion(hypothesis.displacements(values, evidence, search.player))
+    base = evidence.order_residuals(evidence.corrected_for_sensors(here))
     for _ in range(REPLICATES):
-        again = shaken_again(evidence, sizes[BOX] * rng.standard_normal(evidence.samples))
-        computed = again.computed(hypothesis.displacements(values, again, search.player))
+        again = with_base_noise(evidence, sizes[BOX] * rng.standard_normal(evidence.samples))
+        computed = again.orders_of_motion(hypothesis.displacements(values, again, search.player))
         search.evaluations += 1
         names = evidence.orders.sensors
         channels = [sizes[name] * rng.standard_normal(evidence.samples) for name in names]
         read = evidence.windows.amplitudes(np.stack(channels))
         # noise of what is read counts the other way: as if the motion had moved by less
-        found.append(evidence.missed(evidence.matched(computed - read)) - base)
+        found.append(
+            evidence.order_residuals(evidence.corrected_for_sensors(computed - read)) - base
+        )
     return found
 
 
-def shaken_again(evidence: Evidence, noise: Floats) -> Evidence:
-    """The evidence with more noise on the base."""
+def with_base_noise(evidence: Evidence, noise: Floats) -> Evidence:
+    """Return the evidence with simulated noise added to the base's acceleration."""
     base = evidence.orders.channels.box + noise
     pieces = Sampled(acceleration=tuple(base), sample_rate=evidence.rate).pieces()
     return replace(evidence, pieces=pieces)
 
 
 def noise_of_samples(orders: RecordOrders) -> dict[str, float]:
-    """Standard deviation of white noise that has a channel's floor, m/s2."""
+    """Return, by channel, the standard deviation of white noise that has its floor, m/s2."""
     squares = [np.sum(np.abs(s[:, len(ORDERS) :]) ** 2, axis=0) for s in orders.windows.solutions]
     share = math.sqrt(float(np.nanmean(squares)))
     return {

@@ -1,4 +1,4 @@
-"""What a record holds for a fit: orders with weights, and what a computed motion misses of them."""
+"""Orders of a record with their errors, and the residuals of computed motions against them."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from ..laboratory.analysis.channels import Channels
 from ..laboratory.pieces import Pieces
 from ..laboratory.sampled import Sampled
 from .orders import (
-    FEWEST,
-    KEPT,
+    MIN_WINDOWS,
     ORDERS,
+    SAMPLES_PER_PERIOD,
     Complexes,
     OrderWindows,
     RecordOrders,
-    orders_of,
+    channel_orders,
+    decimated,
     record_orders,
-    thinned,
 )
 
 if TYPE_CHECKING:
@@ -30,24 +30,25 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
 Floats = NDArray[np.float64]
-FITTED = (1.0, 2.0, 3.0)
-RELATIVE = (0.03, 0.03, 0.03)  # errors of a model's orders 1, 2, 3 over the size of order 1
+FITTED_ORDERS = (1.0, 2.0, 3.0)
+MODEL_ERROR = (0.03, 0.03, 0.03)  # errors of a model's orders 1, 2, 3 over the size of order 1
 NEIGHBOURS = 2  # windows on each side over which that size is the largest
 IRREGULAR = 1.5  # errors of orders over the amplitude between the orders
-AROUND = (0.62, 1.55)  # of the resonance's frequency: what is fitted of a wide sweep
-NEAR = (0.8, 1.28)  # of that of both sensors' resonances: what a coarse search goes by
-MOST = 0.9  # of a record: more of it is not worth to be cut
-SKIPPED = 1.0  # s at the beginning where the start is not forgotten; at most a tenth of the record
-GAIN, DELAY = 0.03, 2e-4  # of a sensor against that of the base: standard deviations, 1 and s
-MOST_GAIN, MOST_DELAY = 0.12, 1e-3
-PRIOR = 0.1  # weight of these, over that of a record which misses as much as a good model may
-LOST = 30.0  # residual of a motion that has no bounds
+FITTED_RANGE = (0.62, 1.55)  # of the resonance's frequency: what is fitted of a wide sweep
+COARSE_RANGE = (0.8, 1.28)  # of that of both sensors' resonances: what a coarse search goes by
+MAX_CUT_SHARE = 0.9  # of a record: more of it is not worth to be cut
+START_UP = 1.0  # s at the beginning where the start is not forgotten; at most a tenth of the record
+# Standard deviations of a sensor's gain and delay against the base's sensor, 1 and s
+GAIN_DEVIATION, DELAY_DEVIATION = 0.03, 2e-4
+MAX_GAIN_ERROR, MAX_DELAY = 0.12, 1e-3
+# Weight of these deviations, over that of a record which misses as much as a good model may
+PRIOR_WEIGHT = 0.1
+UNBOUNDED_RESIDUAL = 30.0  # residual of a motion that has no bounds
 SENSORS = ("acceleration1", "acceleration2")
 
 
-def trimmed(orders: RecordOrders) -> tuple[Channels, float]:
-    """The channels from before the sweep comes near the resonance until it is away from it, and the
-    highest frequency there in Hz.
+def cut_to_resonance(orders: RecordOrders) -> tuple[Channels, float]:
+    """Cut the channels to the time around the resonance; return them and the highest frequency, Hz.
 
     The rest is long and holds little: a fit would spend half its time there.
     """
@@ -55,10 +56,10 @@ def trimmed(orders: RecordOrders) -> tuple[Channels, float]:
     rows = [channels.names.index(name) for name in orders.sensors]
     response = (np.abs(orders.amplitude[rows, 0]) / orders.level).max(axis=0)
     ratio = windows.frequency / windows.frequency[np.argmax(response)]
-    inside = np.flatnonzero((ratio > AROUND[0]) & (ratio < AROUND[1]))
-    begin = windows.parts[inside[0]].start - round((SKIPPED + 0.5) * channels.sample_rate)
+    inside = np.flatnonzero((ratio > FITTED_RANGE[0]) & (ratio < FITTED_RANGE[1]))
+    begin = windows.parts[inside[0]].start - round((START_UP + 0.5) * channels.sample_rate)
     part = slice(max(begin, 0), windows.parts[inside[-1]].stop)
-    if len(inside) < FEWEST or part.stop - part.start > MOST * len(channels.time):
+    if len(inside) < MIN_WINDOWS or part.stop - part.start > MAX_CUT_SHARE * len(channels.time):
         return channels, float(windows.frequency.max())
     cut = replace(channels, time=channels.time[part], values=channels.values[:, part])
     return cut, float(windows.frequency[inside].max())
@@ -66,7 +67,7 @@ def trimmed(orders: RecordOrders) -> tuple[Channels, float]:
 
 @dataclass(frozen=True)
 class Evidence:
-    """Orders of a record with weights, and the input of the motions that are compared with them.
+    """Orders of a record, their errors, and the input of the motions that are compared with them.
 
     Attributes
     ----------
@@ -74,41 +75,41 @@ class Evidence:
     pieces : Pieces
         The base's acceleration, from the first sample on.
     relative : tuple of float
-        Errors that a good model may have, see ``RELATIVE``.
+        Errors that a good model may have, see ``MODEL_ERROR``.
     """
 
     orders: RecordOrders
     pieces: Pieces
-    relative: tuple[float, ...] = RELATIVE
+    relative: tuple[float, ...] = MODEL_ERROR
 
     @classmethod
     def from_record(cls, record: xr.Dataset) -> Evidence:
-        """Of a record; raises as :func:`.orders.record_orders`."""
+        """Compute the evidence of a record; raises as :func:`.orders.record_orders`."""
         return cls.from_orders(record_orders(record))
 
     @classmethod
-    def from_orders(cls, orders: RecordOrders, kept: float = KEPT) -> Evidence:
-        """Of the orders of a whole record, as :func:`.orders.thinned` leaves them."""
-        channels, highest = trimmed(orders)
-        thin = thinned(channels, highest, kept)
+    def from_orders(cls, orders: RecordOrders, kept: float = SAMPLES_PER_PERIOD) -> Evidence:
+        """Build the evidence from a whole record's orders: cut and decimate it where possible."""
+        channels, highest = cut_to_resonance(orders)
+        thin = decimated(channels, highest, kept)
         if thin is not orders.channels:
-            orders = orders_of(thin)
+            orders = channel_orders(thin)
         rate = orders.channels.sample_rate
         return cls(
             orders, Sampled(acceleration=tuple(orders.channels.box), sample_rate=rate).pieces()
         )
 
     def near_resonance(self) -> Evidence:
-        """The part of it that a coarse search needs, where both resonances are."""
+        """Return the part of the evidence around both resonances, for a coarse search."""
         size = np.abs(self.measured[:, 0] - self.level) / self.frequency**2
         moving = self.frequency[np.unravel_index(np.argmax(size), size.shape)[1]]
         low, high = (end([*self.peaks, moving]) for end in (min, max))
         ratio = self.orders.windows.frequency
-        inside = np.flatnonzero((ratio > NEAR[0] * low) & (ratio < NEAR[1] * high))
+        inside = np.flatnonzero((ratio > COARSE_RANGE[0] * low) & (ratio < COARSE_RANGE[1] * high))
         parts, channels = self.orders.windows.parts, self.orders.channels
-        begin = parts[inside[0]].start - round((SKIPPED + 0.1) * self.rate)
+        begin = parts[inside[0]].start - round((START_UP + 0.1) * self.rate)
         part = slice(max(begin, 0), parts[inside[-1]].stop)
-        if len(inside) < FEWEST or part.stop - part.start > MOST * self.samples:
+        if len(inside) < MIN_WINDOWS or part.stop - part.start > MAX_CUT_SHARE * self.samples:
             return self
         kept = np.flatnonzero([part.start <= p.start and p.stop <= part.stop for p in parts])
         pieces = replace(
@@ -117,7 +118,7 @@ class Evidence:
             derivatives=self.pieces.derivatives[part.start : part.stop - 1],
         )
         orders = RecordOrders(
-            self.orders.windows.cut(kept, part),
+            self.orders.windows.select_and_cut(kept, part),
             replace(channels, time=channels.time[part], values=channels.values[:, part]),
             self.orders.amplitude[:, :, kept],
             self.orders.floor[:, kept],
@@ -127,51 +128,51 @@ class Evidence:
 
     @property
     def rate(self) -> float:
-        """Samples in a second, Hz."""
+        """Sampling rate, Hz."""
         return self.orders.channels.sample_rate
 
     @property
     def samples(self) -> int:
-        """How many of each channel."""
+        """Number of samples of each channel."""
         return len(self.orders.channels.time)
 
     @cached_property
     def masses(self) -> tuple[int, ...]:
-        """Which mass each sensor is on, 0 or 1."""
+        """Mass that each sensor is on, 0 or 1."""
         return tuple(SENSORS.index(name) for name in self.orders.sensors)
 
     @cached_property
-    def used(self) -> NDArray[np.intp]:
-        """Windows that count: those after the start."""
+    def used_windows(self) -> NDArray[np.intp]:
+        """Numbers of the windows that are fitted: those after the start-up."""
         time = self.orders.windows.time - self.orders.channels.time[0]
-        skipped = min(SKIPPED, 0.1 * self.orders.channels.duration)
+        skipped = min(START_UP, 0.1 * self.orders.channels.duration)
         return np.flatnonzero(time > skipped)
 
     @cached_property
     def windows(self) -> OrderWindows:
-        """These windows, with the orders that are fitted."""
-        return self.orders.windows.chosen(self.used, len(FITTED))
+        """Windows that are fitted, with the orders that are fitted."""
+        return self.orders.windows.select(self.used_windows, len(FITTED_ORDERS))
 
     @cached_property
     def frequency(self) -> Floats:
-        """Of the excitation in these windows, Hz."""
-        return self.orders.windows.frequency[self.used]
+        """Frequency of the excitation in each fitted window, Hz."""
+        return self.orders.windows.frequency[self.used_windows]
 
     @cached_property
     def level(self) -> Floats:
-        """Amplitude of the base's order 1 there, m/s2."""
-        return self.orders.level[self.used]
+        """Amplitude of the base's order 1 in each fitted window, m/s2."""
+        return self.orders.level[self.used_windows]
 
     @cached_property
     def measured(self) -> Complexes:
-        """Orders 1, 2, 3 of the sensors, shape (sensors, 3, windows), m/s2."""
+        """Measured orders 1, 2, 3 of the sensors, shape (sensors, 3, windows), m/s2."""
         rows = [self.orders.channels.names.index(name) for name in self.orders.sensors]
-        numbers = [ORDERS.index(order) for order in FITTED]
-        return self.orders.amplitude[rows][:, numbers][:, :, self.used]
+        numbers = [ORDERS.index(order) for order in FITTED_ORDERS]
+        return self.orders.amplitude[rows][:, numbers][:, :, self.used_windows]
 
     @cached_property
     def size(self) -> Floats:
-        """Largest order 1 around each window, shape (sensors, windows), m/s2."""
+        """Largest amplitude of order 1 around each window, shape (sensors, windows), m/s2."""
         size = np.abs(self.measured[:, 0])
         width = 2 * NEIGHBOURS + 1
         padded = np.pad(size, ((0, 0), (NEIGHBOURS, NEIGHBOURS)), mode="edge")
@@ -179,17 +180,17 @@ class Evidence:
 
     @cached_property
     def noise(self) -> Floats:
-        """Standard deviation of order amplitudes by noise, shape (sensors,), m/s2."""
+        """Standard deviation of the orders' amplitudes by noise, shape (sensors,), m/s2."""
         rows = [self.orders.channels.names.index(name) for name in self.orders.sensors]
         return np.maximum(self.orders.noise[rows], 1e-9 * self.size.max())
 
     @cached_property
     def error(self) -> Floats:
-        """Weights: what is between the orders (noise, or motion that does not repeat) and what a
-        good model may miss, shape (sensors, 3, windows), m/s2.
-        """
+        """Standard deviations (model error and noise), shape (sensors, 3, windows), m/s2."""
         rows = [self.orders.channels.names.index(name) for name in self.orders.sensors]
-        floor = np.maximum(IRREGULAR * self.orders.floor[rows][:, self.used], self.noise[:, None])
+        floor = np.maximum(
+            IRREGULAR * self.orders.floor[rows][:, self.used_windows], self.noise[:, None]
+        )
         model = np.array(self.relative)[:, None] * self.size[:, None, :]
         return np.sqrt(floor[:, None, :] ** 2 + model**2)
 
@@ -200,12 +201,12 @@ class Evidence:
 
     @cached_property
     def operator(self) -> csr_array:
-        """From displacements in the base to parts of orders, see :meth:`computed`."""
+        """Sparse matrix from a displacement to its orders, see :meth:`orders_of_motion`."""
         from scipy.sparse import diags_array
 
-        read = 1.0 / np.sinc(np.outer(FITTED, self.frequency) / self.rate) ** 2
+        read = 1.0 / np.sinc(np.outer(FITTED_ORDERS, self.frequency) / self.rate) ** 2
         return (
-            diags_array(read.repeat(2, axis=0).ravel()) @ self.windows.of_displacements()
+            diags_array(read.repeat(2, axis=0).ravel()) @ self.windows.displacement_operator()
         ).tocsr()
 
     @cached_property
@@ -216,7 +217,7 @@ class Evidence:
 
     @cached_property
     def peaks(self) -> tuple[float, ...]:
-        """The same of each sensor, Hz."""
+        """Frequency at which each sensor moves most for the base's amplitude, Hz."""
         response = np.abs(self.measured[:, 0]) / self.level
         return tuple(self.frequency[np.argmax(response, axis=1)].tolist())
 
@@ -226,8 +227,8 @@ class Evidence:
         size = np.abs(self.measured[:, 0] - self.level)
         return float((size / (TURN * self.frequency) ** 2).max())
 
-    def computed(self, motion: Floats) -> Complexes:
-        """Orders 1, 2, 3 that sensors would read of a motion, shape (sensors, 3, windows).
+    def orders_of_motion(self, motion: Floats) -> Complexes:
+        """Compute orders 1, 2, 3 that sensors would read of a motion, shape (sensors, 3, windows).
 
         Parameters
         ----------
@@ -243,50 +244,55 @@ class Evidence:
         """
         chosen = [min(mass, len(motion) - 1) for mass in self.masses]
         parts = {row: self.operator @ motion[row] for row in set(chosen)}
-        found = np.stack([parts[row] for row in chosen]).reshape(len(chosen), len(FITTED), 2, -1)
+        found = np.stack([parts[row] for row in chosen]).reshape(
+            len(chosen), len(FITTED_ORDERS), 2, -1
+        )
         return found[:, :, 0] + 1j * found[:, :, 1] + self.base
 
-    def matched(self, computed: Complexes) -> Complexes:
-        """The same with each sensor's gain and delay, as order 1 asks for them in closed form.
+    def corrected_for_sensors(self, computed: Complexes) -> Complexes:
+        """Return computed orders corrected by each sensor's gain and delay, fitted to order 1.
 
         A delay that all channels share is none: the base's is in the input already.
         """
         found = computed.copy()
         for row in range(len(found)):
             gain, delay = self.sensor_error(row, computed[row, 0])
-            turn = TURN * np.outer(FITTED, self.frequency) * delay
+            turn = TURN * np.outer(FITTED_ORDERS, self.frequency) * delay
             found[row] *= gain * np.exp(-1j * turn)
         return found
 
     def sensor_error(self, row: int, computed: Complexes) -> tuple[float, float]:
-        """Gain and delay (s) of a sensor that bring a computed order 1 closest to the measured."""
+        """Fit the gain and delay (s) of a sensor to order 1, by least squares with a prior."""
         if not np.isfinite(computed).all():  # a motion without bounds
             return 1.0, 0.0
         weighted = computed / self.error[row, 0]
-        columns = np.stack([GAIN * weighted, -1j * DELAY * TURN * self.frequency * weighted])
+        columns = np.stack(
+            [GAIN_DEVIATION * weighted, -1j * DELAY_DEVIATION * TURN * self.frequency * weighted]
+        )
         target = self.measured[row, 0] / self.error[row, 0] - weighted
         normal = (columns @ columns.conj().T).real
-        normal += np.eye(2) * PRIOR**2 * len(weighted)  # no gain or delay without a reason
+        normal += np.eye(2) * PRIOR_WEIGHT**2 * len(weighted)  # no gain or delay without a reason
         solution = np.linalg.solve(normal, (columns.conj() @ target).real)
-        gain = 1.0 + float(np.clip(GAIN * solution[0], -MOST_GAIN, MOST_GAIN))
-        return gain, float(np.clip(DELAY * solution[1], -MOST_DELAY, MOST_DELAY))
+        gain = 1.0 + float(np.clip(GAIN_DEVIATION * solution[0], -MAX_GAIN_ERROR, MAX_GAIN_ERROR))
+        return gain, float(np.clip(DELAY_DEVIATION * solution[1], -MAX_DELAY, MAX_DELAY))
 
     def residuals(self, motion: Floats) -> Floats:
-        """What a motion misses, over the errors; shape (sensors, 4, windows).
+        """Return a motion's orders less the measured ones, over the errors.
 
-        Order 1 as two numbers, the sizes of orders 2 and 3; 0 where an order is not resolved.
+        The shape is (sensors, 4, windows): order 1 as two numbers, then the sizes of orders 2 and
+        3; 0 where an order is not resolved.
         """
         if not np.isfinite(motion).all():
-            return np.full((len(self.masses), 4, len(self.used)), LOST)
-        return self.missed(self.matched(self.computed(motion)))
+            return np.full((len(self.masses), 4, len(self.used_windows)), UNBOUNDED_RESIDUAL)
+        return self.order_residuals(self.corrected_for_sensors(self.orders_of_motion(motion)))
 
-    def missed(self, computed: Complexes) -> Floats:
-        """What computed orders miss, over the errors; shape (sensors, 4, windows)."""
+    def order_residuals(self, computed: Complexes) -> Floats:
+        """Return computed less measured orders, over the errors; shape (sensors, 4, windows)."""
         first = (computed[:, 0] - self.measured[:, 0]) / self.error[:, 0]
         noise = self.noise[:, None, None]  # adds to both sizes alike
         size, wanted = np.abs(computed[:, 1:]), np.abs(self.measured[:, 1:])
         higher = (np.sqrt(size**2 + noise**2) - wanted) / self.error[:, 1:]
         found = np.concatenate([first.real[:, None], first.imag[:, None], higher], axis=1)
         resolved = np.isfinite(wanted[:, [0, 0, 0, 1]]) | (np.arange(4) < 2)[:, None]
-        found = np.where(np.isfinite(found), found, np.where(resolved, LOST, 0.0))
-        return np.clip(found, -LOST, LOST)
+        found = np.where(np.isfinite(found), found, np.where(resolved, UNBOUNDED_RESIDUAL, 0.0))
+        return np.clip(found, -UNBOUNDED_RESIDUAL, UNBOUNDED_RESIDUAL)

@@ -19,9 +19,9 @@ from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
 from .even_orders import EvenOrders, even_orders
-from .evidence import FITTED, Evidence
+from .evidence import FITTED_ORDERS, Evidence
 from .hypotheses import FREE, REPORTED, Hypothesis
-from .orders import checked_channels, orders_of
+from .orders import channel_orders, checked_channels
 from .search_job import RecordData, SearchJob
 
 if TYPE_CHECKING:
@@ -31,23 +31,23 @@ if TYPE_CHECKING:
     from ..running.options import Running
 
 Floats = NDArray[np.float64]
-USUAL = ("f1", "f2", "zeta1", "zeta2", "e")
+DEFAULT_FREE = ("f1", "f2", "zeta1", "zeta2", "e")
 DELAMINATED = "delaminated"
-SHORT = {  # names of the hypotheses as arguments
+SHORT_NAMES = {  # names of the hypotheses as arguments
     "bonded": 0,
     "curved": 1,
     "friction": 2,
     "stop": 3,
     "stop on the other side": 4,
 }
-AT_ALL = ("hypothesis", "channel", "order", "window")
+FITTED_DIMENSIONS = ("hypothesis", "channel", "order", "window")
 
 
 def fit(
     record: xr.Dataset,
     guess: Structure,
     *,
-    free: Sequence[str] = USUAL,
+    free: Sequence[str] = DEFAULT_FREE,
     hypothesis: str = DELAMINATED,
     **running: Unpack[Running],
 ) -> xr.Dataset:
@@ -112,7 +112,7 @@ def fit(
         data=data,
         guess=delaminated_guess(guess),
         free=chosen,
-        sound=(0,) if kind in (DELAMINATED, "bonded") else (0, SHORT[kind]),
+        sound=(0,) if kind in (DELAMINATED, "bonded") else (0, SHORT_NAMES[kind]),
         delaminated=kind == DELAMINATED,
         kind=kind,
     )
@@ -120,12 +120,12 @@ def fit(
 
 
 def checked_hypothesis(hypothesis: str) -> str:
-    """A hypothesis by its name as an argument."""
-    return checked_word("hypothesis", hypothesis, (DELAMINATED, *SHORT))
+    """Check that a hypothesis has a known short name, and return it."""
+    return checked_word("hypothesis", hypothesis, (DELAMINATED, *SHORT_NAMES))
 
 
 def checked_free(free: Sequence[str]) -> tuple[str, ...]:
-    """Names of parameters to be fitted.
+    """Check the names of the parameters to be fitted, and return them as a tuple.
 
     Raises
     ------
@@ -142,19 +142,19 @@ def checked_free(free: Sequence[str]) -> tuple[str, ...]:
 
 
 def checked_data(record: xr.Dataset) -> RecordData:
-    """A record's channels, after a look at whether the base moves as a sine.
+    """Check that a record's base moves as a sine, and return its channels for a job.
 
     Raises
     ------
     InputError
     """
     channels = checked_channels(record)
-    orders_of(channels)
+    channel_orders(channels)
     return RecordData.from_channels(channels)
 
 
 def delaminated_guess(guess: Structure) -> Structure:
-    """The guess without a glue.
+    """Check that both halves of the guess have a spring, and return it as delaminated.
 
     Raises
     ------
@@ -173,7 +173,7 @@ def delaminated_guess(guess: Structure) -> Structure:
 
 @dataclass(frozen=True, kw_only=True)
 class FitJob(SearchJob):
-    """One hypothesis fitted.
+    """Fit one hypothesis to a record.
 
     Attributes
     ----------
@@ -183,17 +183,17 @@ class FitJob(SearchJob):
     kind: str
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Numbers, errors, and what is missed."""
+        """Return the fitted parameters, their errors, and the fitted orders as a dataset."""
         import xarray as xr
 
         results = Results.from_table(self, table)
-        place = len(self.hypotheses) - 1
+        position = len(self.hypotheses) - 1
         every, coordinates = results.comparison()
-        made = xr.Dataset({**every, **results.parameters()}, coordinates).isel(hypothesis=place)
-        name = self.hypotheses[place].name
+        made = xr.Dataset({**every, **results.parameters()}, coordinates).isel(hypothesis=position)
+        name = self.hypotheses[position].name
         named = made.drop_vars("hypothesis").dropna("parameter", how="all", subset=["asked"])
         made = named.drop_vars("asked").assign(
-            correlation=results.correlation(place, list(named.parameter.values)),
+            correlation=results.correlation(position, list(named.parameter.values)),
         )
         return made.assign_attrs(
             analysis="fit", title=f"Fit: {name}", hypothesis=name, reason=results.reason()
@@ -202,7 +202,7 @@ class FitJob(SearchJob):
 
 @dataclass(frozen=True)
 class Results:
-    """The end of a search job as arrays, one row a hypothesis.
+    """Results of a search job as arrays, one row a hypothesis.
 
     Attributes
     ----------
@@ -221,48 +221,48 @@ class Results:
 
     @classmethod
     def from_table(cls, job: SearchJob, table: Table) -> Results:
-        """Of a finished job."""
-        part = {name: table[f"end_{name}"][0] for name in ENDS}
+        """Read the results from the table of a finished job."""
+        part = {name: table[f"end_{name}"][0] for name in END_COLUMNS}
         real, imaginary = np.moveaxis(part.pop("fitted"), 1, 0)
         return cls(job, fitted=real + 1j * imaginary, **part)
 
     @property
     def even(self) -> EvenOrders:
-        """Order 2 against that of the bonded structure."""
+        """Order 2 of the record beyond that of the fitted bonded structure."""
         return even_orders(self.job.evidence, self.fitted[0])
 
-    def opened(self) -> bool:
-        """Whether faces are seen to part, or not to move as one."""
+    def is_opening_seen(self) -> bool:
+        """Return whether the record shows faces that open, or two faces that move differently."""
         even = self.even
         return even.seen or even.moved_apart > 1.0
 
     def reason(self) -> str:
-        """Why the numbers of the halves are stated or not."""
+        """Return a sentence that says why the halves' numbers are stated or not."""
         even = self.even
         size = f"order 2 is up to {100 * even.largest:.2g} % of order 1"
-        if self.opened():
+        if self.is_opening_seen():
             return f"{size}, {even.excess:.2g} times the size from which it counts as seen"
         return f"no opening is seen ({size}): the record does not hold f1 and f2"
 
-    def numbers(self, place: int) -> dict[str, tuple[float, float]]:
-        """Values and standard errors of a hypothesis as a user knows them."""
-        hypothesis, evidence = self.job.hypotheses[place], self.job.evidence
+    def reported_values(self, position: int) -> dict[str, tuple[float, float]]:
+        """Return the reported parameters of a hypothesis, by name, as (value, standard error)."""
+        hypothesis, evidence = self.job.hypotheses[position], self.job.evidence
         names = list(hypothesis.bounds(evidence))
-        here = dict(zip(names, self.values[place].tolist(), strict=False))
+        here = dict(zip(names, self.values[position].tolist(), strict=False))
         reported = hypothesis.reported(here, evidence)
-        slopes = slopes_of(hypothesis, here, evidence)
-        covariance = self.covariance[place][: len(names), : len(names)]
+        slopes = reported_derivatives(hypothesis, here, evidence)
+        covariance = self.covariance[position][: len(names), : len(names)]
         errors = np.sqrt(np.maximum(np.diag(slopes @ covariance @ slopes.T), 0.0))
         known = dict(
             zip(reported, zip(reported.values(), errors.tolist(), strict=True), strict=True)
         )
-        if not self.opened():
+        if not self.is_opening_seen():
             known.update(dict.fromkeys(known.keys() & set(FREE), (math.nan, math.nan)))
         return known
 
     def parameters(self) -> dict[str, Variable]:
-        """Values and standard errors; ``asked`` is 1 where a hypothesis has the parameter."""
-        every = [self.numbers(place) for place in range(len(self.values))]
+        """Return all hypotheses' values and errors; ``asked`` is 1 where one has the parameter."""
+        every = [self.reported_values(position) for position in range(len(self.values))]
         shape = (len(every), len(REPORTED))
         value, error, asked = np.full(shape, np.nan), np.full(shape, np.nan), np.full(shape, np.nan)
         for row, known in enumerate(every):
@@ -277,23 +277,25 @@ class Results:
             "asked": variable(over, asked, "1", "1 where the hypothesis has the parameter"),
         }
 
-    def correlation(self, place: int, names: list[str]) -> tuple[Any, ...]:
-        """Of a hypothesis's numbers."""
-        hypothesis, evidence = self.job.hypotheses[place], self.job.evidence
+    def correlation(self, position: int, names: list[str]) -> tuple[Any, ...]:
+        """Return the correlation matrix of the errors of a hypothesis's reported parameters."""
+        hypothesis, evidence = self.job.hypotheses[position], self.job.evidence
         fitted = list(hypothesis.bounds(evidence))
-        here = dict(zip(fitted, self.values[place].tolist(), strict=False))
-        slopes = slopes_of(hypothesis, here, evidence)
-        covariance = slopes @ self.covariance[place][: len(fitted), : len(fitted)] @ slopes.T
+        here = dict(zip(fitted, self.values[position].tolist(), strict=False))
+        slopes = reported_derivatives(hypothesis, here, evidence)
+        covariance = slopes @ self.covariance[position][: len(fitted), : len(fitted)] @ slopes.T
         size = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
         order = [list(hypothesis.reported(here, evidence)).index(name) for name in names]
         known = (covariance / np.outer(size, size))[np.ix_(order, order)]
         return variable(("parameter", "other_parameter"), known, "1", "correlation of errors")
 
     def comparison(self) -> tuple[dict[str, Variable], dict[str, Variable]]:
-        """What is measured and what is fitted, with coordinates."""
+        """Return measured and fitted orders with the misfits, and their coordinates."""
         evidence = self.job.evidence
         rows = [evidence.orders.channels.names.index(name) for name in evidence.orders.sensors]
-        floor = evidence.orders.floor[rows][:, None, evidence.used].repeat(len(FITTED), axis=1)
+        floor = evidence.orders.floor[rows][:, None, evidence.used_windows].repeat(
+            len(FITTED_ORDERS), axis=1
+        )
         by_window = np.sqrt(np.mean(self.residuals**2, axis=(1, 2)))
         over = ("channel", "order", "window")
         variables = {
@@ -309,20 +311,22 @@ class Results:
             ),
             "measured": variable(over, np.abs(evidence.measured), "m/s2", "amplitude of orders"),
             "floor": variable(over, floor, "m/s2", "amplitude between the orders"),
-            "fitted": variable(AT_ALL, np.abs(self.fitted), "m/s2", "amplitude of fitted orders"),
+            "fitted": variable(
+                FITTED_DIMENSIONS, np.abs(self.fitted), "m/s2", "amplitude of fitted orders"
+            ),
         }
         units, words = zip(*REPORTED.values(), strict=True)
         coordinates = {
-            "hypothesis": (
-                "hypothesis",
-                [one.name for one in self.job.hypotheses],
-                named("hypothesis"),
+            "hypothesis": text_coordinate(
+                "hypothesis", [one.name for one in self.job.hypotheses], "hypothesis"
             ),
-            "parameter": ("parameter", list(REPORTED), named("parameter")),
-            "unit": ("parameter", list(units), named("unit of the parameter")),
-            "meaning": ("parameter", list(words), named("meaning of the parameter")),
-            "channel": ("channel", list(evidence.orders.sensors), named("channel of the record")),
-            "order": variable("order", np.array(FITTED), "1", "frequency over the excitation's"),
+            "parameter": text_coordinate("parameter", list(REPORTED), "parameter"),
+            "unit": text_coordinate("parameter", units, "unit of the parameter"),
+            "meaning": text_coordinate("parameter", words, "meaning of the parameter"),
+            "channel": text_coordinate("channel", evidence.orders.sensors, "channel of the record"),
+            "order": variable(
+                "order", np.array(FITTED_ORDERS), "1", "frequency over the excitation's"
+            ),
             "time": variable("window", evidence.windows.time, "s", "middle of the window"),
             "frequency": variable(
                 "window", evidence.frequency, "Hz", "frequency of the excitation"
@@ -332,8 +336,10 @@ class Results:
         return variables, coordinates
 
 
-def slopes_of(hypothesis: Hypothesis, here: Mapping[str, float], evidence: Evidence) -> Floats:
-    """Derivatives of what is reported by what is fitted."""
+def reported_derivatives(
+    hypothesis: Hypothesis, here: Mapping[str, float], evidence: Evidence
+) -> Floats:
+    """Differentiate the reported parameters by the fitted ones (central differences)."""
     columns = []
     for name, value in here.items():
         step = 1e-5 * max(abs(value), 0.1)
@@ -345,9 +351,9 @@ def slopes_of(hypothesis: Hypothesis, here: Mapping[str, float], evidence: Evide
     return np.stack(columns, axis=1)
 
 
-ENDS = ("values", "covariance", "minima", "misfit", "residuals", "fitted", "evaluations")
+END_COLUMNS = ("values", "covariance", "minima", "misfit", "residuals", "fitted", "evaluations")
 
 
-def named(words: str) -> dict[str, str]:
-    """Attributes of a text coordinate."""
-    return {"long_name": words}
+def text_coordinate(dimension: str, values: Sequence[str], words: str) -> Variable:
+    """Return a coordinate of texts along a dimension, with its long name."""
+    return (dimension, list(values), {"long_name": words})

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .evidence import LOST, Evidence
+from .evidence import UNBOUNDED_RESIDUAL, Evidence
 from .hypotheses import Hypothesis
 from .linear import LinearModel
-from .misfit import SOFT, misfit
+from .misfit import SOFT_LIMIT, misfit
 
 if TYPE_CHECKING:
     from ..access import Player
@@ -23,14 +23,14 @@ STEPS = {  # of the differences that make derivatives; f and common: parts of th
     **{"log_zeta": 0.02, "log_zeta1": 0.05, "log_zeta2": 0.05},
     **{"square": 0.01, "cube": 0.02, "friction": 0.01, "stop": 0.02, "position": 0.02},
 }
-ROUNDS = 7  # of polishing
-GAINED, SMALLEST = 2e-3, 0.1  # least gain of a round; of the clouds' variance
-SAME = 0.03  # relative difference of misfits below which two minima count as one
+POLISH_ROUNDS = 7  # of polishing
+MIN_GAIN, MIN_CLOUD = 2e-3, 0.1  # least gain of a round; of the clouds' variance
+SAME_MISFIT = 0.03  # relative difference of misfits below which two minima count as one
 
 
 @dataclass(frozen=True)
 class Solution:
-    """A minimum of the misfit.
+    """A minimum of the misfit of a hypothesis.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class Solution:
         Of the hypothesis.
     values : dict of str to float
     misfit : float
-        Root mean square of the residuals, large ones by their size: 1 is as far as ``RELATIVE``
+        Root mean square of the residuals, large ones by their size: 1 is as far as ``MODEL_ERROR``
         and the noise allow.
     """
 
@@ -49,7 +49,7 @@ class Solution:
 
 @dataclass
 class Search:
-    """A hypothesis and a record, and how often the motion was computed.
+    """Search for the numbers of a hypothesis that fit a record; counts the computed motions.
 
     Attributes
     ----------
@@ -67,28 +67,30 @@ class Search:
     _last: tuple[dict[str, float], Floats] | None = field(default=None, init=False)
 
     def residuals(self, values: Mapping[str, float]) -> Floats:
-        """What the motion with these numbers misses, shape (sensors, 4, windows)."""
+        """Return the residuals of the motion with these numbers, shape (sensors, 4, windows)."""
         if self._last is None or self._last[0] != values:
             self._last = dict(values), self.computed_residuals(values)
         return self._last[1]
 
     def computed_residuals(self, values: Mapping[str, float]) -> Floats:
-        """The same, computed anew."""
+        """Compute the motion with these numbers and return its residuals, without the cache."""
         from ..errors import FmuError, InputError
 
         self.evaluations += 1
         try:
             motion = self.hypothesis.displacements(values, self.evidence, self.player)
         except (FmuError, InputError):  # numbers that the FMU refuses: nothing to be found there
-            return np.full((len(self.evidence.masses), 4, len(self.evidence.used)), LOST)
+            return np.full(
+                (len(self.evidence.masses), 4, len(self.evidence.used_windows)), UNBOUNDED_RESIDUAL
+            )
         return self.evidence.residuals(motion)
 
     def derivatives(self, values: Mapping[str, float], bounds: Mapping[str, Any]) -> Floats:
-        """Differences of the residuals over those of the numbers, shape (residuals, numbers)."""
+        """Differentiate the residuals by the numbers, shape (residuals, numbers)."""
         here = self.residuals(values).ravel()
         columns = []
         for name in values:
-            step = step_of(self, name)
+            step = difference_step(self, name)
             if values[name] + step > bounds[name][1]:
                 step = -step
             there = self.residuals({**values, name: values[name] + step}).ravel()
@@ -96,7 +98,7 @@ class Search:
         return np.stack(columns, axis=1)
 
     def refine(self, start: Mapping[str, float], steps: int, tolerance: float) -> Solution:
-        """Go downhill from a start (trust region reflective, with bounds)."""
+        """Minimise the misfit from a start (trust region reflective, with bounds)."""
         from lmfit import Minimizer
 
         hypothesis, bounds = self.hypothesis, self.hypothesis.bounds(self.evidence)
@@ -107,7 +109,7 @@ class Search:
         result = minimizer.minimize(
             method="least_squares",
             loss="soft_l1",
-            f_scale=SOFT,
+            f_scale=SOFT_LIMIT,
             x_scale="jac",
             max_nfev=steps,
             ftol=tolerance,
@@ -117,31 +119,37 @@ class Search:
         values = dict(result.params.valuesdict())
         return Solution(hypothesis.name, values, misfit(np.asarray(result.residual)))
 
-    def polish(self, start: Solution, rounds: int = ROUNDS) -> Solution:
-        """Go on from a minimum by regressions over clouds of points.
+    def polish(self, start: Solution, rounds: int = POLISH_ROUNDS) -> Solution:
+        """Improve a minimum by linear regressions over clouds of points.
 
         Impacts that come or stay away make the misfit rugged: a trust region that shrinks after a
         step that failed ends on the first of its bumps. Here each round computes a cloud, as long
         as the valley is, and tries the minimum of its linear model with several dampings.
         """
-        here, shape, size = start, np.diag([step_of(self, name) ** 2 for name in start.values]), 1.0
+        here, shape, size = (
+            start,
+            np.diag([difference_step(self, name) ** 2 for name in start.values]),
+            1.0,
+        )
         bounds = self.hypothesis.bounds(self.evidence)
         for number in range(rounds):
-            model = LinearModel.around(self.residuals, bounds, here.values, size * shape, number)
-            best = self.scan(model.minima(bounds, here.values))[0]
+            model = LinearModel.from_cloud(
+                self.residuals, bounds, here.values, size * shape, number
+            )
+            best = self.rank_starts(model.damped_minima(bounds, here.values))[0]
             if model.lowest < best.misfit:
                 best = Solution(best.name, model.best, model.lowest)
-            shape = model.valley()
-            if best.misfit < (1.0 - GAINED) * here.misfit:
+            shape = model.cloud_covariance()
+            if best.misfit < (1.0 - MIN_GAIN) * here.misfit:
                 here, size = best, min(1.0, 1.5 * size)
-            elif size > SMALLEST:
+            elif size > MIN_CLOUD:
                 size *= 0.2
             else:
                 break
         return here
 
-    def scan(self, starts: Sequence[Mapping[str, float]]) -> list[Solution]:
-        """The misfits of starts, the best first."""
+    def rank_starts(self, starts: Sequence[Mapping[str, float]]) -> list[Solution]:
+        """Compute the misfits at these starts, and return them as solutions, the best first."""
         names = self.hypothesis.bounds(self.evidence)
         found = []
         for start in starts:
@@ -150,14 +158,14 @@ class Search:
             found.append(Solution(self.hypothesis.name, values, size))
         return sorted(found, key=lambda solution: solution.misfit)
 
-    def best(
+    def best_minima(
         self,
         starts: Sequence[Mapping[str, float]],
         keep: int = 3,
         coarse: int = 9,
         fine: int = 25,
     ) -> list[Solution]:
-        """The minima from the best starts, the best first, which is refined to the end.
+        """Minimise from the best starts, then refine the best; return the minima, the best first.
 
         Parameters
         ----------
@@ -167,7 +175,7 @@ class Search:
         coarse, fine : int
             Steps from each of them, and from the best at the end.
         """
-        chosen = self.scan(starts)[:keep]
+        chosen = self.rank_starts(starts)[:keep]
         found = [self.refine(one.values, coarse, 3e-3) for one in chosen]
         found.sort(key=lambda solution: solution.misfit)
         if fine:
@@ -175,15 +183,15 @@ class Search:
         return found
 
 
-def step_of(search: Search, name: str) -> float:
-    """Step of a number for differences."""
+def difference_step(search: Search, name: str) -> float:
+    """Return the step of a number for finite differences."""
     return STEPS[name] * (search.evidence.resonance if name in ("f", "common") else 1.0)
 
 
-def distinct(solutions: Sequence[Solution]) -> list[Solution]:
-    """Minima that differ, the best first."""
+def distinct_minima(solutions: Sequence[Solution]) -> list[Solution]:
+    """Return the minima whose misfits differ, the best first."""
     found: list[Solution] = []
     for one in sorted(solutions, key=lambda solution: solution.misfit):
-        if not found or one.misfit > (1.0 + SAME) * found[-1].misfit:
+        if not found or one.misfit > (1.0 + SAME_MISFIT) * found[-1].misfit:
             found.append(one)
     return found

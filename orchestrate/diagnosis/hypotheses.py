@@ -39,15 +39,15 @@ REPORTED = {  # units and long names
 }
 FREE = tuple(REPORTED)[:6]  # of a delaminated structure
 Values = Mapping[str, float]
-DAMPING = (3e-4, 0.2)  # damping ratios that are looked for
-SPLIT = 0.9  # largest |ln(f2/f1)|
-RESTITUTION = (0.0, 0.95)
-SPLITS = (0.08, -0.08, 0.18, -0.18, 0.3, -0.3, 0.45, -0.45)  # ln(f2/f1) of the scan
-SLOW = 0.01  # of the largest speed: below it friction is viscous
+DAMPING_RANGE = (3e-4, 0.2)  # damping ratios that are looked for
+MAX_SPLIT = 0.9  # largest |ln(f2/f1)|
+RESTITUTION_RANGE = (0.0, 0.95)
+STARTING_SPLITS = (0.08, -0.08, 0.18, -0.18, 0.3, -0.3, 0.45, -0.45)  # ln(f2/f1) of the scan
+SLOW_SHARE = 0.01  # of the largest speed: below it friction is viscous
 
 
 class Hypothesis(ABC):
-    """A kind of structure, with numbers that a fit is to find.
+    """A kind of structure, with the numbers that are fitted to a record.
 
     Attributes
     ----------
@@ -62,22 +62,22 @@ class Hypothesis(ABC):
 
     @abstractmethod
     def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
-        """Values to begin from."""
+        """Return the values at which the search starts."""
 
     @abstractmethod
     def bounds(self, evidence: Evidence) -> dict[str, tuple[float, float]]:
-        """Smallest and largest value of each number that is fitted."""
+        """Return the smallest and largest value of each number that is fitted."""
 
     @abstractmethod
     def displacements(self, values: Values, evidence: Evidence, player: Player | None) -> Floats:
-        """The motion in the measured base, shape (1 or 2, samples), m."""
+        """Compute the motion relative to the measured base, shape (1 or 2, samples), m."""
 
     @abstractmethod
     def reported(self, values: Values, evidence: Evidence) -> dict[str, float]:
-        """The fitted numbers as a user knows them, by the names of ``REPORTED``, in SI."""
+        """Return the fitted numbers as physical parameters in SI, by the names of ``REPORTED``."""
 
     def parameters(self, start: Values, evidence: Evidence) -> Parameters:
-        """Return a start as lmfit takes it."""
+        """Convert a start to lmfit's parameters, clipped to the bounds."""
         from lmfit import Parameters
 
         made = Parameters()
@@ -99,13 +99,13 @@ class Sound(Hypothesis):
     extra: ClassVar[dict[str, tuple[float, float]]] = {}
 
     def bounds(self, evidence: Evidence) -> dict[str, tuple[float, float]]:
-        """Half to twice the frequency of the resonance."""
+        """Return the bounds: half to twice the resonance, the damping, and those of ``extra``."""
         f = evidence.resonance
-        low, high = (math.log(zeta) for zeta in DAMPING)
+        low, high = (math.log(zeta) for zeta in DAMPING_RANGE)
         return {"f": (0.5 * f, 2.0 * f), "log_zeta": (low, high), **self.extra}
 
     def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
-        """The resonance's frequency and width."""
+        """Return starts around the resonance with several damping ratios."""
         f, rest = evidence.resonance, dict.fromkeys(self.extra, 0.0)
         return [
             {"f": shift * f, "log_zeta": math.log(zeta), **rest}
@@ -113,36 +113,36 @@ class Sound(Hypothesis):
             for zeta in (0.01, 0.003, 0.03)
         ]
 
-    def mass(self, values: Values, evidence: Evidence) -> SingleMass:
-        """The structure itself."""
+    def single_mass(self, values: Values, evidence: Evidence) -> SingleMass:
+        """Build the single mass that these values describe."""
         return SingleMass(f=values["f"], zeta=math.exp(values["log_zeta"]))
 
     def displacements(self, values: Values, evidence: Evidence, player: Player | None) -> Floats:
-        """The motion; NaN where it has no bounds."""
+        """Compute the motion of the single mass; NaN from where it diverges."""
         cubics, bound = evidence.pieces.derivatives, 30.0 * evidence.displacement
-        mass = self.mass(values, evidence)
+        mass = self.single_mass(values, evidence)
         return mass.displacements(cubics, 1.0 / evidence.rate, bound)[np.newaxis]
 
     def reported(self, values: Values, evidence: Evidence) -> dict[str, float]:
-        """Those of the single mass."""
-        mass = self.mass(values, evidence)
+        """Return the parameters of the single mass by name."""
+        mass = self.single_mass(values, evidence)
         return {name: getattr(mass, name) for name in ("f", "zeta", *self.extra)}
 
 
 class Bonded(Sound):
-    """A linear spring."""
+    """A bonded structure on a linear spring."""
 
     name = "bonded"
 
 
-class Curved(Sound):
-    """A spring that hardens or softens, the same or not in both directions."""
+class NonlinearSpring(Sound):
+    """A bonded structure on a spring that hardens or softens, symmetrically or not."""
 
     name = "bonded, hardening or softening"
     extra = {"square": (-1.0, 1.0), "cube": (-0.9, 20.0)}
 
     def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
-        """Hardening and softening of several sizes, with the resonance where it is seen."""
+        """Return starts with several cubic stiffnesses that keep the measured resonance."""
         found = []
         for cube in (-0.3, -0.1, 0.0, 0.1, 0.3, 0.7, 1.5):
             f = evidence.resonance / math.sqrt(1.0 + 0.75 * cube)
@@ -152,41 +152,41 @@ class Curved(Sound):
                 found += [{**start, "log_zeta": math.log(zeta)} for zeta in (0.01, 0.004)]
         return found
 
-    def mass(self, values: Values, evidence: Evidence) -> SingleMass:
-        """The structure itself."""
+    def single_mass(self, values: Values, evidence: Evidence) -> SingleMass:
+        """Build the single mass with the square and cubic stiffness of these values."""
         x = evidence.displacement
-        linear = super().mass(values, evidence)
+        linear = super().single_mass(values, evidence)
         return replace(linear, square=values["square"] / x, cube=values["cube"] / x**2)
 
 
-class Rubbing(Sound):
-    """A linear spring with dry friction."""
+class DryFriction(Sound):
+    """A bonded structure on a linear spring with dry friction."""
 
     name = "bonded, with dry friction"
     extra = {"friction": (0.0, 5.0)}  # above 1 it locks
 
     def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
-        """Little and much."""
+        """Return starts with little and much friction, and one that nearly locks the mass."""
         return [
             {**one, "friction": size} for one in super().starts(evidence) for size in (0.02, 0.2)
         ] + [{**super().starts(evidence)[0], "friction": 1.5}]
 
-    def mass(self, values: Values, evidence: Evidence) -> SingleMass:
-        """The structure itself; friction over the base's usual acceleration."""
+    def single_mass(self, values: Values, evidence: Evidence) -> SingleMass:
+        """Build the single mass; its friction is relative to the base's median acceleration."""
         friction = values["friction"] * float(np.median(evidence.level))
-        slow = SLOW * TURN * evidence.resonance * evidence.displacement
-        return replace(super().mass(values, evidence), friction=friction, slow=slow)
+        slow = SLOW_SHARE * TURN * evidence.resonance * evidence.displacement
+        return replace(super().single_mass(values, evidence), friction=friction, slow=slow)
 
 
-class Stopped(Sound):
-    """A linear spring and a stop on one side: a clamp that rattles, a cable that slackens."""
+class StopOnOneSide(Sound):
+    """A bonded structure with a stop on one side: a clamp that rattles, a cable that slackens."""
 
     name = "bonded, with a stop on one side"
     extra = {"stop": (-0.8, 5.0), "position": (-1.0, 1.0)}
     side: ClassVar[float] = 1.0
 
     def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
-        """A weak and a stiff stop, met early and late."""
+        """Return starts with a weak and a stiff stop, met early and late."""
         found = []
         for stop in (-0.3, 0.1, 0.5):
             for position in (0.0, 0.3):
@@ -195,15 +195,15 @@ class Stopped(Sound):
                 found.append({"f": f, "log_zeta": math.log(0.01), **rest})
         return found
 
-    def mass(self, values: Values, evidence: Evidence) -> SingleMass:
-        """The structure itself."""
-        linear = super().mass(values, evidence)
+    def single_mass(self, values: Values, evidence: Evidence) -> SingleMass:
+        """Build the single mass with the stop of these values."""
+        linear = super().single_mass(values, evidence)
         position = values["position"] * evidence.displacement
         return replace(linear, stop=values["stop"], position=position, side=self.side)
 
 
-class StoppedBelow(Stopped):
-    """The same on the other side."""
+class StopOnOtherSide(StopOnOneSide):
+    """A bonded structure with a stop on the other side."""
 
     name = "bonded, with a stop on the other side"
     side = -1.0
@@ -232,9 +232,9 @@ class Delaminated(Hypothesis):
     name: ClassVar[str] = "delaminated"
     is_rugged: ClassVar[bool] = True
 
-    def values_of(self, structure: Structure, evidence: Evidence) -> dict[str, float]:
-        """The numbers of a structure."""
-        zeta = [max(getattr(structure, f"zeta{half}"), DAMPING[0]) for half in (1, 2)]
+    def values_from_structure(self, structure: Structure, evidence: Evidence) -> dict[str, float]:
+        """Convert a structure to the numbers that are fitted."""
+        zeta = [max(getattr(structure, f"zeta{half}"), DAMPING_RANGE[0]) for half in (1, 2)]
         common = math.sqrt((structure.k1 + structure.k2) / (structure.m1 + structure.m2)) / TURN
         return {
             "common": common,
@@ -245,10 +245,10 @@ class Delaminated(Hypothesis):
             "clearance": getattr(structure, "clearance", 0.0) / evidence.displacement,
         }
 
-    def structure(self, values: Values, evidence: Evidence) -> Structure:
-        """The structure of numbers; what is not free is the guess's."""
+    def structure_from_values(self, values: Values, evidence: Evidence) -> Structure:
+        """Convert fitted numbers to a structure; what is not free is taken from the guess."""
         m1, m2 = self.guess.m1, self.guess.m2
-        values = {**self.values_of(self.guess, evidence), **values}
+        values = {**self.values_from_structure(self.guess, evidence), **values}
         split = math.exp(values["split"])
         f1 = values["common"] * math.sqrt((m1 + m2) / (m1 + m2 * split**2))
         numbers = {
@@ -262,14 +262,14 @@ class Delaminated(Hypothesis):
         return self.guess.replace(bonded=False, **{name: numbers[name] for name in self.free})
 
     def bounds(self, evidence: Evidence) -> dict[str, tuple[float, float]]:
-        """Of what is free."""
-        f, (low, high) = evidence.resonance, [math.log(zeta) for zeta in DAMPING]
+        """Return the bounds of the numbers that are free."""
+        f, (low, high) = evidence.resonance, [math.log(zeta) for zeta in DAMPING_RANGE]
         every = {
             "common": (0.6 * f, 1.6 * f),
-            "split": (-SPLIT, SPLIT),
+            "split": (-MAX_SPLIT, MAX_SPLIT),
             "log_zeta1": (low, high),
             "log_zeta2": (low, high),
-            "e": RESTITUTION,
+            "e": RESTITUTION_RANGE,
             "clearance": (-2.0, 2.0),
         }
         names = {
@@ -279,9 +279,9 @@ class Delaminated(Hypothesis):
         return {name: every[name] for name, of in names.items() if of & set(self.free)}
 
     def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
-        """A scan over the split of the halves, their common frequency and restitution."""
-        guess, found = self.values_of(self.guess, evidence), []
-        for split in SPLITS:
+        """Return a grid of starts over split, common frequency and restitution."""
+        guess, found = self.values_from_structure(self.guess, evidence), []
+        for split in STARTING_SPLITS:
             for shift in (0.96, 1.0, 1.04):
                 for e in (0.35, 0.7):
                     common = shift * evidence.resonance * math.sqrt(1.0 + 0.25 * split**2)
@@ -289,43 +289,44 @@ class Delaminated(Hypothesis):
         return found
 
     def reported(self, values: Values, evidence: Evidence) -> dict[str, float]:
-        """Those of the structure that are free."""
-        structure = self.structure(values, evidence)
+        """Return the structure's parameters that are free, by name."""
+        structure = self.structure_from_values(values, evidence)
         return {name: float(structure.get(name)) for name in self.free}
 
     def displacements(self, values: Values, evidence: Evidence, player: Player | None) -> Floats:
-        """The motion by the FMU."""
+        """Compute the motion of both masses by the FMU."""
         assert player is not None
-        player.start(self.structure(values, evidence))
+        player.start(self.structure_from_values(values, evidence))
         nodes = evidence.pieces.nodes
         return player.play(nodes, evidence.pieces.derivatives, nodes, ("x1", "x2")).rows.T
 
 
 class DelaminatedWithClearance(Delaminated):
-    """The same with a gap between the faces at rest, or pressed together by a preload."""
+    """Two masses with a gap between the faces at rest, or pressed together by a preload."""
 
     name: ClassVar[str] = "delaminated, with clearance"
 
     def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
-        """Halves that strike each other, and such that move alone up to a gap: then the
-        resonance is that of the one with the sensor.
+        """Return starts with halves that strike each other, and with halves that move alone.
+
+        Those move alone up to a gap: then the resonance is that of the half with the sensor.
         """
-        guess, found = self.values_of(self.guess, evidence), []
+        guess, found = self.values_from_structure(self.guess, evidence), []
         m1, m2 = self.guess.m1, self.guess.m2
-        for split in SPLITS:
+        for split in STARTING_SPLITS:
             for gap in (0.05, 0.1, 0.2, 0.4, 0.7):
                 common = evidence.resonance * math.sqrt(1.0 + 0.25 * split**2)
                 found.append({**guess, "common": common, "split": split, "clearance": gap})
         peaks = evidence.peaks
-        splits = [math.log(peaks[1] / peaks[0])] if len(peaks) == 2 else list(SPLITS)
+        splits = [math.log(peaks[1] / peaks[0])] if len(peaks) == 2 else list(STARTING_SPLITS)
         for split in splits:
             f1 = peaks[0] if evidence.masses[0] == 0 else peaks[0] * math.exp(-split)
             common = f1 * math.sqrt((m1 + m2 * math.exp(2.0 * split)) / (m1 + m2))
             for share in (1.0, 0.96, 0.92):
                 for gap in (0.05, 0.1, 0.2, 0.4, 0.7, 1.0, 1.4):
-                    place = {"common": share * common, "split": split, "clearance": gap}
-                    found.append({**guess, **place})
+                    moved = {"common": share * common, "split": split, "clearance": gap}
+                    found.append({**guess, **moved})
         return found
 
 
-SOUND = (Bonded(), Curved(), Rubbing(), Stopped(), StoppedBelow())
+SOUND = (Bonded(), NonlinearSpring(), DryFriction(), StopOnOneSide(), StopOnOtherSide())

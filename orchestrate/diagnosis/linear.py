@@ -16,15 +16,15 @@ from .misfit import misfit, soft_weights
 
 Floats = NDArray[np.float64]
 Bounds = Mapping[str, tuple[float, float]]
-POINTS = 4  # of a cloud, for each number
+POINTS_PER_NUMBER = 4  # of a cloud, for each number
 SEED = 20_241
-VALLEY = 0.3  # by which part the squares grow in the cloud
+CLOUD_GROWTH = 0.3  # by which part the squares grow in the cloud
 DAMPINGS = (0.0, 0.01, 0.1, 1.0)
 
 
 @dataclass(frozen=True)
 class LinearModel:
-    """Residuals ``residuals + slopes (values - here)``.
+    """Linear regression of the residuals: ``residuals + slopes (values - here)``.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class LinearModel:
     scatter: Floats
 
     @classmethod
-    def around(
+    def from_cloud(
         cls,
         residuals: Callable[[Mapping[str, float]], Floats],
         bounds: Bounds,
@@ -54,7 +54,7 @@ class LinearModel:
         covariance: Floats,
         seed: int = 0,
     ) -> LinearModel:
-        """Compute a cloud of points around numbers, and the regression over it.
+        """Compute the residuals at a cloud of points around these values, and their regression.
 
         Parameters
         ----------
@@ -70,7 +70,7 @@ class LinearModel:
         count = len(values)
         rng = np.random.default_rng([SEED, seed])
         sizes, axes = np.linalg.eigh(covariance)
-        normal = rng.standard_normal((POINTS * count, count))
+        normal = rng.standard_normal((POINTS_PER_NUMBER * count, count))
         normal -= normal.mean(axis=0)
         offsets = (normal * np.sqrt(np.maximum(sizes, 0.0))) @ axes.T
         here = np.array(list(values.values()))
@@ -90,32 +90,32 @@ class LinearModel:
         return cls(residuals_here, slopes, named[number], sizes_of_rows[number], scatter)
 
     @property
-    def weighted(self) -> Floats:
+    def weighted_slopes(self) -> Floats:
         """Slopes times the weights of the soft loss, one row a residual."""
         weights = soft_weights(self.residuals)
         return (self.slopes * weights[..., np.newaxis]).reshape(-1, self.slopes.shape[-1])
 
     @property
-    def information(self) -> Floats:
-        """``J'WJ``."""
-        return self.weighted.T @ self.slopes.reshape(-1, self.slopes.shape[-1])
+    def normal_matrix(self) -> Floats:
+        """Matrix ``J'WJ`` of the normal equations."""
+        return self.weighted_slopes.T @ self.slopes.reshape(-1, self.slopes.shape[-1])
 
     @property
     def influence(self) -> Floats:
-        """``-(J'WJ)^-1``, scaled so that no unit matters."""
-        information = self.information
+        """Matrix ``-(J'WJ)^-1``, from changes of ``J'W residuals`` to shifts of the minimum."""
+        information = self.normal_matrix
         size = np.sqrt(np.maximum(np.diag(information), 1e-300))
         scaled = information / np.outer(size, size)
         return -np.linalg.pinv(scaled, hermitian=True, rcond=1e-9) / np.outer(size, size)
 
-    def valley(self) -> Floats:
-        """Covariance of a cloud in which the misfit grows by a given part."""
+    def cloud_covariance(self) -> Floats:
+        """Return the covariance of a cloud in which the squares grow by ``CLOUD_GROWTH``."""
         squares = float(np.sum(self.residuals.ravel() ** 2))
-        return np.asarray(-self.influence * VALLEY * squares / len(self.influence))
+        return np.asarray(-self.influence * CLOUD_GROWTH * squares / len(self.influence))
 
-    def minima(self, bounds: Bounds, values: Mapping[str, float]) -> list[dict[str, float]]:
-        """Numbers at the minimum of the model, with dampings from none to much."""
-        information, slope = self.information, self.weighted.T @ self.residuals.ravel()
+    def damped_minima(self, bounds: Bounds, values: Mapping[str, float]) -> list[dict[str, float]]:
+        """Return the model's minimum within the bounds, for each damping from none to much."""
+        information, slope = self.normal_matrix, self.weighted_slopes.T @ self.residuals.ravel()
         size = np.diag(np.maximum(np.diag(information), 1e-300))
         found = []
         for damping in DAMPINGS:
@@ -126,5 +126,5 @@ class LinearModel:
 
 
 def clipped(value: float, bounds: tuple[float, float]) -> float:
-    """A number in its bounds."""
+    """Clip a number to its bounds."""
     return float(min(max(value, bounds[0]), bounds[1]))

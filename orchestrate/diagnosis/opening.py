@@ -22,7 +22,7 @@ Floats = NDArray[np.float64]
 
 
 def opening_force(structure: Structure, frequency: ArrayLike) -> Floats:
-    """Amplitude of the force between the faces of a bonded structure, over the box's acceleration.
+    """Return the force amplitude between bonded faces, over the box's acceleration, in kg.
 
     With M = m1 + m2, K = k1 + k2, D = d1 + d2 and the box's acceleration A sin(w t), the motion of
     both masses in the box has the complex amplitude X = -M A/(K - w^2 M + i w D), and the force on
@@ -57,7 +57,7 @@ def opening_force(structure: Structure, frequency: ArrayLike) -> Floats:
 
 
 def sweep_rate(f: float, zeta: float) -> float:
-    """Fastest linear sweep that shows a resonance as a steady sine does, Hz/s.
+    """Return the fastest linear sweep that shows a resonance as a steady sine does, Hz/s.
 
     54 f^2/Q^2 Hz/min with Q = 1/(2 zeta): ISO 7626-2, and Gloth and Sinapius, Mech. Syst. Signal
     Process. 18 (2004) 1421-1441.

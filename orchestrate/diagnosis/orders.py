@@ -25,15 +25,18 @@ Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 ORDERS = (1.0, 2.0, 3.0, 0.5)
 OFF_ORDERS = (1.37, 2.37, 2.63)  # no multiples of 1/2, 1/3 or 1/4: what is there is no order
-FASTEST = 0.25  # s, shortest window
-SLOWEST = 1.0  # s, longest window, if it holds enough periods
-PERIODS = 8.0  # of the excitation in a window, at least: they separate the orders 0.5, 1 and 1.37
-GLIDE = 0.006  # relative change of the frequency in a window that may be longer than FASTEST
+SHORTEST_WINDOW = 0.25  # s, shortest window
+LONGEST_WINDOW = 1.0  # s, longest window, if it holds enough periods
+# Least number of excitation periods in a window: they separate the orders 0.5, 1 and 1.37
+MIN_PERIODS = 8.0
+# Relative change of the frequency in a window that may be longer than SHORTEST_WINDOW
+MAX_GLIDE = 0.006
 OVERLAP = 0.5
-QUIET = 0.05  # of the usual amplitude of the base: windows below are not used
-NO_SINE = 0.5  # rms of what the base does beside its orders, over the rms of order 1
-FEWEST = 8  # windows
-KEPT = 11.0  # samples in a period of the highest frequency: order 3 has more than three then
+MIN_LEVEL = 0.05  # of the usual amplitude of the base: windows below are not used
+MAX_DISTORTION = 0.5  # rms of what the base does beside its orders, over the rms of order 1
+MIN_WINDOWS = 8  # windows
+# Samples in a period of the highest frequency: order 3 has more than three then
+SAMPLES_PER_PERIOD = 11.0
 EXPECTED = "not described by this method: expected a swept or stepped sine"
 
 
@@ -71,8 +74,8 @@ class OrderWindows:
     def __len__(self) -> int:
         return len(self.parts)
 
-    def chosen(self, windows: NDArray[np.intp], count: int) -> OrderWindows:
-        """Return some of the windows with the first ``count`` orders, for many channels to come."""
+    def select(self, windows: NDArray[np.intp], count: int) -> OrderWindows:
+        """Return these windows with the first ``count`` orders, contiguous for fast products."""
         return OrderWindows(
             self.time[windows],
             self.frequency[windows],
@@ -84,8 +87,8 @@ class OrderWindows:
             self.samples,
         )
 
-    def of_displacements(self) -> csr_array:
-        """Return the matrix from displacements to the amplitudes of their accelerations.
+    def displacement_operator(self) -> csr_array:
+        """Return the sparse matrix from displacements to the orders of their accelerations.
 
         Rows are orders, real and imaginary parts, and windows, in this order. A channel's second
         differences at its samples stand for its acceleration; at both ends the next ones do.
@@ -108,14 +111,14 @@ class OrderWindows:
         ]
         return vstack(blocks).tocsr()
 
-    def cut(self, windows: NDArray[np.intp], samples: slice) -> OrderWindows:
-        """Return some of the windows, of a record that is cut to some of its samples."""
-        some = self.chosen(windows, len(self.orders))
+    def select_and_cut(self, windows: NDArray[np.intp], samples: slice) -> OrderWindows:
+        """Return these windows, renumbered for a record that is cut to these samples."""
+        some = self.select(windows, len(self.orders))
         parts = (slice(p.start - samples.start, p.stop - samples.start) for p in some.parts)
         return replace(some, parts=tuple(parts), samples=samples.stop - samples.start)
 
     def amplitudes(self, values: Floats, later: float = 0.0) -> Complexes:
-        """Complex amplitudes of channels, shape (channels, orders, windows).
+        """Compute the complex amplitudes of channels, shape (channels, orders, windows).
 
         Parameters
         ----------
@@ -134,7 +137,7 @@ class OrderWindows:
 
 @dataclass(frozen=True)
 class RecordOrders:
-    """Orders of a record.
+    """Orders of a record's channels, with the floor between the orders.
 
     Attributes
     ----------
@@ -155,7 +158,7 @@ class RecordOrders:
     noise: Floats
 
     def order(self, number: float, channel: str) -> Complexes:
-        """Complex amplitudes of an order in a channel, m/s2, shape (windows,)."""
+        """Return the complex amplitudes of an order in a channel, m/s2, shape (windows,)."""
         row = self.channels.names.index(channel)
         return np.asarray(self.amplitude[row, ORDERS.index(number)])
 
@@ -171,7 +174,7 @@ class RecordOrders:
 
 
 def record_orders(record: xr.Dataset) -> RecordOrders:
-    """Orders of a record of a swept or stepped sine.
+    """Compute the orders of a record of a swept or stepped sine.
 
     Parameters
     ----------
@@ -190,11 +193,11 @@ def record_orders(record: xr.Dataset) -> RecordOrders:
     of whole orders may change at a constant rate. A window lasts 0.25 s, longer where the sweep is
     slow or where it would have less than 8 periods.
     """
-    return orders_of(checked_channels(record))
+    return channel_orders(checked_channels(record))
 
 
 def checked_channels(record: xr.Dataset) -> Channels:
-    """The channels of a record that has the base's and one of the structure's.
+    """Check that a record has the base's channel and one of the structure's, and return them.
 
     Raises
     ------
@@ -210,17 +213,17 @@ def checked_channels(record: xr.Dataset) -> Channels:
     return channels
 
 
-def orders_of(channels: Channels) -> RecordOrders:
-    """Orders of channels; see :func:`record_orders`."""
-    windows, amplitude = windows_of(channels)
+def channel_orders(channels: Channels) -> RecordOrders:
+    """Compute the orders of channels and their floors; see :func:`record_orders`."""
+    windows, amplitude = sine_windows(channels)
     whole, off = amplitude[:, : len(ORDERS)], amplitude[:, len(ORDERS) :]
     squares = np.nanmean(np.abs(off) ** 2, axis=1)
-    floor = np.sqrt(np.stack([smoothed(row) for row in squares]))
+    floor = np.sqrt(np.stack([moving_average(row) for row in squares]))
     return RecordOrders(windows, channels, whole, floor, np.quantile(floor, 0.2, axis=1))
 
 
-def thinned(channels: Channels, highest: float, kept: float = KEPT) -> Channels:
-    """Every second, third, ... sample of channels, low-passed before, if enough of them are left.
+def decimated(channels: Channels, highest: float, kept: float = SAMPLES_PER_PERIOD) -> Channels:
+    """Low-pass and decimate channels by a whole factor, if enough samples are left.
 
     Parameters
     ----------
@@ -242,8 +245,8 @@ def thinned(channels: Channels, highest: float, kept: float = KEPT) -> Channels:
     return replace(channels, time=time, sample_rate=rate, values=values)
 
 
-def smoothed(values: Floats, width: int = 5) -> Floats:
-    """Mean over neighbouring windows."""
+def moving_average(values: Floats, width: int = 5) -> Floats:
+    """Return the moving average over neighbouring windows."""
     kernel = np.ones(min(width, len(values)))
     return np.convolve(values, kernel, "same") / np.convolve(np.ones(len(values)), kernel, "same")
 
@@ -251,8 +254,8 @@ def smoothed(values: Floats, width: int = 5) -> Floats:
 # -- windows --------------------------------------------------------------------------------------
 
 
-def windows_of(channels: Channels) -> tuple[OrderWindows, Complexes]:
-    """Windows in which the base moves as a sine, and the amplitudes of all channels there.
+def sine_windows(channels: Channels) -> tuple[OrderWindows, Complexes]:
+    """Find the windows in which the base moves as a sine, and all channels' amplitudes in them.
 
     Raises
     ------
@@ -260,39 +263,47 @@ def windows_of(channels: Channels) -> tuple[OrderWindows, Complexes]:
         Where there are few of them.
     """
     phase = measured_phase(channels)
-    usable = [one for one in divided(channels, phase) if one.frequency * channels.duration > 1.0]
+    usable = [
+        one
+        for one in overlapping_windows(channels, phase)
+        if one.frequency * channels.duration > 1.0
+    ]
     usable = [one for one in usable if one.frequency < NYQUIST * channels.sample_rate]
-    if len(usable) < FEWEST:
-        text = f"{EXPECTED}, of {FEWEST * PERIODS / 2:g} periods or more"
+    if len(usable) < MIN_WINDOWS:
+        text = f"{EXPECTED}, of {MIN_WINDOWS * MIN_PERIODS / 2:g} periods or more"
         raise InputError(f"{BOX}: no sine of moving frequency in {channels.duration:.4g} s; {text}")
     row = channels.names.index(BOX)
-    solutions = [referenced(channels.box, one, solved(one, channels.sample_rate)) for one in usable]
-    windows = put_together(channels, usable, solutions)
+    solutions = [
+        referred_to_base(channels.box, one, least_squares_matrix(one, channels.sample_rate))
+        for one in usable
+    ]
+    windows = assembled_windows(channels, usable, solutions)
     amplitude = windows.amplitudes(channels.values)
     level = np.abs(amplitude[row, 0])
     rest = [
-        rms_beside(channels.box, one, a) for one, a in zip(usable, amplitude[row].T, strict=True)
+        rms_without_order_1(channels.box, one, a)
+        for one, a in zip(usable, amplitude[row].T, strict=True)
     ]
-    sine = np.asarray(rest) <= NO_SINE * level * 0.5**0.5
-    good = sine & (level >= QUIET * np.median(level))
-    if good.sum() < max(FEWEST, 0.5 * len(good)):
+    sine = np.asarray(rest) <= MAX_DISTORTION * level * 0.5**0.5
+    good = sine & (level >= MIN_LEVEL * np.median(level))
+    if good.sum() < max(MIN_WINDOWS, 0.5 * len(good)):
         text = f"no sine in {np.sum(~sine)} of {len(good)} windows"
         raise InputError(f"{BOX}: {text}; {EXPECTED}")
     kept = np.flatnonzero(good)
-    windows = put_together(channels, [usable[i] for i in kept], [solutions[i] for i in kept])
+    windows = assembled_windows(channels, [usable[i] for i in kept], [solutions[i] for i in kept])
     return windows, amplitude[:, :, kept]
 
 
-def divided(channels: Channels, phase: Floats) -> list[Window]:
-    """Windows over a record that overlap by a half, each with the smoothed phase."""
+def overlapping_windows(channels: Channels, phase: Floats) -> list[Window]:
+    """Divide a record into overlapping windows, each with its smoothed phase."""
     turns = (phase[-1] - phase[0]) / TURN
     usual = turns / channels.duration
-    glide = GLIDE * usual / max(sweep_rate(phase, channels), 1e-12)
-    shortest = min(max(FASTEST, glide), SLOWEST)
+    glide = MAX_GLIDE * usual / max(median_sweep_rate(phase, channels), 1e-12)
+    shortest = min(max(SHORTEST_WINDOW, glide), LONGEST_WINDOW)
     begin, end = np.searchsorted(phase, [phase[0] + EDGE * TURN, phase[-1] - EDGE * TURN])
     found, now = [], int(begin)
     while now < end:
-        periods = int(np.searchsorted(phase, phase[now] + PERIODS * TURN))
+        periods = int(np.searchsorted(phase, phase[now] + MIN_PERIODS * TURN))
         last = max(periods, now + round(shortest * channels.sample_rate))
         if last > end:
             break
@@ -301,17 +312,17 @@ def divided(channels: Channels, phase: Floats) -> list[Window]:
     return found
 
 
-def sweep_rate(phase: Floats, channels: Channels) -> float:
-    """Usual size of the frequency's derivative, Hz/s."""
+def median_sweep_rate(phase: Floats, channels: Channels) -> float:
+    """Estimate the median size of the frequency's derivative, Hz/s."""
     marks = np.linspace(0, len(phase) - 1, 21).astype(int)
     frequency = np.diff(phase[marks]) / np.diff(marks) * channels.sample_rate / TURN
     return float(np.median(np.abs(np.diff(frequency)))) * 20.0 / channels.duration
 
 
-def put_together(
+def assembled_windows(
     channels: Channels, windows: list[Window], solutions: list[Complexes]
 ) -> OrderWindows:
-    """Windows and their least squares."""
+    """Collect windows and their least-squares matrices in one object."""
     return OrderWindows(
         np.array([one.time for one in windows]),
         np.array([one.frequency for one in windows]),
@@ -324,8 +335,8 @@ def put_together(
     )
 
 
-def solved(one: Window, sample_rate: float) -> Complexes:
-    """The least squares of a window as a matrix, shape (orders, samples); see :func:`.fit`."""
+def least_squares_matrix(one: Window, sample_rate: float) -> Complexes:
+    """Compute the least-squares matrix of a window, shape (orders, samples)."""
     orders = (*ORDERS, *OFF_ORDERS)
     resolved = [n for n in orders if n * one.frequency <= NYQUIST * sample_rate]
     columns, first = [np.ones_like(one.offset)], {}
@@ -344,15 +355,15 @@ def solved(one: Window, sample_rate: float) -> Complexes:
     return found
 
 
-def referenced(box: Floats, one: Window, solution: Complexes) -> Complexes:
-    """The same with the phase of the base's own order 1 as phase."""
+def referred_to_base(box: Floats, one: Window, solution: Complexes) -> Complexes:
+    """Refer the phases of a window's matrix to the base's own order 1."""
     shift = np.angle(solution[0] @ box[one.part])
     turn = np.exp(-1j * np.array([*ORDERS, *OFF_ORDERS]) * shift)
     return np.ascontiguousarray((solution * turn[:, None]).T)
 
 
-def rms_beside(box: Floats, one: Window, amplitude: Complexes) -> float:
-    """Weighted root mean square of what the base does beside its order 1, m/s2."""
+def rms_without_order_1(box: Floats, one: Window, amplitude: Complexes) -> float:
+    """Return the weighted root mean square of the base's motion beside its order 1, m/s2."""
     values = box[one.part] - np.average(box[one.part], weights=one.weights)
     power = np.average(values**2, weights=one.weights)
     return float(np.sqrt(max(power - 0.5 * abs(amplitude[0]) ** 2, 0.0)))

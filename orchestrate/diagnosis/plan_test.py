@@ -1,4 +1,4 @@
-"""Where a test shows the difference between the delaminated and the sound structure best."""
+"""The frequencies and levels at which a test shows a delamination best."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from ..response.labels import variable, yes_or_no
 from ..running.options import Running
 from ..structures import Structure
 from .opening import opening_force, sweep_rate
-from .sound import SoundStructure
+from .undamaged import SoundStructure
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,10 +30,10 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 ORDERS = (1.0, 2.0, 3.0)
 SPLITS = (1.0, 0.2)  # parts of the guess's difference between its halves that are computed
-SAMPLES = 20.0  # of the computed records, in a period of the highest frequency
-LONGEST = 120.0  # s of a computed sweep; a lighter damping would ask for more
-MARGIN = 2.0  # of the threshold, that a recommended level has
-ROOM = 0.1  # of the recommended range, on both sides
+SAMPLES_PER_PERIOD = 20.0  # of the computed records, in a period of the highest frequency
+MAX_DURATION = 120.0  # s of a computed sweep; a lighter damping would ask for more
+LEVEL_MARGIN = 2.0  # of the threshold, that a recommended level has
+RANGE_MARGIN = 0.1  # of the recommended range, on both sides
 BOX = "box_acceleration"
 
 
@@ -59,8 +59,8 @@ class Sweep:
     peak: float
     level: float
 
-    def at(self, level: float) -> Sweep:
-        """The same at another level, of a structure that is the same at all levels."""
+    def scaled_to(self, level: float) -> Sweep:
+        """Scale the sweep to another level; valid for structures without clearance."""
         scale = level / self.level
         return Sweep(
             scale * self.delaminated,
@@ -73,7 +73,7 @@ class Sweep:
 
 @dataclass(frozen=True)
 class Noise:
-    """What sensors add to an order in a window.
+    """Noise and gain errors that sensors add to an order in a window.
 
     Attributes
     ----------
@@ -90,7 +90,7 @@ class Noise:
     gain_error: float
 
     def distances(self, sweep: Sweep, frequency: Floats) -> tuple[Floats, Floats]:
-        """Distance between both structures by order 1, and by orders 2 and 3.
+        """Compute the distance between both structures by order 1, and by orders 2 and 3.
 
         In standard deviations of a complex amplitude. Least squares with Hann's weights over n
         samples of a noise of variance s^2 have the variance 6 s^2/n; with a density of c^2 at the
@@ -185,17 +185,17 @@ def plan_test(
     wanted = checked_levels(levels)
     sensors = sensors_of(sensor)
     limit = checked_number("threshold", threshold, 1e-3, 1e6)
-    noise = noise_of(sensors, checked_number("periods", periods, 2.0, 1e4), gain_error)
+    noise = checked_noise(sensors, checked_number("periods", periods, 2.0, 1e4), gain_error)
     if running.get("store") is not None:
         raise InputError("store: expected none; the answer is small, write it by to_netcdf")
-    test = Test(structure, sensors, f, noise, running)
-    sweeps = test.at_levels(wanted)
-    return dataset(test, sweeps, limit, test.largest_distances(sweeps[-1]))
+    test = SweepComputation(structure, sensors, f, noise, running)
+    sweeps = test.sweeps_at(wanted)
+    return plan_dataset(test, sweeps, limit, test.largest_distances(sweeps[-1]))
 
 
 @dataclass(frozen=True)
-class Test:
-    """What is computed of a structure under test.
+class SweepComputation:
+    """Compute sweeps of a structure and of its sound form at the planned frequencies.
 
     Attributes
     ----------
@@ -208,8 +208,6 @@ class Test:
         Keywords of :class:`orchestrate.running.options.Running`.
     """
 
-    __test__ = False  # a name that pytest would collect
-
     structure: Structure
     sensors: dict[str, Sensor]
     frequency: Floats
@@ -218,45 +216,45 @@ class Test:
 
     @property
     def sound(self) -> SoundStructure:
-        """The bonded structure."""
+        """Bonded form of the structure."""
         return SoundStructure.from_structure(self.structure)
 
     @property
     def duration(self) -> float:
-        """Of a sweep over all frequencies, s, as ISO 7626-2 asks for."""
+        """Duration of a sweep over all frequencies, s, as ISO 7626-2 asks for."""
         rate = max(sweep_rate(self.sound.f, self.sound.zeta), 1e-9)
         fewest = 4.0 * self.noise.periods / self.frequency[0]
         return max(float(self.frequency[-1] - self.frequency[0]) / rate, fewest)
 
-    def at_levels(self, levels: Floats) -> list[Sweep]:
-        """A sweep at each level."""
+    def sweeps_at(self, levels: Floats) -> list[Sweep]:
+        """Compute the sweep at each level; without a clearance one is computed and scaled."""
         if self.structure.has_scale:
-            return [self.computed(self.structure, level) for level in levels]
-        computed = self.computed(self.structure, float(levels[-1]))
-        return [computed.at(level) for level in levels]
+            return [self.simulated_sweep(self.structure, level) for level in levels]
+        computed = self.simulated_sweep(self.structure, float(levels[-1]))
+        return [computed.scaled_to(level) for level in levels]
 
     def largest_distances(self, highest: Sweep) -> Floats:
-        """Largest distances by orders 2 and 3 at the highest level, of each split in ``SPLITS``."""
+        """Return the largest distance by orders 2 and 3 for each of ``SPLITS``."""
         sweeps = [
             highest
             if part == 1.0
-            else self.computed(with_split(self.structure, part), highest.level)
+            else self.simulated_sweep(with_split(self.structure, part), highest.level)
             for part in SPLITS
         ]
         return np.array(
             [float(self.noise.distances(one, self.frequency)[1].max()) for one in sweeps]
         )
 
-    def computed(self, structure: Structure, level: float) -> Sweep:
-        """A sweep over all frequencies, and its orders."""
+    def simulated_sweep(self, structure: Structure, level: float) -> Sweep:
+        """Simulate a sweep over all frequencies at this level, and return its orders."""
         f = self.frequency
         sine = SweptSine(
             first=float(f[0]),
             last=float(f[-1]),
-            duration=min(self.duration, LONGEST),
+            duration=min(self.duration, MAX_DURATION),
             acceleration=level,
         )
-        rate = SAMPLES * float(f[-1])
+        rate = SAMPLES_PER_PERIOD * float(f[-1])
         history = shake(structure, sine, sample_rate=rate, **self.running)
         quiet = {
             name: replace(one, noise=0.0, range=math.inf, resolution=0.0, sample_rate=rate)
@@ -271,7 +269,7 @@ class Test:
         both = Channels(channels.time, rate, (BOX, *names, "sound"), rows, channels.title)
         windows, amplitudes, _ = fit_windows(both, ORDERS, None, self.noise.periods, 0.5)
         at = np.array([window.frequency for window in windows])
-        found = along(f, at, amplitudes[1:])
+        found = interpolated(f, at, amplitudes[1:])
         sound = np.zeros_like(found[:-1])
         sound[:, 0] = found[-1, 0]
         gaps = [largest_gap(history, both.time[one.part]) for one in windows]
@@ -279,8 +277,8 @@ class Test:
         return Sweep(found[:-1], sound, np.interp(f, at, gaps), peak, level)
 
 
-def along(frequency: Floats, at: Floats, amplitudes: Floats) -> Floats:
-    """Amplitudes at other frequencies, straight between the windows."""
+def interpolated(frequency: Floats, at: Floats, amplitudes: Floats) -> Floats:
+    """Interpolate the windows' amplitudes linearly at other frequencies."""
     flat = amplitudes.reshape(-1, len(at))
     return np.array([np.interp(frequency, at, row) for row in flat]).reshape(
         *amplitudes.shape[:-1], len(frequency)
@@ -288,12 +286,12 @@ def along(frequency: Floats, at: Floats, amplitudes: Floats) -> Floats:
 
 
 def largest_gap(history: xr.Dataset, times: Floats) -> float:
-    """Largest gap of a history in a window, m."""
+    """Return the largest gap of a history within these times, m."""
     return float(history.x_rel.sel(time=slice(times[0], times[-1])).max())
 
 
 def with_split(structure: Structure, part: float) -> Structure:
-    """A structure whose halves differ by a part of what they did; bonded it is the same."""
+    """Scale the difference between a structure's halves, with the same bonded form."""
     share = structure.m1 / (structure.m1 + structure.m2)
     k, d = structure.k1 + structure.k2, structure.d1 + structure.d2
     k1 = share * k + part * (structure.k1 - share * k)
@@ -305,13 +303,13 @@ def with_split(structure: Structure, part: float) -> Structure:
 
 
 def checked_frequencies(frequencies: ArrayLike) -> Floats:
-    """Ascending frequencies, Hz.
+    """Check that frequencies ascend, and return them in Hz.
 
     Raises
     ------
     InputError
     """
-    f = numbers("frequencies", frequencies, "Hz")
+    f = checked_positive("frequencies", frequencies, "Hz")
     if len(f) < 2 or not (np.diff(f) > 0.0).all():
         text = "expected two at least, ascending, in Hz"
         raise InputError(f"frequencies = {frequencies!r}: {text}")
@@ -319,12 +317,12 @@ def checked_frequencies(frequencies: ArrayLike) -> Floats:
 
 
 def checked_levels(levels: ArrayLike) -> Floats:
-    """Levels in ascending order, m/s2."""
-    return np.unique(numbers("levels", levels, "m/s2"))
+    """Check that levels are positive, and return them in ascending order, m/s2."""
+    return np.unique(checked_positive("levels", levels, "m/s2"))
 
 
-def numbers(name: str, given: ArrayLike, unit: str) -> Floats:
-    """Numbers > 0.
+def checked_positive(name: str, given: ArrayLike, unit: str) -> Floats:
+    """Check that all numbers are finite and > 0, and return them as an array.
 
     Raises
     ------
@@ -339,8 +337,8 @@ def numbers(name: str, given: ArrayLike, unit: str) -> Floats:
     return values
 
 
-def noise_of(sensors: dict[str, Sensor], periods: float, gain_error: float) -> Noise:
-    """Noise of the responses' sensors.
+def checked_noise(sensors: dict[str, Sensor], periods: float, gain_error: float) -> Noise:
+    """Check that the responses' sensors have a noise, and return it with their gain error.
 
     Raises
     ------
@@ -361,10 +359,10 @@ def noise_of(sensors: dict[str, Sensor], periods: float, gain_error: float) -> N
 # -- the answer -----------------------------------------------------------------------------------
 
 
-def dataset(
-    test: Test, sweeps: Sequence[Sweep], limit: float, split_distances: Floats
+def plan_dataset(
+    test: SweepComputation, sweeps: Sequence[Sweep], limit: float, split_distances: Floats
 ) -> xr.Dataset:
-    """The answer, from a sweep at each level."""
+    """Assemble the dataset of a plan from a sweep at each level."""
     import xarray as xr
 
     f, levels = test.frequency, np.array([sweep.level for sweep in sweeps])
@@ -392,17 +390,17 @@ def dataset(
         },
         attributes("plan_test", "Plan of a test", test.structure.label()),
     )
-    return answer.assign(recommended(test, answer))
+    return answer.assign(recommended_sweep(test, answer))
 
 
 def thresholds(
-    test: Test, sweeps: Sequence[Sweep], limit: float, higher: Floats, opening: Floats
+    test: SweepComputation, sweeps: Sequence[Sweep], limit: float, higher: Floats, opening: Floats
 ) -> dict[str, Any]:
-    """From which level and which opening on orders 2 and 3 count, and where readings are cut.
+    """Return the smallest levels and openings that count, and where sensors overload.
 
     Parameters
     ----------
-    test : Test
+    test : SweepComputation
     sweeps : sequence of Sweep
     limit : float
         Difference that counts.
@@ -413,20 +411,20 @@ def thresholds(
     with np.errstate(divide="ignore", invalid="ignore"):
         smallest = np.where(higher[-1] > 0.0, limit * sweeps[-1].level / higher[-1], np.inf)
         open_from = test.structure.preload / force
-        told = np.where(higher > 0.0, opening * limit / higher, np.inf).min(axis=1)
+        smallest_gap = np.where(higher > 0.0, opening * limit / higher, np.inf).min(axis=1)
     ranges = min(one.range for name, one in test.sensors.items() if name != BOX)
     cut = np.array([sweep.peak > ranges for sweep in sweeps])
     level, opens = "level from which orders 2 and 3 count", "level from which the faces open"
     return {
         "smallest_level": variable("frequency", smallest, "m/s2", level),
         "opening_level": variable("frequency", open_from, "m/s2", opens),
-        "smallest_opening": variable("level", told, "m", "smallest gap that counts"),
+        "smallest_opening": variable("level", smallest_gap, "m", "smallest gap that counts"),
         "overload": yes_or_no("level", cut, "whether readings reach the sensor's range"),
     }
 
 
 def smallest_splits(levels: Floats, limit: float, distances: Floats) -> Floats:
-    """Smallest part of the guess's split that counts at each level; infinite where none does.
+    """Return the smallest part of the guess's split that counts at each level, or infinity.
 
     Between the computed splits the distance is a power of the split; below the smallest one it is
     taken to be proportional to it.
@@ -440,16 +438,16 @@ def smallest_splits(levels: Floats, limit: float, distances: Floats) -> Floats:
     return np.where(wanted > ascending[-1], np.inf, np.exp(parts))
 
 
-def recommended(test: Test, answer: xr.Dataset) -> dict[str, Any]:
-    """A swept sine: the lowest level with a margin, over the frequencies that count there."""
+def recommended_sweep(test: SweepComputation, answer: xr.Dataset) -> dict[str, Any]:
+    """Recommend a swept sine: the lowest level with a margin, over the frequencies that count."""
     higher, limit = answer.distance_harmonics.values, float(answer.threshold)
     fits = np.flatnonzero(answer.overload.values == 0)
-    enough = [i for i in fits if higher[i].max() >= MARGIN * limit]
+    enough = [i for i in fits if higher[i].max() >= LEVEL_MARGIN * limit]
     row = int(enough[0] if enough else fits[-1] if len(fits) else 0)
     f, curve = test.frequency, higher[row]
     counting = np.flatnonzero(curve >= min(limit, 0.5 * float(curve.max())))
     low, high = float(f[counting[0]]), float(f[counting[-1]])
-    room = ROOM * max(high - low, test.sound.f)
+    room = RANGE_MARGIN * max(high - low, test.sound.f)
     first, last = max(low - room, float(f[0])), min(high + room, float(f[-1]))
     rate = sweep_rate(test.sound.f, test.sound.zeta)
     duration = max((last - first) / max(rate, 1e-9), 4.0 * test.noise.periods / first)

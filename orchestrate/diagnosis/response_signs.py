@@ -22,14 +22,16 @@ ORDERS = (0.5, 1.0, 2.0, 2.37, 3.0, 3.37, 4.0, 5.0)
 HARMONICS = (2.0, 3.0, 4.0, 5.0)
 OF_ORDERS = {"order_2": 2.0, "order_3": 3.0, "order_half": 0.5}
 OVERLAP = 0.5
-ABOVE = (3.3, 6.0)  # times the highest frequency of the excitation: where the high band begins
-USUAL, HIGHEST = 0.3, 0.4  # of the sampling rate: where it begins at the latest, and may begin
+# Least and usual beginning of the high band, over the highest frequency of the excitation
+BAND_FACTORS = 3.3, 6.0
+# Highest beginning of the high band over the sampling rate: by default, and where it is given
+DEFAULT_EDGE, MAX_EDGE = 0.3, 0.4
 NOISE_LINES = (0.36, 0.44)  # of the sampling rate: lines for the noise where there is no sweep
 SAME_LEVEL = 1.1  # ratio of levels below which two records have the same
-FEWEST = 4  # windows of a curve
-SHORTEST = 0.1  # of all windows: fewer that go one way are noise, or a turn
-SMOOTHED = 15  # windows of a running median
-GAUSSIAN = 3.0  # kurtosis
+MIN_WINDOWS = 4  # windows of a curve
+MIN_SHARE = 0.1  # of all windows: fewer that go one way are noise, or a turn
+MEDIAN_WIDTH = 15  # windows of a running median
+GAUSSIAN_KURTOSIS = 3.0  # kurtosis
 
 
 @dataclass(frozen=True)
@@ -83,7 +85,7 @@ class ResponseSigns:
 def response_signs(
     channels: Channels, swept: bool, periods: float, high_band: float | None
 ) -> ResponseSigns:
-    """The signs that one record has by itself.
+    """Compute the signs that one record has by itself, without comparison.
 
     Parameters
     ----------
@@ -97,7 +99,7 @@ def response_signs(
         Frequency above which the signs at high frequencies are taken, Hz.
     """
     own = signs_of_orders(channels, periods) if swept else signs_of_spectra(channels)
-    edge = usual_band(channels, own.highest) if high_band is None else high_band
+    edge = default_band_edge(channels, own.highest) if high_band is None else high_band
     moments = signs_of_moments(channels, edge)
     values, floors = coherence_loss(channels, own.noise)
     return ResponseSigns(
@@ -110,15 +112,15 @@ def response_signs(
     )
 
 
-def usual_band(channels: Channels, highest: float) -> float:
-    """Where the high band begins, Hz; NaN where the sampling rate does not reach so far."""
-    lowest, usual = (factor * highest for factor in ABOVE)
-    edge = min(usual, USUAL * channels.sample_rate)
+def default_band_edge(channels: Channels, highest: float) -> float:
+    """Return where the high band begins, Hz; NaN where the sampling rate does not reach so far."""
+    lowest, usual = (factor * highest for factor in BAND_FACTORS)
+    edge = min(usual, DEFAULT_EDGE * channels.sample_rate)
     return edge if edge >= lowest else math.nan
 
 
 def is_swept(channels: Channels, periods: float) -> bool:
-    """Whether the box moves as a sine whose orders can be tracked."""
+    """Return whether the box moves as a sine whose orders can be tracked."""
     box = Channels(channels.time, channels.sample_rate, (BOX,), channels.box[None], channels.title)
     try:
         fit_windows(box, (1.0,), None, periods, OVERLAP)
@@ -131,40 +133,40 @@ def is_swept(channels: Channels, periods: float) -> bool:
 
 
 def signs_of_orders(channels: Channels, periods: float) -> ResponseSigns:
-    """Orders over the first one, and the response of order 1."""
+    """Compute the orders over the first one, and the response of order 1, of a swept sine."""
     windows, amplitudes, _ = fit_windows(channels, ORDERS, None, periods, OVERLAP)
     box, rows = amplitudes[0], amplitudes[1:]
     frequency = np.array([window.frequency for window in windows])
     power = {order: np.abs(rows[:, ORDERS.index(order)]) ** 2 for order in ORDERS}
-    sums = {order: mean(power[order]) for order in ORDERS}
+    sums = {order: mean_of_known(power[order]) for order in ORDERS}
     off = np.fmin(*(sums[order] for order in OFF_ORDERS))
     values = {name: np.sqrt(sums[order] / sums[1.0]) for name, order in OF_ORDERS.items()}
     floors = {name: np.sqrt(off / sums[1.0]) for name in OF_ORDERS}
-    peaks = {name: frequency[peak_of(power[order])] for name, order in OF_ORDERS.items()}
+    peaks = {name: frequency[window_of_largest(power[order])] for name, order in OF_ORDERS.items()}
     total = np.nansum([power[order] for order in HARMONICS], axis=0)
-    values["distortion"] = np.sqrt(mean(total) / sums[1.0])
+    values["distortion"] = np.sqrt(mean_of_known(total) / sums[1.0])
     floors["distortion"] = np.sqrt(len(HARMONICS) * off / sums[1.0])
-    peaks["distortion"] = frequency[peak_of(total)]
-    noise = noise_of(windows, [power[order] for order in OFF_ORDERS])
+    peaks["distortion"] = frequency[window_of_largest(total)]
+    noise = noise_from_off_orders(windows, [power[order] for order in OFF_ORDERS])
     first = ORDERS.index(1.0)
-    curves = curves_of(windows, box[first], rows[:, first], floors["order_2"])
+    curves = curves_by_direction(windows, box[first], rows[:, first], floors["order_2"])
     return ResponseSigns(values, floors, peaks, curves, noise, float(frequency.max()))
 
 
-def mean(power: Floats) -> Floats:
-    """Mean value over the windows that have one; NaN where none has."""
+def mean_of_known(power: Floats) -> Floats:
+    """Average over the windows that have a value; NaN where none has."""
     known = np.isfinite(power)
     with np.errstate(invalid="ignore"):
         return np.asarray(np.where(known, power, 0.0).sum(axis=-1) / known.sum(axis=-1))
 
 
-def peak_of(power: Floats) -> NDArray[np.intp]:
-    """Number of the window with the largest value of each row."""
+def window_of_largest(power: Floats) -> NDArray[np.intp]:
+    """Return the number of the window with the largest value, for each row."""
     return np.asarray(np.nan_to_num(power, nan=-1.0).argmax(axis=-1))
 
 
-def noise_of(windows: Sequence[Window], powers: Sequence[Floats]) -> Floats:
-    """Root mean square of a white noise that would give the off-orders what they have, m/s2.
+def noise_from_off_orders(windows: Sequence[Window], powers: Sequence[Floats]) -> Floats:
+    """Estimate the root mean square of white noise from the off-orders, m/s2.
 
     Least squares with Hann's weights over n samples make of white noise of variance s^2 an
     amplitude whose square is 6 s^2/n on average, and 6 ln(2) s^2/n in the median: impacts raise few
@@ -175,14 +177,16 @@ def noise_of(windows: Sequence[Window], powers: Sequence[Floats]) -> Floats:
     return np.asarray(np.sqrt(np.fmin.reduce(medians) / (6.0 * math.log(2.0))))
 
 
-def curves_of(windows: Sequence[Window], box: Floats, rows: Floats, floor: Floats) -> list[Curve]:
-    """Responses of order 1, upwards and downwards."""
+def curves_by_direction(
+    windows: Sequence[Window], box: Floats, rows: Floats, floor: Floats
+) -> list[Curve]:
+    """Split the response of order 1 into one curve upwards and one downwards."""
     frequency = np.array([window.frequency for window in windows])
     rate = smooth_rate(np.array([window.rate for window in windows]))
     curves = []
     for direction in (1, -1):
         chosen = np.flatnonzero(rate * direction > 0.0)
-        if len(chosen) >= max(FEWEST, SHORTEST * len(windows)):
+        if len(chosen) >= max(MIN_WINDOWS, MIN_SHARE * len(windows)):
             chosen = chosen[np.argsort(frequency[chosen])]
             level = math.sqrt(float(np.mean(np.abs(box[chosen]) ** 2)))
             response = rows[:, chosen] / box[chosen]
@@ -191,10 +195,10 @@ def curves_of(windows: Sequence[Window], box: Floats, rows: Floats, floor: Float
 
 
 def smooth_rate(rate: Floats) -> Floats:
-    """Running median of the sweep's rate, which noise on the box moves in single windows."""
+    """Smooth the sweep's rate by a running median: noise on the box moves single windows."""
     from scipy.ndimage import median_filter
 
-    size = min(SMOOTHED, len(rate))
+    size = min(MEDIAN_WIDTH, len(rate))
     return np.asarray(median_filter(rate, size=size, mode="nearest"))
 
 
@@ -202,10 +206,10 @@ def smooth_rate(rate: Floats) -> Floats:
 
 
 def signs_of_spectra(channels: Channels) -> ResponseSigns:
-    """The response at the lines that the box excites; there are no orders."""
+    """Compute the response at the lines that the box excites; such a record has no orders."""
     frequency, box, rows, cross = spectra(channels)
-    excited = is_excited(frequency, box)
-    density = np.median(rows[:, in_noise_lines(frequency, channels.sample_rate)], axis=-1)
+    excited = excited_lines(frequency, box)
+    density = np.median(rows[:, noise_lines(frequency, channels.sample_rate)], axis=-1)
     response = cross[:, excited] / box[excited]
     curve = Curve(
         0,
@@ -215,13 +219,13 @@ def signs_of_spectra(channels: Channels) -> ResponseSigns:
         np.full(len(rows), np.nan),
     )
     noise = np.sqrt(0.5 * channels.sample_rate * density)
-    curves = [curve] if excited.sum() >= FEWEST else []
+    curves = [curve] if excited.sum() >= MIN_WINDOWS else []
     highest = float(frequency[excited].max()) if excited.any() else math.nan
     return ResponseSigns({}, {}, {}, curves, noise, highest)
 
 
 def spectra(channels: Channels) -> tuple[Floats, Floats, Floats, Floats]:
-    """Frequencies, power densities of the box and of the rows, and between them."""
+    """Return frequencies, power densities of box and rows, and their cross densities (Welch)."""
     from scipy.signal import csd, welch
 
     options = averaging(channels, None, "hann", OVERLAP, fewest=2).options
@@ -235,26 +239,26 @@ def spectra(channels: Channels) -> tuple[Floats, Floats, Floats, Floats]:
     )
 
 
-def is_excited(frequency: Floats, box: Floats) -> NDArray[np.bool_]:
-    """Lines that the box excites."""
+def excited_lines(frequency: Floats, box: Floats) -> NDArray[np.bool_]:
+    """Return which lines the box excites, as a mask."""
     return np.asarray((box >= EXCITED * box.max()) & (frequency > 0.0))
 
 
-def in_noise_lines(frequency: Floats, rate: float) -> NDArray[np.bool_]:
-    """Lines that are taken for noise."""
+def noise_lines(frequency: Floats, rate: float) -> NDArray[np.bool_]:
+    """Return which lines are taken for noise, as a mask."""
     low, high = NOISE_LINES
     return np.asarray((frequency >= low * rate) & (frequency <= high * rate))
 
 
 def coherence_loss(channels: Channels, noise: Floats) -> tuple[Floats, Floats]:
-    """Mean of 1 less the coherence where the box excites the structure; and that of noise alone."""
+    """Return the mean of 1 less the coherence over the excited lines, and that of noise alone."""
     try:
         segments = averaging(channels, None, "hann", OVERLAP, fewest=2)
     except InputError:
         unknown = np.full(len(noise), np.nan)
         return unknown, unknown
     frequency, box, rows, cross = spectra(channels)
-    excited = is_excited(frequency, box)
+    excited = excited_lines(frequency, box)
     with np.errstate(invalid="ignore", divide="ignore"):
         power = rows[:, excited]
         coherence = np.abs(cross[:, excited]) ** 2 / (box[excited] * power)
@@ -266,7 +270,7 @@ def coherence_loss(channels: Channels, noise: Floats) -> tuple[Floats, Floats]:
 def signs_of_moments(
     channels: Channels, edge: float
 ) -> tuple[dict[str, Floats], dict[str, Floats]]:
-    """Kurtosis and skewness, of all and of what is above a frequency; and those of Gaussian noise.
+    """Compute kurtosis and skewness, of all and of the high band; and those of Gaussian noise.
 
     Parameters
     ----------
@@ -279,7 +283,7 @@ def signs_of_moments(
 
     rows, count = channels.values[1:], len(channels.time)
     bands = {"": rows}
-    if 0.0 < edge <= HIGHEST * channels.sample_rate:
+    if 0.0 < edge <= MAX_EDGE * channels.sample_rate:
         sections = butter(4, edge, "highpass", fs=channels.sample_rate, output="sos")
         bands["_high"] = sosfiltfilt(sections, rows)
     values: dict[str, Floats] = {}
@@ -289,7 +293,7 @@ def signs_of_moments(
         unknown = np.full(len(rows), np.nan)
         values[f"kurtosis{ending}"] = kurtosis(band, axis=-1, fisher=False) if moves else unknown
         values[f"skewness{ending}"] = np.abs(skew(band, axis=-1)) if moves else unknown
-    noise = {"kurtosis": GAUSSIAN, "skewness": 2.0 * math.sqrt(6.0 / count)}
+    noise = {"kurtosis": GAUSSIAN_KURTOSIS, "skewness": 2.0 * math.sqrt(6.0 / count)}
     floors = {name: np.full(len(rows), noise[name.partition("_")[0]]) for name in values}
     return values, floors
 
@@ -298,7 +302,7 @@ def signs_of_moments(
 
 
 def sensor_differences(curves: Sequence[Curve], channels: int) -> tuple[Floats, Floats]:
-    """Difference between two sensors, the best complex gain taken out; and what noise makes of it.
+    """Compute the difference between two sensors, best complex gain taken out, and its floor.
 
     Parameters
     ----------
@@ -324,13 +328,14 @@ def sensor_differences(curves: Sequence[Curve], channels: int) -> tuple[Floats, 
     return np.repeat(rest, 2), np.repeat(floor, 2)
 
 
-def difference(one: Curve, other: Curve) -> Floats:
-    """Root mean square of the difference between two curves, over that of the first, of each row;
-    NaN where they have no frequency in common.
+def curve_difference(one: Curve, other: Curve) -> Floats:
+    """Return the rms difference of two curves over that of the first, of each row.
+
+    It is NaN where they have no frequency in common.
     """
     low, high = other.frequency[0], other.frequency[-1]
     common = (one.frequency >= low) & (one.frequency <= high)
-    if common.sum() < FEWEST:
+    if common.sum() < MIN_WINDOWS:
         return np.full(len(one.response), np.nan)
     at, first = one.frequency[common], one.response[:, common]
     second = np.array([np.interp(at, other.frequency, row) for row in other.response])
@@ -338,8 +343,8 @@ def difference(one: Curve, other: Curve) -> Floats:
     return np.asarray(rest)
 
 
-def differences(curves: Sequence[Curve]) -> Mapping[str, tuple[Floats, Floats]]:
-    """Largest differences over level and over direction, and what noise makes of them.
+def level_and_direction_differences(curves: Sequence[Curve]) -> Mapping[str, tuple[Floats, Floats]]:
+    """Compute the largest differences over level and over direction, and their noise floors.
 
     Parameters
     ----------
@@ -365,6 +370,6 @@ def differences(curves: Sequence[Curve]) -> Mapping[str, tuple[Floats, Floats]]:
         else:
             continue
         first, second = sorted((one, other), key=lambda curve: (-curve.direction, curve.level))
-        value, floor = difference(first, second), np.hypot(first.floor, second.floor)
+        value, floor = curve_difference(first, second), np.hypot(first.floor, second.floor)
         best[name] = np.fmax(best[name][0], value), np.fmax(best[name][1], floor)
     return best

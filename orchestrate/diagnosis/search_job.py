@@ -1,4 +1,4 @@
-"""The fits of a record as a job: sound hypotheses and parts of the scan beside each other."""
+"""The fits of a record as a job: sound hypotheses and parts of the scan in parallel."""
 
 from __future__ import annotations
 
@@ -17,38 +17,43 @@ from ..laboratory.analysis.channels import Channels
 from ..laboratory.record import record as made_record
 from ..running.job import Inputs, Job, Table
 from ..structures import Structure
+from .decision_rule import SOUND_DESCRIBES
 from .errors import estimate
 from .even_orders import even_orders
 from .evidence import Evidence
-from .fitting import ROUNDS, Search, Solution, distinct
-from .hypotheses import SOUND, SPLITS, Delaminated, DelaminatedWithClearance, Hypothesis
+from .fitting import POLISH_ROUNDS, Search, Solution, distinct_minima
+from .hypotheses import SOUND, STARTING_SPLITS, Delaminated, DelaminatedWithClearance, Hypothesis
 from .misfit import misfit
 from .orders import RecordOrders, record_orders
-from .verdicts import SOUND_DESCRIBES
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
-FROM_BONDED = 15  # steps downhill from the bonded solution
-FROM_SCAN = 1  # starts of each part of the scan from which to go downhill
-COARSE, SHORT = 4, 2  # steps downhill from there, where faces are seen to part and elsewhere
-KEPT = 6  # starts with a clearance from which to go downhill
-CONTINUED, FURTHER = 3, 6  # how many of the best of them go on, and for how many steps
-REFINED, CLOSE = 2, 1.3  # how many of the best are polished, and how close their misfits are
-ENOUGH = 1.2  # misfit of a delaminated one from which no other kind of clearance is looked for
-FEWER = 7.0  # samples in a period of the highest frequency for a coarse search
-GUESSED = 0.06  # standard deviation of a guessed frequency's logarithm
-UNLIKE, FAR = 0.02, 20.0  # part by which its squares make a misfit count more, and most of them
-APART = {"split": 0.04, "clearance": 0.1}  # between two solutions that count as two
-POLISHED = 4  # rounds on the whole record after those near the resonance
+BONDED_STEPS = 15  # steps downhill from the bonded solution
+SCAN_STARTS = 1  # starts of each part of the scan from which to go downhill
+# Steps downhill from each start of the scan where a delamination is possible, and elsewhere
+COARSE_STEPS, SHORT_STEPS = 4, 2
+CLEARANCE_STARTS = 6  # starts with a clearance from which to go downhill
+# How many of the best starts go on, and for how many steps
+CONTINUED_STARTS, CONTINUED_STEPS = 3, 6
+# How many of the best are polished, and how close their misfits are
+POLISHED_STARTS, CLOSE_RATIO = 2, 1.3
+GOOD_MISFIT = 1.2  # misfit of a delaminated one from which no other kind of clearance is looked for
+COARSE_SAMPLES = 7.0  # samples in a period of the highest frequency for a coarse search
+GUESS_DEVIATION = 0.06  # standard deviation of a guessed frequency's logarithm
+# A misfit counts more by this part of the guess's squared deviations, and at most so many of them
+GUESS_WEIGHT, MAX_GUESS_SQUARES = 0.02, 20.0
+MIN_DISTANCES = {"split": 0.04, "clearance": 0.1}  # between two solutions that count as two
+FINAL_ROUNDS = 4  # rounds on the whole record after those near the resonance
 GAPS = (-0.3, -0.1, -0.03, 0.03, 0.1, 0.3)  # clearances over the largest displacement
-ROWS, NUMBERS, MINIMA = 4, 6, 8  # of tables: solutions, values in each, misfits of minima
+# Rows and columns of tables: solutions, values in each, misfits of minima
+MAX_SOLUTIONS, MAX_NUMBERS, MAX_MINIMA = 4, 6, 8
 
 
 @dataclass(frozen=True)
 class RecordData:
-    """A record's channels as a job keeps them.
+    """Channels of a record as plain tuples, the form in which a job keeps them.
 
     Attributes
     ----------
@@ -66,52 +71,53 @@ class RecordData:
 
     @classmethod
     def from_channels(cls, channels: Channels) -> RecordData:
-        """Of channels that were checked."""
+        """Copy the samples of checked channels."""
         values = tuple(tuple(row.tolist()) for row in channels.values)
         return cls(channels.names, channels.sample_rate, float(channels.time[0]), values)
 
     def dataset(self) -> xr.Dataset:
-        """The record."""
+        """Return the record as a dataset."""
         named = dict(zip(self.names, self.channels, strict=True))
         time = self.begin + np.arange(len(self.channels[0])) / self.sample_rate
         return made_record(time=time, sample_rate=self.sample_rate, **named)  # type: ignore[arg-type]
 
 
 @lru_cache(maxsize=2)
-def evidence_of(data: RecordData) -> Evidence:
-    """A record's evidence, made once a process."""
-    return Evidence.from_orders(orders_of_data(data))
+def cached_evidence(data: RecordData) -> Evidence:
+    """Return a record's evidence, computed once per process."""
+    return Evidence.from_orders(cached_orders(data))
 
 
 @lru_cache(maxsize=2)
-def orders_of_data(data: RecordData) -> RecordOrders:
-    """The orders of the whole record."""
+def cached_orders(data: RecordData) -> RecordOrders:
+    """Return the orders of the whole record, computed once per process."""
     return record_orders(data.dataset())
 
 
 @lru_cache(maxsize=2)
-def coarse_evidence_of(data: RecordData) -> Evidence:
-    """The part near the resonance with fewer samples: a motion takes a third of the time."""
-    return Evidence.from_orders(orders_of_data(data), FEWER).near_resonance()
+def cached_coarse_evidence(data: RecordData) -> Evidence:
+    """Return the evidence near the resonance with fewer samples: a third of the time per motion."""
+    return Evidence.from_orders(cached_orders(data), COARSE_SAMPLES).near_resonance()
 
 
 @lru_cache(maxsize=2)
 def is_worth_a_search(data: RecordData) -> bool:
-    """Whether faces are seen to part, or not to move as one, or a linear beam does not describe it.
+    """Return whether the verdict may depend on the delaminated fit, by a short bonded fit.
 
-    Else no verdict depends on the delaminated fit, and its search is short.
+    It may where faces are seen to part or do not move as one, or where a linear beam does not
+    describe the record. Elsewhere the search is short.
     """
-    evidence = evidence_of(data)
+    evidence = cached_evidence(data)
     search = Search(SOUND[0], evidence)
-    best = search.best(search.hypothesis.starts(evidence), keep=2, coarse=8, fine=0)[0]
+    best = search.best_minima(search.hypothesis.starts(evidence), keep=2, coarse=8, fine=0)[0]
     motion = search.hypothesis.displacements(best.values, evidence, None)
-    even = even_orders(evidence, evidence.matched(evidence.computed(motion)))
+    even = even_orders(evidence, evidence.corrected_for_sensors(evidence.orders_of_motion(motion)))
     return even.seen or even.moved_apart > 1.0 or best.misfit > SOUND_DESCRIBES
 
 
 @dataclass(frozen=True, kw_only=True)
 class SearchJob(Job):
-    """Searches over hypotheses, the last item from the results of all others.
+    """Search for the minima of all hypotheses; the last item uses the results of all others.
 
     Attributes
     ----------
@@ -135,12 +141,12 @@ class SearchJob(Job):
 
     @property
     def evidence(self) -> Evidence:
-        """Of the record."""
-        return evidence_of(self.data)
+        """Evidence of the record."""
+        return cached_evidence(self.data)
 
     @property
     def hypotheses(self) -> tuple[Hypothesis, ...]:
-        """All of them, in the order of the results."""
+        """All hypotheses of the job, in the order of the results."""
         found: list[Hypothesis] = [SOUND[number] for number in self.sound]
         if self.delaminated:
             free = tuple(name for name in self.free if name != "clearance")
@@ -149,19 +155,19 @@ class SearchJob(Job):
                 found.append(DelaminatedWithClearance(self.guess, (*free, "clearance")))
         return tuple(found)
 
-    def plan(self) -> list[tuple[str, float]]:
-        """What is searched beside each other: a sound hypothesis, or a part of the scan."""
-        sound = [("sound", float(place)) for place in range(len(self.sound))]
-        scan = [("scan", split) for split in SPLITS] if self.delaminated else []
+    def searches(self) -> list[tuple[str, float]]:
+        """List the independent searches (sound hypotheses, parts of the scan), then the end."""
+        sound = [("sound", float(position)) for position in range(len(self.sound))]
+        scan = [("scan", split) for split in STARTING_SPLITS] if self.delaminated else []
         return [*scan, *sound, ("end", 0.0)]
 
     def count(self) -> int:
-        """Number of searches."""
-        return len(self.plan())
+        """Return the number of searches."""
+        return len(self.searches())
 
     def items(self, inputs: Inputs) -> Sequence[tuple[str, float]]:
-        """The searches."""
-        return self.plan()
+        """Return the searches as the items of the job."""
+        return self.searches()
 
     def work(
         self,
@@ -169,7 +175,7 @@ class SearchJob(Job):
         items: Sequence[tuple[str, float]],
         previous: Table | None,
     ) -> Table:
-        """One search; the last refines the best of all others."""
+        """Do one search; the last one refines the best of all others."""
         kind, number = items[0]
         if kind == "sound":
             return self.search_sound(int(number))
@@ -179,29 +185,29 @@ class SearchJob(Job):
             assert previous is not None
             return self.finish(previous, player)
 
-    def search_sound(self, place: int) -> Table:
-        """Minima of a sound hypothesis."""
-        search = Search(self.hypotheses[place], self.evidence)
+    def search_sound(self, position: int) -> Table:
+        """Search for the minima of a sound hypothesis."""
+        search = Search(self.hypotheses[position], self.evidence)
         starts = search.hypothesis.starts(self.evidence)
-        found = search.best(starts, keep=3, coarse=10, fine=20)
+        found = search.best_minima(starts, keep=3, coarse=10, fine=20)
         if found[0].misfit > SOUND_DESCRIBES:  # a jump of the response makes it rugged
             found[0] = search.polish(found[0])
-        return table_of(place, found, search.evaluations)
+        return solutions_table(position, found, search.evaluations)
 
     def search_split(self, split: float, player: Player) -> Table:
-        """Minima of the delaminated one from the starts of one split of the halves."""
-        place = len(self.sound)
-        search = Search(self.hypotheses[place], coarse_evidence_of(self.data), player)
+        """Search for the delaminated minima from the starts with one split of the halves."""
+        position = len(self.sound)
+        search = Search(self.hypotheses[position], cached_coarse_evidence(self.data), player)
         starts = [s for s in search.hypothesis.starts(self.evidence) if s["split"] == split]
-        coarse = COARSE if is_worth_a_search(self.data) else SHORT
-        found = search.best(starts, keep=FROM_SCAN, coarse=coarse, fine=0)
-        return table_of(place, found, search.evaluations)
+        coarse = COARSE_STEPS if is_worth_a_search(self.data) else SHORT_STEPS
+        found = search.best_minima(starts, keep=SCAN_STARTS, coarse=coarse, fine=0)
+        return solutions_table(position, found, search.evaluations)
 
-    def solutions(self, table: Table, place: int) -> list[Solution]:
-        """The solutions of a hypothesis in a table, the best first."""
-        hypothesis = self.hypotheses[place]
+    def solutions(self, table: Table, position: int) -> list[Solution]:
+        """Read the solutions of a hypothesis from a table, the best first."""
+        hypothesis = self.hypotheses[position]
         names = list(hypothesis.bounds(self.evidence))
-        rows = table["solutions"][table["place"] == place].reshape(-1, 1 + NUMBERS)
+        rows = table["solutions"][table["place"] == position].reshape(-1, 1 + MAX_NUMBERS)
         found = [
             Solution(hypothesis.name, dict(zip(names, row[1:].tolist(), strict=False)), row[0])
             for row in rows[np.isfinite(rows[:, 0])]
@@ -211,58 +217,75 @@ class SearchJob(Job):
     # -- the end of it ----------------------------------------------------------------------------
 
     def finish(self, previous: Table, player: Player) -> Table:
-        """Refine the best delaminated ones, and say how far each hypothesis is from the record."""
-        sound = [self.minima(place, previous, player) for place in range(len(self.sound))]
+        """Refine the best delaminated solutions, and compute all misfits and errors."""
+        sound = [self.minima(position, previous, player) for position in range(len(self.sound))]
         bonded = sound[0][1][0]
-        sound = [(search, no_worse_than(bonded, search, found)) for search, found in sound]
+        sound = [(search, with_bonded_solution(bonded, search, found)) for search, found in sound]
         best = int(np.argmin([found[0].misfit for _, found in sound]))
         worth = self.is_worth_polishing(sound)
         made = [
-            self.finished(place, one, player, place in (0, best)) for place, one in enumerate(sound)
+            self.hypothesis_result(position, one, player, position in (0, best))
+            for position, one in enumerate(sound)
         ]
         if self.delaminated:
             search, found = self.minima(len(made), previous, player)
-            found = self.polished(search, found) if worth else search.scan([found[0].values])
-            plain = self.finished(len(made), (search, found), player, worth)
+            found = (
+                self.refine_best(search, found) if worth else search.rank_starts([found[0].values])
+            )
+            plain = self.hypothesis_result(len(made), (search, found), player, worth)
             made.append(plain)
             if "clearance" in self.free:
-                made.append(self.with_clearance(plain, player, worth))
+                made.append(self.search_with_clearance(plain, player, worth))
         spent = previous["evaluations"]
-        for place, result in enumerate(made):
-            result["end_evaluations"] += spent[previous["place"] == place].sum()
+        for position, result in enumerate(made):
+            result["end_evaluations"] += spent[previous["place"] == position].sum()
         return {name: np.stack([part[name] for part in made])[np.newaxis] for name in made[0]}
 
-    def minima(self, place: int, previous: Table, player: Player) -> tuple[Search, list[Solution]]:
-        """Minima of a hypothesis, as the searches beside each other have left them."""
-        search = Search(self.hypotheses[place], self.evidence, player)
-        return search, self.solutions(previous, place)
+    def minima(
+        self, position: int, previous: Table, player: Player
+    ) -> tuple[Search, list[Solution]]:
+        """Return a search for a hypothesis, and the minima that the independent searches found."""
+        search = Search(self.hypotheses[position], self.evidence, player)
+        return search, self.solutions(previous, position)
 
     def is_worth_polishing(self, sound: Sequence[tuple[Search, list[Solution]]]) -> bool:
-        """Whether a verdict may depend on the delaminated fit: no sound one describes the record,
-        or faces are seen to part.
+        """Return whether the verdict may depend on the delaminated fit, by the sound fits.
+
+        It may where no sound hypothesis describes the record, or where faces are seen to part.
         """
         search, found = sound[0]
         motion = search.hypothesis.displacements(found[0].values, self.evidence, None)
-        even = even_orders(self.evidence, self.evidence.matched(self.evidence.computed(motion)))
+        even = even_orders(
+            self.evidence,
+            self.evidence.corrected_for_sensors(self.evidence.orders_of_motion(motion)),
+        )
         lowest = min(found[0].misfit for _, found in sound)
         return even.seen or even.moved_apart > 1.0 or lowest > SOUND_DESCRIBES
 
-    def polished(self, search: Search, starts: Sequence[Solution]) -> list[Solution]:
-        """The minima behind the best of coarse solutions: near the resonance, then of all."""
-        coarse = Search(search.hypothesis, coarse_evidence_of(self.data), search.player)
-        chosen = apart(self.ranked(search, starts))[:CONTINUED]
-        found = self.ranked(search, [coarse.refine(s.values, FURTHER, 3e-3) for s in chosen])
+    def refine_best(self, search: Search, starts: Sequence[Solution]) -> list[Solution]:
+        """Refine the best coarse solutions, first near the resonance, then on the whole record."""
+        coarse = Search(search.hypothesis, cached_coarse_evidence(self.data), search.player)
+        chosen = without_neighbours(self.sort_by_misfit_and_guess(search, starts))[
+            :CONTINUED_STARTS
+        ]
+        found = self.sort_by_misfit_and_guess(
+            search, [coarse.refine(s.values, CONTINUED_STEPS, 3e-3) for s in chosen]
+        )
         lowest = min(one.misfit for one in found)
-        close = [one for one in found[:REFINED] if one.misfit < CLOSE * lowest]
+        close = [one for one in found[:POLISHED_STARTS] if one.misfit < CLOSE_RATIO * lowest]
         polished = [coarse.polish(one).values for one in close]
         rest = [one.values for one in found[len(close) :]]
-        best, *others = self.ranked(search, search.scan([*polished, *rest]))
+        best, *others = self.sort_by_misfit_and_guess(
+            search, search.rank_starts([*polished, *rest])
+        )
         search.evaluations += coarse.evaluations
-        rounds = POLISHED if best.misfit < ENOUGH else ROUNDS
+        rounds = FINAL_ROUNDS if best.misfit < GOOD_MISFIT else POLISH_ROUNDS
         return [search.polish(best, rounds), *others]
 
-    def ranked(self, search: Search, solutions: Sequence[Solution]) -> list[Solution]:
-        """Delaminated solutions, the best first: by misfit, and by how far from the guess they are.
+    def sort_by_misfit_and_guess(
+        self, search: Search, solutions: Sequence[Solution]
+    ) -> list[Solution]:
+        """Sort delaminated solutions by misfit, with a penalty for distance from the guess.
 
         Of one sensor's record both halves may change places at nearly the same misfit; what is
         known of the halves before then decides, as far as a guess may be trusted.
@@ -271,97 +294,105 @@ class SearchJob(Job):
         assert isinstance(hypothesis, Delaminated)
 
         def cost(solution: Solution) -> float:
-            made = hypothesis.structure(solution.values, self.evidence)
-            off = (math.log(made.get(f) / self.guess.get(f)) / GUESSED for f in ("f1", "f2"))
-            return solution.misfit * (1.0 + UNLIKE * min(sum(one**2 for one in off), FAR))
+            made = hypothesis.structure_from_values(solution.values, self.evidence)
+            off = (
+                math.log(made.get(f) / self.guess.get(f)) / GUESS_DEVIATION for f in ("f1", "f2")
+            )
+            return solution.misfit * (
+                1.0 + GUESS_WEIGHT * min(sum(one**2 for one in off), MAX_GUESS_SQUARES)
+            )
 
         return sorted(solutions, key=cost)
 
-    def with_clearance(self, plain: dict[str, Any], player: Player, worth: bool) -> dict[str, Any]:
-        """The same with gaps and preloads: from the best without, and where that does not describe
-        the record already from its own starts.
+    def search_with_clearance(
+        self, plain: dict[str, Any], player: Player, worth: bool
+    ) -> dict[str, Any]:
+        """Search for gaps and preloads, from the best solution without them.
+
+        Where that does not describe the record already, the hypothesis's own starts are tried too.
         """
         search = Search(self.hypotheses[-1], self.evidence, player)
         names = list(search.hypothesis.bounds(self.evidence))
         best = dict(zip(names, plain["end_values"][: len(names) - 1].tolist(), strict=False))
         starts = [{**best, "clearance": clearance} for clearance in (0.0, *GAPS)]
         if not worth:
-            found = search.scan(starts[:1])
-        elif plain["end_misfit"] < ENOUGH:
-            found = search.scan(starts)
-            found[0] = search.polish(found[0], POLISHED)
+            found = search.rank_starts(starts[:1])
+        elif plain["end_misfit"] < GOOD_MISFIT:
+            found = search.rank_starts(starts)
+            found[0] = search.polish(found[0], FINAL_ROUNDS)
         else:
             starts += search.hypothesis.starts(self.evidence)
-            coarse = Search(search.hypothesis, coarse_evidence_of(self.data), player)
-            begun = apart(coarse.scan(starts))[:KEPT]
-            found = [coarse.refine(one.values, COARSE, 3e-3) for one in begun]
-            found = self.polished(search, found)
+            coarse = Search(search.hypothesis, cached_coarse_evidence(self.data), player)
+            begun = without_neighbours(coarse.rank_starts(starts))[:CLEARANCE_STARTS]
+            found = [coarse.refine(one.values, COARSE_STEPS, 3e-3) for one in begun]
+            found = self.refine_best(search, found)
             search.evaluations += coarse.evaluations
-        return self.finished(len(self.hypotheses) - 1, (search, found), player, worth)
+        return self.hypothesis_result(len(self.hypotheses) - 1, (search, found), player, worth)
 
-    def finished(
+    def hypothesis_result(
         self,
-        place: int,
+        position: int,
         minima: tuple[Search, list[Solution]],
         player: Player,
         with_errors: bool = True,
     ) -> dict[str, Any]:
-        """The best solution of a hypothesis with its errors, and what it computes."""
+        """Return the best solution of a hypothesis with its errors, residuals and fitted orders."""
         search, found = minima
         values, known = found[0].values, None
         if with_errors:
             known = estimate(search, values)
             values = known.values
         motion = search.hypothesis.displacements(values, self.evidence, player)
-        computed = self.evidence.matched(self.evidence.computed(motion))
-        numbers = np.full(NUMBERS, np.nan)
+        computed = self.evidence.corrected_for_sensors(self.evidence.orders_of_motion(motion))
+        numbers = np.full(MAX_NUMBERS, np.nan)
         numbers[: len(values)] = list(values.values())
-        covariance = np.full((NUMBERS, NUMBERS), np.nan)
+        covariance = np.full((MAX_NUMBERS, MAX_NUMBERS), np.nan)
         if known is not None:
             covariance[: len(values), : len(values)] = known.covariance
-        levels = np.full(MINIMA, np.nan)
-        different = distinct(found)[:MINIMA]
+        levels = np.full(MAX_MINIMA, np.nan)
+        different = distinct_minima(found)[:MAX_MINIMA]
         levels[: len(different)] = [one.misfit for one in different]
         return {
             "end_values": numbers,
             "end_covariance": covariance,
             "end_minima": levels,
-            "end_misfit": misfit(search.evidence.missed(computed)),
-            "end_residuals": search.evidence.missed(computed),
+            "end_misfit": misfit(search.evidence.order_residuals(computed)),
+            "end_residuals": search.evidence.order_residuals(computed),
             "end_fitted": np.stack([computed.real, computed.imag]),
             "end_evaluations": float(search.evaluations),
         }
 
 
-def apart(solutions: Sequence[Solution]) -> list[Solution]:
-    """Solutions without those that are near a better one: with another split or clearance."""
+def without_neighbours(solutions: Sequence[Solution]) -> list[Solution]:
+    """Drop the solutions that have nearly the split and clearance of a better one."""
     found: list[Solution] = []
     for one in solutions:
-        steps = ((one.values.get(n, 0.0), s, n) for n, s in APART.items())
+        steps = ((one.values.get(n, 0.0), s, n) for n, s in MIN_DISTANCES.items())
         sizes = [[abs(v - other.values.get(n, 0.0)) / s for other in found] for v, s, n in steps]
         if all(max(distances) > 1.0 for distances in zip(*sizes, strict=True)):
             found.append(one)
     return found
 
 
-def table_of(place: int, solutions: Sequence[Solution], evaluations: int) -> Table:
-    """Solutions as numbers, one row each: misfit, then values in the bounds' order."""
-    rows = np.full((1, ROWS, 1 + NUMBERS), np.nan)
+def solutions_table(position: int, solutions: Sequence[Solution], evaluations: int) -> Table:
+    """Convert solutions to a table, one row each: misfit, then values in the bounds' order."""
+    rows = np.full((1, MAX_SOLUTIONS, 1 + MAX_NUMBERS), np.nan)
     for row, one in zip(rows[0], solutions, strict=False):
         row[: 1 + len(one.values)] = [one.misfit, *one.values.values()]
     return {
-        "place": np.array([place]),
+        "place": np.array([position]),
         "solutions": rows,
         "evaluations": np.array([float(evaluations)]),
     }
 
 
-def no_worse_than(bonded: Solution, search: Search, found: list[Solution]) -> list[Solution]:
-    """Return the minima of a sound hypothesis, with one from the bonded solution where that is
-    better: each of them contains the linear spring, so none may be further from the record.
+def with_bonded_solution(bonded: Solution, search: Search, found: list[Solution]) -> list[Solution]:
+    """Add the refined bonded solution to a sound hypothesis's minima where it is better.
+
+    Each of them contains the linear spring, so none may be further from the record.
     """
     names = search.hypothesis.bounds(search.evidence)
-    (contained,) = search.scan([{name: bonded.values.get(name, 0.0) for name in names}])
+    (contained,) = search.rank_starts([{name: bonded.values.get(name, 0.0) for name in names}])
     if contained.misfit >= found[0].misfit:
         return found
-    return [search.refine(contained.values, FROM_BONDED, 1e-4), *found]
+    return [search.refine(contained.values, BONDED_STEPS, 1e-4), *found]

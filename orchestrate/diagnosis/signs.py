@@ -17,20 +17,20 @@ from ..structures import Structure
 from .drive_signs import drive_signs, is_drive_run
 from .indicators import INDICATORS
 from .response_signs import (
-    HIGHEST,
+    MAX_EDGE,
     ResponseSigns,
-    differences,
     is_swept,
+    level_and_direction_differences,
     response_signs,
     sensor_differences,
 )
-from .sound import SoundStructure
+from .undamaged import SoundStructure
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
-EXCEEDS = 2.0  # times what noise and a sound structure show
+EXCEED_FACTOR = 2.0  # times what noise and a sound structure show
 MEANINGS = {-1: "unknown", 0: "no", 1: "yes"}
 
 
@@ -44,7 +44,7 @@ def signs(
     periods: float = 16.0,
     high_band: float | None = None,
 ) -> xr.Dataset:
-    """Model-free signs of delamination in a record.
+    """Compute model-free signs of delamination in a record.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def signs(
     """
     others = other_records(other)
     if is_drive_run(record):
-        return signs_of_a_drive(record, others)
+        return signs_of_drive_run(record, others)
     length = checked_number("periods", periods, 2.0, 1e4)
     count = checked_integer("seeds", seeds, 1, 1000)
     every = [Channels.from_record(one, (BOX,)) for one in (record, *others)]
@@ -118,25 +118,27 @@ def signs(
         for channels, sine in zip(every, swept, strict=True)
     ]
     noises = [one.noise if level is None else np.full(len(names), level) for one in own]
-    sound = sound_of(structure, own[0], every[0])
-    values, floors = with_comparisons(own, len(names))
+    sound = sound_structure(structure, own[0], every[0])
+    values, floors = all_signs(own, len(names))
     made = [
         response_signs(sound.records(channels, rms, range(count)), sine, length, edge)
         for channels, rms, sine in zip(every, noises, swept, strict=True)
     ]
-    rows = np.stack(list(with_comparisons(made, len(names))[0].values()))
+    rows = np.stack(list(all_signs(made, len(names))[0].values()))
     shown = rows.reshape(len(rows), count, len(names)).transpose(1, 0, 2)
     described = {
         "seeds": f"0 to {count - 1}",
         "noise_from": "given" if level is not None else noise_source(swept[0]),
         "sound_from": "nearest oscillator" if structure is None else "the guess, bonded",
     }
-    answer = dataset(every[0].title, names, values, floors, shown, described)
-    return answer.assign(frequency=peaks(own[0], names), **of_sound(sound, noises[0]))
+    answer = signs_dataset(every[0].title, names, values, floors, shown, described)
+    return answer.assign(
+        frequency=peak_frequencies(own[0], names), **sound_variables(sound, noises[0])
+    )
 
 
 def other_records(other: xr.Dataset | Sequence[xr.Dataset] | None) -> list[xr.Dataset]:
-    """The records beside the first one."""
+    """Return the records beside the first one as a list."""
     import xarray as xr
 
     if other is None:
@@ -145,12 +147,12 @@ def other_records(other: xr.Dataset | Sequence[xr.Dataset] | None) -> list[xr.Da
 
 
 def noise_source(swept: bool) -> str:
-    """Where the noise comes from."""
+    """Return a phrase that says where the noise is estimated."""
     return "off-orders 2.37 and 3.37" if swept else "lines at 0.36 to 0.44 of the sampling rate"
 
 
 def checked_responses(every: Sequence[Channels]) -> tuple[str, ...]:
-    """Names of the responses, which all records must have.
+    """Check that all records have the same responses, and return their names.
 
     Raises
     ------
@@ -167,12 +169,14 @@ def checked_responses(every: Sequence[Channels]) -> tuple[str, ...]:
 
 
 def checked_band(high_band: float, rate: float) -> float:
-    """The frequency above which signs at high frequencies are taken, Hz."""
-    return checked_number("high_band", high_band, 1e-9, HIGHEST * rate, "Hz")
+    """Check the frequency above which signs at high frequencies are taken, and return it in Hz."""
+    return checked_number("high_band", high_band, 1e-9, MAX_EDGE * rate, "Hz")
 
 
-def sound_of(structure: Structure | None, own: ResponseSigns, channels: Channels) -> SoundStructure:
-    """The sound structure: of the guess, or the oscillator nearest to the record.
+def sound_structure(
+    structure: Structure | None, own: ResponseSigns, channels: Channels
+) -> SoundStructure:
+    """Return the sound structure: the bonded guess, or the oscillator nearest to the record.
 
     Raises
     ------
@@ -188,14 +192,14 @@ def sound_of(structure: Structure | None, own: ResponseSigns, channels: Channels
     return SoundStructure.nearest(curve.frequency, curve.response, channels)
 
 
-def with_comparisons(
+def all_signs(
     own: Sequence[ResponseSigns], channels: int
 ) -> tuple[dict[str, Floats], dict[str, Floats]]:
-    """Values and floors of all signs, in the order of the table; NaN where there is none."""
+    """Return values and floors of all signs, those that compare included; NaN where unknown."""
     first = own[0]
     rows = len(first.noise)
     values, floors = dict(first.values), dict(first.floors)
-    compared = differences([curve for one in own for curve in one.curves])
+    compared = level_and_direction_differences([curve for one in own for curve in one.curves])
     for name, (value, floor) in compared.items():
         values[name], floors[name] = value, floor
     unknown = np.full(rows, np.nan)
@@ -211,7 +215,7 @@ def with_comparisons(
 # -- results --------------------------------------------------------------------------------------
 
 
-def dataset(
+def signs_dataset(
     title: str,
     names: Sequence[str],
     values: dict[str, Floats],
@@ -219,7 +223,7 @@ def dataset(
     shown: Floats,
     described: dict[str, Any],
 ) -> xr.Dataset:
-    """The answer.
+    """Assemble the dataset of the signs.
 
     Parameters
     ----------
@@ -239,7 +243,7 @@ def dataset(
     over = ("sign", "channel")
     value, floor = np.stack(list(values.values())), np.stack(list(floors.values()))
     highest = np.fmax.reduce(shown)
-    limit = EXCEEDS * np.fmax(floor, highest)
+    limit = EXCEED_FACTOR * np.fmax(floor, highest)
     known = np.isfinite(value) & np.isfinite(highest)
     exceeds = np.where(known, value > limit, -1)
     texts = {
@@ -252,9 +256,13 @@ def dataset(
         {
             "value": variable(over, value, "1", "sign of the record"),
             "floor": variable(over, floor, "1", "what noise alone makes of it"),
-            "sound": variable(over, median(shown), "1", "the same of a sound structure, median"),
+            "sound": variable(
+                over, median_of_known(shown), "1", "the same of a sound structure, median"
+            ),
             "sound_highest": variable(over, highest, "1", "the same of a sound structure, largest"),
-            "exceeds": flags(over, exceeds, f"whether it is above {EXCEEDS:g} times all", MEANINGS),
+            "exceeds": flags(
+                over, exceeds, f"whether it is above {EXCEED_FACTOR:g} times all", MEANINGS
+            ),
         },
         {
             "sign": ("sign", np.array(list(INDICATORS)), {"long_name": "sign"}),
@@ -272,22 +280,22 @@ def dataset(
     )
 
 
-def median(shown: Floats) -> Floats:
-    """Median over the seeds; NaN where there is none."""
+def median_of_known(shown: Floats) -> Floats:
+    """Return the median over the seeds; NaN where one of them has no value."""
     known = np.isfinite(shown).all(axis=0)
     return np.asarray(np.where(known, np.median(np.nan_to_num(shown), axis=0), np.nan))
 
 
-def peaks(own: ResponseSigns, names: Sequence[str]) -> Any:
-    """Where an order is largest, Hz."""
+def peak_frequencies(own: ResponseSigns, names: Sequence[str]) -> Any:
+    """Return the frequencies at which the orders are largest, Hz, as a variable."""
     unknown = np.full(len(names), np.nan)
     rows = np.stack([own.frequencies.get(name, unknown) for name in INDICATORS])
     text = "frequency of the excitation where it is largest"
     return variable(("sign", "channel"), rows, "Hz", text)
 
 
-def of_sound(sound: SoundStructure, noise: Floats) -> dict[str, Any]:
-    """The sound structure, and the noise on it."""
+def sound_variables(sound: SoundStructure, noise: Floats) -> dict[str, Any]:
+    """Return the sound structure's parameters and the noise as variables."""
     return {
         "noise": variable("channel", noise, "m/s2", "root mean square of the noise"),
         "sound_f": variable((), sound.f, "Hz", "natural frequency of the sound structure"),
@@ -295,8 +303,8 @@ def of_sound(sound: SoundStructure, noise: Floats) -> dict[str, Any]:
     }
 
 
-def signs_of_a_drive(run: xr.Dataset, others: Sequence[xr.Dataset]) -> xr.Dataset:
-    """Signs of a run on a weak drive.
+def signs_of_drive_run(run: xr.Dataset, others: Sequence[xr.Dataset]) -> xr.Dataset:
+    """Compute the signs of a run on a weak drive, against that of the sound beam.
 
     Raises
     ------
@@ -312,4 +320,6 @@ def signs_of_a_drive(run: xr.Dataset, others: Sequence[xr.Dataset]) -> xr.Datase
     itself = [0.0 if name in own else math.nan for name in INDICATORS]  # against itself
     shown = np.array(itself)[None, :, None]
     described = {"seeds": "none", "sound_from": "the run of the sound beam"}
-    return dataset(str(run.attrs.get("title", "run")), names, values, floors, shown, described)
+    return signs_dataset(
+        str(run.attrs.get("title", "run")), names, values, floors, shown, described
+    )

@@ -26,12 +26,13 @@ from ..access.c_library import loaded_function
 log = logging.getLogger(__name__)
 Floats = NDArray[np.float64]
 SOURCE = Path(__file__).with_suffix(".c")
-LONGEST = 0.12  # rad of the natural vibration in a step: its amplitude errs by 1e-7 in a period
+# Angle of the natural vibration in a step, rad: its amplitude errs by 1e-7 in a period
+MAX_STEP_ANGLE = 0.12
 
 
 @dataclass(frozen=True)
 class SingleMass:
-    """The numbers of the equation above.
+    """The parameters of a single mass on a nonlinear spring, see the equation above.
 
     Attributes
     ----------
@@ -60,14 +61,14 @@ class SingleMass:
     position: float = 0.0
     side: float = 1.0
 
-    def numbers(self) -> tuple[float, ...]:
-        """As the steps take them."""
+    def coefficients(self) -> tuple[float, ...]:
+        """Return the coefficients of the equation in the order that the integrator takes."""
         w = 2.0 * math.pi * self.f
         smooth = (w * w, 2.0 * self.zeta * w, self.square, self.cube, self.friction, self.slow)
         return (*smooth, self.stop, self.position, self.side)
 
     def displacements(self, cubics: Floats, step: float, bound: float = 1e3) -> Floats:
-        """Displacement in the base where each cubic begins, and at the end, m.
+        """Integrate the motion: relative displacement at each cubic's beginning and at the end, m.
 
         Parameters
         ----------
@@ -79,10 +80,10 @@ class SingleMass:
             Displacement beyond which the mass counts as gone, m: NaN from there on.
         """
         stiffest = self.f * math.sqrt(1.0 + max(self.stop, 0.0))
-        parts = max(1, math.ceil(2.0 * math.pi * stiffest * step / LONGEST))
+        parts = max(1, math.ceil(2.0 * math.pi * stiffest * step / MAX_STEP_ANGLE))
         found = np.full(len(cubics) + 1, np.nan)
-        run = run_function() or run_slowly
-        run(self.numbers(), np.ascontiguousarray(cubics), step, parts, bound, found)
+        run = run_function() or run_in_python
+        run(self.coefficients(), np.ascontiguousarray(cubics), step, parts, bound, found)
         return found
 
 
@@ -104,10 +105,10 @@ def run_function() -> Any:
     return call
 
 
-def run_slowly(
+def run_in_python(
     numbers: tuple[float, ...], cubics: Floats, step: float, parts: int, bound: float, out: Floats
 ) -> int:
-    """The steps in Python, for machines without a compiler."""
+    """Integrate in Python, for machines without a compiler; return how many cubics were done."""
     stiffness, damping, square, cube, friction, slow, stop, position, side = numbers
 
     def acceleration(base: float, x: float, v: float) -> float:

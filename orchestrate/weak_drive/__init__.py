@@ -15,7 +15,7 @@ module                  idea
 :mod:`.run`             a run under way, step by step
 :mod:`.jumps`           where the speed jumps
 :mod:`.held`            held-voltage test: whether a motion is lost at the resonance
-:mod:`.verdicts`        jump, none or undecided in each direction, and why
+:mod:`.jump_verdicts`   jump, none or undecided in each direction, and why
 :mod:`.couple`          a run of both FMUs under a voltage over time
 :mod:`.couple_all`      many coupled runs at once
 :mod:`.jump_voltages`   jump voltages extrapolated to rate 0, with an error

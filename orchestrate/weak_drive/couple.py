@@ -25,12 +25,12 @@ from ..structures.structure import Structure
 from . import averaged, own_resonance
 from .controllers import Controller
 from .held import MEANINGS, NOT_ASKED, UNDECIDED, HeldVoltageTest, Verdict, with_final_chunk
+from .jump_verdicts import check_against_theory, how_decided, is_doubtful, is_jump, reason, theories
 from .jumps import Passing, SweepLeg, find_passing, stays_beyond, why_none
 from .master import Scheme
 from .revolutions import COLUMNS
 from .run import CoupledRun, Run, begin_run
 from .schedule import Constant, Ramp, Schedule, check
-from .verdicts import check_against_theory, how_decided, is_doubtful, is_jump, reason, theories
 
 if TYPE_CHECKING:
     import xarray as xr

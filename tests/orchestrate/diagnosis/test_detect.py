@@ -107,9 +107,9 @@ def test_of_halves_that_may_change_places_the_guess_decides():
     """One sensor, masses alike: both solutions miss about as much."""
     job = DetectJob(name="x", data=checked_data(record(both=False)), guess=guess(), free=FREE)
     search = Search(job.hypotheses[5], job.evidence)
-    there = search.hypothesis.values_of(guess(), job.evidence)
+    there = search.hypothesis.values_from_structure(guess(), job.evidence)
     mirrored = {**there, "split": -there["split"]}
     like, unlike = Solution("x", there, 1.05), Solution("x", mirrored, 1.0)
-    assert job.ranked(search, [unlike, like])[0] is like
+    assert job.sort_by_misfit_and_guess(search, [unlike, like])[0] is like
     much_better = Solution("x", mirrored, 0.5)
-    assert job.ranked(search, [like, much_better])[0] is much_better
+    assert job.sort_by_misfit_and_guess(search, [like, much_better])[0] is much_better

@@ -5,10 +5,10 @@ import pytest
 
 import orchestrate
 from orchestrate.access import OSCILLATOR, Player, find
-from orchestrate.diagnosis.errors import contact_doubt, estimate, hidden_squares
+from orchestrate.diagnosis.errors import contact_covariance, estimate, squares_beyond_noise
 from orchestrate.diagnosis.evidence import Evidence
 from orchestrate.diagnosis.fitting import Search, misfit
-from orchestrate.diagnosis.hypotheses import Bonded, Curved, Delaminated
+from orchestrate.diagnosis.hypotheses import Bonded, Delaminated, NonlinearSpring
 
 from .records import BEAM, record
 
@@ -21,7 +21,7 @@ def player():
 
 def missed(evidence, structure, player):
     hypothesis = Delaminated(structure)
-    values = hypothesis.values_of(structure, evidence)
+    values = hypothesis.values_from_structure(structure, evidence)
     return misfit(evidence.residuals(hypothesis.displacements(values, evidence, player)))
 
 
@@ -35,8 +35,8 @@ def test_the_true_motion_is_at_the_record_and_others_are_not(player):
 def test_gain_and_delay_of_a_sensor_are_found_in_closed_form(player):
     evidence = Evidence.from_record(record(gain=1.04))
     hypothesis = Delaminated(BEAM)
-    values = hypothesis.values_of(BEAM, evidence)
-    computed = evidence.computed(hypothesis.displacements(values, evidence, player))
+    values = hypothesis.values_from_structure(BEAM, evidence)
+    computed = evidence.orders_of_motion(hypothesis.displacements(values, evidence, player))
     found = [evidence.sensor_error(row, computed[row, 0]) for row in (0, 1)]
     np.testing.assert_allclose([gain for gain, _ in found], [1.04, 1.0], atol=2e-3)
     assert max(abs(delay) for _, delay in found) < 2e-6
@@ -47,8 +47,8 @@ def test_gain_and_delay_of_a_sensor_are_found_in_closed_form(player):
 def test_impulses_do_not_come_back_from_above_the_sampling_rate(player):
     slow = Evidence.from_record(record())
     hypothesis = Delaminated(BEAM)
-    values = hypothesis.values_of(BEAM, slow)
-    computed = slow.computed(hypothesis.displacements(values, slow, player))[:, 0]
+    values = hypothesis.values_from_structure(BEAM, slow)
+    computed = slow.orders_of_motion(hypothesis.displacements(values, slow, player))[:, 0]
     error = abs(computed - slow.measured[:, 0]) / slow.size
     assert np.median(error) < 2e-3
 
@@ -64,20 +64,20 @@ def test_records_of_many_samples_are_thinned_and_say_the_same(player):
 
 def test_what_is_computed_at_once_is_what_windows_give(player):
     evidence = Evidence.from_record(record())
-    values = Delaminated(BEAM).values_of(BEAM, evidence)
+    values = Delaminated(BEAM).values_from_structure(BEAM, evidence)
     motion = Delaminated(BEAM).displacements(values, evidence, player)
     second = np.pad(np.diff(motion, 2, axis=1), ((0, 0), (1, 1)), mode="edge") * evidence.rate**2
     read = np.sinc(np.outer((1, 2, 3), evidence.frequency) / evidence.rate) ** 2
     expected = evidence.windows.amplitudes(second) / read + evidence.base
     size = abs(expected).max()
-    np.testing.assert_allclose(evidence.computed(motion), expected, atol=1e-9 * size)
+    np.testing.assert_allclose(evidence.orders_of_motion(motion), expected, atol=1e-9 * size)
 
 
 def test_the_part_near_the_resonance_says_the_same_of_a_structure(player):
     wide = orchestrate.SweptSine(first=20.0, last=56.0, duration=20.0, acceleration=5.0)
     whole = Evidence.from_record(record(sweep=wide))
     part = whole.near_resonance()
-    assert part.samples < 0.9 * whole.samples and len(part.used) >= 8
+    assert part.samples < 0.9 * whole.samples and len(part.used_windows) >= 8
     for name in ("resonance", "displacement", "peaks"):
         assert getattr(part, name) == pytest.approx(getattr(whole, name), rel=1e-12), name
     assert missed(part, BEAM, player) < 0.1
@@ -87,22 +87,22 @@ def test_the_part_near_the_resonance_says_the_same_of_a_structure(player):
 def test_what_noise_alone_makes_leaves_nothing_hidden_and_a_real_misfit_does():
     rng = np.random.default_rng(1)
     changes = [rng.standard_normal((2, 4, 60)) for _ in range(16)]
-    assert hidden_squares(rng.standard_normal((2, 4, 60)), changes) == 0.0
-    assert hidden_squares(2.0 * rng.standard_normal((2, 4, 60)), changes) > 400.0
+    assert squares_beyond_noise(rng.standard_normal((2, 4, 60)), changes) == 0.0
+    assert squares_beyond_noise(2.0 * rng.standard_normal((2, 4, 60)), changes) > 400.0
 
 
 def test_damping_and_restitution_are_in_doubt_where_the_contact_is_another():
     values = {"common": 34.0, "log_zeta1": np.log(0.03), "log_zeta2": np.log(0.01), "e": 0.5}
-    assert not contact_doubt(values, 0.0).any()
-    deviation = np.sqrt(np.diag(contact_doubt(values, 1.0)))
+    assert not contact_covariance(values, 0.0).any()
+    deviation = np.sqrt(np.diag(contact_covariance(values, 1.0)))
     np.testing.assert_allclose(deviation[1:3] * [0.03, 0.01], 0.02)  # of both, their mean
     assert deviation[0] == 0.0 and 0.1 < deviation[3] < 0.2
-    assert not contact_doubt({"f": 34.0, "log_zeta": -4.0}, 1.0).any()
+    assert not contact_covariance({"f": 34.0, "log_zeta": -4.0}, 1.0).any()
 
 
 def test_a_bonded_structure_is_one_mass(player):
     evidence = Evidence.from_record(record(BEAM.as_bonded()))
-    common = Delaminated(BEAM).values_of(BEAM, evidence)["common"]
+    common = Delaminated(BEAM).values_from_structure(BEAM, evidence)["common"]
     total = BEAM.d1 + BEAM.d2
     zeta = total / (2.0 * (BEAM.m1 + BEAM.m2) * 2.0 * np.pi * common)
     motion = Bonded().displacements({"f": common, "log_zeta": np.log(zeta)}, evidence, None)
@@ -113,13 +113,15 @@ def test_motions_without_bounds_are_far_from_the_record():
     evidence = Evidence.from_record(record())
     gone = evidence.residuals(np.full((1, evidence.samples), np.nan))
     assert np.isfinite(gone).all() and misfit(gone) > 5.0
-    computed = evidence.matched(evidence.computed(np.full((1, evidence.samples), np.nan)))
-    assert misfit(evidence.missed(computed)) > 5.0
+    computed = evidence.corrected_for_sensors(
+        evidence.orders_of_motion(np.full((1, evidence.samples), np.nan))
+    )
+    assert misfit(evidence.order_residuals(computed)) > 5.0
 
 
 def test_a_hypothesis_whose_motion_has_no_bounds_has_errors_too():
     evidence = Evidence.from_record(record(BEAM.as_bonded()))
-    search = Search(Curved(), evidence)
+    search = Search(NonlinearSpring(), evidence)
     values = {"f": evidence.resonance, "log_zeta": -5.0, "square": 0.0, "cube": -0.9}
     values["square"] = -1.0
     gone = {**values, "f": 2.0 * evidence.resonance}

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from orchestrate.diagnosis.decision_rule import Findings, resampled_share
 from orchestrate.diagnosis.evidence import Evidence
-from orchestrate.diagnosis.fit import slopes_of
+from orchestrate.diagnosis.fit import reported_derivatives
 from orchestrate.diagnosis.hypotheses import Delaminated
-from orchestrate.diagnosis.verdicts import Findings, share_of_better
 
 from .records import BEAM, record
 
@@ -55,8 +55,10 @@ def test_each_case_has_its_word(name):
     changes, expected = CASES[name]
     findings = replace(OPENED, **changes)
     assert findings.verdict() == expected
-    assert findings.settle()
-    assert "intact" not in f"{findings.settle()} {findings.reason()} {findings.seen_up_to()}"
+    assert findings.next_measurement()
+    assert (
+        "intact" not in f"{findings.next_measurement()} {findings.reason()} {findings.seen_up_to()}"
+    )
 
 
 def test_the_reason_has_the_numbers_that_decided():
@@ -67,11 +69,11 @@ def test_the_reason_has_the_numbers_that_decided():
 def test_numbers_at_their_bounds_are_reported_with_slopes():
     evidence = Evidence.from_record(record())
     hypothesis = Delaminated(BEAM)
-    values = {**hypothesis.values_of(BEAM, evidence), "e": 0.0}
+    values = {**hypothesis.values_from_structure(BEAM, evidence), "e": 0.0}
     del values["clearance"]
     for e in (0.0, 1.0):
         with_e = {**values, "e": e}
-        slopes = slopes_of(hypothesis, with_e, evidence)
+        slopes = reported_derivatives(hypothesis, with_e, evidence)
         assert slopes.shape == (5, 5) and np.isfinite(slopes).all()
     assert slopes[0, 0] == pytest.approx(BEAM.f1 / values["common"], rel=1e-4)
 
@@ -79,8 +81,8 @@ def test_numbers_at_their_bounds_are_reported_with_slopes():
 def test_a_ratio_that_one_part_of_the_record_makes_is_not_certain():
     rng = np.random.default_rng(1)
     one = rng.standard_normal((1, 4, 200))
-    assert share_of_better(3.0 * one, one) == 1.0
-    assert share_of_better(one, one) == 0.0
+    assert resampled_share(3.0 * one, one) == 1.0
+    assert resampled_share(one, one) == 0.0
     burst = one.copy()
     burst[..., 50:60] *= 12.0
-    assert 0.02 < share_of_better(burst, one) < 0.98
+    assert 0.02 < resampled_share(burst, one) < 0.98

@@ -20,7 +20,7 @@ FIRST_DAMPING = (0.003, 0.02, 0.1)  # ratios that the search for the nearest osc
 
 @dataclass(frozen=True)
 class SoundStructure:
-    """The bonded structure: both masses move as one.
+    """A bonded structure, as a linear oscillator: both masses move as one.
 
     Attributes
     ----------
@@ -35,14 +35,14 @@ class SoundStructure:
 
     @classmethod
     def from_structure(cls, structure: Structure) -> SoundStructure:
-        """The bonded structure of both halves."""
+        """Return the bonded form of a structure of two halves."""
         m, k = structure.m1 + structure.m2, structure.k1 + structure.k2
         damping = (structure.d1 + structure.d2) / (2.0 * math.sqrt(k * m))
         return cls(math.sqrt(k / m) / TURN, min(damping, 0.999))
 
     @classmethod
     def nearest(cls, frequency: Floats, response: Floats, channels: Channels) -> SoundStructure:
-        """The oscillator whose acceleration is nearest to a record's.
+        """Fit the oscillator whose acceleration is nearest to a record's.
 
         Parameters
         ----------
@@ -75,7 +75,7 @@ class SoundStructure:
         return cls(float(f), float(zeta))
 
     def acceleration(self, channels: Channels) -> Floats:
-        """Acceleration in space under the box of a record, m/s2.
+        """Compute the absolute acceleration under the box of a record, m/s2.
 
         It is exact for a box that is straight between the samples.
         """
@@ -85,7 +85,7 @@ class SoundStructure:
         return np.asarray(lfilter(*filters, channels.box))
 
     def records(self, channels: Channels, noise: Floats, seeds: Sequence[int]) -> Channels:
-        """What sensors on this structure would have read: one row for each seed and channel.
+        """Simulate what sensors on this structure would read: one row for each seed and channel.
 
         Parameters
         ----------
@@ -111,7 +111,7 @@ class SoundStructure:
 
 
 def transmissibility(frequency: Floats, f: float, zeta: float) -> Floats:
-    """Acceleration of an oscillator in space over that of its base, complex.
+    """Return the absolute acceleration of an oscillator over that of its base, complex.
 
     As sines of both: (1 + 2 i zeta r)/(1 - r^2 + 2 i zeta r) with r the ratio of the frequencies.
     """

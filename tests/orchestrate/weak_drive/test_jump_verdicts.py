@@ -10,6 +10,13 @@ from orchestrate.access import OSCILLATOR, SHAKER, find
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple import couple_job
 from orchestrate.weak_drive.held import FOLLOWS, LEFT_BEFORE, LOST, NOT_ASKED, UNDECIDED, Verdict
+from orchestrate.weak_drive.jump_verdicts import (
+    Theory,
+    check_against_theory,
+    is_doubtful,
+    reason,
+    theories,
+)
 from orchestrate.weak_drive.jumps import (
     DOUBTFUL,
     JUMP,
@@ -22,13 +29,6 @@ from orchestrate.weak_drive.jumps import (
 )
 from orchestrate.weak_drive.master import Scheme
 from orchestrate.weak_drive.schedule import Ramp
-from orchestrate.weak_drive.verdicts import (
-    Theory,
-    check_against_theory,
-    is_doubtful,
-    reason,
-    theories,
-)
 from tools.trust.verdicts import draw, with_slope
 
 from .coupled import BEAM, QUICK, System

@@ -23,7 +23,7 @@ RESAMPLED, BLOCKS, SEED = 1000, 20, 7
 
 @dataclass(frozen=True)
 class Findings:
-    """What the rule goes by.
+    """Quantities that the decision rule needs.
 
     Attributes
     ----------
@@ -69,16 +69,16 @@ class Findings:
 
     @property
     def seen(self) -> bool:
-        """Whether order 2, or two faces that move differently, are seen."""
+        """Whether order 2, or two faces that move differently, exceed their thresholds."""
         return self.excess > 1.0 or self.apart > 1.0
 
     @property
     def odds(self) -> float:
-        """For delaminated against sound, by the share of resampled records."""
+        """Odds of delaminated against sound, by the share of resampled records."""
         return (self.share * RESAMPLED + 0.5) / ((1.0 - self.share) * RESAMPLED + 0.5)
 
     def verdict(self) -> str:
-        """One of the four words."""
+        """Apply the rule and return one of the four verdicts."""
         sound = self.sound_misfit <= SOUND_DESCRIBES
         delaminated = self.delaminated_misfit <= DELAMINATED_DESCRIBES
         if not self.seen:
@@ -91,7 +91,7 @@ class Findings:
         return NOT_DESCRIBED
 
     def reason(self) -> str:
-        """What decided, in one sentence, by its numbers."""
+        """Return a sentence that says by which numbers the verdict was decided."""
         size = f"order 2 is up to {100.0 * self.order2:.2g} % of order 1"
         signs = f"{size}, {self.excess:.2g} times the size from which it counts as seen"
         if self.sensors > 1:
@@ -104,8 +104,8 @@ class Findings:
         )
         return f"{signs}; {fits}: {self.ratio:.2g} times as much, where {RATIO:g} decides"
 
-    def settle(self) -> str:
-        """What measurement would settle it, or could change it, in one sentence."""
+    def next_measurement(self) -> str:
+        """Recommend, in a sentence, the measurement that would decide or confirm the verdict."""
         other = "an accelerometer on the other face" if self.sensors == 1 else "a slower sweep"
         return {
             DELAMINATED: "A sweep in the other direction and another level should give the same "
@@ -118,15 +118,15 @@ class Findings:
         }[self.verdict()]
 
     def seen_up_to(self) -> str:
-        """The range that was looked at, and how small an opening would have been seen."""
+        """Describe the range that was measured, and the smallest opening detectable in it."""
         return (
             f"up to {self.high:.3g} m/s2 from {self.first:.3g} to {self.last:.3g} Hz; an opening "
             f"that moves by {1e6 * self.smallest:.2g} micrometres would have been seen"
         )
 
 
-def share_of_better(sound: Floats, delaminated: Floats) -> float:
-    """Share of records put together of blocks of windows in which the ratio of misfits holds.
+def resampled_share(sound: Floats, delaminated: Floats) -> float:
+    """Return the share of block-bootstrap samples in which the ratio of misfits is exceeded.
 
     Parameters
     ----------
