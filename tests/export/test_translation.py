@@ -128,7 +128,7 @@ def test_comments_say_how_often_lines_run(tmp_path):
     body = "if m[0] != 0.0:  # usually\n    m[0] = helper(m, time)\nreturn 0"
     assert "static inline double helper(" in translate({"entry": module_of(tmp_path, body).entry})
     kernel = translate(load_model("oscillator").entries)
-    assert "static INLINE Reals6 turned(" in kernel and "/* inline */" not in kernel
+    assert "static INLINE Reals6 next_phasors(" in kernel and "/* inline */" not in kernel
 
 
 def test_floor_is_exact(tmp_path):

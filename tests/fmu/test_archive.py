@@ -61,8 +61,8 @@ def test_guid_belongs_to_the_sources(copies, tmp_path):
             ("kernels/oscillator/impact.py", '"""Impact:', '"""An impact:'),
             (
                 "runtime/slave.py",
-                '"""One line to the error output,',
-                '"""A line to the error output,',
+                '"""Write one line to the error output,',
+                '"""Write a line to the error output,',
             ),
         ]
     ):

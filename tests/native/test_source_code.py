@@ -134,7 +134,7 @@ def test_the_description_names_the_sources(fmus):
 def without_binaries(tmp_path_factory):
     """The FMUs for targets that compile, by form."""
     build = tmp_path_factory.mktemp("sources")
-    wanted = forms.source_forms(forms.FORMS + forms.PLAIN_FORMS)
+    wanted = forms.sources_of(forms.FORMS + forms.PLAIN_FORMS)
     return {form: forms.export("TwoMassImpactOscillator", form, build) for form in wanted}
 
 

@@ -152,7 +152,7 @@ def test_many_turns_keep_their_digits():
 )
 def test_a_time_constant_far_below_the_step_is_known_at_once(values):
     m = started(voltage=5.0, **values)
-    with patch.object(stepper, "through") as through:
+    with patch.object(stepper, "integrate_step") as through:
         assert stepper.advance(m, 1.0) == at.UNFINISHED
     through.assert_not_called()
     assert m[at.WORK] > m[at.WORK_LIMIT]

@@ -148,7 +148,7 @@ ATTRACTORS = [
     (["--eta", "1", "--scale", "big"], ["--scale big", "not numbers"]),
     (["--eta", "1", "--width", "nan"], ["width = nan"]),
     (["--eta", "1", "--samples", "2"], ["samples = 2", "from 4"]),
-    (["--eta", "1", "--set", "bonded=true"], ["bonded", "can part"]),
+    (["--eta", "1", "--set", "bonded=true"], ["bonded", "a delaminated structure"]),
 ]
 BASIN = [
     *SHAKEN,
@@ -162,7 +162,7 @@ BASIN = [
     (["--eta", "1", "--at", "0,0,0"], ["--at 0,0,0", "four numbers"]),
     (["--eta", "1", "--at", "0,-1,0,0"], ["at = ", "x2 >= x1"]),
     (["--eta", "1", "--x", "x_rel,-2,-1,5"], ["the masses overlap at every start"]),
-    (["--eta", "1", "--set", "bonded=true"], ["bonded", "can part"]),
+    (["--eta", "1", "--set", "bonded=true"], ["bonded", "a delaminated structure"]),
 ]
 ORBIT = [
     *SHAKEN,
