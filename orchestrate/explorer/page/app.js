@@ -117,13 +117,11 @@ export class App {
       "command-copy": () => this.copy(at("command").textContent ?? "", "command"),
       "motion-command-copy": () => this.copy(at("motion-command").textContent ?? "", "command"),
       reset: () => this.reset(),
-      "words-link": () => this.showWords(),
     };
     for (const id in clicks) at(id).addEventListener("click", clicks[id]);
     at("direction").addEventListener("change", () => this.open(regions.diagram.low, regions.diagram.high));
     at("branches").addEventListener("change", () => regions.view.refresh());
     acceptRecords(at, this.pool, (measured) => this.lay(measured));
-    at("words-link").addEventListener("click", (event) => event.preventDefault()); // the hash is the view's
     addEventListener("hashchange", () => this.restore(location.hash));
     addEventListener("keydown", (event) => this.pressed(event));
     document.querySelectorAll("button[data-save]").forEach((button) =>
@@ -324,12 +322,6 @@ export class App {
     const words = this.basin.hint(known);
     if (words) at("hint").textContent = words;
     at("hint").classList.toggle("absent", !words);
-  }
-
-  showWords() {
-    /** @type {HTMLDetailsElement} */ (at("words")).open = true;
-    at("words").scrollIntoView();
-    at("words").querySelector("summary")?.focus();
   }
 
   computeBasin() {

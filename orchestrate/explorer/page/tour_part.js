@@ -8,6 +8,7 @@ export class TourPart {
     this.texts = /** @type {NodeListOf<HTMLElement>} */ (tour.querySelectorAll("[data-text]"));
     this.about = /** @type {NodeListOf<HTMLElement>} */ (tour.querySelectorAll("[data-stop]"));
     this.name = ""; // of the stop that is shown
+    tour.querySelector("#words-link")?.addEventListener("click", showWords);
     for (const button of tour.querySelectorAll("[data-close]")) button.addEventListener("click", () => this.show(""));
   }
 
@@ -42,4 +43,13 @@ export class TourPart {
     this.name = "";
     for (const link of this.links) if (!link.closest("ol")) link.ariaCurrent = null;
   }
+}
+
+/** Open the list of words; the link's hash stays the view's. @param {Event} event */
+function showWords(event) {
+  event.preventDefault();
+  const words = /** @type {HTMLDetailsElement} */ (document.getElementById("words"));
+  words.open = true;
+  words.scrollIntoView();
+  words.querySelector("summary")?.focus();
 }
