@@ -15,6 +15,13 @@ START = (0.0, 0.0, 0.0, 0.0)
 OTHER = (-0.055, -0.041, -2.263, -2.141)  # leads to the second motion at 1.3
 OMEGA = 2.0 * math.pi * 40.0  # of the pressed beam, whose other numbers are the paper's, rad/s
 HILL = (36.2, 47.0)  # Hz: where the pressed beam opens at 0.5 g, and nowhere else in its region
+SEEN = (36.5, 45.5)  # Hz: where it is open at the moment of the diagram's dots
+AT_LOW_LEVEL = (
+    f"The diagram is of 0.5 g: the beam opens between {HILL[0]:g} and {HILL[1]:g} Hz, where it has "
+    f"impacts. The hill in the upper picture runs from {SEEN[0]:g} to {SEEN[1]:g} Hz: beside it "
+    "the halves are shut at the moment of the dots and open at another."
+)
+AT_HIGH_LEVEL = "The diagram is of 3 g: the beam opens at every frequency of it."
 PRESSED: dict[str, Any] = {
     "region": (0.25, 1.5),
     "changes": {
@@ -47,6 +54,8 @@ class Stop:
     level : float
         Peak acceleration of the box in g, held at all frequencies; 0: the paper's amplitude
         1/eta^2 m.
+    about : str
+        A sentence on its diagram, shown with it.
     """
 
     name: str
@@ -57,6 +66,7 @@ class Stop:
     direction: str = "up"
     changes: dict[str, float] = field(default_factory=dict)
     level: float = 0.0
+    about: str = ""
 
     @property
     def words(self) -> str:
@@ -108,7 +118,8 @@ TOUR = (
     Step(
         "Two answers",
         "One beam, one frequency, two motions: which one comes depends on how it began. So a test "
-        "that sweeps upwards and one that sweeps downwards can disagree, here in both colours.",
+        "that sweeps upwards and one that sweeps downwards can disagree: upwards is blue here, "
+        "downwards orange.",
         (
             Stop("two-answers", "from rest", 1.3, START, (1.1, 1.5), "both"),
             Stop("two-answers-other", "the other, wider one", 1.3, OTHER, (1.1, 1.5), "both"),
@@ -124,12 +135,26 @@ TOUR = (
     Step(
         "Pressed shut",
         "Pressed together by 0.05 mm, at 30 Hz and 0.5 g the halves stay shut: no test there can "
-        "find the delamination. At the same 0.5 g it opens between "
-        f"{HILL[0]:g} and {HILL[1]:g} Hz, the hill in the diagram, and at 30 Hz at a higher level.",
+        "find the delamination. It opens at the same 0.5 g at other frequencies, and at 30 Hz at a "
+        "higher level.",
         (
-            Stop("pressed", "0.5 g at 30 Hz: shut", 0.75, level=0.5, **PRESSED),
-            Stop("pressed-hill", "0.5 g at 41 Hz: open", 1.025, level=0.5, **PRESSED),
-            Stop("pressed-open", "3 g at 30 Hz: open", 0.75, level=3.0, **PRESSED),
+            Stop("pressed", "0.5 g at 30 Hz: shut", 0.75, level=0.5, about=AT_LOW_LEVEL, **PRESSED),
+            Stop(
+                "pressed-hill",
+                "0.5 g at 41 Hz: open",
+                1.025,
+                level=0.5,
+                about=AT_LOW_LEVEL,
+                **PRESSED,
+            ),
+            Stop(
+                "pressed-open",
+                "3 g at 30 Hz: open",
+                0.75,
+                level=3.0,
+                about=AT_HIGH_LEVEL,
+                **PRESSED,
+            ),
         ),
     ),
 )

@@ -13,6 +13,25 @@ class Word(NamedTuple):
 
 
 WORDS = {
+    "diagram": Word(
+        "orbit diagram",
+        "The gap at one moment of each shaking period, drawn over the shaking frequency: few dots "
+        "above a frequency for a motion that repeats, a cloud for one that does not.",
+    ),
+    "sweep": Word(
+        "sweep",
+        "The frequencies are taken in order, up or down, and each motion begins as the last ended.",
+    ),
+    "impact": Word("impact", "The halves strike each other and part with less speed."),
+    "chatter": Word(
+        "chatter",
+        "Ever smaller and quicker impacts in a row, until the halves stick together for a while.",
+    ),
+    "level": Word(
+        "level, g",
+        "How strongly the box is shaken: the largest acceleration in a period, in multiples of "
+        "that of gravity, 9.81 m/s².",
+    ),
     "delaminated": Word(
         "delaminated, undamaged",
         "A delaminated beam is split along its middle into two halves that can part and strike "
@@ -47,7 +66,9 @@ WORDS = {
     "exponent": Word(
         "exponent",
         "The largest Lyapunov exponent: how fast two motions that begin almost alike come apart, "
-        "per unit of τ. Above zero: chaos. Below: the motion repeats.",
+        "per unit of τ, with its error. Above zero by more than the error: chaos, as a rule. Below "
+        "by more: the motion repeats as a rule, or comes to it. Within its error of zero: it "
+        "nearly repeats, or is still settling: too slow to decide here.",
     ),
     "spectrum": Word(
         "spectrum",

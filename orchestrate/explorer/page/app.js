@@ -53,6 +53,7 @@ export class App {
     this.level = this.usual.level;
     this.eta = NaN;
     this.words = { record: at("record-status").textContent };
+    this.carried = false; // whether the frequency comes from the beam before, in other units
     this.waiting = false; // for the start of the chosen response
     const size = Math.max(1, Math.min(4, (navigator.hardwareConcurrency || 2) - 1));
     this.pool = new WorkerPool(worker, compiled, size);
@@ -72,7 +73,11 @@ export class App {
     this.controls = new Controls(at, this.structure, table, (structure) => this.change(structure));
     this.shaking = new Shaking(at, table.units, this.structure, this.level, {
       choose: (eta, exactly) => this.choose(eta, exactly),
-      change: (structure, level) => this.change(structure, level),
+      change: (structure, level) => {
+        const before = this.level;
+        this.change(structure, level);
+        this.carried = this.carried || inHertz(before) !== inHertz(level);
+      },
     });
     this.tour = new TourPart(at("tour"), table.tour);
     this.regions.view.overlay = (pen, picture, theme) => {
@@ -138,6 +143,7 @@ export class App {
     const paper = { ...usual, structure: table.usual, level: PAPER };
     const view = viewOf(stop ?? fragment, stop === null ? usual : paper, table.ranges);
     this.set(view.structure, view.level);
+    this.carried = false;
     input("direction").value = view.direction;
     this.regions.open(view.structure, view);
     const { name } = this.tour;
@@ -186,13 +192,18 @@ export class App {
     input("direction").value = diagram.direction;
     const other = !sameStructure(this.structure, diagram.structure) || !sameLevel(this.level, diagram.level);
     this.set(diagram.structure, diagram.level);
-    if (other) this.carryOn();
+    if (other) {
+      this.tour.describe("");
+      this.carryOn();
+    }
   }
 
-  /** Other parameters: the diagram follows, the motion goes on from where it was; frequencies stay, in Hz those in Hz. @param {Structure} structure @param {Level} [level] */
+  /** Other parameters: the diagram follows, the motion goes on from where it was; frequencies stay, in Hz those in Hz once one was chosen there. @param {Structure} structure @param {Level} [level] */
   change(structure, level = this.level) {
     this.tour.leave();
-    const held = inHertz(level) && inHertz(this.level) ? omegaOf(this.structure) / omegaOf(structure) : 1; // in Hz
+    this.tour.describe("");
+    const hertz = inHertz(level) && inHertz(this.level) && !this.carried;
+    const held = hertz ? omegaOf(this.structure) / omegaOf(structure) : 1;
     this.eta *= held;
     this.set(structure, level);
     this.regions.follow(structure, level, held);
@@ -211,6 +222,7 @@ export class App {
   /** Choose a response: the nearest of the diagram, or exactly `eta`. @param {number} eta @param {boolean} [exactly] @param {number[] | null} [start] */
   choose(eta, exactly = false, start = null) {
     if (!(eta > 0)) return;
+    this.carried = false;
     const { diagram } = this.regions;
     const index = nearest(diagram, eta);
     const near = diagram.points[index];
@@ -307,7 +319,9 @@ export class App {
     if (!diagram) return;
     const index = nearest(diagram, this.eta);
     const known = Math.abs(diagram.points[index].eta - this.eta) < 1e-3 * this.eta && lanesDiffer(diagram, index);
-    at("hint").classList.toggle("absent", !known && !this.basin.others);
+    const words = this.basin.hint(known);
+    if (words) at("hint").textContent = words;
+    at("hint").classList.toggle("absent", !words);
   }
 
   computeBasin() {

@@ -12,7 +12,7 @@ import { lengthOf, omegaOf } from "./structure.js";
  * @typedef {{multiplicity: number, samples: Float64Array, impacts: number}} Attractor
  */
 
-const SETTLING = { transient: 300, samples: 64, tolerance: 1e-2 };
+export const SETTLING = { transient: 300, samples: 64, tolerance: 1e-2 };
 
 /** The start at a cell of a plane. @param {Point} point @param {Plane} plane @param {number} column @param {number} row */
 export function startAt(point, plane, column, row) {

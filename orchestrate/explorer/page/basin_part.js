@@ -28,6 +28,7 @@ export class BasinPart {
     this.few = []; // to which a few starts lead
     /** @type {import("./worker_pool.js").Order | null} */
     this.trial = null;
+    this.tried = false; // whether all of the few have come
     this.about = ""; // the point that is shown
     this.point = ""; // that the picture was computed at
     this.visible = false;
@@ -42,6 +43,8 @@ export class BasinPart {
   /** Nothing is known of another point. @param {import("./structure.js").Point} point */
   leave(point) {
     this.trial?.cancel();
+    this.trial = null;
+    if (!this.tried) this.few = [];
     this.shown = null;
     this.told();
     const text = JSON.stringify(point);
@@ -55,6 +58,7 @@ export class BasinPart {
     this.order?.cancel();
     this.point = "";
     this.few = [];
+    this.tried = false;
     this.view.clear();
     this.at("basins").replaceChildren();
     this.told();
@@ -66,6 +70,13 @@ export class BasinPart {
     return shown !== null && [...this.view.attractors, ...this.few].some((one) => placeOf([shown], one, SAME) < 0);
   }
 
+  /** What is known of other motions; nothing where all starts have led to the one that is shown. @param {boolean} [differ] whether sweeps up and down do */
+  hint(differ = false) {
+    const complete = Boolean(this.point) && this.at("basins").dataset.complete === "true";
+    if (this.others) return complete ? "Other motions here: see below." : "There is another motion here:";
+    return differ && !complete && !this.tried ? "There may be another motion here:" : "";
+  }
+
   /** A motion is shown: mark it, and try a few starts. @param {import("./inspector.js").Choice} choice @param {import("./response.js").Response} response */
   meet({ point }, response) {
     this.shown = attractorOf(response);
@@ -73,8 +84,14 @@ export class BasinPart {
     this.told();
     if (this.point || this.few.length) return;
     const cells = FEW.flatMap((column) => FEW.map((row) => [column, row]));
-    this.trial = this.pool.ask("basin", { point, plane: planeOf(point, response), cells }, (parts) => {
+    const trial = this.pool.ask("basin", { point, plane: planeOf(point, response), cells }, (parts) => {
       for (const part of parts) label(this.few, part, SAME);
+      this.told();
+    });
+    this.trial = trial;
+    void trial.done.then(() => {
+      if (this.trial !== trial) return;
+      this.tried = true;
       this.told();
     });
   }
@@ -92,6 +109,7 @@ export class BasinPart {
       this.tell(false);
     });
     this.order = order;
+    this.at("basins").dataset.complete = "false";
     void order.done.then(() => this.order === order && this.tell(true));
   }
 

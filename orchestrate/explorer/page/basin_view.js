@@ -1,10 +1,10 @@
 /** The basin of attraction as a picture that fills in, coarse first; a click starts there. */
 
-import { label, placeOf, startAt } from "./basin.js";
+import { label, placeOf, SETTLING, startAt } from "./basin.js";
 import { drawFrame, areaOf } from "./chart.js";
 import { inHertz, PAPER } from "./excitation.js";
 import { Picture } from "./picture.js";
-import { meanCountOf } from "./motion_view.js";
+import { averageWords, meanCountOf } from "./words_of.js";
 import { omegaOf } from "./structure.js";
 import { channels } from "./theme.js";
 import { gapUnit, wordsOf } from "./units.js";
@@ -111,8 +111,9 @@ export class BasinView {
     const now = shown ? placeOf(this.attractors, shown, SAME) : -1;
     return this.attractors.map(({ multiplicity, impacts }, number) => {
       const share = this.labels.reduce((sum, one) => sum + (one === number ? 1 : 0), 0) / total;
-      const kind = multiplicity ? `repeats after ${multiplicity} period${multiplicity > 1 ? "s" : ""}` : "does not repeat";
-      const text = `${kind}, ${meanCountOf(impacts, multiplicity)}: ${(100 * share).toFixed(1)} % of starts`;
+      const kind = multiplicity ? `repeats after ${multiplicity} period${multiplicity > 1 ? "s" : ""}` : "has not repeated";
+      const worth = multiplicity ? "" : ` (${averageWords(SETTLING.samples)})`;
+      const text = `${kind}, ${meanCountOf(impacts, multiplicity)}${worth}: ${(100 * share).toFixed(1)} % of starts`;
       return { colour: colourOf(number), text, now: number === now, start: startAt(point, plane, ...this.examples[number]) };
     });
   }

@@ -130,6 +130,9 @@ export class Plate {
   }
 }
 
+/** Colours of directions only where both are shown. @param {Theme} theme @param {Diagram} shown @param {"up" | "down"} direction */
+export const laneColour = (theme, { lanes }, direction) => (lanes.length > 1 ? theme[direction] : theme.ink);
+
 /** Frames of both panels. @param {Pen} pen @param {Size} size @param {Theme} theme @param {Axes} axes @param {number} unit of frequency ratios on the axis */
 export function drawFrames(pen, size, theme, axes, unit) {
   const x = { ...axes.x, low: axes.x.low * unit, high: axes.x.high * unit };
@@ -269,7 +272,7 @@ export class DiagramView {
       const [diagram, direction, index] = this.queue[done++];
       const found = diagram.lanes.find((lane) => lane.direction === direction)?.found[index];
       const point = diagram.points[index];
-      if (found) this.plate.add(point, found, theme[direction], gapUnit(point, shown.level));
+      if (found) this.plate.add(point, found, laneColour(theme, shown, direction), gapUnit(point, shown.level));
     }
     this.done = done;
     if (done === this.queue.length) [this.queue, this.done] = [[], 0];

@@ -2,7 +2,7 @@
 
 import { drawChart } from "./chart.js";
 import { toDefault } from "./field.js";
-import { countOf } from "./motion_view.js";
+import { countOf } from "./words_of.js";
 import { Picture } from "./picture.js";
 import { shown } from "./scale.js";
 import { omegaOf } from "./structure.js";

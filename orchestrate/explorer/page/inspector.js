@@ -4,17 +4,15 @@ import { Animation } from "./animation.js";
 import { axisAround } from "./chart.js";
 import {
   columnsOf,
-  exponentWords,
   historyChart,
   motionPictures,
-  numbersOf,
   phaseChart,
   sectionChart,
-  sentenceOf,
   spectrumChart,
 } from "./motion_view.js";
 import { shown } from "./scale.js";
 import { Sound } from "./audio.js";
+import { averageWords, exponentWords, numbersOf, sentenceOf } from "./words_of.js";
 
 /**
  * @typedef {import("./structure.js").Point} Point
@@ -45,7 +43,7 @@ export class Inspector {
     this.found = null;
     /** @type {any} */
     this.spectra = null;
-    /** @type {number | undefined} */
+    /** @type {import("./lyapunov.js").Exponent | undefined} */
     this.exponent = undefined;
     /** @type {import("./record.js").Measured | null} */
     this.measured = null;
@@ -101,6 +99,8 @@ export class Inspector {
     const { point, level } = /** @type {Choice} */ (this.choice);
     const { response, motion } = /** @type {{response: Response, motion: Motion}} */ (this.found);
     this.at("sentence").textContent = sentenceOf(response, this.exponent, motion.contact.some(Boolean));
+    this.at("average").textContent = averageWords(response.gaps.length);
+    this.at("average").classList.toggle("absent", response.multiplicity > 0 || !response.impacts);
     const list = this.at("numbers");
     list.querySelectorAll(".told").forEach((row) => row.remove());
     for (const [name, value] of Object.entries(numbersOf(response, point, level)).reverse()) {

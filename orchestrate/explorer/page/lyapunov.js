@@ -6,7 +6,14 @@ import { lengthOf, omegaOf, periodOf } from "./structure.js";
 /**
  * @typedef {import("./kernel.js").Oscillator} Oscillator
  * @typedef {import("./structure.js").Point} Point
+ * @typedef {{value: number, error: number}} Exponent per unit of tau
  */
+
+const SLICE = 20; // periods between two pauses
+const BLOCKS = 8; // parts of the whole whose growths are samples of the mean
+const QUANTILE = 2.36; // of Student's t of as many less one, two-sided 95 %
+const ALIGNING = Math.log(10); // by how much a first direction may mislead the sum of growths
+
 
 /**
  * Mean growth rate per unit of tau of a small difference, made small again after each period.
@@ -14,7 +21,7 @@ import { lengthOf, omegaOf, periodOf } from "./structure.js";
  * @param {Point} point
  * @param {number[]} start on the attractor, at phase 0
  * @param {{periods: number, distance: number}} settings
- * @returns {Generator<undefined, number>} minus infinity where permanent contact forgets the
+ * @returns {Generator<undefined, Exponent>} minus infinity where permanent contact forgets the
  *   difference; it pauses, so that the instance may do other things
  */
 export function* exponentOf(instance, point, start, { periods, distance }) {
@@ -30,19 +37,27 @@ export function* exponentOf(instance, point, start, { periods, distance }) {
   };
   let state = start;
   let difference = [-0.5, 0.5, 0.5, -0.5].map((part) => part * distance);
-  let sum = 0;
+  const blocks = new Float64Array(BLOCKS);
   for (let n = 0; n < periods; n++) {
     const twin = beside(state, difference, scale, gapOffset(point.structure));
     const moved = twin.map((value, i) => (value - state[i]) / scale[i]);
     [state, difference] = separate(next(state), next(twin), scale);
     const growth = norm(difference) / norm(moved);
-    if (!(growth > 0)) return -Infinity;
-    sum += Math.log(growth);
+    if (!(growth > 0)) return { value: -Infinity, error: 0 };
+    blocks[Math.floor((n * BLOCKS) / periods)] += Math.log(growth);
     const factor = distance / norm(difference);
     difference = difference.map((part) => part * factor);
-    if (n % 20 === 19) yield;
+    if (n % SLICE === SLICE - 1) yield;
   }
-  return sum / (periods * period * omegaOf(point.structure));
+  return meanOf(blocks, periods * period * omegaOf(point.structure));
+}
+
+/** The mean growth, and how far it may be off: by chance (95 %), or by the first direction. @param {Float64Array} blocks growth in equal times @param {number} time of all, in tau @returns {Exponent} */
+function meanOf(blocks, time) {
+  const sum = blocks.reduce((all, one) => all + one, 0);
+  const spread = blocks.reduce((all, one) => all + (one - sum / blocks.length) ** 2, 0);
+  const chance = QUANTILE * Math.sqrt((spread * blocks.length) / (blocks.length - 1));
+  return { value: sum / time, error: Math.max(chance, ALIGNING) / time };
 }
 
 /** A state close by whose gap is none below zero. @param {number[]} state @param {number[]} d @param {number[]} scale @param {number} offset */

@@ -2,10 +2,9 @@
 
 import { axisAround, drawChart } from "./chart.js";
 import { atRest, gapBetween, gapOffset } from "./clearance.js";
-import { GRAVITY, inHertz } from "./excitation.js";
+import { inHertz } from "./excitation.js";
 import { Picture } from "./picture.js";
 import { peaksUpTo } from "./record.js";
-import { shown } from "./scale.js";
 import { scaleAt, wordsOf } from "./units.js";
 
 /**
@@ -15,12 +14,9 @@ import { scaleAt, wordsOf } from "./units.js";
  * @typedef {import("./chart.js").Series} Series
  * @typedef {import("./chart.js").Chart} Chart
  * @typedef {import("./spectrum.js").Spectrum} Spectrum
- * @typedef {import("./response.js").Response} Response
  * @typedef {"history" | "phase" | "section" | "spectrum"} Name
  */
 
-const CHAOTIC = 0.005; // exponents above
-const REGULAR = -0.002; // and below
 const FEW = 24; // places of a section that are drawn as larger dots
 
 /** @param {(id: string) => HTMLElement} at the page's elements */
@@ -154,49 +150,4 @@ export function spectrumChart({ delaminated, bonded }, point, level, measured) {
     y: { low, high: high * 2, log: true, label: words.acceleration },
     series,
   };
-}
-
-/** Numbers of a response for people. @param {Response} response @param {Point} point @param {Level} level @returns {Record<string, string>} */
-export function numbersOf({ peak, impacts, contact, multiplicity }, { eta, frequency, amplitude }, level) {
-  const own = inHertz(level);
-  /** @type {Record<string, string>} */
-  const first = own
-    ? {
-        "frequency, Hz": shown(frequency / (2 * Math.PI), 6),
-        "amplitude of the box, mm": shown(1e3 * amplitude),
-        "acceleration of the box, g": shown((amplitude * frequency * frequency) / GRAVITY),
-        "largest gap, mm": shown(1e3 * peak * amplitude * eta * eta),
-      }
-    : { "frequency ratio η": shown(eta, 6), "largest gap ξ": shown(peak, 6) };
-  return {
-    ...first,
-    "impacts a period": multiplicity === 1 ? shown(impacts) : `${shown(impacts)} on average`,
-    "repeats after": multiplicity ? `${multiplicity} period${multiplicity > 1 ? "s" : ""}` : "does not repeat",
-    "stick together": !contact ? "no" : peak > 0 ? "for a while" : "always",
-  };
-}
-
-/** What the exponent says. @param {number} exponent @param {number} repeats after so many periods, 0 if not */
-export function exponentWords(exponent, repeats) {
-  const settles = repeats ? " (regular)" : " (it converges, but has not repeated yet)";
-  return `${shown(exponent, 3)}${exponent > CHAOTIC ? " (chaotic)" : exponent < REGULAR ? settles : ""}`;
-}
-
-/** So many impacts a period, or a revolution. @param {number} impacts @param {string} [each] */
-export const countOf = (impacts, each = "a period") => `${shown(impacts, 3)} impact${impacts === 1 ? "" : "s"} ${each}`;
-
-/** The same of a motion: of periods that differ it is the mean. @param {number} impacts @param {number} multiplicity */
-export const meanCountOf = (impacts, multiplicity) => `${multiplicity === 1 ? "" : "on average "}${countOf(impacts)}`;
-
-/** A response in a sentence. @param {Response} response @param {number | undefined} exponent if it is known @param {boolean} seen whether contact is among what is shown */
-export function sentenceOf({ impacts, contact, multiplicity, peak }, exponent, seen) {
-  if (!impacts) return peak > 0 ? "The halves never touch." : "The halves stay closed: no impact.";
-  const count = meanCountOf(impacts, multiplicity);
-  if (multiplicity) {
-    const every = multiplicity === 1 ? "every shaking period" : `after ${multiplicity} shaking periods`;
-    return `Repeats ${every}: ${count}${contact ? ", then the halves stick together for a while" : ""}.`;
-  }
-  const kind = exponent !== undefined && exponent > CHAOTIC ? "Chaos: never repeats" : "Does not repeat";
-  const sticks = `; at times${seen ? "" : " (not shown)"} the halves stick together`;
-  return `${kind}, ${count}${contact ? sticks : ""}.`;
 }

@@ -16,23 +16,24 @@ export function overlayOf({ branches, bifurcations, structure }, view) {
     const [left, top, width, height] = panels(size).gaps;
     const px = scaleOf(view.axes.x, left, left + width);
     const scale = scaleOf(view.axes.gaps, top + height - STRIP, top);
-    const { level } = /** @type {import("./diagram.js").Diagram} */ (view.diagram);
+    const { level, lanes } = /** @type {import("./diagram.js").Diagram} */ (view.diagram);
+    const colour = lanes.length > 1 ? theme.ink : theme.two; // not one of the sweeps'
     /** @param {number} gap @param {number} eta */
     const py = (gap, eta) => scale(gap * gapUnit(pointAt(structure, eta, level), level));
     pen.inside([left, top, width, height - STRIP], () => {
       for (const { x, y, stable } of branches) {
-        const look = { stroke: theme.two, width: 1.8, dash: stable ? [] : [5, 4] };
+        const look = { stroke: colour, width: 1.8, dash: stable ? [] : [5, 4] };
         pen.line(x.map(px), y.map((gap, i) => py(gap, x[i])), look);
       }
       /** @type {[number, number][]} */
       const taken = [];
       for (const { eta, gap, kind } of bifurcations) {
         const [x, y] = [px(eta), py(gap, eta)];
-        pen.dots([x], [y], 4, { fill: theme.two });
+        pen.dots([x], [y], 4, { fill: colour });
         let level = y - 10;
         while (taken.some(([a, b]) => Math.abs(a - x) < 110 && Math.abs(b - level) < 12)) level -= 13;
         taken.push([x, level]);
-        pen.text(x + 6, level, kind, { anchor: "start", fill: theme.two, size: 11 });
+        pen.text(x + 6, level, kind, { anchor: "start", fill: colour, size: 11 });
       }
     });
   };

@@ -1,6 +1,8 @@
 /** Seeing and hearing the motion: play, hold, next impact, sound, how fast and how long. */
 
+import { inHertz } from "./excitation.js";
 import { onNumber, toDefault } from "./field.js";
+import { shown } from "./scale.js";
 
 const FIELDS = ["speed", "pitch", "periods", "beside"];
 
@@ -43,6 +45,7 @@ export class Player {
 
   /** What the buttons do now. */
   refresh() {
+    this.showSpeed();
     const { sound, animation } = this.inspector;
     this.at("listen-word").textContent = sound.playing ? "Silence" : "Sound";
     this.at("play").textContent = animation.running ? "Pause" : "Play";
@@ -69,6 +72,15 @@ export class Player {
 
   setSpeed() {
     this.inspector.animation.speed = 2 ** this.input("speed").valueAsNumber;
+    this.showSpeed();
+  }
+
+  /** How fast the motion is seen: against the true one, where there are seconds. */
+  showSpeed() {
+    const { animation, choice } = this.inspector;
+    const turns = `${shown(animation.speed, 2)} periods a second`;
+    this.at("speed-words").textContent =
+      choice && inHertz(choice.level) ? slowed(choice.point.frequency / (2 * Math.PI) / animation.speed) : turns;
   }
 
   /** @param {number} periods */
@@ -77,3 +89,6 @@ export class Player {
     if (this.inspector.choice) this.inspector.choose(this.inspector.choice);
   }
 }
+
+/** @param {number} times */
+const slowed = (times) => (times >= 1 ? `${shown(times, 2)} times slowed` : `${shown(1 / times, 2)} times faster`);

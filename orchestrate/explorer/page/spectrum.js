@@ -12,7 +12,8 @@ const PIECE = 4096; // samples
 
 /**
  * Of the motion that goes on from where the instance stands. The square of the frequency times the
- * displacement's spectrum has the impulses too, which no sampled acceleration has.
+ * displacement's spectrum has the impulses too, which no sampled acceleration has. The mean place
+ * is taken away: the window would spread it over the next lines, and it moves nothing.
  * @param {Oscillator} instance
  * @param {Point} point
  * @param {number} first periods since the start
@@ -28,13 +29,13 @@ export function* spectrumOf(instance, point, first, { periods, points, highest }
     for (let k = 0; k < PIECE; k++) {
       const i = done + k;
       const box = point.amplitude * Math.sin((2 * Math.PI * ((i + 1) % points)) / points);
-      const hann = 0.5 - 0.5 * Math.cos((2 * Math.PI * i) / count);
-      real[i] = (states[4 * k] + box) * hann;
+      real[i] = states[4 * k] + box;
     }
     const kept = instance.memory.slice();
     yield;
     instance.memory.set(kept);
   }
+  windowed(real);
   const imaginary = new Float64Array(count);
   transform(real, imaginary);
   const shown = Math.floor(highest * periods) + 1;
@@ -44,6 +45,12 @@ export function* spectrumOf(instance, point, first, { periods, points, highest }
     return ((frequency * frequency * Math.hypot(real[line], imaginary[line])) / count) * 4;
   });
   return { order, amplitude };
+}
+
+/** A Hann window over what differs from the mean, in place. @param {Float64Array} values */
+export function windowed(values) {
+  const mean = values.reduce((sum, value) => sum + value, 0) / values.length;
+  values.forEach((value, i) => (values[i] = (value - mean) * (0.5 - 0.5 * Math.cos((2 * Math.PI * i) / values.length))));
 }
 
 /**

@@ -1,8 +1,12 @@
 """The page is clear to someone who sees it first: what it says is true, and nothing jumps."""
 
 import json
+import re
 
+import numpy as np
 import pytest
+
+import orchestrate
 
 from .conftest import typed
 
@@ -29,7 +33,7 @@ return ["play", "listen", "impact", "pitch", "history", "drive-go", "motion"].ma
 """
 
 
-def test_as_it_was_brings_back_the_page_as_it_was_opened(opened):
+def test_reset_brings_back_the_page_as_it_was_opened(opened):
     opened.until(READY)
     before = json.loads(opened.run(SEEN))
     typed(opened, "pitch", "9")
@@ -53,7 +57,7 @@ def test_as_it_was_brings_back_the_page_as_it_was_opened(opened):
         assert now == was
 
 
-def test_as_it_was_of_a_link_is_what_the_link_shows(opened, page):
+def test_reset_of_a_link_is_what_the_link_shows(opened, page):
     opened.open(page, "#tour=pressed")
     opened.until(READY)
     before = json.loads(opened.run(SEEN))
@@ -88,6 +92,7 @@ def test_where_another_motion_is_known_the_page_says_so(opened, eta, others):
         "return [...document.querySelectorAll('#basins li')].map((row) => row.innerText)"
     )
     assert len(rows) == 1 + others == 1 + hinted(opened)
+    assert not others or opened.text("hint") == "Other motions here: see below."
     assert sum("shown now" in row for row in rows) == 1
     if others:
         now = opened.run("return document.querySelector('#basins .now').parentElement.textContent")
@@ -102,6 +107,17 @@ def test_a_hint_comes_by_itself(opened):
     opened.until(READY)
     opened.until("return !document.getElementById('hint').classList.contains('absent')")
     assert opened.run("return explorer.basin.few.length") == 2  # of a few starts alone
+    assert opened.text("hint") == "There is another motion here:"
+
+
+def test_where_all_of_a_few_starts_lead_to_one_motion_nothing_hints_at_another(opened):
+    opened.run("explorer.choose(1.7, true)")
+    opened.until(READY)
+    opened.until("return explorer.basin.tried")
+    assert opened.run("return explorer.basin.few.length") == 1
+    assert opened.run("return explorer.basin.hint(true)") == ""  # whatever the sweeps suggest
+    opened.run("explorer.basin.tried = false")
+    assert opened.run("return explorer.basin.hint(true)") == "There may be another motion here:"
 
 
 def test_no_sentence_moves_what_is_below_it(opened):
@@ -155,6 +171,129 @@ def test_what_never_repeats_has_impacts_on_average(opened):
     opened.until(READY)
     assert ", on average " in opened.text("sentence") and " on average" in opened.text("numbers")
     assert "then the halves stick" not in opened.text("sentence")
+    periods = opened.run("return explorer.inspector.found.response.gaps.length")
+    assert opened.text("average").startswith(f"averages over {periods} periods; another start")
+    visible = "return !document.getElementById('average').classList.contains('absent')"
+    assert opened.run(visible)
+    opened.run("explorer.choose(1.7, true)")
+    opened.until(READY)
+    assert not opened.run(visible)
+
+
+def test_a_mean_is_rounded_alike_in_the_headline_and_in_the_table(opened):
+    opened.run("explorer.choose(2.9, true)")
+    opened.until(READY)
+    for impacts in (1.045, 0.895, 22.125):
+        opened.run(
+            "explorer.inspector.found.response.impacts = arguments[0];"
+            "explorer.inspector.showNumbers()",
+            impacts,
+        )
+        headline = re.search(r"on average (\S+) impacts", opened.text("sentence")).group(1)
+        table = re.search(r"impacts a period(\S+) on average", opened.text("numbers")).group(1)
+        assert headline == table and abs(float(table) - impacts) < 0.01 * impacts
+
+
+def test_contact_that_is_not_in_the_picture_is_said_to_have_been_before_it(opened):
+    opened.run("explorer.choose(2.9, true)")
+    opened.until(READY)
+    opened.run(
+        "const { response, motion } = explorer.inspector.found;"
+        "response.contact = true; motion.contact.fill(0); explorer.inspector.showNumbers()"
+    )
+    assert "at times, before the stretch shown, the halves stick" in opened.text("sentence")
+
+
+EXPONENTS = {  # of a motion that has not repeated: value and error, headline, label
+    "chaos": (0.05, 0.01, "Chaos: never repeats", "chaotic"),
+    "converging": (-0.05, 0.01, "Has not repeated within 50 periods, but converges", "converges"),
+    "undecided": (-0.00103, 0.002, "Nearly repeats, or is still settling", "too slow to decide"),
+    "undecided above zero": (0.009, 0.01, "Nearly repeats, or is still settling", "too slow"),
+}
+
+
+@pytest.mark.parametrize("name", EXPONENTS)
+def test_an_exponent_within_its_error_decides_nothing(opened, name):
+    value, error, headline, label = EXPONENTS[name]
+    opened.run("explorer.choose(2.9, true)")
+    opened.until(READY)
+    assert opened.run("return explorer.inspector.found.response.multiplicity") == 0
+    opened.run(
+        "const [value, error] = arguments;"
+        "explorer.inspector.takeSpectra({ exponent: { value, error } })",
+        value,
+        error,
+    )
+    assert opened.text("sentence").startswith(headline)
+    assert label in opened.text("exponent")
+    undecided = name.startswith("undecided")
+    for text in (opened.text("sentence"), opened.text("exponent")):
+        assert ("too slow to decide here" in text) == undecided
+    assert "too slow to decide here" in opened.text("help-exponent")
+
+
+@pytest.mark.parametrize("eta", [2.9, 1.7])
+def test_the_error_of_the_exponent_covers_the_careful_one(opened, eta):
+    opened.run("explorer.choose(arguments[0], true)", eta)
+    opened.until(READY)
+    found = opened.run("return explorer.inspector.exponent")
+    careful = orchestrate.lyapunov(orchestrate.Structure(), eta=eta, progress=False)
+    assert abs(found["value"] - careful.exponent.item()) < found["error"] < abs(found["value"])
+
+
+def test_a_mean_place_makes_no_line_in_the_spectrum(opened, page):
+    """The halves that are pressed shut stand beside their springs' own lengths and move as one."""
+    opened.open(page, "#tour=pressed")
+    opened.until(READY)
+    delaminated, bonded = (
+        opened.numbers(f"explorer.inspector.spectra.{name}.amplitude")
+        for name in ("delaminated", "bonded")
+    )
+    assert opened.run("return Math.abs(explorer.inspector.found.motion.states[0])") > 1e-6
+    slow = slice(0, 32)  # below half of the shaking frequency
+    assert delaminated[slow].max() < 1e-7 * delaminated.max()
+    assert np.abs(delaminated - bonded).max() < 1e-3 * bonded.max()
+
+
+def luminance(colour):
+    parts = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
+    linear = [
+        part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in parts
+    ]
+    return float(np.dot(linear, (0.2126, 0.7152, 0.0722)))
+
+
+def test_sweeps_up_and_down_have_colours_that_nobody_mixes_up(opened):
+    """One is blue, one is orange: they differ for those who see no red or no green, too."""
+    up, down = opened.run(
+        "const style = getComputedStyle(document.documentElement);"
+        "return ['up', 'down'].map((name) => style.getPropertyValue(`--${name}`).trim())"
+    )
+    blue, red = (lambda colour: int(colour[5:7], 16)), (lambda colour: int(colour[1:3], 16))
+    assert blue(up) - blue(down) > 100 and red(down) - red(up) > 100
+    for colour in (up, down):
+        assert 1.05 / (luminance(colour) + 0.05) > 3.0  # against white paper
+
+
+def test_the_words_are_one_click_from_the_first_sentence(opened):
+    opened.until(READY)
+    shown = opened.run("return location.hash")
+    opened.click("words-link")
+    assert opened.run("return document.getElementById('words').open")
+    assert opened.run("return location.hash") == shown
+    words = opened.text("words")
+    for word in ("orbit diagram", "sweep", "chatter", "impact", "level, g"):
+        assert word in words
+
+
+def test_how_fast_the_motion_is_shown_is_a_number(opened, page):
+    opened.until(READY)
+    assert opened.text("speed-words") == "0.35 periods a second"
+    opened.open(page, "#tour=pressed")  # 30 Hz
+    opened.until(READY)
+    opened.until("return document.getElementById('speed-words').textContent.includes('slowed')")
+    speed = opened.run("return explorer.inspector.animation.speed")
+    assert opened.text("speed-words") == f"{30.0 / speed:.2g} times slowed"
 
 
 def test_the_chosen_frequency_sweeps_and_impacts_have_colours_of_their_own(opened):

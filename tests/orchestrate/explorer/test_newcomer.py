@@ -44,7 +44,7 @@ def test_six_tasks_are_done_by_the_page_alone(first):
     label = first.get("diagram", "aria-label")
     assert "frequency in Hz from 4" in label
     # a second motion at 1.3
-    first.run(WORDS, "button", "As it was")
+    first.run(WORDS, "button", "Reset to the original")
     typed(first, "eta-number", "1.3")
     first.until(MOVED)
     first.run(WORDS, "button", "Other motions")

@@ -72,6 +72,24 @@ def test_the_papers_motions_are_those_of_a_beam_in_hertz(opened):
     assert opened.run("return explorer.structure") == opened.run("return explorer.table.usual")
 
 
+def test_a_frequency_carried_over_from_the_papers_beam_goes_with_the_new_beam(opened):
+    """Until a frequency in Hz was chosen: then it stays."""
+    opened.run("explorer.choose(2.997, true)")
+    own(opened)
+    assert float(opened.get("hertz", "value")) == pytest.approx(119.88)
+    typed(opened, "f1", "12")
+    typed(opened, "f2", "14")
+    opened.until(READY)
+    assert float(opened.get("hertz", "value")) == pytest.approx(12 * 2.997, rel=1e-6)
+    low, high = opened.run(f"return [{DIAGRAM}.low, {DIAGRAM}.high]")
+    assert low < opened.run("return explorer.eta") < high
+    assert (low, high) == pytest.approx((0.1, 8.0))
+    typed(opened, "hertz", "20")
+    typed(opened, "f1", "13")
+    opened.until(READY)
+    assert float(opened.get("hertz", "value")) == pytest.approx(20.0)
+
+
 @pytest.mark.slow
 def test_a_beam_of_42_and_55_hertz_is_what_the_commands_compute(opened, tmp_path):
     opened.open(Path(opened.run("return location.pathname")), "#from=1&to=1.3&eta=1.2")

@@ -399,11 +399,14 @@ def test_bonded_curves_are_inside_their_axes(browser):
         assert left <= first and last <= right and low < least and most < high
 
 
+TAKE = "explorer.inspector.takeSpectra({ exponent: { value: arguments[0], error: 0.001 } })"
+
+
 def test_no_response_is_called_regular_and_irregular(browser):
     """At 2.95 the response does not repeat within the samples; whatever its exponent."""
     browser.run("explorer.choose(2.95)")
     browser.chosen()
     for exponent, words in ((-0.01, "has not repeated yet"), (0.1, "chaotic")):
-        browser.run("explorer.inspector.takeSpectra({ exponent: arguments[0] })", exponent)
+        browser.run(TAKE, exponent)
         told = browser.text("numbers")
-        assert words in told and "does not repeat" in told and "regular" not in told
+        assert words in told and "not within 50 periods" in told and "regular" not in told

@@ -7,9 +7,11 @@ import pytest
 
 import orchestrate
 from orchestrate.constants import GRAVITY
-from orchestrate.explorer.tour import HILL, TOUR
+from orchestrate.explorer.tour import HILL, SEEN, TOUR
 from orchestrate.flags import flag_words
 
+FEW = {"direction": "up", "transient": 200, "samples": 20, "progress": False}
+LOWEST = 1e-5  # gaps over a eta^2 that the diagram draws above its strip of zero
 STOPS = {stop.name: stop for step in TOUR for stop in step.stops}
 
 
@@ -93,29 +95,40 @@ def test_at_the_level_where_it_is_shut_the_pressed_beam_opens_on_its_hill_alone(
     stop = STOPS["pressed"]
     unit = stop.structure.omega / (2.0 * np.pi)
     first, last = (end * unit for end in stop.region)
-    ends = [end + change for end in HILL for change in (-0.2, -0.1, 0.0, 0.1, 0.2)]
+    ends = [end + change for end in (*HILL, *SEEN) for change in (-0.2, -0.1, 0.0, 0.1, 0.2)]
     hertz = np.unique(np.round([*np.arange(first, last + 0.5, 1.0), *ends], 4))
     assert hertz[0] == first and hertz[-1] == last
     turns = 2.0 * np.pi * hertz
     amplitude = stop.level * GRAVITY / turns**2
-    few = {"direction": "up", "transient": 200, "samples": 20, "progress": False}
-    swept = orchestrate.sweep(stop.structure, frequency=turns, amplitude=amplitude, **few)
+    swept = orchestrate.sweep(stop.structure, frequency=turns, amplitude=amplitude, **FEW)
     opens = (swept.xi_rel_max > 0.0).values & (swept.impacts_per_period > 0.0).values
     hill = (hertz >= HILL[0]) & (hertz <= HILL[1])
     assert 5 < hill.sum() < len(hertz) - 5
     assert np.array_equal(opens.reshape(-1), hill), hertz[opens.reshape(-1) != hill]
-    shut = swept.xi_rel.max("sample").values.reshape(-1) == 0.0
-    assert (opens.reshape(-1) & shut).any()  # impacts under a gap of 0: it opens between samples
+    dots = swept.xi_rel.max("sample").values.reshape(-1) > LOWEST
+    assert np.array_equal(dots, (hertz >= SEEN[0]) & (hertz <= SEEN[1])), hertz[dots]
+    assert (opens.reshape(-1) & ~dots).any()  # impacts under a gap of 0: it opens between samples
     (step,) = [step for step in TOUR if stop in step.stops]
-    for words in (f"{stop.eta * unit:g} Hz and {stop.level:g} g", "{:g} and {:g} Hz".format(*HILL)):
-        assert words in step.text
+    assert f"{stop.eta * unit:g} Hz and {stop.level:g} g" in step.text
+    assert "opens between {:g} and {:g} Hz".format(*HILL) in stop.about
+    assert "upper picture runs from {:g} to {:g} Hz".format(*SEEN) in stop.about
     for one in step.stops:
+        assert f"diagram is of {one.level:g} g" in one.about
         assert one.label.startswith(f"{one.level:g} g at {one.eta * unit:g} Hz: ")
+
+
+def test_at_the_higher_level_the_pressed_beam_opens_everywhere_in_its_diagram():
+    stop = STOPS["pressed-open"]
+    assert "at every frequency" in stop.about
+    turns = stop.structure.omega * np.linspace(*stop.region, 51)
+    amplitude = stop.level * GRAVITY / turns**2
+    swept = orchestrate.sweep(stop.structure, frequency=turns, amplitude=amplitude, **FEW)
+    assert bool((swept.xi_rel_max > 0.0).all())
 
 
 TEXTS = (
     "return [...document.querySelectorAll('#tour p')].filter((p) => !p.hidden)"
-    ".map((p) => p.textContent)"
+    ".map((p) => p.innerText)"
 )
 
 
@@ -134,6 +147,7 @@ def test_each_stop_is_a_link_that_opens_its_motion(everywhere):
         (step,) = [step for step in TOUR if stop in step.stops]
         (text,) = browser.run(TEXTS)
         assert text.startswith(step.text)
+    assert step.stops[-1].about in text and step.stops[0].about not in text
     browser.mouse("diagram", (0.4, 0.4))  # its text and links stay until it is closed
     assert "tour" not in browser.run("return location.hash")
     assert browser.run(TEXTS)[0].startswith(step.text)

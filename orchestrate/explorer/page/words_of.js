@@ -1,0 +1,83 @@
+/** A response in words: its numbers, its exponent, and a sentence. */
+
+import { GRAVITY, inHertz } from "./excitation.js";
+import { shown } from "./scale.js";
+
+/**
+ * @typedef {import("./lyapunov.js").Exponent} Exponent
+ * @typedef {import("./response.js").Response} Response
+ * @typedef {"chaotic" | "converging" | "undecided"} Kind
+ */
+
+const DIGITS = 3; // of a mean number of impacts, wherever it is shown
+const UNDECIDED = "nearly repeats, or still settling: too slow to decide here";
+const UNDECIDED_MOTION = "Nearly repeats, or is still settling: too slow to decide here";
+
+/** What the sign of an exponent says; nothing where it is within its error. @param {Exponent} exponent @returns {Kind} */
+export function kindOf({ value, error }) {
+  if (value > error) return "chaotic";
+  return value < -error ? "converging" : "undecided";
+}
+
+/** What the exponent says. @param {Exponent} exponent @param {number} repeats after so many periods, 0 if not */
+export function exponentWords(exponent, repeats) {
+  const { value, error } = exponent;
+  const within = error > 0 ? ` ± ${shown(error, 2)}` : "";
+  const converging = repeats ? "regular" : "it converges, but has not repeated yet";
+  const undecided = repeats ? "within its error of zero: too slow to decide here" : UNDECIDED;
+  const words = { chaotic: "chaotic", converging, undecided }[kindOf(exponent)];
+  return `${shown(value, 3)}${within} (${words})`;
+}
+
+/** How many periods a motion of so many samples is compared over. @param {number} samples */
+const comparedOver = (samples) => Math.max(1, Math.floor(samples / 4));
+
+/** Numbers of a response for people. @param {Response} response @param {import("./structure.js").Point} point @param {import("./excitation.js").Level} level @returns {Record<string, string>} */
+export function numbersOf({ peak, impacts, contact, multiplicity, gaps }, { eta, frequency, amplitude }, level) {
+  const own = inHertz(level);
+  /** @type {Record<string, string>} */
+  const first = own
+    ? {
+        "frequency, Hz": shown(frequency / (2 * Math.PI), 6),
+        "amplitude of the box, mm": shown(1e3 * amplitude),
+        "acceleration of the box, g": shown((amplitude * frequency * frequency) / GRAVITY),
+        "largest gap, mm": shown(1e3 * peak * amplitude * eta * eta),
+      }
+    : { "frequency ratio η": shown(eta, 6), "largest gap ξ": shown(peak, 6) };
+  const count = shown(impacts, DIGITS);
+  const often = multiplicity ? `${multiplicity} period${multiplicity > 1 ? "s" : ""}` : `not within ${comparedOver(gaps.length)} periods`;
+  return {
+    ...first,
+    "impacts a period": multiplicity === 1 ? count : `${count} on average`,
+    "repeats after": often,
+    "stick together": !contact ? "no" : peak > 0 ? "for a while" : "always",
+  };
+}
+
+/** How much a mean is worth, of a motion that does not repeat. @param {number} periods of the mean */
+export const averageWords = (periods) => `averages over ${periods} periods; another start gives others by some per cent`;
+
+/** So many impacts a period, or a revolution. @param {number} impacts @param {string} [each] */
+export const countOf = (impacts, each = "a period") => `${shown(impacts, DIGITS)} impact${impacts === 1 ? "" : "s"} ${each}`;
+
+/** The same of a motion: of periods that differ it is the mean. @param {number} impacts @param {number} multiplicity */
+export const meanCountOf = (impacts, multiplicity) => `${multiplicity === 1 ? "" : "on average "}${countOf(impacts)}`;
+
+/** A response in a sentence. @param {Response} response @param {Exponent | undefined} exponent if it is known @param {boolean} seen whether contact is among what is shown */
+export function sentenceOf({ impacts, contact, multiplicity, peak, gaps }, exponent, seen) {
+  if (!impacts) return peak > 0 ? "The halves never touch." : "The halves stay closed: no impact.";
+  const count = meanCountOf(impacts, multiplicity);
+  if (multiplicity) {
+    const every = multiplicity === 1 ? "every shaking period" : `after ${multiplicity} shaking periods`;
+    return `Repeats ${every}: ${count}${contact ? ", then the halves stick together for a while" : ""}.`;
+  }
+  const sticks = `; at times${seen ? "" : ", before the stretch shown,"} the halves stick together`;
+  return `${withoutRepeating(exponent, gaps.length)}, ${count}${contact ? sticks : ""}.`;
+}
+
+/** @param {Exponent | undefined} exponent @param {number} samples */
+function withoutRepeating(exponent, samples) {
+  const so = `Has not repeated within ${comparedOver(samples)} periods`;
+  if (!exponent) return so;
+  return { chaotic: "Chaos: never repeats", converging: `${so}, but converges`, undecided: UNDECIDED_MOTION }[kindOf(exponent)];
+}
