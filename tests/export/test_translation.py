@@ -174,7 +174,7 @@ def test_kernel_reads_like_the_paper():
     """Functions and slots keep their names, equations their numbers, comments their places."""
     text = translate(load_model("oscillator").entries)
     assert "static inline Reals4 state_at(double *RESTRICT m, double tau)" in text
-    assert "/* Displacements and velocities tau after the state's start, (10). */" in text
+    assert "/* Return displacements and velocities tau after the state's start, (10). */" in text
     assert "m[OSCILLATOR_3 + OMEGA_SQUARED]" in text
     assert "static const double BRIEF = 0x1.0c6f7a0b5ed8dp-20 /* 1e-06 */;" in text
     assert "/* exactly what the state began with: a start from rest is at rest */" in text
