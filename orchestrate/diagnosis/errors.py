@@ -52,6 +52,7 @@ RESTITUTION_DOUBT = 0.12  # of a restitution; of damping ratios it is the mean o
 # Misfit beyond noise from which a contact is another than the model's for sure
 CONTACT_MISFIT = 0.3
 HIDDEN_SHARE = 0.1  # part of the squares beyond noise by which they may be larger at the truth
+CALIBRATION = {"f1": 1.15, "f2": 1.1, "log_zeta1": 2.3, "log_zeta2": 2.3, "e": 1.3}  # of errors
 NOISE_FACTOR = 1.3  # squares over those that noise makes: less of them has no other cause
 
 
@@ -112,6 +113,8 @@ def estimate_with_covariances(
     small = len(sums) / max(len(sums) - count, 1)
     by_blocks = small * influence @ (sums.T @ sums) @ influence.T
     beyond = squares_beyond_noise(residuals, changes)
+    measured = np.diag([CALIBRATION.get(name, 1.0) for name in values])
+    by_noise, by_blocks = (measured @ one @ measured for one in (by_noise, by_blocks))
     hidden = contact_covariance(values, beyond / residuals.size) - HIDDEN_SHARE * beyond * influence
     noise, blocks, rest = (
         np.sqrt(np.maximum(np.diag(c), 0.0)) for c in (by_noise, by_blocks, hidden)
