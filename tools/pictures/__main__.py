@@ -34,7 +34,7 @@ COMMANDS = {  # pictures that a command draws: name, its line, ending of the fil
         "",
     ),
 }
-KEPT = ("figure6", "figure12", "lyapunov", "branches", "borders")  # by other tools
+KEPT = ("figure6", "figure12", "lyapunov", "branches", "borders", "diagnosis")  # by other tools
 
 
 def verdict() -> Figure:
