@@ -47,12 +47,12 @@ class Reference:
 
 
 def oscillator_inputs(time: float) -> tuple[float, ...]:
-    """Return the frequency jumps at 30 s, a constant acceleration sets in at 45 s."""
+    """Return box amplitude, frequency and acceleration at a time, with steps at 30 and 45 s."""
     return 1.0, 0.4 if time < 30.0 else 0.8, 0.0 if time < 45.0 else 0.05
 
 
 def shaker_inputs(time: float) -> tuple[float, ...]:
-    """Return the voltage jumps at 3 s, a force sets in at 4 s."""
+    """Return voltage and force at a time: the voltage steps at 3 s, the force at 4 s."""
     return 3.0 if time < 3.0 else 8.0, 0.0 if time < 4.0 else 20.0
 
 

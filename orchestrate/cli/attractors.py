@@ -27,8 +27,8 @@ EXAMPLES = """\
 Half of the starts lie around zero, half around the response from rest. Every motion found at one
 value is carried to its neighbours, so along a range it is found as far as it exists; random starts
 alone may miss one whose basin is small."""
-MAX_VALUES_IN_FULL = 5  # values whose attractors are all told
-MAX_ATTRACTORS = 12  # attractors along a parameter that are told
+MAX_VALUES_IN_FULL = 5  # values up to which every attractor is printed
+MAX_ATTRACTORS = 12  # attractors along a parameter that are printed
 
 
 def add_parser(commands: Commands) -> None:

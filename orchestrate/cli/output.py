@@ -264,7 +264,7 @@ class Files:
     units : str
         Of ``--units``: tables and pictures in these have them in their names.
     over : str
-        Ending of the pictures' names, where they show more than the result.
+        Suffix of the pictures' names, where other data lie over the result.
     """
 
     result: Path

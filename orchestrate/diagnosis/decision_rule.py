@@ -28,11 +28,11 @@ class Findings:
     Attributes
     ----------
     excess : float
-        Order 2 over the size from which it counts as seen, where it is furthest above.
+        Order 2 over its detection threshold, the largest of all windows; above 1 it is seen.
     order2 : float
         Its size there, over order 1.
     apart : float
-        Difference of two sensors over the size from which it counts; 0 with one sensor.
+        Difference of two sensors over its detection threshold; 0 with one sensor.
     sound, delaminated : str
         Names of the best hypotheses of both kinds.
     sound_misfit, delaminated_misfit : float
@@ -93,9 +93,9 @@ class Findings:
     def reason(self) -> str:
         """Return a sentence that says by which numbers the verdict was decided."""
         size = f"order 2 is up to {100.0 * self.order2:.2g} % of order 1"
-        signs = f"{size}, {self.excess:.2g} times the size from which it counts as seen"
+        signs = f"{size}, {self.excess:.2g} times its detection threshold"
         if self.sensors > 1:
-            signs += f"; the two faces differ by {self.apart:.2g} times what counts"
+            signs += f"; the two faces differ by {self.apart:.2g} times their threshold"
         if not self.seen:
             return f"{signs}; the best sound model ({self.sound}) misses by {self.sound_misfit:.2g}"
         fits = (

@@ -315,12 +315,12 @@ def end_points(
 def solve_end(
     curve: BifurcationCurve, root: Root, kind: PointKind, reason: str, position: float
 ) -> CodimensionTwoPoint:
-    """Solve for the point in which a curve ends, by Newton's method.
+    """Solve for the codimension-two point at which a curve ends, by Newton's method.
 
     Raises
     ------
     NoConvergenceError
-        Where it is not near.
+        Where Newton's method does not converge near ``root``.
     """
     size = curve.family.size + 2
     resonance = kind in (PointKind.RESONANCE_1, PointKind.RESONANCE_2)

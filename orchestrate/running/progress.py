@@ -152,7 +152,9 @@ class Progress:
                 yield Task(chunk, self.items_of(chunk), self.previous_table(chunk), (), False)
 
     def previous_table(self, chunk: Chunk) -> Table | None:
-        """Return what a chunk starts from: the end of the one before, or all of them."""
+        """Return what a chunk starts from: the last entries of the preceding chunk; all preceding
+        tables for a final or gathering chunk; None where it starts by itself.
+        """
         if chunk.after is None:
             return None
         if (self.job.has_final_chunk or self.job.gathers) and chunk.index == len(self.chunks) - 1:

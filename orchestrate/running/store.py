@@ -32,7 +32,7 @@ ZLIB_LEVEL = 1  # not higher: the last digits of numbers do not shrink, however 
 
 
 STARTED: set[Path] = set()  # journals with chunks that this process has seen or written
-FINISHED: set[Path] = set()  # results, likewise; both for who says what an interruption costs
+FINISHED: set[Path] = set()  # results that it has; both say how much an interruption loses
 
 
 def now() -> str:

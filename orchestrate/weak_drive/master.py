@@ -112,7 +112,7 @@ class Scheme:
     halvings : int
         How often ``h`` is halved at most.
     easy : float
-        Of the tolerance: after such a defect a step of twice the length is tried.
+        Part of the tolerance: after a step with a smaller defect the length is doubled.
     converged : float
         Change of the force between two iterations, over its size, that counts as none.
     beginning : tuple of int

@@ -46,7 +46,9 @@ def test_words_are_those_that_are_read(words):
 
 @pytest.mark.parametrize("name", VERDICTS)
 def test_every_page_with_a_verdict_says_where_its_limits_stand(name):
-    assert re.search(r"\]\((verdict_)?limits\.md(#[\w-]+)?\)", (DOCS / f"{name}.md").read_text("utf-8"))
+    assert re.search(
+        r"\]\((verdict_)?limits\.md(#[\w-]+)?\)", (DOCS / f"{name}.md").read_text("utf-8")
+    )
 
 
 @pytest.mark.parametrize("picture", PICTURES, ids=lambda picture: picture.name)

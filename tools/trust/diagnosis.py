@@ -100,7 +100,7 @@ def judged(case: Case) -> dict[str, Any]:
     """Return a row of the results: the truth, the signs, and the detector's verdict."""
     truth, setup = case.truth, case.truth.setup
     begin = time.process_time()
-    verdict, parameters, message = asked(case)
+    verdict, parameters, message = run_detector(case)
     seconds = time.process_time() - begin
     right = verdict == DELAMINATED
     errors = errors_of(parameters, truth) if right else {}
@@ -147,7 +147,7 @@ class Answer(NamedTuple):
     message: str = ""
 
 
-def asked(case: Case) -> Answer:
+def run_detector(case: Case) -> Answer:
     """Run the detector on a case."""
     try:
         answer = orchestrate.detect(case.record, case.guess, jobs=1, progress=False)
