@@ -1,6 +1,7 @@
 """What every excitation is: an acceleration of the box over the time, and sums of them.
 
-Each can be passed to the FMU as cubic pieces with a bound of their error (see :mod:`.pieces`). The box's displacement is not needed: the structure feels the acceleration alone.
+Each can be passed to the FMU as cubic pieces with a bound of their error (see :mod:`.pieces`).
+The box's displacement is not needed: the structure feels the acceleration alone.
 """
 
 from __future__ import annotations

@@ -64,7 +64,7 @@ def keep(campaign: Campaign, seed: int, budget: int, store: Path = STORE) -> rec
         count = next(number for number in range(len(done) + 1) if number not in done)
         if not count:
             raise InputError(f"{place}: holds no batch; expected a run that was begun")
-        part = replace(job, budget=min(count * job.chunk * campaign.batch, budget))
+        part = replace(job, budget=min(count * job.chunk_size * campaign.batch, budget))
         result = part.dataset(kept.table(count), {})
         result = with_provenance(result, part, identity, fmus, kept.begun)
     finally:

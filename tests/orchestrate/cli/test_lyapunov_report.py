@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from orchestrate.cli.lyapunov import report
+from orchestrate.cli.lyapunov import print_result
 
 
 def test_the_largest_of_many_is_said_to_be_chosen(capsys):
@@ -17,7 +17,7 @@ def test_the_largest_of_many_is_said_to_be_chosen(capsys):
     variables = {name: ("eta", values) for name, values in columns.items()}
     variables["verdict"] = ("eta", np.ones(12, dtype=int))
     data = xr.Dataset(variables, {"eta": etas}, {"periods": 2500, "wander": 10.0})
-    report(data.assign_coords(period=("eta", 2.0 * np.pi / etas)))
+    print_result(data.assign_coords(period=("eta", 2.0 * np.pi / etas)))
     line = capsys.readouterr().out.splitlines()[0]
     assert line.startswith("largest exponent 0.27770 +- 0.00300 per tau at eta = 5.19")
     assert "of 12 it is chosen for its error too" in line

@@ -126,7 +126,7 @@ def test_units_do_not_matter():
 def test_what_is_refused(asked, text):
     with pytest.raises(InputError, match=text):
         basin(PAPER, **{"eta": ETA, **SIDES, **asked})
-    with pytest.raises(InputError, match="is bonded"):
+    with pytest.raises(InputError, match="bonded = True"):
         basin(PAPER.as_bonded(), eta=ETA)
 
 

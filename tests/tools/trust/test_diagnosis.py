@@ -223,7 +223,7 @@ def made_answer(record, guess, **running):
 def test_the_numbers_are_those_of_the_best_delaminated_hypothesis(monkeypatch):
     monkeypatch.setattr(orchestrate, "detect", made_answer)
     case = recipe.Case(xr.Dataset(), orchestrate.Structure(), SPLIT)
-    verdict, numbers, _ = diagnosis.asked(case)
+    verdict, numbers, _ = diagnosis.run_detector(case)
     assert (verdict, numbers["ratio"]) == ("delaminated", 3.0)
     assert (numbers["f1"], numbers["f2"], numbers["f2 error"]) == (41.0, 52.0, 0.52)
     deviation = diagnosis.deviations_of(numbers, SPLIT)
@@ -241,7 +241,7 @@ def test_what_the_detector_cannot_take_is_refused():
     made = np.random.default_rng(3).normal(size=(2, 4000))
     record = orchestrate.record(box_acceleration=made[0], acceleration1=made[1], sample_rate=1000.0)
     case = recipe.Case(record, orchestrate.Structure.from_file("beam"), SPLIT)
-    answer = diagnosis.asked(case)
+    answer = diagnosis.run_detector(case)
     assert answer.verdict == diagnosis.REFUSED and answer.message
     assert wrong_in(answer.verdict, SPLIT, answer.message) == f"refused: {answer.message}"
     noise = dataclasses.replace(SPLIT, setup=Setup(4.0, 0.02, 1, "random"))
@@ -253,7 +253,7 @@ def test_a_detector_that_fails_is_a_finding(monkeypatch):
         raise np.linalg.LinAlgError("SVD did not converge")
 
     monkeypatch.setattr(orchestrate, "detect", failing)
-    answer = diagnosis.asked(recipe.Case(xr.Dataset(), orchestrate.Structure(), SPLIT))
+    answer = diagnosis.run_detector(recipe.Case(xr.Dataset(), orchestrate.Structure(), SPLIT))
     assert answer.verdict == diagnosis.FAILED
     expected = "failed: LinAlgError: SVD did not converge"
     assert wrong_in(answer.verdict, SOUND, answer.message) == expected
