@@ -21,7 +21,11 @@ LONG = {
     "report",
 }  # read only
 EVERY = [
-    pytest.param(page, words, id=f"{page.stem}-{' '.join(words)[:60]}")
+    pytest.param(
+        *(page, words),
+        id=f"{page.stem}-{' '.join(words)[:60]}",
+        marks=[pytest.mark.slow] * (words[:1] == ("drive-branch",)),  # half a minute
+    )
     for page in PAGES
     for words in dict.fromkeys(map(tuple, commands(page)))
 ]

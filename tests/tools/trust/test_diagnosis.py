@@ -113,7 +113,7 @@ def quick(monkeypatch):
         numbers = {"f1": 1.02 * truth.f1, "f1 error": 0.01 * truth.f1, "f2": 0.97 * truth.f2}
         return diagnosis.Answer(verdict, numbers)
 
-    monkeypatch.setattr(diagnosis, "asked", asked)
+    monkeypatch.setattr(diagnosis, "run_detector", asked)
 
 
 def test_a_run_keeps_a_row_for_each_beam(quick, exported):
@@ -176,19 +176,19 @@ def test_rows_go_into_the_record_and_onto_the_page(quick, exported, tmp_path):
 
 def test_a_run_that_was_stopped_keeps_what_it_has(quick, exported, tmp_path, monkeypatch):
     """Its record is that of a run with as many beams."""
-    asked, left = diagnosis.asked, iter(range(3))
+    run_detector, left = diagnosis.run_detector, iter(range(3))
 
     def stopped(case):
         if next(left, None) is None:
             raise KeyboardInterrupt
         return asked(case)
 
-    monkeypatch.setattr(diagnosis, "asked", stopped)
+    monkeypatch.setattr(diagnosis, "run_detector", stopped)
     with pytest.raises(KeyboardInterrupt):
         ledger.run(Diagnosis(), 4, 6, tmp_path, jobs=1, progress=False)
     kept = ledger.keep(Diagnosis(), 4, 6, tmp_path)
     assert kept.budget == kept.done == 3 and len(kept.rows) == 3
-    monkeypatch.setattr(diagnosis, "asked", asked)
+    monkeypatch.setattr(diagnosis, "run_detector", asked)
     whole = ledger.run(Diagnosis(), 4, 3, tmp_path, jobs=1, progress=False)
     of_beams = [[row[:-2] for row in one.rows] for one in (kept, whole)]  # without the seconds
     assert of_beams[0] == of_beams[1] and kept.package == whole.package
