@@ -181,14 +181,14 @@ def test_a_run_that_was_stopped_keeps_what_it_has(quick, exported, tmp_path, mon
     def stopped(case):
         if next(left, None) is None:
             raise KeyboardInterrupt
-        return asked(case)
+        return run_detector(case)
 
     monkeypatch.setattr(diagnosis, "run_detector", stopped)
     with pytest.raises(KeyboardInterrupt):
         ledger.run(Diagnosis(), 4, 6, tmp_path, jobs=1, progress=False)
     kept = ledger.keep(Diagnosis(), 4, 6, tmp_path)
     assert kept.budget == kept.done == 3 and len(kept.rows) == 3
-    monkeypatch.setattr(diagnosis, "run_detector", asked)
+    monkeypatch.setattr(diagnosis, "run_detector", run_detector)
     whole = ledger.run(Diagnosis(), 4, 3, tmp_path, jobs=1, progress=False)
     of_beams = [[row[:-2] for row in one.rows] for one in (kept, whole)]  # without the seconds
     assert of_beams[0] == of_beams[1] and kept.package == whole.package
