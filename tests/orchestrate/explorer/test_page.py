@@ -284,6 +284,7 @@ def test_the_motor_waits_until_it_is_started(browser):
 
 
 def test_the_motor_runs_and_is_stopped(browser):
+    browser.settle_at("ramp-up")
     browser.click("ramp-up")
     browser.until("return explorer.drive.rows.length > 100")
     browser.click("drive-go")
