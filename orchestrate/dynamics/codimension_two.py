@@ -351,8 +351,9 @@ def solve_end(
             raise NoConvergenceError("Newton's method went too far")
         if np.abs(step).max() < CONVERGED:
             left = float(np.abs(conditions(unknowns)).max())
-            if left > LOCATED:
-                break
+            orbit_left = float(np.abs(curve.family.residual(unknowns[:size])).max())
+            if not (left <= LOCATED and orbit_left <= curve.accuracy):
+                raise NoConvergenceError(f"no root: the residuals are {orbit_left:.0e}, {left:.0e}")
             return CodimensionTwoPoint(kind, unknowns[:size], position, left)
     raise NoConvergenceError(f"no root after {MAX_ITERATIONS} iterations")
 

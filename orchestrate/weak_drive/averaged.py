@@ -294,8 +294,15 @@ def imaginary(polynomial: Polynomial) -> Polynomial:
 
 
 def polish_root(polynomial: Polynomial, root: float) -> float:
-    """Improve a root by Newton's method."""
+    """Improve a root by Newton's method, as long as the polynomial's value becomes smaller."""
     derivative = polynomial.deriv()
+    value, slope = polynomial(root), derivative(root)
     for _ in range(3):
-        root -= polynomial(root) / derivative(root)
+        if slope == 0.0:  # a double root: companion matrices have it as well as it can be had
+            break
+        better = root - value / slope
+        left = polynomial(better)
+        if not abs(left) < abs(value):
+            break
+        root, value, slope = better, left, derivative(better)
     return float(root)
