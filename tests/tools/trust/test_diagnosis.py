@@ -53,7 +53,13 @@ SHUT = dataclasses.replace(SPLIT, kind="preloaded", opened=False, largest_gap=-1
 )
 def test_what_is_wrong(verdict, truth, expected):
     found = wrong_in(verdict, truth)
-    assert found.endswith(expected) and bool(found) == bool(expected)
+    assert expected in found and bool(found) == bool(expected)
+
+
+def test_an_opening_below_the_stated_limit_is_no_wrong_verdict():
+    assert wrong_in("no opening seen", SPLIT, smallest=2e-3) == ""
+    found = wrong_in("no opening seen", SPLIT, smallest=3e-4)
+    assert found.endswith("opened by 1 mm, where 0.3 mm would have been seen")
 
 
 def test_the_signs_tell_the_tutorials_beams_apart():
