@@ -50,10 +50,10 @@ class Diagnosis(Campaign):
         "from their free end or not. Swept 20 to 90 Hz in 40 s or otherwise, one or two sensors "
         "with gains off by 3 %, delays, noise of 0.1 to 10 %; masses and frequencies of the guess "
         "off by up to 10 %. A finding is a sound beam, or one that did not open, that is called "
-        "delaminated; or no opening seen in a beam whose faces struck each other and parted, at the "
-        "sensor or elsewhere, by more than 0.02 mm and more than the detector says that it would "
-        "have seen; or no verdict at all. Random excitation is refused: the detector goes "
-        "by orders."
+        "delaminated; or no opening seen in a beam whose faces struck each other and parted, at "
+        "the sensor or elsewhere, by more than 0.02 mm and more than the detector says that it "
+        "would have seen at the sensor; or no verdict at all. Random excitation is refused: the "
+        "detector goes by orders."
     )
     unit = "beams"
     target = 500

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import orchestrate
-from orchestrate.diagnosis.evidence import Evidence
 from orchestrate.diagnosis.even_orders import even_orders, smallest_openings
+from orchestrate.diagnosis.evidence import Evidence
 from tools.benches.bench import Bench
 from tools.benches.excitation import Swept
 from tools.benches.lumped import Faces, Halves
