@@ -66,10 +66,11 @@ def detect(
     xarray.Dataset
         ``verdict``: ``"delaminated"``, ``"no opening seen"``, ``"not described"`` or
         ``"undecided"``; ``odds``, ``ratio`` (misfit of the best sound hypothesis over that of the
-        delaminated one), ``bursts`` (power at high frequencies once a period, over the threshold
-        from which impacts count as heard; NaN below some 10 samples in the shortest period),
-        ``smallest_opening`` of faces at a sensor that would be seen at every frequency, in m; the
-        range in which the structure moves enough (``level_low``, ``level_high`` in m/s2,
+        delaminated one), ``faces_apart`` (difference of two sensors over the threshold from which
+        it counts; 0 with one), ``bursts`` (power at high frequencies once a period, over the
+        threshold from which impacts count as heard; NaN below some 11 samples in the shortest
+        period), ``smallest_opening`` of faces at a sensor that would be seen at every frequency,
+        in m; the range in which the structure moves enough (``level_low``, ``level_high`` in m/s2,
         ``frequency_low``, ``frequency_high`` in Hz); ``order2`` and its
         ``order2_threshold`` over ``window``. Over ``hypothesis``: ``misfit``, ``evaluations``,
         ``minima``, ``value`` and ``standard_error`` of its parameters, ``misfit_at`` and the
@@ -127,6 +128,9 @@ class DetectJob(SearchJob):
             "verdict": ((), findings.verdict(), {"long_name": "verdict"}),
             "odds": variable((), findings.odds, "1", "odds of delaminated against sound"),
             "ratio": variable((), findings.ratio, "1", "misfit of sound over that of delaminated"),
+            "faces_apart": variable(
+                (), findings.apart, "1", "difference of two sensors over its threshold"
+            ),
             "bursts": variable(
                 (), findings.bursts, "1", "power of bursts once a period over its threshold"
             ),
