@@ -18,7 +18,8 @@ module                  idea
 :mod:`.fitting`         the search for a hypothesis's numbers, from many starts
 :mod:`.linear`          residuals around a minimum as a linear model, by regression
 :mod:`.errors`          standard errors from simulated noise and from blocks of windows
-:mod:`.even_orders`     whether faces open: order 2 above its floor
+:mod:`.even_orders`     whether faces open: order 2 above its floor, two faces that move apart
+:mod:`.bursts`          whether something strikes: bursts at high frequencies once a period
 :mod:`.search_job`      all searches of a record as a job, in parallel
 :mod:`.fit`             the numbers of a structure from a record
 :mod:`.decision_rule`   the rule by which fits and signs become a verdict

@@ -8,16 +8,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..access import finder
-from ..constants import TURN
 from ..response.labels import variable
 from ..response.questions import checked_structure
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .decision_rule import Findings, resampled_share
+from .bursts import burst_excess
+from .decision_rule import Findings, deciding_ratio, resampled_share
+from .even_orders import smallest_openings
 from .fit import Results, checked_data, checked_free, delaminated_guess
 from .hypotheses import FREE
-from .search_job import SearchJob
+from .search_job import SearchJob, cached_orders
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -65,8 +66,12 @@ def detect(
     xarray.Dataset
         ``verdict``: ``"delaminated"``, ``"no opening seen"``, ``"not described"`` or
         ``"undecided"``; ``odds``, ``ratio`` (misfit of the best sound hypothesis over that of the
-        delaminated one), ``smallest_opening`` in m, the range that was looked at (``level_low``,
-        ``level_high`` in m/s2, ``frequency_low``, ``frequency_high`` in Hz); ``order2`` and its
+        delaminated one), ``faces_apart`` (difference of two sensors over the threshold from which
+        it counts; 0 with one), ``bursts`` (power at high frequencies once a period, over the
+        threshold from which impacts count as heard; NaN below some 11 samples in the shortest
+        period), ``smallest_opening`` of faces at a sensor that would be seen at every frequency,
+        in m; the range in which the structure moves enough (``level_low``, ``level_high`` in m/s2,
+        ``frequency_low``, ``frequency_high`` in Hz); ``order2`` and its
         ``order2_threshold`` over ``window``. Over ``hypothesis``: ``misfit``, ``evaluations``,
         ``minima``, ``value`` and ``standard_error`` of its parameters, ``misfit_at`` and the
         ``fitted`` orders over ``window``, beside what is ``measured``. Attributes ``reason``,
@@ -82,7 +87,10 @@ def detect(
     Sound hypotheses are one mass on a linear spring, on one that hardens or softens, with dry
     friction, or with a stop on one side. "Delaminated" needs order 2 at five times the noise and at
     half a hundredth of order 1 (or two faces whose order 1 differs), and a misfit 1.5 times smaller
-    than that of the best sound hypothesis, in nine of ten records put together of its blocks.
+    than that of the best sound hypothesis, in nine of ten records put together of its blocks; 1.05
+    times is enough where two faces are seen to move apart, as those of no sound structure do. Where
+    bursts once a period at high frequencies tell of impacts, and nothing else opens, the word is
+    "undecided".
     There is no verdict "intact": a structure that is pressed together moves as a bonded one below
     the level that opens it. See :doc:`/diagnosis`.
 
@@ -120,8 +128,14 @@ class DetectJob(SearchJob):
             "verdict": ((), findings.verdict(), {"long_name": "verdict"}),
             "odds": variable((), findings.odds, "1", "odds of delaminated against sound"),
             "ratio": variable((), findings.ratio, "1", "misfit of sound over that of delaminated"),
+            "faces_apart": variable(
+                (), findings.apart, "1", "difference of two sensors over its threshold"
+            ),
+            "bursts": variable(
+                (), findings.bursts, "1", "power of bursts once a period over its threshold"
+            ),
             "smallest_opening": variable(
-                (), findings.smallest, "m", "smallest opening that would have been detected"
+                (), findings.smallest, "m", "smallest opening at a sensor that would be detected"
             ),
             "level_low": variable((), findings.low, "m/s2", "lowest level of the base"),
             "level_high": variable((), findings.high, "m/s2", "highest level of the base"),
@@ -148,21 +162,25 @@ def findings_from_results(results: Results) -> Findings:
     count, evidence = len(job.sound), job.evidence
     sound = int(np.argmin(results.misfit[:count]))
     other = count + int(np.argmin(results.misfit[count:]))
-    size = evidence.size.max(axis=0)
-    opening = even.threshold * size / (2.0 * TURN * evidence.frequency) ** 2
+    opening = smallest_openings(evidence, job.guess.m1, job.guess.m2)
+    observed = evidence.frequency[np.isfinite(opening)]
+    whole = cached_orders(job.data)
+    bursts = burst_excess(whole.channels, float(whole.windows.frequency.max()))
+    ratio = deciding_ratio(even.moved_apart)
     return Findings(
         excess=even.excess,
         order2=even.largest,
         apart=even.moved_apart,
+        bursts=bursts,
         sound=job.hypotheses[sound].name,
         sound_misfit=float(results.misfit[sound]),
         delaminated=job.hypotheses[other].name,
         delaminated_misfit=float(results.misfit[other]),
-        share=resampled_share(results.residuals[sound], results.residuals[other]),
+        share=resampled_share(results.residuals[sound], results.residuals[other], ratio),
         sensors=len(evidence.masses),
         low=float(evidence.level.min()),
         high=float(evidence.level.max()),
-        first=float(evidence.frequency.min()),
-        last=float(evidence.frequency.max()),
-        smallest=float(np.nanmin(opening)),
+        first=float(observed.min()),
+        last=float(observed.max()),
+        smallest=float(np.nanmax(opening)),
     )

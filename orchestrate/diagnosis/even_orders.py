@@ -18,6 +18,10 @@ MIN_RESPONSE = 0.1  # of the largest order 1: windows where less moves are not t
 NOISE_FACTOR, FLOOR_FACTOR = 5.0, 2.0
 MIN_RATIO = 0.005  # of order 1: sensors and bases that are not linear make less
 MIN_DIFFERENCE = 0.03  # of order 1: what two sensors on one body may differ by
+MIN_PART_OF_ORDER_2 = 0.2  # of order 2: the same there, where gains and delays are less certain
+# Order 2 of the distance between two faces over their largest distance: the least of 29 benches
+# that opened for a part of each period; they had 0.14 to 0.31
+ORDER_2_OF_OPENING = 0.14
 
 
 @dataclass(frozen=True)
@@ -30,7 +34,7 @@ class EvenOrders:
         Over order 1, root mean squares of neighbouring windows, of the sensor that is furthest
         above the threshold from which an order counts as seen; NaN where little moves.
     apart : ndarray, shape (windows,)
-        Difference of two sensors' order 1 over its size; NaN with one sensor.
+        Difference of two sensors' order 1 or 2 over its threshold; NaN with one sensor.
     """
 
     ratio: Floats
@@ -53,10 +57,14 @@ class EvenOrders:
         return self.excess > 1.0
 
     @property
+    def is_opening_seen(self) -> bool:
+        """Whether order 2 or the difference of two faces exceeds its threshold."""
+        return self.seen or self.moved_apart > 1.0
+
+    @property
     def moved_apart(self) -> float:
         """Largest difference of two sensors over its threshold; 0 with one sensor."""
-        size = self.apart / np.maximum(self.threshold, MIN_DIFFERENCE)
-        return float(np.nanmax(size)) if np.isfinite(size).any() else 0.0
+        return float(np.nanmax(self.apart)) if np.isfinite(self.apart).any() else 0.0
 
 
 def even_orders(evidence: Evidence, bonded: Complexes) -> EvenOrders:
@@ -68,21 +76,50 @@ def even_orders(evidence: Evidence, bonded: Complexes) -> EvenOrders:
     bonded : ndarray, shape (sensors, 3, windows)
         Orders that the best linear structure would show under the same base.
     """
-    rows = [evidence.orders.channels.names.index(name) for name in evidence.orders.sensors]
-    floor = evidence.orders.floor[rows][:, evidence.used_windows]
-    power = np.abs(evidence.measured[:, 1] - bonded[:, 1]) ** 2
-    size = averaged(np.abs(evidence.measured[:, 0]) ** 2)
-    excess = np.sqrt(np.maximum(averaged(np.nan_to_num(power)) - averaged(floor**2), 0.0) / size)
-    quiet = size < (MIN_RESPONSE * evidence.size.max(axis=1, keepdims=True)) ** 2
+    power = averaged(np.nan_to_num(np.abs(evidence.measured[:, 1] - bonded[:, 1]) ** 2))
+    size, threshold = size_of_order_1(evidence), thresholds(evidence)
+    excess = np.sqrt(np.maximum(power - averaged(floor_of_orders(evidence) ** 2), 0.0)) / size
+    quiet = np.isnan(threshold)
     excess[quiet] = np.nan
-    noise = NOISE_FACTOR * evidence.noise[:, np.newaxis] / np.sqrt(size)
-    threshold = np.maximum(
-        np.maximum(noise, FLOOR_FACTOR * np.sqrt(averaged(floor**2) / size)), MIN_RATIO
-    )
-    threshold[quiet] = np.nan
     chosen = np.argmax(np.nan_to_num(excess / threshold), axis=0)
     take = (chosen, np.arange(len(chosen)))
-    return EvenOrders(excess[take], threshold[take], sensor_difference(evidence, quiet.all(axis=0)))
+    return EvenOrders(excess[take], threshold[take], sensor_difference(evidence, threshold))
+
+
+def thresholds(evidence: Evidence) -> Floats:
+    """Return the ratio of order 2 over order 1 from which it counts as seen, by sensor and window.
+
+    NaN where little moves.
+    """
+    size, floor = size_of_order_1(evidence), floor_of_orders(evidence)
+    noise = NOISE_FACTOR * evidence.noise[:, np.newaxis] / size
+    between = FLOOR_FACTOR * np.sqrt(averaged(floor**2)) / size
+    found = np.maximum(np.maximum(noise, between), MIN_RATIO)
+    quiet = size < MIN_RESPONSE * evidence.size.max(axis=1, keepdims=True)
+    return np.asarray(np.where(quiet, np.nan, found))
+
+
+def smallest_openings(evidence: Evidence, m1: float, m2: float) -> Floats:
+    """Return the smallest opening that would be seen in each window, m; NaN where little moves.
+
+    Of two masses that part, each moves by the other's share of the total mass, and order 2 of the
+    distance is ``ORDER_2_OF_OPENING`` of the largest distance at least.
+    """
+    shares = np.array([(m2, m1)[mass] for mass in evidence.masses])[:, np.newaxis] / (m1 + m2)
+    order2 = thresholds(evidence) * size_of_order_1(evidence)
+    moved = order2 / (2.0 * TURN * evidence.frequency) ** 2
+    return np.asarray(np.fmin.reduce(moved / (ORDER_2_OF_OPENING * shares), axis=0))
+
+
+def size_of_order_1(evidence: Evidence) -> Floats:
+    """Return the root mean square of order 1 over neighbouring windows, by sensor, m/s2."""
+    return np.sqrt(averaged(np.abs(evidence.measured[:, 0]) ** 2))
+
+
+def floor_of_orders(evidence: Evidence) -> Floats:
+    """Return the amplitude between the orders in the fitted windows, by sensor, m/s2."""
+    rows = [evidence.orders.channels.names.index(name) for name in evidence.orders.sensors]
+    return np.asarray(evidence.orders.floor[rows][:, evidence.used_windows])
 
 
 def averaged(values: Floats) -> Floats:
@@ -90,16 +127,37 @@ def averaged(values: Floats) -> Floats:
     return np.stack([moving_average(row, AVERAGED_WINDOWS) for row in values])
 
 
-def sensor_difference(evidence: Evidence, quiet: NDArray[np.bool_]) -> Floats:
-    """Return the relative difference of two sensors' order 1, best gain and delay taken out."""
-    first = evidence.measured[:, 0]
-    if len(first) < 2:
-        return np.full(first.shape[1], np.nan)
-    one, other = first
-    slope = -1j * TURN * evidence.frequency * other
-    basis = np.stack([other, slope], axis=1)
+def sensor_difference(evidence: Evidence, threshold: Floats) -> Floats:
+    """Return the difference of two sensors over its threshold, the larger of orders 1 and 2.
+
+    Two faces of one body move alike, whatever it does. The best gain and delay between the sensors
+    are taken out, as order 1 tells them.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    threshold : ndarray, shape (sensors, windows)
+        See :func:`thresholds`.
+
+    Returns
+    -------
+    ndarray, shape (windows,)
+        NaN where little moves, and with one sensor.
+    """
+    if len(evidence.measured) < 2:
+        return np.full(threshold.shape[1], np.nan)
+    one, other = evidence.measured
+    slope = -1j * TURN * evidence.frequency
+    basis = np.stack([other[0], slope * other[0]], axis=1)
     real = np.concatenate([basis.real, basis.imag])
-    solution = np.linalg.lstsq(real, np.concatenate([one.real, one.imag]), rcond=None)[0]
-    rest = moving_average(np.abs(one - basis @ solution) ** 2, AVERAGED_WINDOWS)
-    size = moving_average(np.abs(one) ** 2, AVERAGED_WINDOWS)
-    return np.where(quiet, np.nan, np.sqrt(rest / size))
+    gain, delay = np.linalg.lstsq(real, np.concatenate([one[0].real, one[0].imag]), rcond=None)[0]
+    size, seen = size_of_order_1(evidence)[0], np.fmax.reduce(threshold, axis=0)
+    both = np.nan_to_num(one[:2] - (gain + np.outer((1.0, 2.0), slope) * delay) * other[:2])
+    first, second = np.sqrt(averaged(np.abs(both) ** 2)) / size
+    order2 = np.sqrt(averaged(np.nan_to_num(np.abs(evidence.measured[:, 1])) ** 2)).max(axis=0)
+    return np.asarray(
+        np.maximum(
+            first / np.maximum(seen, MIN_DIFFERENCE),
+            second / np.maximum(2.0**0.5 * seen, MIN_PART_OF_ORDER_2 * order2 / size),
+        )
+    )

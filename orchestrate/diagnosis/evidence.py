@@ -249,6 +249,10 @@ class Evidence:
         )
         return found[:, :, 0] + 1j * found[:, :, 1] + self.base
 
+    def fitted_orders(self, motion: Floats) -> Complexes:
+        """Compute a motion's orders as the sensors read them, with fitted gains and delays."""
+        return self.corrected_for_sensors(self.orders_of_motion(motion))
+
     def corrected_for_sensors(self, computed: Complexes) -> Complexes:
         """Return computed orders corrected by each sensor's gain and delay, fitted to order 1.
 
@@ -284,7 +288,7 @@ class Evidence:
         """
         if not np.isfinite(motion).all():
             return np.full((len(self.masses), 4, len(self.used_windows)), UNBOUNDED_RESIDUAL)
-        return self.order_residuals(self.corrected_for_sensors(self.orders_of_motion(motion)))
+        return self.order_residuals(self.fitted_orders(motion))
 
     def order_residuals(self, computed: Complexes) -> Floats:
         """Return computed less measured orders, over the errors; shape (sensors, 4, windows)."""

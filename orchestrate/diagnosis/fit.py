@@ -233,8 +233,7 @@ class Results:
 
     def is_opening_seen(self) -> bool:
         """Return whether the record shows faces that open, or two faces that move differently."""
-        even = self.even
-        return even.seen or even.moved_apart > 1.0
+        return self.even.is_opening_seen
 
     def reason(self) -> str:
         """Return a sentence that says why the halves' numbers are stated or not."""

@@ -104,15 +104,31 @@ def cached_coarse_evidence(data: RecordData) -> Evidence:
 def is_worth_a_search(data: RecordData) -> bool:
     """Return whether the verdict may depend on the delaminated fit, by a short bonded fit.
 
-    It may where faces are seen to part or do not move as one, or where a linear beam does not
-    describe the record. Elsewhere the search is short.
+    Elsewhere the search is short.
     """
     evidence = cached_evidence(data)
     search = Search(SOUND[0], evidence)
     best = search.best_minima(search.hypothesis.starts(evidence), keep=2, coarse=8, fine=0)[0]
     motion = search.hypothesis.displacements(best.values, evidence, None)
-    even = even_orders(evidence, evidence.corrected_for_sensors(evidence.orders_of_motion(motion)))
-    return even.seen or even.moved_apart > 1.0 or best.misfit > SOUND_DESCRIBES
+    return may_be_delaminated(evidence, motion, best.misfit)
+
+
+def may_be_delaminated(evidence: Evidence, bonded_motion: Floats, sound_misfit: float) -> bool:
+    """Return whether the verdict may depend on the delaminated fit.
+
+    It may where faces are seen to part or do not move as one, or where a sound structure does not
+    describe the record.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    bonded_motion : ndarray, shape (1, samples)
+        Of the best linear structure, m.
+    sound_misfit : float
+        Lowest misfit of a sound hypothesis.
+    """
+    even = even_orders(evidence, evidence.fitted_orders(bonded_motion))
+    return even.is_opening_seen or sound_misfit > SOUND_DESCRIBES
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -249,18 +265,11 @@ class SearchJob(Job):
         return search, self.solutions(previous, position)
 
     def is_worth_polishing(self, sound: Sequence[tuple[Search, list[Solution]]]) -> bool:
-        """Return whether the verdict may depend on the delaminated fit, by the sound fits.
-
-        It may where no sound hypothesis describes the record, or where faces are seen to part.
-        """
+        """Return whether the verdict may depend on the delaminated fit, by the sound fits."""
         search, found = sound[0]
         motion = search.hypothesis.displacements(found[0].values, self.evidence, None)
-        even = even_orders(
-            self.evidence,
-            self.evidence.corrected_for_sensors(self.evidence.orders_of_motion(motion)),
-        )
         lowest = min(found[0].misfit for _, found in sound)
-        return even.seen or even.moved_apart > 1.0 or lowest > SOUND_DESCRIBES
+        return may_be_delaminated(self.evidence, motion, lowest)
 
     def refine_best(self, search: Search, starts: Sequence[Solution]) -> list[Solution]:
         """Refine the best coarse solutions, first near the resonance, then on the whole record."""
@@ -343,7 +352,8 @@ class SearchJob(Job):
             known = estimate(search, values)
             values = known.values
         motion = search.hypothesis.displacements(values, self.evidence, player)
-        computed = self.evidence.corrected_for_sensors(self.evidence.orders_of_motion(motion))
+        computed = self.evidence.fitted_orders(motion)
+        residuals = self.evidence.order_residuals(computed)
         numbers = np.full(MAX_NUMBERS, np.nan)
         numbers[: len(values)] = list(values.values())
         covariance = np.full((MAX_NUMBERS, MAX_NUMBERS), np.nan)
@@ -356,8 +366,8 @@ class SearchJob(Job):
             "end_values": numbers,
             "end_covariance": covariance,
             "end_minima": levels,
-            "end_misfit": misfit(search.evidence.order_residuals(computed)),
-            "end_residuals": search.evidence.order_residuals(computed),
+            "end_misfit": misfit(residuals),
+            "end_residuals": residuals,
             "end_fitted": np.stack([computed.real, computed.imag]),
             "end_evaluations": float(search.evaluations),
         }

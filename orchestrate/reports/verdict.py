@@ -47,8 +47,9 @@ def delaminated(answer: xr.Dataset) -> str:
     """Format the statement on a delaminated beam."""
     ratio = number(answer, "ratio")
     better = "" if math.isnan(ratio) else f", {text_of(ratio)} times closer than any sound one"
+    apart = "the faces are seen to move apart, and " if number(answer, "faces_apart") > 1.0 else ""
     return (
-        "The record is that of two halves that part and strike each other: the delaminated "
+        f"The record is that of two halves that part and strike each other: {apart}the delaminated "
         f"structure describes it{better}."
     )
 
@@ -58,7 +59,10 @@ def no_opening(answer: xr.Dataset) -> str:
     smallest = number(answer, "smallest_opening")
     seen = ""
     if math.isfinite(smallest):
-        seen = f" An opening of {text_of(1e6 * smallest)} µm or more would have been seen."
+        seen = (
+            f" Faces at the sensor that part by {text_of(1e6 * smallest)} µm or more would have "
+            "been seen; away from it an opening may be larger."
+        )
     return f"No opening of the faces was seen {range_text(answer)}.{seen}"
 
 

@@ -50,9 +50,10 @@ class Diagnosis(Campaign):
         "from their free end or not. Swept 20 to 90 Hz in 40 s or otherwise, one or two sensors "
         "with gains off by 3 %, delays, noise of 0.1 to 10 %; masses and frequencies of the guess "
         "off by up to 10 %. A finding is a sound beam, or one that did not open, that is called "
-        "delaminated; or no opening seen in a beam whose faces parted by more than 0.02 mm and "
-        "struck each other; or no verdict at all. Random excitation is refused: the detector goes "
-        "by orders."
+        "delaminated; or no opening seen in a beam whose faces struck each other and parted, at "
+        "the sensor or elsewhere, by more than 0.02 mm and more than the detector says that it "
+        "would have seen at the sensor; or no verdict at all. Random excitation is refused: the "
+        "detector goes by orders."
     )
     unit = "beams"
     target = 500
@@ -125,7 +126,7 @@ def judged(case: Case) -> dict[str, Any]:
         **{f"{name} error": errors.get(name) for name in ("f1", "f2")},
         **{f"{name} deviation": deviations.get(name) for name in FITTED},
         "seconds": rounded(seconds),
-        "wrong": wrong_in(verdict, truth, message),
+        "wrong": wrong_in(verdict, truth, message, parameters.get("smallest", 0.0)),
     }
 
 
@@ -137,7 +138,8 @@ class Answer(NamedTuple):
     verdict : str
         Or that it refused, or failed.
     numbers : mapping of str to float
-        The ratio of its misfits; of ``FITTED`` the values, and their standard errors.
+        The ratio of its misfits, the smallest opening that it says it would have seen; of
+        ``FITTED`` the values, and their standard errors.
     message : str
         Where it refused or failed.
     """
@@ -161,7 +163,8 @@ def run_detector(case: Case) -> Answer:
     numbers = dict(zip(FITTED, chosen.value.values.tolist(), strict=True))
     errors = chosen.standard_error.values.tolist()
     numbers |= {f"{name} error": error for name, error in zip(FITTED, errors, strict=True)}
-    return Answer(str(answer.verdict.item()), {"ratio": float(answer.ratio), **numbers})
+    numbers |= {"ratio": float(answer.ratio), "smallest": float(answer.smallest_opening)}
+    return Answer(str(answer.verdict.item()), numbers)
 
 
 def errors_of(parameters: Mapping[str, float], truth: Truth) -> dict[str, float | None]:
@@ -189,17 +192,29 @@ def deviations_of(parameters: Mapping[str, float], truth: Truth) -> dict[str, fl
     return every
 
 
-def wrong_in(verdict: str, truth: Truth, message: str = "") -> str:
-    """Return what is wrong with a verdict; empty where nothing is."""
+def wrong_in(verdict: str, truth: Truth, message: str = "", smallest: float = 0.0) -> str:
+    """Return what is wrong with a verdict; empty where nothing is.
+
+    Parameters
+    ----------
+    verdict : str
+    truth : Truth
+    message : str
+        Of a detector that refused or failed.
+    smallest : float
+        Opening from which the detector says that it would have seen it, m. It says so of faces at
+        the sensor; here the largest opening counts, wherever it is.
+    """
     if verdict == FAILED or (verdict == REFUSED and truth.setup.excitation != "random"):
         return f"{verdict}: {message}"
     if verdict == DELAMINATED and not truth.is_delaminated:
         return "called delaminated, and is sound"
     if verdict == DELAMINATED and not truth.opened:
         return "called delaminated, and did not open"
-    visible = truth.opened and truth.touched and truth.largest_gap > VISIBLE
+    visible = truth.opened and truth.touched and truth.largest_gap > max(VISIBLE, smallest)
     if verdict == NO_OPENING and visible:
-        return f"no opening seen, and it opened by {1e3 * truth.largest_gap:.3g} mm"
+        text = f"no opening seen, and it opened by {1e3 * truth.largest_gap:.3g} mm"
+        return f"{text}, where {1e3 * smallest:.3g} mm would have been seen"
     return ""
 
 

@@ -16,6 +16,7 @@ OPENED = Findings(
     excess=10.0,
     order2=0.2,
     apart=0.0,
+    bursts=5.0,
     sound="bonded",
     sound_misfit=3.0,
     delaminated="delaminated",
@@ -30,7 +31,18 @@ OPENED = Findings(
 )
 CASES = {
     "opens, and the halves explain it": ({}, "delaminated"),
-    "no order 2, one mass explains it": ({"excess": 0.3, "sound_misfit": 0.3}, "no opening seen"),
+    "no order 2, one mass explains it": (
+        {"excess": 0.3, "sound_misfit": 0.3, "bursts": 0.8},
+        "no opening seen",
+    ),
+    "the same, sampled too slowly for impacts": (
+        {"excess": 0.3, "sound_misfit": 0.3, "bursts": float("nan")},
+        "no opening seen",
+    ),
+    "no order 2, one mass explains it, but something strikes": (
+        {"excess": 0.3, "sound_misfit": 0.3},
+        "undecided",
+    ),
     "no order 2, and nothing explains it": (
         {"excess": 0.3, "delaminated_misfit": 3.5, "sound_misfit": 6.0},
         "not described",
@@ -47,6 +59,20 @@ CASES = {
     ),
     "better, but not in most parts of the record": ({"share": 0.6}, "undecided"),
     "no order 2, but the faces move apart": ({"excess": 0.2, "apart": 4.0}, "delaminated"),
+    "the halves explain it hardly better": ({"sound_misfit": 1.1}, "undecided"),
+    "the same, and the faces move apart": ({"sound_misfit": 0.9, "apart": 4.0}, "delaminated"),
+    "they move apart, and one mass explains it as well": (
+        {"sound_misfit": 0.82, "apart": 4.0},
+        "undecided",
+    ),
+    "they move apart, and the halves explain it badly": (
+        {"delaminated_misfit": 3.5, "sound_misfit": 6.0, "apart": 4.0},
+        "delaminated",
+    ),
+    "they move apart, and nothing explains it": (
+        {"delaminated_misfit": 4.5, "sound_misfit": 9.0, "apart": 4.0},
+        "not described",
+    ),
 }
 
 
@@ -63,7 +89,24 @@ def test_each_case_has_its_word(name):
 
 def test_the_reason_has_the_numbers_that_decided():
     text = OPENED.reason()
-    assert "20 %" in text and "10 times" in text and "0.8" in text and "3.8 times" in text
+    assert "20 %" in text and "10 times" in text and "0.8" in text and "3.75 times" in text
+
+
+def test_a_verdict_by_a_model_that_describes_the_record_only_so_well_says_so():
+    hardly_better = replace(OPENED, sound_misfit=0.9, apart=4.0)
+    bad = replace(OPENED, delaminated_misfit=3.5, sound_misfit=6.0, apart=4.0)
+    for findings in (hardly_better, bad):
+        assert findings.verdict() == "delaminated"
+        assert "describe this structure only so well" in findings.reason()
+    assert "only so well" not in replace(OPENED, apart=4.0).reason()
+    assert "1.12 times as much, where 1.05 decides" in hardly_better.reason()
+
+
+def test_what_strikes_is_named_and_what_was_not_listened_for_too():
+    quiet = replace(OPENED, excess=0.3, sound_misfit=0.3, bursts=0.8)
+    assert "strikes" not in quiet.reason() and "too slowly" not in quiet.seen_up_to()
+    assert "strikes once a period" in replace(quiet, bursts=3.0).reason()
+    assert "sampled too slowly" in replace(quiet, bursts=float("nan")).seen_up_to()
 
 
 def test_numbers_at_their_bounds_are_reported_with_slopes():

@@ -53,7 +53,13 @@ SHUT = dataclasses.replace(SPLIT, kind="preloaded", opened=False, largest_gap=-1
 )
 def test_what_is_wrong(verdict, truth, expected):
     found = wrong_in(verdict, truth)
-    assert found.endswith(expected) and bool(found) == bool(expected)
+    assert expected in found and bool(found) == bool(expected)
+
+
+def test_an_opening_below_the_stated_limit_is_no_wrong_verdict():
+    assert wrong_in("no opening seen", SPLIT, smallest=2e-3) == ""
+    found = wrong_in("no opening seen", SPLIT, smallest=3e-4)
+    assert found.endswith("opened by 1 mm, where 0.3 mm would have been seen")
 
 
 def test_the_signs_tell_the_tutorials_beams_apart():
@@ -212,6 +218,7 @@ def made_answer(record, guess, **running):
         {
             "verdict": ((), "delaminated"),
             "ratio": ((), 3.0),
+            "smallest_opening": ((), 4e-5),
             "misfit": ("hypothesis", [6.0, 3.0, 2.0]),
             "value": (("hypothesis", "parameter"), np.array(values)),
             "standard_error": (("hypothesis", "parameter"), 0.01 * np.array(values)),
@@ -225,6 +232,7 @@ def test_the_numbers_are_those_of_the_best_delaminated_hypothesis(monkeypatch):
     case = recipe.Case(xr.Dataset(), orchestrate.Structure(), SPLIT)
     verdict, numbers, _ = diagnosis.run_detector(case)
     assert (verdict, numbers["ratio"]) == ("delaminated", 3.0)
+    assert numbers["smallest"] == 4e-5
     assert (numbers["f1"], numbers["f2"], numbers["f2 error"]) == (41.0, 52.0, 0.52)
     deviation = diagnosis.deviations_of(numbers, SPLIT)
     assert deviation["f2"] == pytest.approx((52.0 - 45.0) / 0.52, rel=0.01)

@@ -1,0 +1,92 @@
+"""Bursts at high frequencies once a period, as faces make them that strike each other.
+
+Each impact shakes the structure up to high frequencies, where a sweep through its resonance leaves
+nothing but noise. A sensor that hardly moves with the opening (it sits beyond the end of a short
+delamination) hears the impacts still, while its order 2 stays below any threshold.
+
+Dry friction shakes it too, at both ends of the stroke, half a period apart and with opposite signs:
+half the sum of the signal and of itself half a period later, which holds the even orders, does not
+show it. Of one impact a period half the power is in this even part, and half in the odd one.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..laboratory.analysis.channels import BOX, Channels
+from ..laboratory.analysis.orders import EDGE, measured_phase
+from .response_signs import default_band_edge
+
+Floats = NDArray[np.float64]
+AVERAGING_TIME, MIN_INTERVALS = 2.0, 16  # s of each mean of the power; how many there are at least
+QUIET = 0.2  # quantile of the means that is taken for the power of noise
+MAX_NOISE_RISE = 1.5  # power over that of noise from which bursts count as seen
+NOISE_DEVIATIONS = 6.0  # standard deviations of a mean by which noise may exceed its power
+# Power beyond noise of the even part over that of the odd one: below, both ends of the stroke burst
+ONE_SIDED = 0.4
+FINER = 4  # samples of the finer grid on which a signal half a period later is read
+
+
+def burst_excess(channels: Channels, highest: float) -> float:
+    """Return the power of bursts once a period, over the threshold from which they count as seen.
+
+    Parameters
+    ----------
+    channels : Channels
+        The whole record, not decimated.
+    highest : float
+        Highest frequency of the excitation, Hz.
+
+    Returns
+    -------
+    float
+        Of the sensor that shows most, above 1 where bursts are seen; NaN where the record is
+        sampled too slowly, or too short.
+    """
+    edge = default_band_edge(channels, highest)
+    phase = np.maximum.accumulate(measured_phase(channels))
+    ends = phase[0] + 2.0 * math.pi * EDGE, phase[-1] - 2.0 * math.pi * EDGE
+    first, last = np.searchsorted(phase, ends)
+    width = min(round(AVERAGING_TIME * channels.sample_rate), int(last - first) // MIN_INTERVALS)
+    if math.isnan(edge) or width < MIN_INTERVALS:
+        return math.nan
+    share = 1.0 - 2.0 * edge / channels.sample_rate
+    deviation = math.sqrt(2.0 / (0.5 * share * width))  # neighbours hang together by half a period
+    threshold = max(MAX_NOISE_RISE, 1.0 + NOISE_DEVIATIONS * deviation)
+    rows = [row for row, name in enumerate(channels.names) if name != BOX]
+    part = slice(int(first), int(last))
+    rises = [one_sided_rise(high_band(channels, row, edge), phase, part, width) for row in rows]
+    return max(rises) / threshold
+
+
+def high_band(channels: Channels, row: int, edge: float) -> Floats:
+    """Return a channel above a frequency in Hz, without delay."""
+    from scipy.signal import butter, sosfiltfilt
+
+    sections = butter(4, edge, "highpass", fs=channels.sample_rate, output="sos")
+    return np.asarray(sosfiltfilt(sections, channels.values[row]))
+
+
+def one_sided_rise(signal: Floats, phase: Floats, part: slice, width: int) -> float:
+    """Return the largest mean power of the even part over that of noise, where it is one-sided."""
+    from scipy.signal import resample_poly
+
+    later = np.interp(phase[part] + math.pi, phase, np.arange(len(phase)))
+    finer = np.asarray(resample_poly(signal, FINER, 1))
+    opposite = np.interp(later, np.arange(len(finer)) / FINER, finer)
+    even, odd = (mean_power(0.5 * (signal[part] + s * opposite), width) for s in (1.0, -1.0))
+    noise = np.quantile(even, QUIET), np.quantile(odd, QUIET)
+    if not min(noise) > 0.0:
+        return 0.0
+    one_sided = even - noise[0] >= ONE_SIDED * (odd - noise[1])
+    return float(np.max(np.where(one_sided, even / noise[0], 0.0)))
+
+
+def mean_power(signal: Floats, width: int) -> Floats:
+    """Return the mean square in intervals of so many samples that overlap by half."""
+    total = np.concatenate([[0.0], np.cumsum(signal**2)])
+    starts = np.arange(0, len(signal) - width + 1, max(width // 2, 1))
+    return np.asarray((total[starts + width] - total[starts]) / width)

@@ -1,0 +1,57 @@
+"""Impacts are heard at high frequencies, and dry friction is not taken for them."""
+
+import numpy as np
+
+import orchestrate
+from orchestrate.diagnosis.bursts import burst_excess
+from orchestrate.diagnosis.orders import checked_channels
+
+from .records import BEAM, SWEEP, guess
+
+NOISE, RINGING = 0.02, 700.0  # of the rms; Hz
+STRIKES = (4.0, 6.0)  # s between which something strikes
+
+
+def knocks(time, twice):
+    """Short ringing of size 1 once a period, or twice with opposite signs."""
+    turns = SWEEP.phase(time) / (2.0 * np.pi) * (2.0 if twice else 1.0)
+    after = (turns % 1.0) / np.gradient(turns, time)
+    sign = np.where(twice & (np.floor(turns) % 2.0 == 1.0), -1.0, 1.0)
+    inside = (time > STRIKES[0]) & (time < STRIKES[1])
+    return inside * sign * np.exp(-after / 1e-3) * np.sin(2.0 * np.pi * RINGING * after)
+
+
+def knocked(size, twice=False, rate=2000.0):
+    """A bonded beam's record with noise, and with knocks while it moves most."""
+    history = orchestrate.shake(BEAM.as_bonded(), SWEEP, sample_rate=rate, progress=False)
+    sensor = orchestrate.Sensor(bandwidth=0.4 * rate, sample_rate=rate)
+    felt = orchestrate.measure(history, sensor, excitation=SWEEP)
+    time, rng, channels = felt.time.values, np.random.default_rng(3), {}
+    for name in ("box_acceleration", "acceleration1"):
+        values = felt[name].values
+        channels[name] = values + NOISE * values.std() * rng.standard_normal(len(values))
+    rms = channels["acceleration1"].std()
+    channels["acceleration1"] = channels["acceleration1"] + size * rms * knocks(time, twice)
+    return orchestrate.record(time=time, **channels)
+
+
+def excess(record):
+    return burst_excess(checked_channels(record), 42.0)
+
+
+def test_knocks_once_a_period_are_heard_and_those_at_both_ends_of_the_stroke_are_not():
+    assert 0.5 < excess(knocked(0.0)) < 0.9
+    assert excess(knocked(0.3)) > 2.0
+    assert excess(knocked(0.3, twice=True)) < 0.9
+
+
+def test_a_record_that_is_sampled_too_slowly_tells_nothing_about_impacts():
+    assert np.isnan(excess(knocked(0.3, rate=400.0)))
+
+
+def test_a_beam_in_which_something_strikes_is_not_one_of_which_no_opening_is_seen():
+    """Its order 2 is below the threshold, and a bonded beam describes all orders."""
+    answer = orchestrate.detect(knocked(0.3), guess(), jobs=1, progress=False)
+    assert str(answer.verdict.values) == "undecided", answer.attrs["reason"]
+    assert float(answer.bursts) > 2.0 and "strikes once a period" in answer.attrs["reason"]
+    assert float(answer.order2.max() / answer.order2_threshold.max()) < 1.0
