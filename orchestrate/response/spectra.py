@@ -41,7 +41,7 @@ def amplitude_spectrum(signal: ArrayLike, interval: float) -> tuple[Floats, Floa
     Parameters
     ----------
     signal : array_like, shape (..., n)
-        At equal times; its mean is left in.
+        At equal times.
     interval : float
         Time between them, s.
 
@@ -51,7 +51,7 @@ def amplitude_spectrum(signal: ArrayLike, interval: float) -> tuple[Floats, Floa
         Of the lines, rad/s.
     amplitude : ndarray, shape (..., n//2 + 1)
         Exact for sines with a whole number of periods in the span, whose neighbouring lines then
-        show half of it.
+        show half of it. The mean shows at 0 alone: the line beside it is of what differs from it.
 
     Examples
     --------
@@ -60,18 +60,27 @@ def amplitude_spectrum(signal: ArrayLike, interval: float) -> tuple[Floats, Floa
     >>> float(frequency[5] / np.pi), amplitude[4:7].round(6)
     (10.0, array([1.5, 3. , 1.5]))
     """
+    signal = np.asarray(signal, dtype=float)
+    turns, amplitude = hann_spectrum(signal, interval)
+    # Of a constant the window makes one line more. Taken away only there: other lines keep their
+    # bits. Over displacements times the frequency squared it would look like a slow motion.
+    moving = signal - signal.mean(axis=-1, keepdims=True)
+    amplitude[..., 1] = hann_spectrum(moving, interval)[1][..., 1]
+    return 2.0 * np.pi * turns, amplitude
+
+
+def hann_spectrum(signal: Floats, interval: float) -> tuple[Floats, Floats]:
+    """Return lines in Hz and amplitudes as :func:`amplitude_spectrum` has them, of all that is
+    in the signal.
+    """
     from scipy.signal import periodogram
 
     turns, power = periodogram(
-        np.asarray(signal, dtype=float),
-        fs=1.0 / interval,
-        window="hann",
-        detrend=False,
-        scaling="spectrum",
+        signal, fs=1.0 / interval, window="hann", detrend=False, scaling="spectrum"
     )
     both_sides = np.full(len(turns), 2.0)  # a line stands for two of the two-sided spectrum,
     both_sides[0] = 1.0  # but for the mean
-    return 2.0 * np.pi * turns, np.sqrt(both_sides * power)
+    return turns, np.sqrt(both_sides * power)
 
 
 @dataclass(frozen=True, kw_only=True)

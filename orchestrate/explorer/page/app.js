@@ -282,7 +282,7 @@ export class App {
     if (!diagram) return;
     const count = diagram.points.length * diagram.lanes.length;
     const ways = diagram.lanes.length > 1 ? ", up and down" : "";
-    const shut = complete && opensElsewhere(diagram) ? ". Impacts under a gap of 0: the halves open at another moment of the period" : "";
+    const shut = complete && opensElsewhere(diagram) ? ". Impacts under a gap of 0: open at other moments" : "";
     this.tell(`${diagram.points.length} frequencies${ways}: ${complete ? "all computed" : "computing …"}${shut}`);
     at("diagram").dataset.complete = String(complete);
     Object.assign(input("back"), { disabled: place <= 0 });

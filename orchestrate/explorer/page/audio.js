@@ -3,6 +3,7 @@
 /** A loop of clicks that can be started and stopped. */
 export class Sound {
   constructor() {
+    this.wanted = false; // motions that are shown next are heard too
     /** @type {AudioContext | null} */
     this.context = null;
     /** @type {AudioBufferSourceNode | null} */
@@ -11,6 +12,12 @@ export class Sound {
 
   get playing() {
     return this.source !== null;
+  }
+
+  /** No more, whatever is shown next. */
+  silence() {
+    this.wanted = false;
+    this.stop();
   }
 
   /** Samples a second. */

@@ -70,11 +70,12 @@ export class BasinPart {
     return shown !== null && [...this.view.attractors, ...this.few].some((one) => placeOf([shown], one, SAME) < 0);
   }
 
-  /** What is known of other motions; nothing where all starts have led to the one that is shown. @param {boolean} [differ] whether sweeps up and down do */
+  /** What is known of other motions. @param {boolean} [differ] whether sweeps up and down do */
   hint(differ = false) {
     const complete = Boolean(this.point) && this.at("basins").dataset.complete === "true";
     if (this.others) return complete ? "Other motions here: see below." : "There is another motion here:";
-    return differ && !complete && !this.tried ? "There may be another motion here:" : "";
+    if (complete) return `No other motion from ${SIDE * SIDE} starts.`;
+    return differ && !this.tried ? "There may be another motion here:" : "";
   }
 
   /** A motion is shown: mark it, and try a few starts. @param {import("./inspector.js").Choice} choice @param {import("./response.js").Response} response */
@@ -125,7 +126,7 @@ export class BasinPart {
         go.textContent = "Show";
         go.ariaLabel = `show: ${text}`;
         go.addEventListener("click", () => this.choose(start));
-        row.append(key, text, " ", now ? shownNow() : go);
+        row.append(key, tagged(text), now ? shownNow() : go);
         return row;
       }),
     );
@@ -134,6 +135,9 @@ export class BasinPart {
     this.view.picture.describe(`Where starts lead to: ${words.map(({ text }) => text).join("; ")}`);
   }
 }
+
+/** @param {string} text */
+const tagged = (text) => Object.assign(document.createElement("span"), { textContent: text });
 
 /** In place of a button. */
 function shownNow() {

@@ -6,7 +6,7 @@ import { numbersIn } from "./structure.js";
 
 const SIZE = 11; // px of a letter
 const LINE = 16; // px
-const LETTER = 5.8; // px, the mean width of one
+const LETTER = 6.2; // px, the mean width of one
 const LEFT = 10; // px
 
 /** A beam and how it is shaken, in the units of the page. @param {import("./structure.js").Point} point @param {import("./excitation.js").Level} level */

@@ -55,7 +55,7 @@ function drawLegend(pen, [left, top, width], theme, { series, spans }) {
   for (const { label, colour } of [...series].reverse()) {
     if (!label) continue;
     pen.text(x, top - 10, label, { anchor: "end", fill: theme[colour] });
-    x -= 12 + 7 * label.length;
+    x -= 16 + 7.5 * label.length;
   }
 }
 
@@ -76,7 +76,7 @@ export function drawFrame(pen, [left, top, width, height], theme, x, y, strip = 
     pen.line([px(tick), px(tick)], [top, bottom], { stroke: theme.grid });
     if (x.label !== undefined) pen.text(px(tick), bottom + strip + 12, shown(tick, 6), { fill: theme.soft });
   }
-  for (const tick of ticksOf(y, height / 30)) {
+  for (const tick of ticksOf(y, height / (y.log ? 24 : 30))) {
     pen.line([left, right], [py(tick), py(tick)], { stroke: theme.grid });
     pen.text(left - 6, py(tick), tickText(tick, y), { anchor: "end", fill: theme.soft });
   }

@@ -144,7 +144,7 @@ export function drawFrames(pen, size, theme, axes, unit) {
 /** The strip of zero below a logarithmic axis; the place that is left above it. @param {Pen} pen @param {Place} place @param {Theme} theme @returns {Place} */
 function aboveZero(pen, [left, top, width, height], theme) {
   pen.box(left, top + height - STRIP, width, STRIP, { fill: theme.grid });
-  pen.text(left - 6, top + height - STRIP / 2 + 3, "0", { anchor: "end", fill: theme.soft });
+  pen.text(left - 6, top + height - STRIP + 13, "0", { anchor: "end", fill: theme.soft });
   return [left, top, width, height - STRIP];
 }
 

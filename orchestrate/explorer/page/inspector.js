@@ -35,6 +35,7 @@ export class Inspector {
     this.animation = new Animation(/** @type {HTMLCanvasElement} */ (at("animation")));
     this.sound = new Sound();
     this.periods = 10;
+    this.pitch = 4; // periods a second that are heard
     /** @type {Choice | null} */
     this.choice = null;
     /** @type {import("./worker_pool.js").Order[]} */
@@ -74,7 +75,7 @@ export class Inspector {
     return order;
   }
 
-  /** Call off what is still being computed, and be silent. */
+  /** Call off what is still being computed; what is heard belongs to the motion before. */
   stop() {
     this.orders.forEach((order) => order.cancel());
     this.orders = [];
@@ -87,6 +88,7 @@ export class Inspector {
     this.section = found.response.states;
     const { point } = /** @type {Choice} */ (this.choice);
     this.ask("spectra", { point, start: found.response.end }, (parts) => parts.forEach((part) => this.takeSpectra(part)));
+    if (this.sound.wanted) this.listen(this.pitch);
     this.drawMotion();
     this.drawSection();
     this.animation.load(found.motion, point);
@@ -178,6 +180,8 @@ export class Inspector {
 
   /** Play the impacts of many periods as they come from the kernel. @param {number} pitch periods a second */
   listen(pitch) {
+    this.pitch = pitch;
+    this.sound.wanted = true;
     if (!this.choice || !this.found) return;
     const periods = Math.max(1, Math.round(pitch * (pitch < 8 ? 4 : 2)));
     const { rate } = this.sound;

@@ -12,6 +12,8 @@ import { themeOf } from "./theme.js";
  * @typedef {(pen: Pen, size: Size, theme: Theme) => void} Draw
  */
 
+const FINE = 2; // pixels of a saved picture, at the least, for one of the page's
+
 export class Picture {
   /** @param {HTMLCanvasElement} canvas @param {Draw} draw */
   constructor(canvas, draw) {
@@ -56,21 +58,21 @@ export class Picture {
     this.canvas.setAttribute("aria-label", words);
   }
 
-  /** As it is on the screen, on paper, with lines below. @param {string} name of the file @param {string[]} caption */
+  /** As it is on the screen, on paper, twice as fine where that is coarse, with lines below. @param {string} name of the file @param {string[]} caption */
   savePng(name, caption) {
     const { width, height } = this.size;
-    const { canvas } = this;
-    const density = canvas.width / width;
+    const density = Math.max(FINE, window.devicePixelRatio || 1);
     const lines = wrapped(caption, width);
     const sheet = document.createElement("canvas");
-    Object.assign(sheet, { width: canvas.width, height: canvas.height + Math.round(density * heightOf(lines)) });
+    Object.assign(sheet, { width: Math.round(width * density), height: Math.round((height + heightOf(lines)) * density) });
     const context = /** @type {CanvasRenderingContext2D} */ (sheet.getContext("2d"));
     const theme = themeOf();
     context.fillStyle = theme.paper;
     context.fillRect(0, 0, sheet.width, sheet.height);
-    context.drawImage(canvas, 0, 0);
     context.setTransform(density, 0, 0, density, 0, 0);
-    drawCaption(new CanvasPen(context), lines, height, theme);
+    const pen = new CanvasPen(context);
+    this.draw(pen, { width, height }, theme);
+    drawCaption(pen, lines, height, theme);
     sheet.toBlob((blob) => blob && save(`${name}.png`, blob));
   }
 

@@ -26,7 +26,7 @@ export class Player {
     at("speed").addEventListener("input", () => this.setSpeed());
     onNumber(this.input("periods"), (periods) => this.setPeriods(periods));
     onNumber(this.input("pitch"), (pitch) => {
-      if (inspector.sound.playing) inspector.listen(pitch);
+      if (inspector.sound.wanted) inspector.listen(pitch);
     });
   }
 
@@ -34,6 +34,7 @@ export class Player {
   reset() {
     for (const id of FIELDS) toDefault(this.input(id));
     this.inspector.periods = this.input("periods").valueAsNumber;
+    this.inspector.sound.silence();
     this.setSpeed();
     this.animate();
   }
@@ -47,7 +48,7 @@ export class Player {
   refresh() {
     this.showSpeed();
     const { sound, animation } = this.inspector;
-    this.at("listen-word").textContent = sound.playing ? "Silence" : "Sound";
+    this.at("listen-word").textContent = sound.wanted ? "Silence" : "Sound";
     this.at("play").textContent = animation.running ? "Pause" : "Play";
   }
 
@@ -65,7 +66,7 @@ export class Player {
 
   listen() {
     const { sound } = this.inspector;
-    if (sound.playing) sound.stop();
+    if (sound.wanted) sound.silence();
     else this.inspector.listen(this.input("pitch").valueAsNumber);
     this.changed();
   }

@@ -19,11 +19,14 @@ element.scrollIntoView({ block: "center", behavior: "instant" });
 const { left, top, width, height } = element.getBoundingClientRect();
 return arguments[1].map(([x, y]) => [Math.round(left + x * width), Math.round(top + y * height)]);
 """
+ENTER, TAB = "\ue007", "\ue004"  # as WebDriver names keys
 UNFINISHED = (".crdownload", ".part")
 
 
 class Browser(ABC):
     """What the tests ask of it."""
+
+    leave: tuple[str, ...] = (TAB,)  # keys with which a field is left
 
     def __init__(self, downloads):
         self.downloads = downloads

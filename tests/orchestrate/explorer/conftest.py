@@ -94,8 +94,6 @@ def opened(chromium, page):
 
 def typed(browser, name, text):
     """Type into an input as a hand does, letter by letter, and leave it."""
-    from selenium.webdriver.common.keys import Keys
-
     browser.run("const at = document.getElementById(arguments[0]); at.focus(); at.select()", name)
     browser.keys(*text)
-    browser.keys(Keys.TAB)
+    browser.keys(*browser.leave)

@@ -5,7 +5,7 @@ import re
 import subprocess
 import time
 
-from .browser import Browser
+from .browser import ENTER, TAB, Browser
 
 START = ("--headless", "--no-remote", "--new-instance", "--remote-debugging-port", "0")
 SIZE = {"width": 1300, "height": 1270}
@@ -13,7 +13,12 @@ SAVED = "text/csv,image/png,image/svg+xml"
 
 
 class Firefox(Browser):
-    """A process of its own, with a profile of its own."""
+    """A process of its own, with a profile of its own.
+
+    Headless it has no focus, and a field that is left then has not changed: Enter says so.
+    """
+
+    leave = (ENTER, TAB)
 
     def __init__(self, program, profile, downloads):
         from websocket import create_connection

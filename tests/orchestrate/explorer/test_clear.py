@@ -91,8 +91,9 @@ def test_where_another_motion_is_known_the_page_says_so(opened, eta, others):
     rows = opened.run(
         "return [...document.querySelectorAll('#basins li')].map((row) => row.innerText)"
     )
-    assert len(rows) == 1 + others == 1 + hinted(opened)
-    assert not others or opened.text("hint") == "Other motions here: see below."
+    assert len(rows) == 1 + others
+    words = "Other motions here: see below." if others else "No other motion from 4096 starts."
+    assert hinted(opened) and opened.text("hint") == words
     assert sum("shown now" in row for row in rows) == 1
     if others:
         now = opened.run("return document.querySelector('#basins .now').parentElement.textContent")
@@ -319,3 +320,167 @@ def test_controls_and_symbols_explain_themselves(opened):
         )
         assert word in title
     assert "bonded" not in opened.run("return document.body.innerText").lower()
+
+
+def test_a_sound_that_is_heard_goes_on_with_the_next_motion(opened):
+    opened.until(READY)
+    opened.run("document.getElementById('listen').click()")
+    opened.until("return explorer.inspector.sound.playing")
+    for eta in (2.9, 1.7):
+        opened.run("window.last = explorer.inspector.sound.source")
+        opened.run("explorer.choose(arguments[0], true)", eta)
+        opened.until(READY)
+        opened.until("return explorer.inspector.sound.source !== window.last")
+        assert opened.run("return explorer.inspector.sound.playing")
+        assert opened.text("listen-word") == "Silence"
+    opened.run("document.getElementById('listen').click()")
+    opened.run("explorer.choose(1.2, true)")
+    opened.until(READY)
+    assert not opened.run("return explorer.inspector.sound.playing")
+    assert opened.text("listen-word") == "Sound"
+
+
+def test_halves_that_stay_shut_are_silent_until_they_knock_again(opened, page):
+    opened.open(page, "#tour=pressed")
+    opened.until(READY)
+    opened.run("document.getElementById('listen').click()")
+    opened.until("return document.getElementById('listen-word').textContent === 'Silence'")
+    assert not opened.run("return Boolean(explorer.inspector.sound.source)")
+    opened.run("document.querySelector('a[href=\"#tour=pressed-open\"]').click()")
+    opened.until("return Boolean(explorer.inspector.sound.source)")
+
+
+@pytest.mark.parametrize("name", ["quiet", "chattering", "two-answers", "pressed", "pressed-open"])
+def test_no_step_of_the_tour_moves_the_pictures(opened, page, name):
+    """On a screen of 1440 x 900: the diagram, the sentence, the motion stay where they were."""
+    size = {"width": 1440, "height": 900, "deviceScaleFactor": 1, "mobile": False}
+    opened.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    try:
+        opened.open(page)
+        opened.until(READY)
+        before = opened.run(PLACED)
+        opened.run("document.querySelector(`a[href='#tour=${arguments[0]}']`).click()", name)
+        opened.until(READY)
+        assert opened.run(PLACED) == before
+        for part in ("diagram", "animation", "history", "hint", "others"):
+            assert opened.run(BOTTOM, part) <= 900
+    finally:
+        opened.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+PLACED = """
+return ["diagram", "sentence", "animation", "history"].map((id) =>
+  [id, document.getElementById(id).getBoundingClientRect().top + scrollY]);
+"""
+BOTTOM = "return document.getElementById(arguments[0]).getBoundingClientRect().bottom"
+
+
+@pytest.mark.parametrize("eta", [1.3, 1.7])
+def test_other_motions_that_come_move_nothing(opened, eta):
+    opened.run("explorer.choose(arguments[0], true)", eta)
+    opened.until(READY)
+    opened.run("document.getElementById('basin-figure').scrollIntoView({ block: 'center' })")
+    places = (
+        "return ['basin', 'phase', 'section', 'drive'].map((id) =>"
+        " document.getElementById(id).getBoundingClientRect().top + scrollY)"
+    )
+    opened.run("explorer.basin.forget()")
+    before = opened.run(places)
+    opened.run("document.getElementById('others').click()")
+    opened.until("return document.getElementById('basins').dataset.complete === 'true'")
+    assert opened.run("return document.querySelectorAll('#basins li').length") > 0
+    assert opened.run(places) == before
+
+
+def test_where_no_other_motion_is_known_after_all_starts_the_page_says_so(opened):
+    opened.run("explorer.choose(1.7, true)")
+    opened.until(READY)
+    opened.run("document.getElementById('others').click()")
+    opened.until("return document.getElementById('basins').dataset.complete === 'true'")
+    assert hinted(opened)
+    assert opened.text("hint") == "No other motion from 4096 starts."
+
+
+def test_on_a_phone_the_motion_stands_before_the_controls(opened, page):
+    size = {"width": 390, "height": 844, "deviceScaleFactor": 2, "mobile": True}
+    opened.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    try:
+        opened.open(page)
+        opened.until(READY)
+        tops = opened.run(
+            "return ['diagram', 'sentence', 'animation', 'listen', 'eta', 'spectrum'].map((id) =>"
+            " document.getElementById(id).getBoundingClientRect().top)"
+        )
+        assert tops == sorted(tops)
+        assert opened.run("return document.documentElement.scrollWidth") <= 390
+    finally:
+        opened.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+TEXTS_DRAWN = """
+const [name] = arguments;
+const boxes = [];
+const proto = CanvasRenderingContext2D.prototype;
+const old = proto.fillText;
+proto.fillText = function (words, x, y) {
+  const { a, b, c, d, e, f } = this.getTransform();
+  const { width } = this.measureText(words);
+  const size = parseFloat(this.font);
+  const left = { start: 0, left: 0, center: -width / 2, end: -width, right: -width }[this.textAlign];
+  const density = devicePixelRatio || 1;
+  const turned = Math.abs(b) > 1e-6;
+  const [w, h] = turned ? [size, width] : [width, size];
+  const [cx, cy] = [e / density, f / density];
+  const from = turned ? [cx - size / 2, cy - width - left] : [cx + left, cy - size / 2];
+  boxes.push([words, from[0], from[1], w, h]);
+  old.call(this, words, x, y);
+};
+try {
+  const picture = name === "diagram" ? explorer.regions.view.picture
+    : explorer.inspector.pictures.pictures[name];
+  picture.paint();
+} finally {
+  proto.fillText = old;
+}
+return boxes;
+"""
+
+
+def overlapping(boxes, room=0.0):
+    """Pairs of texts whose boxes come nearer than some pixels, of the lower the height of digits."""
+    near = []
+    for i, (first, x, y, w, h) in enumerate(boxes):
+        for second, left, top, wide, high in boxes[i + 1 :]:
+            if (
+                x < left + wide + room
+                and left < x + w + room
+                and y < top + high
+                and top < y + h
+            ):
+                near.append((first, second))
+    return near
+
+
+@pytest.mark.parametrize("name", ["diagram", "history", "spectrum", "phase", "section"])
+@pytest.mark.parametrize("width", [1440, 390])
+def test_no_two_texts_of_a_picture_collide(opened, page, name, width):
+    size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}
+    opened.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    try:
+        opened.open(page, "#tour=two-answers")
+        opened.until(READY)
+        opened.until("return Boolean(explorer.inspector.spectra)")
+        boxes = opened.run(TEXTS_DRAWN, name)
+        assert len(boxes) > 5
+        assert overlapping(boxes, room=6.0) == []
+    finally:
+        opened.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+def test_a_saved_picture_is_sharp_on_paper(opened):
+    """A PNG has two pixels for each of the screen's, where the screen has one."""
+    opened.until(READY)
+    opened.run("document.querySelector(\"[data-save='history.png']\").click()")
+    width = int.from_bytes(opened.download("history*.png").read_bytes()[16:20], "big")
+    shown = opened.run("return document.getElementById('history').clientWidth")
+    assert width >= 2 * shown

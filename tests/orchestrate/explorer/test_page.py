@@ -279,7 +279,8 @@ def test_the_weak_drive_is_the_masters(browser, clearance):
 
 def test_the_motor_waits_until_it_is_started(browser):
     browser.run("document.getElementById('drive').scrollIntoView()")
-    browser.until("return new Promise((done) => setTimeout(() => done(true), 300))")
+    browser.run("setTimeout(() => (window.later = true), 300)")
+    browser.until("return window.later")
     assert browser.run("return [explorer.drive.running, explorer.drive.rows.length]") == [False, 0]
 
 

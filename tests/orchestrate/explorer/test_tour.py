@@ -7,7 +7,7 @@ import pytest
 
 import orchestrate
 from orchestrate.constants import GRAVITY
-from orchestrate.explorer.tour import HILL, SEEN, TOUR
+from orchestrate.explorer.tour import HILL, TOUR
 from orchestrate.flags import flag_words
 
 FEW = {"direction": "up", "transient": 200, "samples": 20, "progress": False}
@@ -95,7 +95,7 @@ def test_at_the_level_where_it_is_shut_the_pressed_beam_opens_on_its_hill_alone(
     stop = STOPS["pressed"]
     unit = stop.structure.omega / (2.0 * np.pi)
     first, last = (end * unit for end in stop.region)
-    ends = [end + change for end in (*HILL, *SEEN) for change in (-0.2, -0.1, 0.0, 0.1, 0.2)]
+    ends = [end + change for end in HILL for change in (-0.2, -0.1, 0.0, 0.1, 0.2)]
     hertz = np.unique(np.round([*np.arange(first, last + 0.5, 1.0), *ends], 4))
     assert hertz[0] == first and hertz[-1] == last
     turns = 2.0 * np.pi * hertz
@@ -106,12 +106,10 @@ def test_at_the_level_where_it_is_shut_the_pressed_beam_opens_on_its_hill_alone(
     assert 5 < hill.sum() < len(hertz) - 5
     assert np.array_equal(opens.reshape(-1), hill), hertz[opens.reshape(-1) != hill]
     dots = swept.xi_rel.max("sample").values.reshape(-1) > LOWEST
-    assert np.array_equal(dots, (hertz >= SEEN[0]) & (hertz <= SEEN[1])), hertz[dots]
-    assert (opens.reshape(-1) & ~dots).any()  # impacts under a gap of 0: it opens between samples
+    assert (opens.reshape(-1) & ~dots).any()  # the page says so: impacts under a gap of 0
     (step,) = [step for step in TOUR if stop in step.stops]
     assert f"{stop.eta * unit:g} Hz and {stop.level:g} g" in step.text
     assert "opens between {:g} and {:g} Hz".format(*HILL) in stop.about
-    assert "upper picture runs from {:g} to {:g} Hz".format(*SEEN) in stop.about
     for one in step.stops:
         assert f"diagram is of {one.level:g} g" in one.about
         assert one.label.startswith(f"{one.level:g} g at {one.eta * unit:g} Hz: ")
