@@ -425,3 +425,54 @@ def test_a_table_of_modules_is_complete(file):
     there = {path.stem for path in folder.glob("*.py")} - {"__init__"}
     there |= {path.parent.name for path in folder.glob("*/__init__.py")}
     assert sorted(listed_modules(file) or []) == sorted(there)
+
+
+SAYS = {  # what an answer is -> words by which the first line of a docstring says so
+    "None": r"\bNone\b|\bnothing\b|\bif any\b",
+    "bool": r"\b[Ww]hether\b|\b(True|False)\b",
+    "tuple": r"[,;:]|\b(and|or|pairs?|both|two|four|three|states?|each|as|tuple)\b|s\b",
+}
+
+
+def answer_of(node: ast.FunctionDef | ast.AsyncFunctionDef) -> str:
+    """Kind of answer that a first line has to name, by the annotation; empty for other kinds."""
+    returns = ast.unparse(node.returns) if node.returns is not None else ""
+    if returns.endswith(" | None"):
+        return "None"
+    return "bool" if returns == "bool" else "tuple" if returns.startswith("tuple[") else ""
+
+
+def first_lines(node: ast.FunctionDef | ast.AsyncFunctionDef) -> str:
+    """Summary of a docstring, up to its first empty line."""
+    return (ast.get_docstring(node) or "").partition("\n\n")[0]
+
+
+def unsaid(tree: ast.AST) -> dict[str, str]:
+    """First lines of docstrings that hide that there may be no answer, a flag, or several."""
+    every = {
+        (node.name, node.lineno): (answer_of(node), first_lines(node))
+        for node in ast.walk(tree)
+        if isinstance(node, FUNCTIONS)
+    }
+    return {
+        f"{name}, line {number}": line
+        for (name, number), (answer, line) in every.items()
+        if line and answer and not re.search(SAYS[answer], line)
+    }
+
+
+def test_the_reader_of_first_lines():
+    text = (
+        "def f() -> int | None:\n    'Return a number.'\n"
+        "def g() -> int | None:\n    'Return a number; None without one.'\n"
+        "def h() -> bool:\n    'Return the flag.'\n"
+        "def i() -> tuple[int, str]:\n    'Compute it.'\n"
+        "def j() -> tuple[int, str]:\n    'Compute it; return number and name.'\n"
+        "def k() -> int:\n    'Count.'\n"
+    )
+    assert [name[0] for name in unsaid(ast.parse(text))] == ["f", "h", "i"]
+
+
+@pytest.mark.parametrize("file", [f for f in ANNOTATED if not f.startswith("fmu_src/")])
+def test_a_first_line_says_what_comes_back(file):
+    assert unsaid(tree_of(file)) == {}

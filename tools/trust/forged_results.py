@@ -195,7 +195,7 @@ def fragment(chance: random.Random, address: str) -> str:
 
 
 def clean_up(*paths: Path) -> None:
-    """Remove files."""
+    """Delete the forged files of a trial."""
     for path in paths:
         with contextlib.suppress(FileNotFoundError):
             path.unlink()
