@@ -127,7 +127,11 @@ def named(value: object) -> Iterator[str]:
     """The module of ours that a string names, as in ``-m orchestrate.cli`` or an entry point."""
     name = value.partition(":")[0] if isinstance(value, str) else ""
     words = name.split(".")
-    if len(words) > 1 and words[0] in OURS and all(word.isidentifier() for word in words):
+    if (
+        len(words) > 1
+        and words[0] in (*OURS, "tests")
+        and all(word.isidentifier() for word in words)
+    ):
         yield name
 
 
@@ -193,6 +197,12 @@ def test_a_part_of_the_fmus_knows_only_what_it_is_made_of(file):
 
 def test_the_fmus_know_nothing_of_their_use():
     assert not {file for file in users("orchestrate") if file.startswith("fmu_src/")}
+
+
+@pytest.mark.parametrize("file", FILES)
+def test_tests_are_known_to_tests_alone(file):
+    """What tests and tools share lies below ``tools``."""
+    assert not uses(file, "tests")
 
 
 def test_the_sources_of_the_fmus_are_known_in_five_places():
