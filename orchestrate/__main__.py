@@ -6,7 +6,7 @@ from .supervisor import supervised
 
 
 def run() -> int:
-    """The command's exit code; Ctrl-C may come while its modules are still read."""
+    """Run the command line; return its exit code, also when Ctrl-C comes while modules are read."""
     try:
         from .cli import main as carry_out
 
@@ -17,7 +17,7 @@ def run() -> int:
 
 
 def main() -> int:
-    """The command in a process of its own, which ends whatever happens in it."""
+    """Run the command in a process of its own, which ends in any case; return its exit code."""
     return supervised(run)
 
 

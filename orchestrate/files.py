@@ -75,7 +75,7 @@ def made_once(path: Path) -> Iterator[None]:
 
 
 def read_text(path: str | os.PathLike[str], most: int) -> str:
-    """The text of an ordinary file; devices and pipes may never end, and others be too long.
+    """Return the text of an ordinary file; raise for devices, pipes, and files over ``most`` bytes.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def read_text(path: str | os.PathLike[str], most: int) -> str:
 
 
 def check_name(path: str | os.PathLike[str]) -> None:
-    """See that a path is UTF-8: the libraries that write results take no other."""
+    """Raise unless a path is UTF-8: the libraries that write results take no other."""
     try:
         str(Path(path).absolute()).encode("utf-8")
     except UnicodeEncodeError:
@@ -118,7 +118,7 @@ def reason(error: BaseException, folder: Path) -> str:
 
 
 def sweep_up(path: Path) -> None:
-    """Remove what killed processes left of earlier attempts."""
+    """Delete what killed processes left beside a file of earlier attempts to write it."""
     for left in path.parent.glob(f"{glob_name(path.name)}.*.tmp"):
         number = left.name.removesuffix(".tmp").rpartition(".")[2]
         if number.isdigit() and not alive(int(number)):
@@ -126,12 +126,12 @@ def sweep_up(path: Path) -> None:
 
 
 def glob_name(name: str) -> str:
-    """A name for ``glob``, its own brackets and stars taken as they stand."""
+    """Return a name in which ``glob`` takes brackets and stars as they stand."""
     return "".join(f"[{letter}]" if letter in "[]*?" else letter for letter in name)
 
 
 def alive(pid: int) -> bool:
-    """Whether a process of this machine runs; where that cannot be asked, it is taken to."""
+    """Return whether a process of this machine runs; True where that cannot be asked."""
     if sys.platform == "win32":  # there the question would end it
         return True
     try:

@@ -33,7 +33,7 @@ _child: int | None = None  # in the child: where it says so
 
 
 def supervised(work: Callable[[], int]) -> int:
-    """What ``work`` returns, computed in a child; in the child as in its parent.
+    """Run ``work`` in a child process and wait; return what it returns, its exit code.
 
     Where there is no fork, and where there is no room for another process, it is computed here.
 
@@ -74,26 +74,26 @@ def carried_out(work: Callable[[], int], writer: int, parent: int) -> int:
 
 
 def heeded() -> None:
-    """Say that a signal was heard, and that this process ends by itself."""
+    """Tell the parent that a signal was received, and that this process ends by itself."""
     say(HEEDED)
 
 
 def say(word: bytes) -> None:
-    """Say a word to the parent, where there is one."""
+    """Write a word to the parent's pipe, if there is a parent."""
     if _child is not None:
         with contextlib.suppress(OSError):
             os.write(_child, word)
 
 
 def fill_descriptors() -> None:
-    """Open what was closed of the first three files, or a database would be the error output."""
+    """Open the closed ones of descriptors 0 to 2, or a database would be the error output."""
     while (number := os.open(os.devnull, os.O_RDWR)) <= 2:
         os.set_inheritable(number, True)
     os.close(number)
 
 
 def end_with(parent: int) -> None:
-    """End this process when its parent ends, whatever it does then."""
+    """Set this process to end when its parent ends, whatever it does then."""
     if sys.platform == "linux":
         import ctypes
 
@@ -152,16 +152,16 @@ class Supervisor:
         return self.verdict(status)
 
     def note(self, number: int, _: object) -> None:
-        """Remember a signal."""
+        """Store a signal's number, to be handed on by the loop that waits for the child."""
         self.signals.append((number, time.monotonic()))
 
     def ended(self) -> int | None:
-        """The child's status where it has ended."""
+        """Return the child's exit status, or None while it runs."""
         pid, status = os.waitpid(self.child, os.WNOHANG)
         return status if pid else None
 
     def act(self) -> None:
-        """Hand a signal on, or end the child."""
+        """Pass a signal on to a child that has not heard it; kill one that ends too late."""
         if not self.signals:
             return
         asked, first = self.signals[0]
@@ -174,7 +174,7 @@ class Supervisor:
             self.force()
 
     def force(self) -> None:
-        """End the child and all that it has started, and remove what it cannot any more."""
+        """Kill the child and all that it has started, and note that it was forced."""
         pids = [self.child, *below(self.child)]
         for pid in pids:
             with contextlib.suppress(OSError):
@@ -182,7 +182,7 @@ class Supervisor:
         self.forced = True
 
     def verdict(self, status: int) -> int:
-        """The exit code, and a line where the child did not end by itself."""
+        """Return the exit code; print a line if the child did not end by itself."""
         code = os.waitstatus_to_exitcode(status)
         if TOLD in self.words and code >= 0:
             return code
@@ -208,13 +208,13 @@ class Supervisor:
 
 
 def tell(line: str) -> None:
-    """A line on the error output, below a progress bar."""
+    """Print a line on the error output, below a progress bar."""
     with contextlib.suppress(OSError):
         os.write(2, f"{line}\n".encode())
 
 
 def below(pid: int) -> Iterator[int]:
-    """Processes that a process has started, and those of these; Linux says so."""
+    """Yield the processes that a process has started, and those of these; on Linux only."""
     for place in Path(f"/proc/{pid}/task").glob("*/children"):
         with contextlib.suppress(OSError):
             for child in map(int, place.read_text().split()):

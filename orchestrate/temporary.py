@@ -23,7 +23,7 @@ _folders: dict[int, Path] = {}  # by process: a forked child makes its own
 
 
 def process_folder() -> Path:
-    """The folder of this process, made at the first call."""
+    """Return this process's temporary folder, made at the first call."""
     pid = os.getpid()
     folder = _folders.get(pid)
     if folder is None or not folder.is_dir():
@@ -52,7 +52,7 @@ def remove_leftovers() -> None:
 
 
 def is_mine(folder: Path) -> bool:
-    """Whether it is a folder, not a link to one, and this user's."""
+    """Return whether a path is a folder of this user, not a link to one."""
     return (
         folder.is_dir()
         and not folder.is_symlink()

@@ -117,7 +117,7 @@ def period_of(data: xr.Dataset) -> float:
 
 
 def scale_of(data: xr.Dataset, unit: str) -> tuple[float, str]:
-    """Return what numbers of an SI unit are divided by where an answer is shown, and the unit then.
+    """Return the divisor of numbers in an SI unit as an answer is shown, and the unit shown.
 
     Parameters
     ----------

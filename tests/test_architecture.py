@@ -127,7 +127,11 @@ def named(value: object) -> Iterator[str]:
     """The module of ours that a string names, as in ``-m orchestrate.cli`` or an entry point."""
     name = value.partition(":")[0] if isinstance(value, str) else ""
     words = name.split(".")
-    if len(words) > 1 and words[0] in OURS and all(word.isidentifier() for word in words):
+    if (
+        len(words) > 1
+        and words[0] in (*OURS, "tests")
+        and all(word.isidentifier() for word in words)
+    ):
         yield name
 
 
@@ -193,6 +197,12 @@ def test_a_part_of_the_fmus_knows_only_what_it_is_made_of(file):
 
 def test_the_fmus_know_nothing_of_their_use():
     assert not {file for file in users("orchestrate") if file.startswith("fmu_src/")}
+
+
+@pytest.mark.parametrize("file", FILES)
+def test_tests_are_known_to_tests_alone(file):
+    """What tests and tools share lies below ``tools``."""
+    assert not uses(file, "tests")
 
 
 def test_the_sources_of_the_fmus_are_known_in_five_places():
@@ -425,3 +435,54 @@ def test_a_table_of_modules_is_complete(file):
     there = {path.stem for path in folder.glob("*.py")} - {"__init__"}
     there |= {path.parent.name for path in folder.glob("*/__init__.py")}
     assert sorted(listed_modules(file) or []) == sorted(there)
+
+
+SAYS = {  # what an answer is -> words by which the first line of a docstring says so
+    "None": r"\bNone\b|\bnothing\b|\bif any\b",
+    "bool": r"\b[Ww]hether\b|\b(True|False)\b",
+    "tuple": r"[,;:]|\b(and|or|pairs?|both|two|four|three|states?|each|as|tuple)\b|s\b",
+}
+
+
+def answer_of(node: ast.FunctionDef | ast.AsyncFunctionDef) -> str:
+    """Kind of answer that a first line has to name, by the annotation; empty for other kinds."""
+    returns = ast.unparse(node.returns) if node.returns is not None else ""
+    if returns.endswith(" | None"):
+        return "None"
+    return "bool" if returns == "bool" else "tuple" if returns.startswith("tuple[") else ""
+
+
+def first_lines(node: ast.FunctionDef | ast.AsyncFunctionDef) -> str:
+    """Summary of a docstring, up to its first empty line."""
+    return (ast.get_docstring(node) or "").partition("\n\n")[0]
+
+
+def unsaid(tree: ast.AST) -> dict[str, str]:
+    """First lines of docstrings that hide that there may be no answer, a flag, or several."""
+    every = {
+        (node.name, node.lineno): (answer_of(node), first_lines(node))
+        for node in ast.walk(tree)
+        if isinstance(node, FUNCTIONS)
+    }
+    return {
+        f"{name}, line {number}": line
+        for (name, number), (answer, line) in every.items()
+        if line and answer and not re.search(SAYS[answer], line)
+    }
+
+
+def test_the_reader_of_first_lines():
+    text = (
+        "def f() -> int | None:\n    'Return a number.'\n"
+        "def g() -> int | None:\n    'Return a number; None without one.'\n"
+        "def h() -> bool:\n    'Return the flag.'\n"
+        "def i() -> tuple[int, str]:\n    'Compute it.'\n"
+        "def j() -> tuple[int, str]:\n    'Compute it; return number and name.'\n"
+        "def k() -> int:\n    'Count.'\n"
+    )
+    assert [name[0] for name in unsaid(ast.parse(text))] == ["f", "h", "i"]
+
+
+@pytest.mark.parametrize("file", [f for f in ANNOTATED if not f.startswith("fmu_src/")])
+def test_a_first_line_says_what_comes_back(file):
+    assert unsaid(tree_of(file)) == {}

@@ -29,7 +29,7 @@ SERIES = re.compile(r"\[(?!1\])\d+\]$")  # of a series, the first stands for all
 
 
 def marks(reference: Reference) -> tuple[str, str]:
-    """Return the lines between which a model's variable table stands."""
+    """Return the lines that stand before and after a model's variable table."""
     source = f"fmu_src/models/{reference.folder}/variables.py"
     begin = f"<!-- variables: generated from {source}, kept so by a test -->"
     return begin, "<!-- end of variables -->"
@@ -63,7 +63,7 @@ def example(
     periods: int = 2,
     points: int = 600,
 ) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Two settled periods of the paper's Figure 5, as times and values."""
+    """Compute two settled periods of the paper's Figure 5; return times, and values by name."""
     names = ("x1", "x2", "x_rel", "in_contact")
     period = 2.0 * math.pi / eta
     times = [0.0, *(transient * period + np.linspace(0.0, periods * period, points))]
@@ -77,7 +77,7 @@ def example(
 
 
 def draw(reference: Reference, fmu: str | PathLike[str], rows: Sequence[Sequence[float]]) -> None:
-    """The pictures of a model: its scheme, large and small, and an example run."""
+    """Draw a model's scheme, large and small, and an example run into its documentation."""
     folder = MODELS / reference.folder
     shaker = reference is SHAKER
     scheme = shaker_pictures.draw_shaker if shaker else oscillator.draw_scheme
@@ -93,7 +93,7 @@ def draw(reference: Reference, fmu: str | PathLike[str], rows: Sequence[Sequence
 
 
 def main() -> None:
-    """Write all of it."""
+    """Write all generated assets of the FMUs and the documentation."""
     for reference in REFERENCES:
         fmu = find(reference.model).path
         rows = reference_rows(reference, fmu)

@@ -73,9 +73,7 @@ def pure_python(fmu: str | PathLike[str], eta: float, count: int) -> float:
 def figure_6(
     fmu: str | PathLike[str], watched: bool = False, step: float = 0.02
 ) -> tuple[float, int]:
-    """Seconds and impacts of 700 periods at some frequencies of Figure 6, the last 200 of them with
-    the largest gap, or all.
-    """
+    """Run a part of Figure 6 with the gap watched or not; return its seconds and impacts."""
     seconds, impacts = 0.0, 0
     state = dict.fromkeys(("x1_start", "x2_start", "v1_start", "v2_start"), 0.0)
     with Instance(fmu) as instance:
@@ -106,7 +104,7 @@ def best_of_both(
 
 
 def compare_versions(before: Path, rounds: int = 5) -> None:
-    """Print ns of this version and of another, and their ratio."""
+    """Print nanoseconds of this version and of another by measure, and their ratio."""
     fmus = (find(OSCILLATOR).path, before)
     measures: dict[str, Callable[[Path], float]] = {
         "Figure 6, an impact": lambda fmu: operator.truediv(*figure_6(fmu)),
@@ -122,7 +120,7 @@ def compare_versions(before: Path, rounds: int = 5) -> None:
 
 
 def compare(count: int) -> None:
-    """Print the table."""
+    """Print times of a period and an impact over eta, and how much slower other solvers are."""
     native, python = find(OSCILLATOR).path, find(OSCILLATOR, "fmi2-python").path
     print("".join(f"{name:>12}" for name in COLUMNS), "  (the last two: times the native FMU)")
     seconds, impacts = 0.0, 0
@@ -141,7 +139,7 @@ def compare(count: int) -> None:
 
 
 def main() -> None:
-    """Compare, or measure one thing in this process."""
+    """Run a comparison, or one measurement in this process, as the options say."""
     parser = argparse.ArgumentParser(prog="python -m tools.benchmark", description=__doc__)
     parser.add_argument("--periods", type=int, default=2000, help="periods a frequency")
     parser.add_argument("--once", nargs=3, metavar=("FMU", "ETA", "PERIODS"), help="seconds of one")

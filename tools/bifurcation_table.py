@@ -104,7 +104,7 @@ def beside(answer: xr.Dataset, at: xr.Dataset, eta: float) -> list[xr.Dataset]:
 
 
 def corrected(guess: xr.Dataset, eta: float) -> xr.Dataset | None:
-    """Return the orbit at an eta near another one, if there is one that the FMU runs through."""
+    """Return the orbit at an eta near another one; None if there is none that the FMU follows."""
     periods = guess.sizes["sample"]
     try:
         answer = orbit(PAPER, eta=eta, period=periods, guess=guess, progress=False)
@@ -156,7 +156,7 @@ def rows(instance: EventInstance, label: str, answer: xr.Dataset) -> Iterator[st
 
 
 def table(answer: dict[str, xr.Dataset]) -> list[str]:
-    """Return all lines."""
+    """Return all lines of the Markdown table of a branch."""
     lines = ["| branch | eta | kind | ± | below | above |", "|---|---|---|---|---|---|"]
     with EventInstance(find(OSCILLATOR).path) as instance:
         for label, one in answer.items():
@@ -197,7 +197,7 @@ def all_windows() -> list[str]:
 
 
 def main() -> None:
-    """Write tables and pictures."""
+    """Write tables and pictures of the orbits' bifurcations."""
     answer = {
         label: branch(PAPER, start=orbit(PAPER, eta=eta, period=period), limits=limits)
         for label, (eta, period, limits) in STARTS.items()

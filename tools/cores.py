@@ -59,7 +59,7 @@ class Clockwork:
 
 
 def elapsed(job: SweepJob, workers: int, clockwork: Clockwork, each: float) -> tuple[float, int]:
-    """Return the seconds that so many workers take, and values that were guessed in vain.
+    """Run a job; return the seconds that so many workers take, and the values guessed in vain.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def elapsed(job: SweepJob, workers: int, clockwork: Clockwork, each: float) -> t
 
 
 def main() -> None:
-    """Print a table."""
+    """Print a table of the seconds that a sweep takes with more and more workers."""
     parser = argparse.ArgumentParser(prog="python -m tools.cores", description=__doc__)
     parser.add_argument("--step", type=float, default=0.001, help="of the frequency ratio")
     parser.add_argument("--chunk", type=int, default=SweepJob.chunk_size, help="values a chunk")

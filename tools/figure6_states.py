@@ -29,7 +29,7 @@ def figure6() -> xr.Dataset:
 
 
 def main() -> None:
-    """Write it."""
+    """Compute Figure 6's start states for the explorer and write them to its folder."""
     data = figure6()
     small = {"zlib": True, "complevel": 9, "shuffle": True}
     encoding = dict.fromkeys((*KEPT, "eta"), small)

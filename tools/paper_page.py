@@ -42,7 +42,7 @@ def sections(rows: Sequence[Mapping[str, str]]) -> list[str]:
 
 
 def cell(text: str) -> str:
-    """Return a text in a table's cell."""
+    """Escape a text for a cell of a Markdown table."""
     return text.replace("|", "\\|").replace("*", "\\*").replace("_", "\\_")
 
 
@@ -80,7 +80,7 @@ def page(text: str, found: Mapping[str, Any]) -> str:
 
 
 def main(folder: str) -> None:
-    """Write the pages."""
+    """Write the manual's pages on the paper's claims."""
     shutil.copyfile(Path(folder) / "claims.json", CLAIMS)
     found = json.loads(CLAIMS.read_text("utf-8"))
     for place in PAGES:

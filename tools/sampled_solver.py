@@ -19,7 +19,7 @@ SLOW = 1e-4  # closing speed below which contact begins; all over the scale
 
 
 def motions(structure: Structure, acceleration: Acceleration) -> tuple[Motion, Motion]:
-    """The equations of motion, (3) to (6): apart, and in contact; x1, v1, x2, v2 in the box."""
+    """Return the equations (3) to (6) of x1, v1, x2, v2 in the box: apart, and in contact."""
     m1, m2, k1, k2, d1, d2 = (getattr(structure, n) for n in ("m1", "m2", "k1", "k2", "d1", "d2"))
     m, k, d = m1 + m2, k1 + k2, d1 + d2
 
@@ -36,7 +36,7 @@ def motions(structure: Structure, acceleration: Acceleration) -> tuple[Motion, M
 
 
 def events(structure: Structure) -> tuple[Event, Event]:
-    """Where the gap closes, and where the contact force vanishes (18)."""
+    """Return functions that vanish where the gap closes, and where the contact force does (18)."""
     s = structure
     spring, damper = s.m2 * s.k1 - s.m1 * s.k2, s.m2 * s.d1 - s.m1 * s.d2
 
@@ -68,7 +68,7 @@ def run(
     scale: float = 1.0,
     rate: float | None = None,
 ) -> tuple[float, int]:
-    """Integrate from rest.
+    """Integrate from rest; return the processor seconds and the number of impacts.
 
     Parameters
     ----------

@@ -22,12 +22,12 @@ RATE = 20_000.0
 
 
 def shaking(duration: float) -> Random:
-    """The excitation."""
+    """Return the benchmark's excitation, a random vibration."""
     return Random(psd=BAND, duration=duration, seed=1)
 
 
 def our_seconds(duration: float) -> tuple[float, int]:
-    """Processor seconds of :func:`orchestrate.shake`, pieces and dataset included; impacts."""
+    """Time :func:`orchestrate.shake` whole; return processor seconds and impacts."""
     begin = time.process_time()
     history = shake(BEAM, shaking(duration), sample_rate=RATE, progress=False, jobs=1)
     return time.process_time() - begin, history.sizes["impact"]
@@ -47,7 +47,7 @@ def acceleration_of(pieces: Pieces) -> Acceleration:
 
 
 def solver_seconds(duration: float) -> tuple[float, int]:
-    """Processor seconds of ``solve_ivp`` under the same pieces; impacts."""
+    """Time ``solve_ivp`` under the same pieces; return processor seconds and impacts."""
     signal = shaking(duration)
     acceleration = acceleration_of(signal.pieces())
     scale = signal.rms / BEAM.omega**2
@@ -55,7 +55,7 @@ def solver_seconds(duration: float) -> tuple[float, int]:
 
 
 def main() -> None:
-    """Print both, an impact and a second of the motion."""
+    """Print both solvers' times per impact and per second of the motion."""
     parser = argparse.ArgumentParser(prog="python -m tools.shake_benchmark", description=__doc__)
     parser.add_argument("--duration", type=float, default=60.0, help="s")
     parser.add_argument("--solver", type=float, default=3.0, help="s that solve_ivp integrates")

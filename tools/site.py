@@ -38,7 +38,7 @@ class Page(HTMLParser):
     places: set[str] = field(default_factory=set)
 
     def __post_init__(self) -> None:
-        """Read the file."""
+        """Read the HTML file and collect its links and names."""
         super().__init__()
         self.feed(self.path.read_text(encoding="utf-8"))
 
@@ -65,7 +65,7 @@ class Site:
 
     @cached_property
     def pages(self) -> dict[Path, Page]:
-        """All pages by their files."""
+        """Return all HTML pages of the site by their files."""
         return {path: Page(path) for path in sorted(self.folder.resolve().rglob("*.html"))}
 
     def from_other_hosts(self) -> list[str]:
@@ -78,8 +78,9 @@ class Site:
         ]
 
     def broken(self) -> list[str]:
-        """Return links, pictures and scripts of pages to what is not there, as ``page: address``;
-        those of other hosts are not asked.
+        """Return links, pictures and scripts of pages to what is not there, as ``page: address``.
+
+        Those of other hosts are not asked.
         """
         return [
             f"{path.name}: {address}"

@@ -43,13 +43,13 @@ def filled(text: str, matrix: dict[str, str]) -> str:
 
 
 def last_commit() -> str:
-    """Of this tree."""
+    """Return the hash of this tree's last commit."""
     command = ["git", "-C", str(ROOT), "rev-parse", "HEAD"]
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
 
 
 def prepare(step: dict[str, Any], clone: Path, matrix: dict[str, str], commit: str) -> None:
-    """What an action of the marketplace does."""
+    """Do what an action of the marketplace would do in a step."""
     action, given = step["uses"].split("@")[0], step.get("with", {})
     if action == "actions/checkout":
         subprocess.run(["git", "clone", "-q", str(ROOT), str(clone)], check=True)
@@ -66,7 +66,7 @@ def prepare(step: dict[str, Any], clone: Path, matrix: dict[str, str], commit: s
 def run_job(
     steps: list[dict[str, Any]], clone: Path, matrix: dict[str, str], commit: str, tag: str
 ) -> None:
-    """All steps; the first that fails ends it."""
+    """Run all steps of a job in a clone; exit at the first that fails."""
     path = f"{clone / '.venv' / 'bin'}{os.pathsep}{os.environ['PATH']}"
     known = {"CI": "true", "GITHUB_REF_NAME": tag, "PATH": path}
     for step in steps:

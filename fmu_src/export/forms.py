@@ -14,9 +14,7 @@ PLAIN_FORMS = ("fmi2-plain", "fmi3-plain")
 
 
 def sources_of(forms: Iterable[str]) -> tuple[str, ...]:
-    """Return the forms without binaries, for targets that compile the C sources, of some native
-    forms.
-    """
+    """Return the source forms, for targets that compile C, of some native forms."""
     return tuple(f"{form}-sources" for form in forms if form != PYTHON_FORM)
 
 

@@ -23,7 +23,7 @@ PACKAGE = Path(__file__).resolve().parents[1]
 
 
 def library(source: Path, folder: str | PathLike[str] | None = None) -> Path | None:
-    """Return the compiled library of a C source for this machine; compile it first if missing.
+    """Return the path of a C source's compiled library, made if missing; None if that cannot be.
 
     Parameters
     ----------

@@ -67,9 +67,7 @@ class Channel:
         return (c_uint * count)(*references), count, (c_double * count)()
 
     def _arguments(self, references: Any, count: int, values: Any) -> tuple[Any, ...]:
-        """Return the arguments of the set and get functions; FMI 3.0 wants the number of values
-        too.
-        """
+        """Return the arguments of a set or get function; for FMI 3.0 with the number of values."""
         sizes = (count,) if self.instance.is_fmi3 else ()
         return (self._fmu.component, references, count, values, *sizes)
 
@@ -96,18 +94,14 @@ class Channel:
         return dll.fmi3SetFloat64, dll.fmi3GetFloat64, step, *states
 
     def _call(self, function: Callable[..., int], *arguments: Any) -> None:
-        """Call the FMU directly, without FMPy's wrapper; raise its message unless the status is
-        OK.
-        """
+        """Call the FMU without FMPy's wrapper; raise its message unless the status is OK."""
         self.begin()
         status = function(*arguments)
         if status:
             raise self.failure(getattr(function, "__name__", "a call of the FMU"), status)
 
     def pointers(self) -> Pointers:
-        """Return the addresses for compiled code, of an FMI 3.0 instance whose states are
-        reused.
-        """
+        """Return the addresses for compiled code, of an FMI 3.0 instance that reuses its states."""
         names = ("SetFloat64", "GetFloat64", "DoStep", "GetFMUState", "SetFMUState")
         functions = (getattr(self._fmu.dll, f"fmi3{name}") for name in names)
         addresses = tuple(cast(function, c_void_p).value or 0 for function in functions)
@@ -131,7 +125,7 @@ class Channel:
         self._call(self._set, *self._puts[count])
 
     def get(self) -> list[float]:
-        """Return the values of the outputs."""
+        """Return the values of the channel's outputs."""
         self._call(self._read, *self._gets)
         values: list[float] = self._outputs[:]
         if not isfinite(sum(values)) and not all(map(isfinite, values)):

@@ -69,7 +69,7 @@ class Description:
 
 
 def describe(path: str | PathLike[str], model: str | None = None) -> Description:
-    """Read an FMU's description.
+    """Read an FMU's description; raise if it is no FMU, or of another model.
 
     Parameters
     ----------

@@ -126,7 +126,7 @@ class EventLoop:
         self.events = Channel(instance, (), EVENT_OUTPUTS)
 
     def run(self, nodes: Floats, derivatives: Floats, samples: Floats) -> Played:
-        """Compute the motion over all pieces.
+        """Compute the motion over all pieces; return outputs, contact flags and impacts.
 
         A piece's input is set where it begins and runs on; a time of reading that is a node belongs
         to the piece that begins there. Each time of reading, and each impact, ends a step.
@@ -180,7 +180,7 @@ class EventLoop:
         return Played(rows, touching, Impacts.from_table(np.array(table)))
 
     def _tables(self, samples: Floats) -> tuple[Floats, NDArray[np.bool_]]:
-        """Return uninitialised arrays for the sampled outputs and the contact flags."""
+        """Return two uninitialised arrays: the sampled outputs, and flags of contact."""
         return np.empty((len(samples), len(self.outputs))), np.empty(len(samples), dtype=bool)
 
 

@@ -35,7 +35,7 @@ def build(
     names: Iterable[str] = MODELS,
     platforms: Iterable[str] = (),
 ) -> list[Path]:
-    """Export models in the given forms.
+    """Export models in the given forms; return the paths of the FMUs.
 
     Parameters
     ----------
@@ -164,9 +164,7 @@ def up_to_date(form: str, name: str, folder: str | PathLike[str]) -> bool:
 
 
 def default_folder() -> Path:
-    """Return the folder FMUs are exported to: ``build/`` of a clone, else the user's cache
-    folder.
-    """
+    """Return the folder of exported FMUs: ``build/`` of a clone, else the user's cache folder."""
     if is_clone(CLONE) and os.access(CLONE, os.W_OK):
         return CLONE / "build"
     from platformdirs import user_cache_path

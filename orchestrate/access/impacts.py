@@ -49,8 +49,7 @@ class Impacts:
         return state
 
     def impulse(self, structure: Structure, speed: float = 1.0) -> NDArray[np.float64]:
-        """Return the impulse of each impact on each mass, N s, shape (n,) (15); plastic where
-        contact begins.
+        """Return each impact's impulse on each mass, N s, (n,) (15); plastic if contact begins.
 
         Of non-dimensional impacts it is over omega a eta^2, so that its unit is that of a mass.
 

@@ -118,7 +118,7 @@ class Instance:
         self.call("instantiate", loggingOn=True, logMessage=self._log, **self.EVENTS)
 
     def _calls2(self) -> tuple[Prepared, list[Prepared], Prepared]:
-        """Prepare reset, initialise and step of FMI 2.0."""
+        """Prepare FMI 2.0's calls; return reset, those of initialisation, and step."""
         no, zero = c_int(0), c_double()  # no tolerance, no end
         initialize = [
             self.prepared("fmi2SetupExperiment", no, zero, self._start, no, zero),
@@ -129,7 +129,7 @@ class Instance:
         return self.prepared("fmi2Reset"), initialize, step
 
     def _calls3(self) -> tuple[Prepared, list[Prepared], Prepared]:
-        """Prepare reset, initialise and step of FMI 3.0."""
+        """Prepare FMI 3.0's calls; return reset, those of initialisation, and step."""
         no, zero = c_bool(False), c_double()
         initialize = [
             self.prepared("fmi3EnterInitializationMode", no, zero, self._start, no, zero),
@@ -162,9 +162,7 @@ class Instance:
         self._messages.append(arguments[-1].decode(errors="replace"))
 
     def failure(self, error: object) -> FmuError:
-        """Return an error with the FMU's messages since they were last cleared; without any,
-        ``error``.
-        """
+        """Return an error with the FMU's messages since their clearing; ``error`` without any."""
         quoted = r"(?s).*FmuError\(([\"'])(.*)\1\)\s*$"  # how pythonfmu hands an exception on
         texts = [re.sub(quoted, r"\2", message) for message in self._messages]
         return FmuError("; ".join(texts) or str(error))
@@ -318,7 +316,7 @@ class Instance:
         return len(self._reader(names)[1])
 
     def _reader(self, names: tuple[str, ...]) -> tuple[Transfer, NDArray[np.float64]]:
-        """Prepare a call that reads Real variables, and the array it fills."""
+        """Prepare a call that reads Real variables; return it and the array that it fills."""
         if names not in self._readers:
             elements = [element for name in names for element in self.elements(name)]
             for variable in (

@@ -35,7 +35,7 @@ def loaded(description: Description, name: str) -> Any:
 
 
 def load(description: Description, folder: str) -> Any:
-    """Load a binary with FMPy."""
+    """Load an FMU's binary with FMPy; return FMPy's object for its instances."""
     from fmpy import fmi2, fmi3
 
     make = fmi3.FMU3Slave if description.is_fmi3 else fmi2.FMU2Slave

@@ -25,9 +25,7 @@ class SteppingInstance(Instance):
         self.call("enterStepMode")
 
     def stepper(self) -> Callable[[float, float], tuple[bool, float]]:
-        """Return a fast ``fmi3DoStep``: from time and step length to whether there was an event,
-        and its time.
-        """
+        """Return a fast ``fmi3DoStep``; it returns whether there was an event, and its time."""
         event, last = c_bool(), c_double()
         results = byref(event), byref(c_bool()), byref(c_bool()), byref(last)
         do_step = self.prepared("fmi3DoStep", self._time, self._length, c_bool(True), *results)

@@ -46,8 +46,7 @@ class WebKernel:
 
 
 def web_kernel(model: str, folder: str | PathLike[str] | None = None) -> WebKernel:
-    """Return a model's kernel as WebAssembly; compile it first if there is none of the present
-    sources.
+    """Return a model's kernel as WebAssembly; compile it first unless the present one is there.
 
     Parameters
     ----------
@@ -117,8 +116,7 @@ def build_web_kernels(folder: str | PathLike[str] | None = None) -> list[Path]:
 
 
 def kernel_digest(model: str) -> str:
-    """Return a fingerprint of what decides a model's numbers, 32 digits: its kernel's sources, no
-    texts.
+    """Return a fingerprint, 32 digits, of the kernel's sources, which decide a model's numbers.
 
     Examples
     --------

@@ -102,9 +102,7 @@ def make_parser(words: Collection[str] | None = None) -> argparse.ArgumentParser
 
 
 def join_negative_values(arguments: Sequence[str]) -> list[str]:
-    """Join ``--eta -1:2:0.5`` to ``--eta=-1:2:0.5``: argparse would take the value for an
-    option.
-    """
+    """Join ``--eta -1:2:0.5`` to ``--eta=-1:2:0.5``, which argparse would read as an option."""
     joined: list[str] = []
     for text in arguments:
         needs_value = joined and joined[-1].startswith("--") and "=" not in joined[-1]
@@ -122,7 +120,7 @@ def set_up_logging() -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a command.
+    """Run the command line; return the exit code, after an error with one line about it.
 
     Parameters
     ----------

@@ -39,12 +39,12 @@ def add_parser(commands: Commands) -> None:
 
 
 def names_of(option: str, text: str) -> tuple[str, ...]:
-    """Parse names of parameters."""
+    """Parse a list of parameters' names; return them as a tuple."""
     return tuple(part.strip() for part in text.split(","))
 
 
 def limits_of(option: str, text: str) -> tuple[tuple[float, float], ...]:
-    """Parse the limits of each parameter."""
+    """Parse limits; return a pair (low, high) for each parameter."""
     return tuple(ends_of(option, part) for part in text.split(","))
 
 

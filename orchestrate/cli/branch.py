@@ -59,7 +59,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def over_of(arguments: argparse.Namespace) -> tuple[str, tuple[float, float]]:
-    """Return what varies by its name in the public API, and its limits in that one's unit."""
+    """Return the parameter's name in the public API, and the pair of its limits in that unit."""
     from ..structures.sections import TO_RAD_S
 
     if arguments.limits is None:
@@ -96,7 +96,7 @@ def excitation_arguments(
 
 
 def picture_of(data: xr.Dataset) -> Any:
-    """Draw the branch over its parameter."""
+    """Draw the branch over its parameter; return the figure."""
     from ..figures.branches import draw
     from ..figures.labels import title_from_attributes
 

@@ -59,7 +59,7 @@ def add_parser(commands: Commands) -> None:
 def range_of(
     arguments: argparse.Namespace, structure: Structure, drive: Drive
 ) -> tuple[float, float]:
-    """Return lowest and highest voltage, V."""
+    """Return the lowest and the highest voltage to try, V."""
     if arguments.eta0 or arguments.voltage:
         return two_voltages(arguments, structure, drive)
     down, up = folds_of(arguments, structure, drive)
@@ -85,7 +85,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def picture_of(results: dict[str, xr.Dataset], name: str, question: dict[str, Any]) -> Any:
-    """Draw the maps."""
+    """Draw the maps of which starting voltages are captured; return the figure."""
     from ..figures.capture import draw
 
     control = question["control"]
@@ -138,7 +138,7 @@ def format_border(data: xr.Dataset) -> str:
 
 
 def format_no_border(data: xr.Dataset) -> str:
-    """Format why there is no border."""
+    """Format why there is no threshold voltage."""
     low, high = (float(end) for end in (data.voltage[0], data.voltage[-1]))
     passes, undecided = data.passes.values > 0, data.decision.isin([UNDECIDED, NEITHER]).values
     if passes.all():

@@ -135,9 +135,7 @@ def run(arguments: argparse.Namespace) -> None:
 def write_package(
     arguments: argparse.Namespace, drive: Drive, job: CoupleJob, user_fmus: Mapping[str, Path]
 ) -> Path:
-    """Write the coupled system as an SSP file, by default with the FMI 2.0 FMUs that most tools
-    read.
-    """
+    """Write the coupled system as an SSP file, usually with FMI 2.0 FMUs; return its path."""
     from ..access import find
     from ..weak_drive.ssp import write_ssp
 
@@ -152,7 +150,7 @@ def write_package(
 def branches_of(
     arguments: argparse.Namespace, structure: Structure, drive: Drive
 ) -> xr.Dataset | None:
-    """Compute the branches if they are asked for; print their bifurcations."""
+    """Compute the branches and print their bifurcations; return None if they are not asked for."""
     from ..weak_drive.drive_branch import drive_branch
 
     if not arguments.branches:

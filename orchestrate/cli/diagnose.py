@@ -129,7 +129,7 @@ def read(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
 
 
 def columns_of(arguments: argparse.Namespace) -> dict[str, str | int] | None:
-    """Parse ``--columns``: the columns of the channels, by name or number.
+    """Parse ``--columns``: the channels' columns, by name or number; None if it is not given.
 
     Raises
     ------

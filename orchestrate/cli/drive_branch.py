@@ -140,9 +140,7 @@ def jump_at(branch: xr.Dataset, voltage: float, speed: float) -> str:
 
 
 def print_unlocated(leg: xr.Dataset, speeds: np.ndarray) -> None:
-    """Print changes of stability between two motions without a bifurcation that was located
-    there.
-    """
+    """Print between which speeds stability changes without a located bifurcation."""
     at = leg.dropna("point", subset=["voltage"])
     stable = at.stable.values.astype(int)
     for i in (stable[1:] != stable[:-1]).nonzero()[0]:

@@ -129,7 +129,7 @@ def states_of(arguments: argparse.Namespace, structure: Structure) -> dict[str, 
 def voltages_of(
     arguments: argparse.Namespace, structure: Structure, drive: Drive
 ) -> tuple[float, ...]:
-    """Return one voltage or both ends, V; by default around the jumps."""
+    """Return one voltage or the first and last one of a ramp, V; by default around the jumps."""
     if arguments.eta0 and arguments.voltage:
         raise InputError("--eta0 and --voltage: expected one of them")
     if arguments.voltage:
@@ -148,7 +148,7 @@ def voltages_of(
 def two_voltages(
     arguments: argparse.Namespace, structure: Structure, drive: Drive
 ) -> tuple[float, float]:
-    """Return both ends, V."""
+    """Return the first and the last voltage of a ramp, V; raise if only one is given."""
     voltages = voltages_of(arguments, structure, drive)
     if len(voltages) != 2:
         name = "voltage" if arguments.voltage else "eta0"
@@ -160,7 +160,7 @@ def two_voltages(
 def folds_of(
     arguments: argparse.Namespace, structure: Structure, drive: Drive
 ) -> tuple[float, float]:
-    """Return the voltages of the averaged theory's jumps down and up, V."""
+    """Return the averaged theory's jump voltages, down then up, V; raise where it has no jumps."""
     from ..weak_drive import averaged
     from ..weak_drive.couple import require_motor
 
@@ -199,7 +199,7 @@ def times_of(
 def schedule_from(
     arguments: argparse.Namespace, structure: Structure, drive: Drive, control: Controller | None
 ) -> Schedule:
-    """Return the voltage over time."""
+    """Return the voltage over time that the options describe."""
     from ..weak_drive.couple import schedule_of
     from ..weak_drive.schedule import Course
 
@@ -231,7 +231,7 @@ def schedule_from(
 def control_of(
     arguments: argparse.Namespace, structure: Structure, drive: Drive
 ) -> Controller | None:
-    """Return the controller that the options describe."""
+    """Return the controller that the options describe; None if they ask for none."""
     from ..weak_drive import own_resonance
     from ..weak_drive.controllers import SpeedControl, SpeedGradient
     from ..weak_drive.couple import require_motor
@@ -262,7 +262,7 @@ def control_of(
 
 
 def without_none(values: Mapping[str, float | None]) -> dict[str, float]:
-    """Return the entries that are not None."""
+    """Return the entries of a mapping whose values are not None."""
     return {name: value for name, value in values.items() if value is not None}
 
 
@@ -341,7 +341,7 @@ def ask_once(
 
 
 def check_files(arguments: argparse.Namespace) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return formats and pictures, checked before any work; check the folder too."""
+    """Check the files' options before any work; return the formats, and the pictures' endings."""
     formats = endings_of("--format", arguments.format, FORMATS)
     plots = endings_of("--plot", arguments.plot, PLOTS)
     check_output(arguments.output)

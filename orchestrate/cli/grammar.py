@@ -39,13 +39,13 @@ def check_digits(text: str) -> None:
 
 
 def plain_float(text: str) -> float:
-    """Parse a number in plain digits."""
+    """Parse a number in plain digits; raise ``ValueError`` at any other."""
     check_digits(text)
     return float(text)
 
 
 def plain_int(text: str) -> int:
-    """Parse an integer in plain digits."""
+    """Parse an integer in plain digits; raise ``ValueError`` at any other."""
     check_digits(text)
     return int(text)
 
@@ -71,7 +71,7 @@ def parse(option: str, text: str, expected: str, reader: Callable[[str], Parsed]
 def floats(
     text: str, separator: str, counts: Collection[int] = (), positive: bool = False
 ) -> tuple[float, ...]:
-    """Parse numbers between separators: as many as one of ``counts``, or any number of them.
+    """Parse numbers between separators; raise unless there are as many as one of ``counts``.
 
     Raises
     ------
@@ -92,25 +92,25 @@ def number_of(option: str, text: str) -> float:
 
 
 def whole_number_of(option: str, text: str) -> int:
-    """Parse a whole number."""
+    """Parse a whole number of an option; raise an error that names it."""
     return parse(option, text, "a whole number >= 0", plain_int)
 
 
 def ends_of(option: str, text: str) -> tuple[float, float]:
-    """Parse both numbers of ``FIRST:LAST``."""
+    """Parse ``FIRST:LAST``; return both numbers."""
     expected = "FIRST:LAST, two numbers such as 1.2:1.65"
     first, last = parse(option, text, expected, lambda part: floats(part, ":", (2,)))
     return first, last
 
 
 def number_or_ends(option: str, text: str) -> tuple[float, ...]:
-    """Parse ``VALUE`` or ``FIRST:LAST``."""
+    """Parse ``VALUE`` or ``FIRST:LAST``; return one number or two."""
     expected = "a number, or FIRST:LAST such as 1.2:1.65"
     return parse(option, text, expected, lambda part: floats(part, ":", (1, 2)))
 
 
 def rates_of(option: str, text: str, one: bool = False) -> tuple[float, ...]:
-    """Parse rates > 0, a list, or one of them."""
+    """Parse rates > 0, or exactly one of them; return a tuple."""
     several = "" if one else ", or several as A,B,..., such as 1e-4,5e-5,2.5e-5"
     expected = f"a number > 0{several}"
     rates = parse(option, text, expected, lambda part: floats(part, ",", positive=True))
@@ -128,7 +128,7 @@ def orders_of(option: str, text: str) -> float | tuple[float, ...]:
 
 
 def state_of(option: str, text: str) -> tuple[float, ...]:
-    """Parse a state from ``X1,X2,V1,V2``."""
+    """Parse a state ``X1,X2,V1,V2``; return its four numbers."""
     expected = "X1,X2,V1,V2, four numbers in m and m/s"
     return parse(option, text, expected, lambda part: floats(part, ",", (4,)))
 
@@ -144,7 +144,7 @@ def side_of(option: str, text: str) -> AxisSpec:
 
 
 def breakpoints_of(option: str, text: str) -> tuple[tuple[float, float], ...]:
-    """Parse break points of ``HZ:VALUE,HZ:VALUE,...``."""
+    """Parse break points ``HZ:VALUE,HZ:VALUE,...``; return pairs of frequency and value."""
 
     def read(text: str) -> tuple[tuple[float, float], ...]:
         pairs = [floats(part, ":", (2,)) for part in text.split(",")]
@@ -159,8 +159,7 @@ def breakpoints_of(option: str, text: str) -> tuple[tuple[float, float], ...]:
 
 
 def values_of(option: str, text: str, zero: bool = False) -> tuple[tuple[float, ...], bool]:
-    """Parse numbers from ``FIRST:LAST:STEP`` or ``A,B,...``; return them and whether they are a
-    range.
+    """Parse ``FIRST:LAST:STEP`` or ``A,B,...``; return the numbers, and whether it was a range.
 
     Parameters
     ----------
@@ -220,7 +219,7 @@ def one_value(option: str, text: str) -> float:
 
 
 def changes_of(texts: list[str]) -> dict[str, float | bool]:
-    """Parse names and values of ``--set``."""
+    """Parse the texts ``NAME=VALUE`` of ``--set``; return values by name."""
     changes: dict[str, float | bool] = {}
     for text in texts:
         name, equals, value = (part.strip() for part in text.partition("="))

@@ -87,7 +87,7 @@ class Commands:
     def add(
         self, name: str, run: Callable[[argparse.Namespace], None], text: str, examples: str
     ) -> argparse.ArgumentParser:
-        """Add a command.
+        """Add a command with its help, examples and function; return its parser.
 
         Parameters
         ----------
@@ -205,7 +205,7 @@ class FunctionOptions:
 
 
 def option_name(name: str) -> str:
-    """Return the option of an argument."""
+    """Return the command-line option of an argument: ``--max-points`` of ``max_points``."""
     return f"--{name.replace('_', '-')}"
 
 
@@ -254,9 +254,7 @@ def structure_of(arguments: argparse.Namespace) -> Structure:
 
 
 def print_assumptions(structure: Structure, source: str, changes: Mapping[str, Any]) -> None:
-    """Print what a shipped set says of a beam whose frequencies somebody has set; warn of damping
-    ratios that look like per cent.
-    """
+    """Print what a shipped set assumes of a user's beam; warn of damping ratios like per cent."""
     from ..structures.plausible import warn_of_per_cent
 
     warn_of_per_cent({name: changes[name] for name in ("zeta1", "zeta2") if name in changes})
@@ -304,7 +302,7 @@ def add_drive(parser: argparse.ArgumentParser) -> None:
 
 
 def structure_and_drive(arguments: argparse.Namespace) -> tuple[Structure, Drive]:
-    """Return structure and drive, with what is set of either."""
+    """Read the structure and the drive of the options, with what ``--set`` changes of either."""
     from ..structures import Drive, Structure
 
     drive = Drive.from_file(arguments.drive)
@@ -447,9 +445,7 @@ def excitation_of(
 
 
 def described_excitation(arguments: argparse.Namespace) -> dict[str, Any] | None:
-    """Return the box's motion of the file of ``--structure``, if it has one; its phase sets the
-    option's.
-    """
+    """Return the box's motion in the structure's file, None without one; set ``--phase`` by it."""
     from ..structures.files import read
 
     excitation: Any = read(arguments.structure).get("excitation")
@@ -461,7 +457,7 @@ def described_excitation(arguments: argparse.Namespace) -> dict[str, Any] | None
 
 
 def frequency_option(arguments: argparse.Namespace) -> str | None:
-    """Return which option gives the frequency."""
+    """Return the option that gives the frequency, None if none does; raise if several do."""
     present = [name for name in FREQUENCIES if getattr(arguments, name) is not None]
     if len(present) > 1:
         raise InputError(f"{options(present, ' and ')}: expected one of them")
@@ -511,7 +507,7 @@ def add_over(question: FunctionOptions, twice: bool = False) -> None:
 def varied_arguments(
     arguments: argparse.Namespace, structure: Structure, usual: str | None = None
 ) -> tuple[dict[str, Any], bool]:
-    """Return what varies as keywords of the public API, and whether its values are a range.
+    """Return what varies as keywords of the public API, and whether its values were a range.
 
     Parameters
     ----------

@@ -83,9 +83,7 @@ def add_running(
 
 
 def add_files(parser: argparse.ArgumentParser, store: bool = True) -> None:
-    """Add the options for what is written: ``--format``, ``--plot``, and ``--store`` where there is
-    one result.
-    """
+    """Add the options of what is written: ``--format``, ``--plot``, ``--store`` of one result."""
     option = parser.add_argument_group("files").add_argument
     if store:
         text = "the result's own file (default: a name of its own for each question in --output)"
@@ -144,7 +142,7 @@ def user_fmus(paths: list[Path] | None) -> dict[str, Path]:
 
 
 def endings_of(option: str, text: str, known: tuple[str, ...]) -> tuple[str, ...]:
-    """Parse file endings from a list such as ``png,pdf``."""
+    """Parse file endings such as ``png,pdf``; return them, raise at an unknown one."""
     if text == "none":
         return ()
     names = tuple(dict.fromkeys(part.strip() for part in text.split(",")))
@@ -200,9 +198,7 @@ def name_of(
 
 
 def parameters_of(structure: Structure) -> dict[str, float]:
-    """Return a structure's parameters; without those that were added later files keep the names
-    they always had.
-    """
+    """Return a structure's parameters by name; later additions only if they are in use."""
     from ..structures.ranges import ADDED
 
     parameters = structure.parameters()
@@ -309,12 +305,12 @@ class Files:
 
     @property
     def shown(self) -> Path:
-        """The result's name for tables, whose units may be others than asked in."""
+        """Return the result's name for tables, whose units may be others than asked in."""
         return self._with_endings(self.units)
 
     @property
     def picture(self) -> Path:
-        """The same for pictures, with the result's ending."""
+        """Return the result's name for pictures, with its own ending."""
         return self._with_endings(self.units, self.over)
 
     def _with_endings(self, *endings: str) -> Path:
@@ -322,7 +318,7 @@ class Files:
         return self.result.with_name(f"{name}{self.result.suffix}")
 
     def pictures(self) -> list[Path]:
-        """Return the files of its pictures."""
+        """Return the paths of the result's pictures."""
         return [self.picture.with_suffix(f".{ending}") for ending in self.plots]
 
     def lacks_pictures(self) -> bool:

@@ -41,7 +41,7 @@ class SafeStream:
         self.error: Exception | None = None
 
     def write(self, text: str) -> int:
-        """Write the text, or drop it."""
+        """Write a text, or drop it where the reader is gone; return its length."""
         self._try("write", text)
         return len(text)
 
@@ -60,9 +60,7 @@ class SafeStream:
         return getattr(self._stream, name)
 
     def detach(self) -> None:
-        """Flush; if that fails, redirect the stream so that it does not fail once more at the
-        end.
-        """
+        """Flush; redirect the stream if that fails, so that it does not fail again at the end."""
         self.flush()
         if self.error is not None:
             with suppress(OSError, ValueError):
@@ -139,7 +137,7 @@ def send_again(otherwise: Callable[[Any], object], lost: sys.UnraisableHookArgs)
 
 
 def end_soon(number: int, _: FrameType | None) -> None:
-    """End by an exception, and make sure of it; at once if the signal comes again."""
+    """Raise an exception that ends the program soon; exit at once at a second signal."""
     global _ending
     if _ending:
         os._exit(128 + number)
@@ -150,6 +148,6 @@ def end_soon(number: int, _: FrameType | None) -> None:
 
 
 def end_anyway(number: int) -> None:
-    """End without a message; workers end with the process they work for."""
+    """Wait for a while, then exit without a message; workers end with this process."""
     time.sleep(GRACE)
     os._exit(128 + number)

@@ -99,15 +99,15 @@ class AttractorsJob(SeriesQuestion):
             )
 
     def needs(self) -> tuple[str, ...]:
-        """Return the name of the sweep, if any."""
+        """Return the name of the sweep whose result is needed; an empty tuple without one."""
         return (self.follows,) if self.follows else ()
 
     def count(self) -> int:
-        """Number of starts in all, and one more: their attractors are gathered and carried."""
+        """Return the number of all starts and one more, the item that gathers their attractors."""
         return self.starts * super().count() + 1
 
     def items(self, inputs: Inputs) -> Sequence[Start | None]:
-        """Return every start at every value, then None for gathering their attractors."""
+        """Return every start at every value, then a None at each, which gathers its attractors."""
         points = self.series.points
         scales = self.scales(inputs)
         starts = [
@@ -132,7 +132,7 @@ class AttractorsJob(SeriesQuestion):
         return [self.scale] * len(series.points)
 
     def progress_note(self, first: int) -> str:
-        """Say that the last item is no start."""
+        """Return a note for the progress bar while the last item gathers attractors, else none."""
         return "attractors carried to neighbours" if first == self.count() - 1 else ""
 
     def work(
@@ -344,7 +344,7 @@ class SizeFromRest(NamedTuple):
 
 
 def size_from_rest(instance: Instance, point: Point, settings: AttractorSettings) -> SizeFromRest:
-    """Measure the response from rest."""
+    """Run from rest until settled; return the state there, largest displacement and largest gap."""
     response = run_until_settled(instance, point, REST, settings).response
     begin(instance, *point, response.end)
     span = SIZE_PERIODS * point.excitation.period
@@ -524,7 +524,7 @@ def attractors(
 
 
 def check_scale(given: ArrayLike | None) -> Numbers | None:
-    """Return half widths above zero.
+    """Return half widths in m, None if not given; raise unless they are above zero.
 
     Raises
     ------

@@ -39,7 +39,7 @@ class BoxEntropies(NamedTuple):
 
     @property
     def on_boundary(self) -> Floats:
-        """Entropies of boxes with more than one attractor."""
+        """Return the entropies of the boxes with more than one attractor."""
         return self.entropies[self.entropies > 0.0]
 
     @property
@@ -75,9 +75,7 @@ def box_sizes(labels: Labels) -> list[int]:
 
 
 def uncertainty_exponent(sizes: Floats, fractions: Floats) -> tuple[float, float]:
-    """Return the exponent alpha of ``fraction ~ size**alpha`` and its standard error, by a line
-    through the logarithms; NaN where there are too few.
-    """
+    """Fit alpha of ``fraction ~ size**alpha``; return it with its error, NaN from few points."""
     from scipy.stats import linregress
 
     known = fractions > 0.0
@@ -163,7 +161,7 @@ def basin_entropy(basins: xr.Dataset, *, box: int = 5) -> xr.Dataset:
 
 
 def labels_of(basins: object) -> Labels:
-    """Return the attractor of each start.
+    """Return the attractor's number of each start, from an answer of basin; raise without one.
 
     Raises
     ------

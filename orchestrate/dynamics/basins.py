@@ -118,7 +118,7 @@ class Plane(NamedTuple):
 def mass_values(
     given: Mapping[str, Floats], name: str, one: Floats, two: Floats
 ) -> tuple[Floats, Floats]:
-    """Return what both masses have, from the difference and what one has, or their mean."""
+    """Return both masses' values from their difference and one's value or their mean."""
     first, second = GAPS[name]
     if first in given:
         return one, one + given[name]
@@ -167,7 +167,7 @@ class BasinJob(Question):
         return Plane(Point(self.structure, self.excitation), self.x, self.y, self.at)
 
     def count(self) -> int:
-        """Number of starts, and one more: their attractors are gathered."""
+        """Return the number of starts and one more, the item that gathers their attractors."""
         return self.x.number * self.y.number + 1
 
     def items(self, inputs: Inputs) -> Sequence[Start | Point]:
@@ -234,7 +234,7 @@ class BasinJob(Question):
 
 
 def run_to_phase_zero(instance: Instance, start: Start) -> tuple[float, ...]:
-    """Return the state at the first phase 0 from a start on."""
+    """Run to the next phase 0 of the box; return the state there."""
     left = -start.phase % (2.0 * math.pi)
     if left == 0.0:
         return start.state

@@ -114,7 +114,7 @@ class BifurcationCurve:
         return REAL_MULTIPLIERS[self.kind]
 
     def orbit(self, unknowns: Floats) -> PeriodicOrbit:
-        """Return the orbit of some unknowns."""
+        """Return the periodic orbit that the unknowns of a root describe."""
         return self.family.orbit(unknowns[: self.family.size + 2])
 
     def update_border(self, unknowns: Floats) -> None:
@@ -212,7 +212,7 @@ class BifurcationTracer(BranchTracer[BifurcationCurve, Root]):
         return root
 
     def limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
-        """Return those of both parameters."""
+        """Return the index of the first parameter among unknowns, and both parameters' limits."""
         curve = self.stepper.curve
         return curve.first_parameter, curve.family.setting.limits
 
@@ -223,7 +223,7 @@ class BifurcationTracer(BranchTracer[BifurcationCurve, Root]):
         return point
 
     def end_before(self, step: BranchStep[Root]) -> tuple[str, Iterable[Root]]:
-        """Say why roots are no motions from somewhere in the step on; and the last that is one."""
+        """Return why roots within a step are no motions, else ``""``; and the last that is one."""
         reason = self.stepper.curve.why_no_motion(step.after.unknowns)
         return reason, self.last_motion(step) if reason else ()
 

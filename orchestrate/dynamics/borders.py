@@ -78,7 +78,7 @@ class BorderJob(OneItemQuestion):
         return f"border({', '.join([repr(self.structure), start, *given])})"
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
-        """Follow it."""
+        """Follow the bifurcation curve over both parameters; return its points as a table."""
         curve, root = first_root(self)
         back, forth = (trace(self, curve, start) for start in (root.reversed(), root))
         roots = [*reversed(back.points[1:]), *forth.points]
@@ -98,7 +98,7 @@ class BorderJob(OneItemQuestion):
         }
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return the curve, labelled."""
+        """Return the curve with its points of codimension two as a dataset with units."""
         import xarray as xr
 
         setting, ends = self.setting, [str(text) for text in table["ends"]]
@@ -140,7 +140,7 @@ def point_variables(setting: Setting, table: Table) -> dict[str, Variable]:
 
 
 def first_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
-    """Solve for the bifurcation where the curve begins.
+    """Solve for the bifurcation where the curve begins; return the curve's equations and the root.
 
     Raises
     ------
@@ -289,7 +289,7 @@ def border(
 
 
 def check_both_limits(names: tuple[str, ...], limits: Any) -> tuple[tuple[float, float], ...]:
-    """Return the limits of both parameters."""
+    """Check and return the limits of both parameters, a pair (low, high) each."""
     try:
         rows = [numbers(name, row) for name, row in zip(names, limits, strict=True)]
     except (TypeError, ValueError):

@@ -101,13 +101,13 @@ class BranchJob(OneItemQuestion):
         return f"branch({', '.join(parts)})"
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
-        """Follow it."""
+        """Follow the branch from its first orbit; return orbits and bifurcations as a table."""
         segments = trace(self)
         with EventInstance(fmus[OSCILLATOR]) as instance:
             return table(instance, self.setting, segments)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return everything along the branch."""
+        """Return orbits, stability and bifurcations along the branch as a dataset."""
         import xarray as xr
 
         setting, (name,) = self.setting, self.setting.over
@@ -160,7 +160,7 @@ def table(instance: EventInstance, setting: Setting, segments: list[OrbitSegment
 def joined(
     segments: list[OrbitSegment],
 ) -> tuple[list[OrbitPoint], list[Bifurcation[OrbitPoint]]]:
-    """Return orbits and bifurcations of one direction, or of both in the order along the branch."""
+    """Join segments in the order along the branch; return its orbits, and its bifurcations."""
     forth = segments[-1]
     if len(segments) == 1:
         return forth.points, forth.bifurcations
@@ -334,7 +334,7 @@ def check_start(start: Any, several: bool) -> None:
 
 
 def check_limits(over: str, limits: ArrayLike) -> tuple[float, float]:
-    """Return the limits, if they are two numbers in order."""
+    """Return the limits (low, high) as floats; raise unless they are two numbers in order."""
     pair = numbers(over, limits)
     if not isinstance(pair, tuple) or len(pair) != 2 or not pair[0] < pair[1]:
         raise InputError(f"limits = {limits!r}: expected two numbers, the lower one first")
@@ -348,7 +348,7 @@ def complete_excitation(
     limits: tuple[float, float],
     structure: Structure,
 ) -> tuple[tuple[str, float], ...]:
-    """Return the excitation's numbers, with the one that varies where it starts.
+    """Return the excitation as pairs of name and number, with the varied one where it starts.
 
     Where nothing of the structure has a length the amplitude does not matter, and ``eta`` says all.
 
@@ -384,7 +384,7 @@ def first_orbit(
     box_acceleration: float,
     running: Mapping[str, Any],
 ) -> tuple[xr.Dataset, float]:
-    """Find the orbit that a branch begins with by default, and the parameter there."""
+    """Find the orbit that a branch begins with by default; return it and the parameter there."""
     excitation: dict[str, Any] = dict(given)
     quiet: dict[str, Any] = {
         name: value
@@ -433,7 +433,7 @@ def check_number(start: xr.Dataset, name: str, number: int) -> int:
 
 
 def first_nodes(start: xr.Dataset, name: str, number: int | None) -> tuple[FirstGuess, int]:
-    """Return the nodes to begin with, and the kind of the bifurcation that ``name`` gives."""
+    """Return the nodes to begin with, and the kind of bifurcation there (-1: it is an orbit's)."""
     if number is None:
         return from_result(start), -1
     at = start.isel({BIFURCATION: check_number(start, name, number)})

@@ -137,7 +137,7 @@ class Characteristic:
         self.coefficients: Floats = coefficients / np.abs(coefficients).max()
 
     def __call__(self, multiplier: complex) -> complex:
-        """Return D."""
+        """Return D, the characteristic polynomial, at a multiplier."""
         return complex(np.polynomial.polynomial.polyval(multiplier, self.coefficients))
 
     def slope(self, multiplier: float) -> float:

@@ -274,7 +274,7 @@ class ArclengthStepper(Generic[AnyCurve]):
         return newton_correct(self.curve, guess, root.tangent, tolerance=self.tolerance)
 
     def step(self, accepts: Callable[[Root], bool] = lambda root: True) -> tuple[Root, float]:
-        """Return the next root that is accepted, and the length of the step to it.
+        """Step to the next root that is accepted; return it and the length of the step.
 
         Raises
         ------
@@ -302,7 +302,7 @@ class ArclengthStepper(Generic[AnyCurve]):
         limits: Sequence[tuple[float, float]],
         accepts: Callable[[Root], bool] = lambda root: True,
     ) -> tuple[Root, float, bool]:
-        """Take one step; stop exactly on a limit of a parameter if it is reached.
+        """Step, at most onto a limit; return the root, the step's length, and whether it is on one.
 
         Parameters
         ----------
@@ -338,7 +338,7 @@ class ArclengthStepper(Generic[AnyCurve]):
     def next_limit(
         self, first: int, limits: Sequence[tuple[float, float]]
     ) -> tuple[int, float] | None:
-        """Return the unknown that the next step takes past its limit, and the limit."""
+        """Return index and limit of the unknown that the next step takes too far; None without."""
         rates = self.root.tangent * self.curve.scale
         nearest, shortest = None, self.length
         for unknown, ends in enumerate(limits, first):

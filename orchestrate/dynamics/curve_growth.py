@@ -159,7 +159,7 @@ class CurveGrower:
         self.direction: Floats | None = None  # of the last chord
 
     def grow(self, first: float = 0.0) -> GrownCurve:
-        """Grow the curve from a number on."""
+        """Grow the curve from parameter ``first`` on, point by point, to its end; return it."""
         settings, curve = self.settings, GrownCurve()
         curve.add(self.image(first), 0.0)
         step, ahead = FIRST_STEP, None

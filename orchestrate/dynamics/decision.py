@@ -82,7 +82,7 @@ class MotionDecider:
     # -- responses --------------------------------------------------------------------------------
 
     def decide(self, state: ArrayLike) -> tuple[SettledMotion, Floats]:
-        """Decide what the response from a state at phase 0 settles to; return a state on it too."""
+        """Decide what the response from a state at phase 0 settles to; return that, and a state."""
         response, done = run_until_settled(self.plain, self.point, state, self.settings)
         unstable = False
         while True:
@@ -102,7 +102,7 @@ class MotionDecider:
         return respond(self.plain, *self.point, response.end, dropped, samples, converged)
 
     def periodic_motion(self, response: Response) -> tuple[SettledMotion | None, bool]:
-        """Return the periodic motion that a response is on, if any.
+        """Return the response's periodic motion or None, and whether an unstable orbit is near.
 
         Returns
         -------
@@ -140,7 +140,7 @@ class MotionDecider:
     def motion_without_orbit(
         self, response: Response, unstable: bool
     ) -> tuple[SettledMotion, Floats]:
-        """Return what is known of a response that comes to no stable orbit, and its state."""
+        """Return what is known of a response that comes to no stable orbit, and a state on it."""
         n, state = response.multiplicity, np.array(response.end)
         if not n or response.repetition(self.settings.converged).multiplicity != n:  # nearly is not
             states, impacts = response.samples, response.impacts_per_period
@@ -156,7 +156,7 @@ class MotionDecider:
     # -- known motions ----------------------------------------------------------------------------
 
     def known_motion_at(self, state: ArrayLike, n: int) -> SettledMotion | None:
-        """Return the known motion that a response is on which repeats after some periods."""
+        """Return the known motion that a response of period ``n`` is on; None if on none."""
         for motion in self.known:
             distance = motion.nearest(state)[1]
             within = SAME if motion.decided == ORBIT else self.settings.alike
@@ -176,7 +176,7 @@ class MotionDecider:
         return motion
 
     def stable_orbit_at(self, state: ArrayLike, periods: int) -> SettledMotion | None:
-        """Return the stable orbit near a state at phase 0 that repeats after some periods."""
+        """Return the stable orbit near a state at phase 0 over some periods; None without one."""
         orbit, free_phase = self.orbit_near(state, periods)
         if orbit is None or largest_multiplier(orbit) >= 1.0 - MARGIN:
             return None
@@ -208,7 +208,7 @@ class MotionDecider:
     # -- orbits -----------------------------------------------------------------------------------
 
     def orbit_near(self, state: ArrayLike, periods: int) -> tuple[PeriodicOrbit | None, float]:
-        """Return the orbit near the response from a state at phase 0, over its least period.
+        """Return the orbit near a response, None without one, and the phase of its nodes, rad.
 
         Returns
         -------
@@ -236,7 +236,7 @@ class MotionDecider:
         return without_copies(orbit)
 
     def guess_from(self, state: Floats, periods: int) -> tuple[Guess, float]:
-        """Return the impacts of some periods, from amid the longest stretch without any."""
+        """Return the impacts of some periods as a guess, and the phase at which it begins, rad."""
         instance, frequency = self.eventful, self.point.excitation.frequency
         assert instance is not None
         form, span = self.system.form(self.values), periods * self.point.excitation.period
@@ -254,7 +254,7 @@ class MotionDecider:
         return from_impacts(impacts, self.point, form, periods), frequency * begun
 
     def continue_orbit(self, motion: SettledMotion) -> SettledMotion | None:
-        """Return the stable orbit here of the sequence of an orbit at another value."""
+        """Return the stable orbit here that continues one at another value; None without one."""
         if motion.orbit is None or self.eventful is None:
             return None
         orbit = self.solve((motion.orbit.sequence, motion.orbit.nodes))

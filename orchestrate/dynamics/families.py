@@ -80,7 +80,7 @@ class Setting:
         return given.get(ACCELERATION, self.box_acceleration)
 
     def form(self, values: Floats) -> ClosedForm:
-        """Return the closed form there.
+        """Return the closed form of the motion at values of the parameters.
 
         Raises
         ------
@@ -154,18 +154,18 @@ class Family:
 
     @property
     def size(self) -> int:
-        """Number of the nodes' unknowns."""
+        """Return the number of unknowns that are the nodes' coordinates."""
         return 4 * len(self.sequence.kinds)
 
     @property
     def accuracy(self) -> float:
-        """What a root may leave of the equations: displacements and velocities as in the nodes."""
+        """Return the largest residual of the equations with which a root is taken as solved."""
         if not self.size:
             return RESIDUAL
         return RESIDUAL * float(self.scale[POSITION]) / np.sqrt(len(self.sequence.kinds))
 
     def orbit(self, unknowns: Floats) -> PeriodicOrbit:
-        """Return the orbit of some unknowns."""
+        """Return the periodic orbit that some unknowns describe."""
         nodes, values = unknowns[: self.size], unknowns[self.size :]
         return PeriodicOrbit(self.sequence, self.setting.form(values), nodes.reshape(-1, 4))
 

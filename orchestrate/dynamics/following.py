@@ -59,7 +59,7 @@ class OnwardQuestion(SeriesQuestion, ABC):
     follows: str = ""
 
     def needs(self) -> tuple[str, ...]:
-        """Return the name of the sweep, if any."""
+        """Return the name of the sweep whose result is needed; an empty tuple without one."""
         return (self.follows,) if self.follows else ()
 
     def items(self, inputs: Inputs) -> Sequence[Followed]:

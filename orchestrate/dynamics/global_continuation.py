@@ -185,7 +185,7 @@ class MatchedAttractors:
 
     @property
     def count(self) -> int:
-        """How many attractors there are in all."""
+        """Return the number of attractors over all values, each counted once."""
         return 1 + max(max(row) for row in self.numbers)
 
 

@@ -92,7 +92,7 @@ def mean_exponent(parts: Sequence[Exponent]) -> Exponent:
 def follow_parts(
     instance: EventInstance, point: Point, start: State, periods: int, parts: int
 ) -> tuple[list[Exponent], State]:
-    """Return the exponents of successive parts of a motion, and the state at its end.
+    """Return the exponent of each successive part of a motion, and the state at the end.
 
     Parameters
     ----------

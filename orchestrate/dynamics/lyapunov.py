@@ -97,8 +97,7 @@ def largest_exponent(
 
 
 def without_impacts(structure: Structure) -> Exponent | None:
-    """Return the exponent of a structure that moves as a linear one, where its masses do not
-    impact: bonded, or of alike masses, or pressed together by a preload, or apart in a gap.
+    """Return the exponent of a structure that never impacts (bonded, alike, pressed); else None.
 
     Returns
     -------
@@ -210,7 +209,7 @@ class LyapunovJob(FollowingQuestion):
         return largest_exponent(impacts, self.end(item), item.point, self.blocks, self.batches)
 
     def end(self, item: Followed) -> float:
-        """Return tau at the end of the periods."""
+        """Return the dimensionless time tau at which an item's periods end."""
         return self.periods * period(item.point.excitation.eta(item.point.structure))
 
     def check_count(self, impacts: Impacts, item: Followed) -> None:

@@ -60,7 +60,7 @@ def means_of_batches(blocks: Growth, batches: int) -> tuple[float, float]:
 
 
 def scaled_products(matrices: Floats, size: int) -> tuple[Floats, Floats]:
-    """Return products of ``size`` matrices in turn, scaled, with the logarithms of the scales.
+    """Return products of ``size`` successive matrices, scaled, and the logarithms of the scales.
 
     Parameters
     ----------

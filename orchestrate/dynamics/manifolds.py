@@ -83,7 +83,7 @@ class Saddle:
 
     @classmethod
     def from_orbit(cls, orbit: PeriodicOrbit) -> Saddle:
-        """Return the saddle that an orbit is.
+        """Return an orbit as a saddle; raise unless just one multiplier is outside the circle.
 
         Raises
         ------
@@ -173,16 +173,16 @@ class ManifoldJob(OneItemQuestion):
 
     @property
     def setting(self) -> Setting:
-        """The structure under its excitation."""
+        """Return the structure under its excitation, as the orbit's equations take it."""
         return Setting.fixed(self.structure, self.excitation, self.box_acceleration)
 
     @property
     def values(self) -> Floats:
-        """The parameter of the setting."""
+        """Return the value of the setting's parameter, in an array of one."""
         return np.array([self.excitation[0][1]])
 
     def call(self) -> str:
-        """Return the call that asks it."""
+        """Return the Python call that asks this question, for the answer's history."""
         setting, values = self.setting, self.values
         guess = self.start.as_argument(setting.point(values).excitation.frequency)
         start = f"start={setting.orbit_call(values, self.period, guess)}"
@@ -216,14 +216,14 @@ class ManifoldJob(OneItemQuestion):
         return saddle
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
-        """Grow both sides."""
+        """Grow the manifold's both sides from the saddle; return their points as a table."""
         saddle = self.saddle()
         with Instance(fmus[OSCILLATOR]) as instance:
             curves = [self.grow(instance, saddle, sign) for sign in (1.0, -1.0)]
         return {**table_of(curves, saddle), "saddle": saddle.state[np.newaxis]}
 
     def grow(self, instance: Instance, saddle: Saddle, sign: float) -> GrownCurve:
-        """Grow one side of the manifold."""
+        """Grow the manifold to one side of the saddle; return its points in order."""
         return CurveGrower(self.point_at(instance, saddle, sign), self.settings(saddle)).grow()
 
     def point_at(
@@ -266,7 +266,7 @@ class ManifoldJob(OneItemQuestion):
         )
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return the curves, labelled."""
+        """Return both sides of the manifold as a dataset with units."""
         import xarray as xr
 
         point = self.setting.point(self.values)

@@ -46,12 +46,12 @@ class OrbitPoint:
 
     @cached_property
     def orbit(self) -> PeriodicOrbit:
-        """The orbit itself."""
+        """Return the periodic orbit of this point of a branch."""
         return self.family.orbit(self.root.unknowns)
 
     @property
     def values(self) -> Floats:
-        """The parameters that vary."""
+        """Return the values of the parameters that vary along the branch."""
         return self.root.unknowns[self.family.size :]
 
     @cached_property
@@ -61,7 +61,7 @@ class OrbitPoint:
 
     @cached_property
     def pairs(self) -> NDArray[np.complex128]:
-        """Complex multipliers, one of each pair."""
+        """Return the complex multipliers of positive imaginary part: one of each pair."""
         return self.multipliers[self.multipliers.imag > 0.0]
 
     @cached_property
@@ -83,7 +83,7 @@ class OrbitPoint:
 
     @property
     def wrong_contact(self) -> bool:
-        """Whether an impact sticks that should not, or the reverse, or no contact is left.
+        """Return whether an impact sticks that should not, or the reverse, or no contact is left.
 
         Where (17) is all but met either will do: an orbit that has just got or lost an impact
         meets it to rounding, and rounding must not say how it goes on.

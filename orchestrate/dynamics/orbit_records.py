@@ -66,7 +66,7 @@ class OrbitRecord:
     def from_root(
         cls, family: Family, unknowns: Floats, residual: float, fmu: FmuCheck
     ) -> OrbitRecord:
-        """Return the record of a root."""
+        """Return what is stored of an orbit found by Newton's method, and of its run in the FMU."""
         orbit = family.orbit(unknowns)
         turns = turning_points(orbit)
         nodes, first = from_phase_zero(orbit.nodes, orbit.sequence.periods)

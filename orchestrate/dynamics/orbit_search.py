@@ -51,7 +51,7 @@ def solve_orbit(
     max_iterations: int = 25,
     max_distance: float = 100.0,
 ) -> tuple[Family, Root]:
-    """Solve for the orbit of a guess's sequence at values of the parameters, by Newton's method.
+    """Solve for the orbit of a guess by Newton's method; return its family and the root, or raise.
 
     Raises
     ------
@@ -106,7 +106,7 @@ def least_periods(orbit: PeriodicOrbit) -> int:
 def run_in_fmu(
     instance: EventInstance, setting: Setting, values: Floats, orbit: PeriodicOrbit
 ) -> FmuCheck:
-    """Run the orbit through in the FMU."""
+    """Run the FMU through an orbit; return whether impacts agree, and how far the end is off."""
     point = setting.point(values)
     state = stroboscopic_states(orbit)[0]
     start(instance, point, orbit.form, point.from_faces(state))
@@ -128,7 +128,7 @@ def run_in_fmu(
 def first_motion(
     setting: Setting, guesses: Iterable[Guess], values: Floats, *, stable: bool = False
 ) -> tuple[Family, Root]:
-    """Return the first orbit of Newton's method that is a motion of just its periods.
+    """Return family and root of the first guess that leads to a motion of just its periods.
 
     Parameters
     ----------

@@ -51,11 +51,11 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         super().__init__(stepper, settings.max_points)
 
     def point(self, root: Root) -> OrbitPoint:
-        """Return the orbit of a root."""
+        """Return the periodic orbit of a root with its multipliers and tests."""
         return OrbitPoint(self.stepper.curve, root)
 
     def limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
-        """Return those of the parameter."""
+        """Return the index of the parameter among the unknowns, and its limits in a list."""
         family = self.stepper.curve
         return family.size, family.setting.limits
 
@@ -65,7 +65,7 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         return bool((orbit.durations[~orbit.contact] > 0.0).all())
 
     def test(self, point: OrbitPoint, kind: BifurcationKind) -> float:
-        """Return the orbit's own test function."""
+        """Return the orbit's test function of a kind of bifurcation, 0 where it happens."""
         return point.test(kind)
 
     def confirms(self, kind: BifurcationKind, point: OrbitPoint, part: float) -> bool:
@@ -112,7 +112,7 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         return changed
 
     def end_without_root(self, segment: BranchSegment[OrbitPoint]) -> None:
-        """End a branch with its permanent contact, if none of that is left."""
+        """Set as the end of a branch that its permanent contact vanishes, if none is left."""
         last = segment.points[-1]
         if last.orbit.contact.any() and last.contact_margin(CONTACT_LOST) < NO_CONTACT:
             segment.add_bifurcation(CONTACT_LOST, last, 0.0)

@@ -67,7 +67,7 @@ class FirstGuess:
         return f"{{'impact_time': {times!r}}}"
 
     def sequence(self, periods: int) -> ImpactSequence:
-        """Return the sequence of its nodes."""
+        """Return the guess's impacts, sticking and releases in order, for some periods."""
         return ImpactSequence(periods, self.kinds)
 
 
@@ -76,7 +76,7 @@ class OneItemQuestion(Question, ABC):
     """A question whose answer is computed in one go."""
 
     def count(self) -> int:
-        """Return one."""
+        """Return 1: the question has one item."""
         return 1
 
     def items(self, inputs: Inputs) -> Sequence[int]:
@@ -104,7 +104,7 @@ class OrbitJob(OneItemQuestion):
     asked: ClassVar[str] = "orbit"
 
     def call(self) -> str:
-        """Return the call that asks it."""
+        """Return the Python call that asks this question, for the answer's history."""
         frequency = self.setting.point(np.array([self.excitation[0][1]])).excitation.frequency
         arguments = {**dict(self.excitation), "period": self.period}
         if self.box_acceleration:
@@ -118,16 +118,16 @@ class OrbitJob(OneItemQuestion):
 
     @property
     def setting(self) -> Setting:
-        """The structure under its excitation."""
+        """Return the structure under its excitation, as the orbit's equations take it."""
         return Setting.fixed(self.structure, self.excitation, self.box_acceleration)
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
-        """Find it."""
+        """Find the orbit by Newton's method; return it as a table of one row."""
         with EventInstance(fmus[OSCILLATOR]) as instance:
             return table_of([find_orbit(instance, self)])
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return the orbit, labelled."""
+        """Return the orbit, its impacts and its multipliers as a dataset with units."""
         import xarray as xr
 
         setting = self.setting
@@ -141,7 +141,7 @@ class OrbitJob(OneItemQuestion):
 
 
 def find_orbit(instance: EventInstance, job: OrbitJob) -> OrbitRecord:
-    """Find the orbit that is asked for.
+    """Find the orbit of a question by Newton's method; raise where no guess leads to one.
 
     Raises
     ------
@@ -186,7 +186,7 @@ def guesses(
 def first_guess(
     given: Any, structure: Structure, frequency: float, period: int
 ) -> FirstGuess | None:
-    """Return a user's guess in one of its forms as plain numbers.
+    """Return a user's guess as plain numbers; None if none is given, an error in no known form.
 
     Raises
     ------

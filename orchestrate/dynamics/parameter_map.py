@@ -101,12 +101,12 @@ class MapJob(Question):
 
     @property
     def points(self) -> tuple[Point, ...]:
-        """Structure and excitation of each point, row by row."""
+        """Return structure and excitation of each point, row by row."""
         return map_points(self.structure, self.given)
 
     @property
     def axes(self) -> tuple[Axis, ...]:
-        """Both sides."""
+        """Return both axes of the map, x and y."""
         return tuple(Axis(name, value) for name, value in self.given if isinstance(value, tuple))
 
     def parameters(self) -> dict[str, Any]:
@@ -116,7 +116,7 @@ class MapJob(Question):
         return {**{name: plain(value) for name, value in self.given}, **others}
 
     def count(self) -> int:
-        """Number of points."""
+        """Return the number of points of the map."""
         return len(self.points)
 
     def items(self, inputs: Inputs) -> Sequence[Point]:
@@ -126,7 +126,7 @@ class MapJob(Question):
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
     ) -> Table:
-        """Compute some points."""
+        """Compute a chunk of the map's points by the FMU; return them as a table."""
         with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
             rows = [self.row(plain, eventful, item) for item in items]
         return {"rows": np.array(rows, dtype=float)}
@@ -148,7 +148,7 @@ class MapJob(Question):
         )
 
     def response(self, instance: Instance, item: Point) -> tuple[Response, Decision]:
-        """Run a point on, for as long as before each time its multiplicity is undecided."""
+        """Run a point until its multiplicity is decided; return last response and decision."""
         eta = item.excitation.eta(item.structure)
         dropped, done, start = transient_periods(self.transient, self.settle, eta), 0, self.start
         while True:
@@ -162,7 +162,7 @@ class MapJob(Question):
     def exponent_at(
         self, eventful: EventInstance, item: Point, start: ArrayLike
     ) -> tuple[float, float]:
-        """Return the exponent and its error; NaN where there are too few impacts."""
+        """Return the Lyapunov exponent and its standard error; NaN where impacts are too few."""
         structure, eta = item.structure, item.excitation.eta(item.structure)
         impacts: Impacts = follow_impacts(eventful, item, start, self.periods)
         known = None if len(impacts.time) else without_impacts(structure)

@@ -60,7 +60,7 @@ class ImpactSequence:
         return ImpactSequence(2 * self.periods, self.kinds * 2)
 
     def without(self, node: int) -> ImpactSequence:
-        """Return the sequence with one node less."""
+        """Return the sequence without the node of this index."""
         return ImpactSequence(self.periods, self.kinds[:node] + self.kinds[node + 1 :])
 
     def with_impact(self, before: int) -> ImpactSequence:
@@ -96,24 +96,24 @@ class PeriodicOrbit:
 
     @cached_property
     def ends(self) -> Floats:
-        """Phases at which they end."""
+        """Return the phases at which the segments end, rad."""
         phases = np.roll(self.begins, -1)
         phases[-1] += TURN * self.sequence.periods
         return phases
 
     @cached_property
     def durations(self) -> Floats:
-        """Their durations in units of tau."""
+        """Return the durations of the segments in units of tau."""
         return (self.ends - self.begins) / self.form.eta
 
     @cached_property
     def contact(self) -> NDArray[np.bool_]:
-        """Whether they are permanent contact."""
+        """Return whether each segment is permanent contact."""
         return self.sequence.sticks if self.count else np.array([self.form.rests_in_contact])
 
     @cached_property
     def starts(self) -> Floats:
-        """States at their begins, shape (k, 4): after the impact (15)."""
+        """Return the states at the segments' begins, shape (k, 4): after the impact (15)."""
         if not self.count:
             return self.form.steady(np.zeros(1), self.contact)
         _, position, velocity, closing = self.nodes.T
@@ -125,14 +125,14 @@ class PeriodicOrbit:
 
     @cached_property
     def flows(self) -> Floats:
-        """Their flow matrices, shape (k, 4, 4)."""
+        """Return each segment's flow matrix, from its start to its end, shape (k, 4, 4)."""
         matrices = self.form.flight(self.durations)
         if self.contact.any():
             matrices[self.contact] = self.form.contact(self.durations[self.contact])
         return matrices
 
     def states(self, segment: NDArray[np.int_], phase: Floats) -> Floats:
-        """Return states inside segments.
+        """Return the states at phases inside segments, from the closed form.
 
         Parameters
         ----------
@@ -262,15 +262,16 @@ class PeriodicOrbit:
 
     @property
     def stable(self) -> bool:
-        """Whether all multipliers lie in the unit circle, by more than they are known to.
+        """Return whether all multipliers lie inside the unit circle, by more than their error.
 
         At a bifurcation, where one lies on the circle, rounding would say so or not.
         """
         return bool(np.abs(self.multipliers()).max() < 1.0 - ON_CIRCLE)
 
     def multiplier_product(self) -> float:
-        """Return the multipliers' product, by Liouville's formula and, for each impact, the
-        product e(v) d(e(v) v)/dv: e^2 where e is constant.
+        """Return the multipliers' product, by Liouville's formula and the impacts' restitutions.
+
+        An impact contributes e(v) d(e(v) v)/dv: e^2 where e is constant.
         """
         lost = float(self.form.damping[0] + self.form.damping[1])
         time = TURN * self.sequence.periods / self.form.eta

@@ -128,8 +128,9 @@ def read_at(instance: Instance, point: Point, start: ArrayLike, times: Floats) -
 
 
 def release_times(impacts: Impacts, point: Point, end: float) -> Floats:
-    """Return when permanent contacts end that impacts have begun, s; not those that outlast the
-    span or end in another impact's place.
+    """Return when permanent contacts end, s, which impacts in the span began.
+
+    Not those that outlast the span or end in another impact's place.
     """
     omega = point.structure.omega
     scaled = nondimensional(impacts, point)

@@ -69,7 +69,7 @@ class SettledMotion:
 
     @classmethod
     def from_orbit(cls, point: Point, orbit: PeriodicOrbit, free_phase: float) -> SettledMotion:
-        """Return the motion of a stable orbit."""
+        """Return a stable orbit as a motion that responses settle to."""
         periods, faces = orbit.sequence.periods, stroboscopic_states(orbit)
         faces[:, 1] = np.maximum(faces[:, 0], faces[:, 1])  # in contact, within rounding
         states = point.from_faces(faces)
@@ -87,7 +87,7 @@ class SettledMotion:
 
     @cached_property
     def features(self) -> list[float]:
-        """Numbers that do not depend on the phase of the samples, by ``clusters.FEATURES``."""
+        """Return features of the motion that do not depend on the phase, for clustering."""
         gaps = gap_between(self.states, self.point.structure.gap_offset) / self.point.length
         means = [float(gaps.mean()), float(gaps.std())]
         gap = self.gap / self.point.length

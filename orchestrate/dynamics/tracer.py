@@ -143,7 +143,7 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
         return {"xtol": ACCURACY, "rtol": ACCURACY}
 
     def end_before(self, step: BranchStep[Point]) -> tuple[str, Iterable[Point]]:
-        """Return why the branch ends before a step's end, and the last points; else ``""``."""
+        """Return why the branch ends within a step, ``""`` if not, and then its last points."""
         return "", ()
 
     def finish_step(self, segment: BranchSegment[Point], step: BranchStep[Point]) -> Point:
@@ -182,7 +182,7 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
     def next_step(
         self, before: Point, rates: Mapping[BifurcationKind, float]
     ) -> tuple[BranchStep[Point], list[Located[Point]]]:
-        """Take a step and locate its bifurcations; shorten it where that does not succeed.
+        """Take a step, shortened until its bifurcations can be located; return it and these.
 
         Raises
         ------
@@ -300,7 +300,7 @@ class BranchStep(Generic[Point]):
         self.known = {0.0: self.before, self.length: self.after}
 
     def point(self, position: float) -> Point:
-        """Return the point so far into the step."""
+        """Return the branch's point at a position in the step, by Newton's method."""
         if position not in self.known:
             tracer = self.tracer
             self.known[position] = tracer.point(tracer.stepper.root_after(position))
@@ -368,7 +368,7 @@ class BranchStep(Generic[Point]):
     def root_of(
         self, kind: BifurcationKind, low: float, high: float, level: float = 0.0
     ) -> tuple[float, Point]:
-        """Return where a test function is 0, or at a level, by Brent's method, and the point.
+        """Solve for where on a step a test is at a level (Brent); return position and point.
 
         Raises
         ------

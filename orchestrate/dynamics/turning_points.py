@@ -37,7 +37,7 @@ class TurningPoints:
 
 
 def sample_grid(orbit: PeriodicOrbit) -> tuple[NDArray[np.int_], Floats]:
-    """Return segments and phases at which a motion is sampled, in order, inside segments.
+    """Return two arrays, segments and phases, at which a motion is sampled in order.
 
     Without nodes the only segment is sampled all around.
     """
@@ -74,7 +74,7 @@ def turning_points(orbit: PeriodicOrbit) -> TurningPoints:
 def derivatives(
     orbit: PeriodicOrbit, segment: NDArray[np.int_], quantity: NDArray[np.int_], phase: Floats
 ) -> tuple[Floats, Floats, Floats]:
-    """Return first and second derivative by tau, and value, of quantities inside segments."""
+    """Return first and second derivatives by tau of quantities inside segments, then values."""
     state = orbit.states(segment, phase)
     field = orbit.form.field(state, phase, orbit.contact[segment])
     weights = WEIGHTS[quantity]
@@ -111,7 +111,7 @@ class Amplitudes:
 
 
 def nearest_miss(orbit: PeriodicOrbit, turns: TurningPoints) -> tuple[float, int, float]:
-    """Find the flight that comes nearest to one more impact.
+    """Find the least gap of a flight that turns away again; return it, its segment and phase.
 
     Returns
     -------
@@ -129,7 +129,7 @@ def nearest_miss(orbit: PeriodicOrbit, turns: TurningPoints) -> tuple[float, int
 
 
 def weakest_force(orbit: PeriodicOrbit) -> tuple[float, int, float]:
-    """Find the instant of permanent contact at which the masses are pressed together the least.
+    """Find the least contact force of permanent contact; return it, its segment and phase.
 
     Returns
     -------
@@ -185,7 +185,7 @@ def stroboscopic_states(orbit: PeriodicOrbit, phase: float = 0.0) -> Floats:
 
 
 def from_phase_zero(nodes: Floats, periods: int) -> tuple[Floats, int]:
-    """Return nodes from phase 0 on, with the index of the one that is first now."""
+    """Rotate nodes to begin at phase 0; return them and the index of the node that is first now."""
     turn = TURN * periods
     phase = np.mod(nodes[:, PHASE], turn)
     first = int(phase.argmin()) if len(nodes) else 0

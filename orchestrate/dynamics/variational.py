@@ -29,8 +29,9 @@ def period(eta: float) -> float:
 
 
 def saltation_matrices(impacts: Impacts, point: Point) -> Floats:
-    """Return ``R + (F+ - R F-) n^T / (n F-)``, shape (n, 4, 4), with the derivative R of the
-    restitution (15) by the velocities before it.
+    """Return ``R + (F+ - R F-) n^T / (n F-)`` of each impact, shape (n, 4, 4).
+
+    R is the derivative of the restitution (15) by the velocities before it.
     """
     form = ClosedForm.from_structure(*point)
     part = (1.0 + form.e) / (1.0 + form.mu)
@@ -120,9 +121,7 @@ def monodromy(impacts: Impacts, point: Point, periods: int = 1) -> Floats:
 
 
 def nondimensional(impacts: Impacts, point: Point) -> Impacts:
-    """Return impacts in units of 1/omega, a eta^2 and omega a eta^2, (3) and (4), with the faces'
-    places for displacements.
-    """
+    """Return impacts in units of 1/omega, a eta^2, omega a eta^2 (3), (4), from the faces."""
     return Impacts(
         point.structure.omega * impacts.time,
         point.faces(impacts.state),

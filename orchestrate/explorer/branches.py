@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def overlay(found: xr.Dataset | None) -> dict[str, Any]:
-    """Lines and points of a branch for the page.
+    """Return lines and bifurcations of a branch as the page's JSON.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def overlay(found: xr.Dataset | None) -> dict[str, Any]:
 
 
 def lines(found: xr.Dataset) -> list[dict[str, Any]]:
-    """Parts of the branch of one stability, a line each, of every sample of an orbit."""
+    """Return the branch's parts of one stability, a line for each sample of an orbit."""
     stable = found.stable.values == 1
     return [
         {"x": along.tolist(), "y": gaps.tolist(), "stable": bool(flag)}
@@ -58,7 +58,7 @@ def lines(found: xr.Dataset) -> list[dict[str, Any]]:
 def runs(
     along: NDArray[np.float64], gaps: NDArray[np.float64], stable: NDArray[np.bool_]
 ) -> list[tuple[NDArray[np.float64], NDArray[np.float64], bool]]:
-    """Parts of a line of one stability, each up to the first point of the next, gaps above 0."""
+    """Split a line by stability; return abscissas, gaps > 0 and stability of each part."""
     kept = gaps > 0.0
     along, gaps, stable = along[kept], gaps[kept], stable[kept]
     cuts = [0, *(np.flatnonzero(np.diff(stable)) + 1).tolist(), len(along)]
@@ -70,7 +70,7 @@ def runs(
 
 
 def bifurcations(found: xr.Dataset) -> list[dict[str, Any]]:
-    """Where they are, and of which kind."""
+    """Return a branch's bifurcations, each with its place and its kind."""
     if not found.sizes.get("bifurcation"):
         return []
     kinds = found.bifurcation_kind

@@ -15,7 +15,7 @@ EXPORT = re.compile(r"^export ((?:async )?(?:function\*?|class|const|let)) (\w+)
 
 
 def bundle(sources: Mapping[str, str], entry: str) -> str:
-    """One script.
+    """Join JavaScript modules to one script that ends with the entry module.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def visit(sources: Mapping[str, str], name: str, order: list[str]) -> None:
 
 
 def wrapped(name: str, source: str) -> str:
-    """A module as a function that gives what it exports."""
+    """Return a module as the text of a function that returns what it exports."""
     exported = ", ".join(match[2] for match in EXPORT.finditer(source))
     body = IMPORT.sub(imported, source)
     body = EXPORT.sub(r"\1 \2", without_comments(body)).strip()
@@ -63,7 +63,7 @@ def wrapped(name: str, source: str) -> str:
 
 
 def imported(match: re.Match[str]) -> str:
-    """An import as a constant of the other module's."""
+    """Return an import statement rewritten as constants of the other module's function."""
     names = " ".join(match[1].split()).rstrip(",")
     return f"const {{ {names} }} = module_{match[2]};\n"
 

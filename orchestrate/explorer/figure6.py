@@ -22,7 +22,7 @@ log = logging.getLogger(__name__)
 
 
 def first_diagram(structure: Structure) -> Shipped:
-    """What a page of a structure opens with: Figure 6 for the paper's, else nothing.
+    """Return the diagram a page opens with: Figure 6 for the paper's structure, else an empty one.
 
     Nothing as well where the kernel is no longer the one that computed Figure 6: its states would
     then belong to no response of the page.
@@ -37,5 +37,5 @@ def first_diagram(structure: Structure) -> Shipped:
 
 
 def is_present(data: xr.Dataset) -> bool:
-    """Whether the present kernel computed it."""
+    """Return whether the present kernel computed a stored Figure 6."""
     return bool(data.attrs.get(STAMP) == kernel_digest(OSCILLATOR))

@@ -105,7 +105,7 @@ def explore(
 
 
 def first_bytes(path: Path) -> bytes:
-    """The beginning of a file; nothing of what is no ordinary file."""
+    """Return the first bytes of a file; none of what is no ordinary file."""
     if not path.is_file():
         return b""
     with path.open("rb") as file:
@@ -113,7 +113,7 @@ def first_bytes(path: Path) -> bytes:
 
 
 def page(chosen: Shipped, drawn: dict[str, Any], kernels: dict[str, WebKernel]) -> str:
-    """The HTML of the page: the one place where text meets HTML, which the template escapes."""
+    """Return the page's HTML, made by a template that escapes all text."""
     scripts = modules()
     made_by = f"vibroimpact {__version__}, kernel {kernels['oscillator'].guid}"
     tables = {name: {"slots": one.slots, "starts": one.starts} for name, one in kernels.items()}
@@ -140,7 +140,7 @@ def page(chosen: Shipped, drawn: dict[str, Any], kernels: dict[str, WebKernel]) 
 
 @functools.cache
 def environment() -> jinja2.Environment:
-    """What fills the template: it escapes all that is not marked as HTML, and misses nothing."""
+    """Return a template environment that escapes all text and raises at undefined names."""
     return jinja2.Environment(
         loader=jinja2.PackageLoader("orchestrate.explorer", "page"),
         autoescape=True,
@@ -149,7 +149,7 @@ def environment() -> jinja2.Environment:
 
 
 def content_security_policy(style: str, script: str) -> str:
-    """What a browser lets the page do: run its own script and workers, and reach no network."""
+    """Return what a browser lets the page do: its own script and workers, no network."""
     return "; ".join(
         (
             "default-src 'none'",
@@ -164,12 +164,12 @@ def content_security_policy(style: str, script: str) -> str:
 
 
 def digest(content: str) -> str:
-    """The digest by which a policy names a script or a style sheet."""
+    """Return the digest by which a security policy names a script or a style sheet."""
     return f"sha256-{base64.b64encode(hashlib.sha256(content.encode()).digest()).decode()}"
 
 
 def table(chosen: Shipped) -> dict[str, Any]:
-    """What the page has to know of the sweep and of structures."""
+    """Return as JSON what the page has to know of the sweep and of structures."""
     return {
         "structure": numbers(chosen.structure),
         "usual": numbers(Structure()),
@@ -190,35 +190,35 @@ def table(chosen: Shipped) -> dict[str, Any]:
 
 
 def weak_drive(step: float = 0.1) -> dict[str, Any]:
-    """The weak drive of the page, the set ``quick``: its numbers, and the communication step."""
+    """Return the numbers of the page's motor, the set ``quick``, and the communication step."""
     structure = Structure.from_file("quick")
     drive = {name: float(value) for name, value in Drive.from_file("quick").parameters().items()}
     return {"structure": numbers(structure), "drive": drive, "h": step / structure.omega}
 
 
 def voltages(low: float = 0.8, high: float = 2.0, first: float = 0.9) -> dict[str, str]:
-    """Ends and beginning of the voltage's slider, as no-load speeds over omega."""
+    """Return the ends and the first value of the voltage's slider, as no-load speeds over omega."""
     unit = Drive.from_file("quick").motor_constant * Structure.from_file("quick").omega
     ends = {"voltage_low": low, "voltage_high": high, "voltage": first}
     return {name: f"{value * unit:.6g}" for name, value in ends.items()}
 
 
 def numbers(structure: Structure) -> dict[str, float]:
-    """A structure's parameters as the kernel takes them."""
+    """Return a structure's parameters by name as the kernel takes them."""
     return {name: float(value) for name, value in structure.parameters().items()}
 
 
 def packed(content: bytes) -> str:
-    """Compressed, in letters."""
+    """Return bytes compressed and as text (base64), for a page of one file."""
     return base64.b64encode(zlib.compress(content, 9)).decode()
 
 
 @functools.cache
 def source(name: str) -> str:
-    """A source of the page."""
+    """Return the text of one of the page's source files."""
     return (SOURCES / name).read_text(encoding="utf-8")
 
 
 def modules() -> dict[str, str]:
-    """The page's JavaScript modules by name."""
+    """Return the texts of the page's JavaScript modules by name."""
     return {path.stem: source(path.name) for path in sorted(SOURCES.glob("*.js"))}

@@ -68,7 +68,7 @@ def nothing(structure: Structure) -> Shipped:
 
 
 def shipped(data: xr.Dataset) -> Shipped:
-    """What the page needs of a sweep.
+    """Return what the page needs of a sweep; raise if it cannot show that sweep.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def shipped(data: xr.Dataset) -> Shipped:
 
 
 def read(data: xr.Dataset, direction: str) -> Shipped:
-    """What the page needs of a sweep that seems to be one."""
+    """Return what the page needs of a dataset that seems to be a sweep."""
     structure = Structure.from_attributes({str(name): value for name, value in data.attrs.items()})
     directions = ("up", "down") if direction == "both" else (direction,)
     (parameter,) = map(str, set(data.impacts_per_period.dims) - {"direction"})
@@ -121,12 +121,12 @@ def read(data: xr.Dataset, direction: str) -> Shipped:
 
 
 def is_scaled(structure: Structure) -> bool:
-    """Whether a structure is the paper's, whose omega is 1 rad/s."""
+    """Return whether a structure is the paper's, whose omega is 1 rad/s."""
     return math.isclose(structure.omega, 1.0)
 
 
 def level_of(data: xr.Dataset, structure: Structure) -> tuple[str, float]:
-    """How strongly the box was shaken; at the first frequency, where nothing was held."""
+    """Return the unit of the box's motion ("paper", "mm" or "g"), and its size in that unit."""
     eta, frequency, amplitude = (data[name].values for name in ("eta", "frequency", "amplitude"))
     if is_scaled(structure) and np.allclose(amplitude * eta**2, 1.0, rtol=1e-9):
         return "paper", 1.0
@@ -136,7 +136,7 @@ def level_of(data: xr.Dataset, structure: Structure) -> tuple[str, float]:
 
 
 def settings_of(data: xr.Dataset) -> dict[str, float]:
-    """How the sweep was computed."""
+    """Return transient, samples and tolerance of a sweep; raise if they are senseless."""
     found = {name: float(data.attrs[name]) for name in SETTINGS}
     transient, samples, tolerance = found.values()
     if not (transient.is_integer() and samples.is_integer() and transient >= 0 and samples >= 1):
@@ -147,7 +147,7 @@ def settings_of(data: xr.Dataset) -> dict[str, float]:
 
 
 def check(data: xr.Dataset) -> str:
-    """The direction of a sweep that the page can show."""
+    """Return the direction of a sweep that the page can show; raise if it can show none."""
     needed = {"eta", "frequency", "amplitude", "impacts_per_period", "end_state"}
     missing = needed - {str(name) for name in data.variables}
     direction = str(data.attrs.get("direction"))
@@ -165,7 +165,7 @@ def check(data: xr.Dataset) -> str:
 
 
 def numbers_of(text: Any) -> NDArray[np.float64]:
-    """Numbers of an attribute, a text such as ``[0.0, 1.0]``."""
+    """Parse the numbers of an attribute, a text such as ``[0.0, 1.0]``."""
     found = np.array([float(part) for part in str(text).strip("[]").split(",")])
     if found.shape != (4,):
         raise ValueError(f"start = {text}")
@@ -173,7 +173,7 @@ def numbers_of(text: Any) -> NDArray[np.float64]:
 
 
 def scales(data: xr.Dataset, structure: Structure) -> NDArray[np.float64]:
-    """Units of the four co-ordinates of each state, shape (n, 4)."""
+    """Return the units of the four co-ordinates of each state, shape (n, 4)."""
     pairs = zip(data.frequency.values, data.amplitude.values, strict=True)
     lengths = np.array([Excitation(frequency=f, amplitude=a).length(structure) for f, a in pairs])
     return lengths[:, None] * np.array([1.0, 1.0, structure.omega, structure.omega])
@@ -182,7 +182,7 @@ def scales(data: xr.Dataset, structure: Structure) -> NDArray[np.float64]:
 def starts(
     ends: NDArray[np.float64], start: NDArray[np.float64], direction: str
 ) -> NDArray[np.float64]:
-    """Where each response begins: at the end of the one before it, shape (n, 4)."""
+    """Return where each response begins: at the end of the one before it, shape (n, 4)."""
     if direction == "up":
         return np.concatenate([start[None], ends[:-1]])
     return np.concatenate([ends[1:], start[None]])

@@ -65,7 +65,7 @@ class Stop:
 
     @property
     def words(self) -> str:
-        """What the page's link of this view says."""
+        """Return the text of the page's link to this view."""
         low, high = self.region
         start = ",".join(f"{value:g}" for value in self.start)
         level = {"g": self.level} if self.level else {}
@@ -75,7 +75,7 @@ class Stop:
 
     @property
     def structure(self) -> Structure:
-        """The structure that moves."""
+        """Return the structure whose motion this view shows."""
         return Structure().replace(**self.changes)
 
 

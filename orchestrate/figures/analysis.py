@@ -72,7 +72,7 @@ def draw(
 
 
 def grid_of(results: Results, rows: int, heights: tuple[float, ...]) -> tuple[Figure, Any]:
-    """Make a figure with a column for each mass whose acceleration is in one of the records.
+    """Make a figure with a column for each measured mass; return it and axes by channel.
 
     Returns
     -------
@@ -238,7 +238,7 @@ def order_reader(order: float, name: str, factor: float) -> Reader:
 def draw_rows(
     results: Results, rows: list[tuple[str, Reader]], heights: tuple[float, ...]
 ) -> tuple[Figure, Any]:
-    """Draw curves over the frequency of a sweep, dashed where it goes down.
+    """Draw curves over a sweep's frequency, dashed downwards; return the figure and its axes.
 
     Parameters
     ----------

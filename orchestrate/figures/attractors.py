@@ -44,8 +44,7 @@ class Kind(NamedTuple):
 
 @styled
 def draw(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw attractors by their largest gap, the share of starts that lead to each, and their
-    number.
+    """Draw attractors by their largest gap, the share of starts that lead to each, and their count.
 
     Parameters
     ----------
@@ -85,9 +84,7 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
 
 
 def kinds_of(data: xr.Dataset) -> tuple[dict[str, Kind], np.ndarray]:
-    """Return kinds of attractors with their styles, the most frequent first, and each one's kind;
-    an empty string where an attractor does not exist.
-    """
+    """Return styles by kind, the most frequent first, and each attractor's kind ("": none)."""
     n, rate = data.multiplicity.values, data.impacts_per_period.values
     words = np.full(n.shape, "", dtype=object)
     for index in zip(*np.nonzero(np.isfinite(n)), strict=True):

@@ -172,7 +172,7 @@ def excitation_texts(data: xr.Dataset, known: Mapping[str, float]) -> dict[str, 
 
 
 def prefix(largest: float) -> tuple[float, str]:
-    """Return the largest SI prefix of a length that leaves it at least 1, with its factor.
+    """Return the factor and the letter of the largest SI prefix that leaves a length at least 1.
 
     Examples
     --------
@@ -191,9 +191,7 @@ def is_number(value: Any) -> bool:
 
 
 def ratios(known: Mapping[str, float]) -> dict[str, float]:
-    """Return the paper's numbers of a structure given in SI, (6) to (8), as far as they are
-    known.
-    """
+    """Return the paper's numbers (6) to (8) of a structure in SI, as far as they are known."""
     if not {"m1", "m2", "k1", "k2", "d1", "d2"} <= set(known):
         return {}
     m1, m2, k1, k2 = (known[name] for name in ("m1", "m2", "k1", "k2"))
@@ -204,9 +202,7 @@ def ratios(known: Mapping[str, float]) -> dict[str, float]:
 
 
 def is_in_si(known: Mapping[str, float]) -> bool:
-    """Return whether a structure has a frequency of its own: the paper's unit of frequency is 1
-    rad/s.
-    """
+    """Return whether a structure has a frequency of its own, not the paper's 1 rad/s."""
     return ratios(known).get("omega", 1.0) != 1.0
 
 
@@ -236,9 +232,7 @@ def kind_of(multiplicity: int) -> str:
 
 
 def orbit_label(multiplicity: float, impacts_per_period: float) -> str:
-    """Format a periodic motion for a legend: "2T, 3 impacts"; empty for one that is not
-    periodic.
-    """
+    """Format a periodic motion for a legend: "2T, 3 impacts"; an empty string if not periodic."""
     n = round(multiplicity)
     if not n:
         return ""

@@ -93,7 +93,7 @@ def draw_map(plane: Axes, data: xr.DataArray, x: np.ndarray, y: np.ndarray) -> N
 
 
 def colour_scale(name: str, values: np.ndarray) -> tuple[np.ndarray, dict[str, Any]]:
-    """Return a quantity's values and their colour scale; on a logarithmic one 0 is NaN."""
+    """Return a quantity's values, 0 as NaN on a logarithmic scale, and the scale as keywords."""
     if name == "multiplicity":
         shown = np.where(values == 0, 9, np.minimum(values, 8))
         return shown, {"vmin": 0.5, "vmax": 9.5, "cmap": ListedColormap(SHADES)}

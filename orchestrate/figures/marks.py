@@ -80,8 +80,7 @@ def cell_index(axis: Axis, values: np.ndarray, count: int) -> np.ndarray:
 def draw_samples(
     axes: Axes, x: np.ndarray, samples: np.ndarray, marks: Marks, label: str = ""
 ) -> None:
-    """Draw samples over their parameter, darker where there are more; the panel has its scales
-    already.
+    """Draw samples over their parameter, darker where there are more; scales are set before.
 
     Parameters
     ----------

@@ -88,9 +88,7 @@ def draw_histories(axes: Mapping[str, Axes], data: xr.Dataset, factor: float, le
 
 
 def time_axis(data: xr.Dataset, motion: xr.Dataset) -> tuple[np.ndarray, str]:
-    """Return the instants of a motion beside an answer as this is shown, and the axis' label:
-    periods, or s.
-    """
+    """Return a motion's instants in the answer's unit, periods or s, and the axis' label."""
     if units_of(data).time == "s":
         return motion.time.values, "time in s"
     return motion.periods_done.values, "time in periods, $t/T$"
@@ -126,9 +124,7 @@ def relative(data: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def draw_spectrum(
     axes: Axes, data: xr.Dataset, masses: Iterable[tuple[str, dict[str, Any]]], highest: float = 20
 ) -> float:
-    """Draw amplitudes of accelerations in the box, impulses of impacts included; return the
-    largest.
-    """
+    """Draw amplitudes of accelerations in the box, impulses included; return the largest."""
     turns, time = data.periods_done.values, data.time.values
     periods = float(turns[-1] - turns[0])
     if periods < MIN_PERIODS:
@@ -163,7 +159,7 @@ def is_line(amplitude: np.ndarray) -> np.ndarray:
 
 
 def spectrum(displacement: np.ndarray, interval: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return frequencies in Hz, and (2 pi f)^2 times the displacement's amplitudes (Hann window).
+    """Return frequencies in Hz, and amplitudes of acceleration from a displacement (Hann window).
 
     An impulse is a kink of the displacement, so it is in them.
     """

@@ -69,7 +69,7 @@ def draw(
 
 
 def time_origin(data: xr.Dataset) -> tuple[float, str]:
-    """Return the time that counts as 0, and its name."""
+    """Return the time in s that counts as 0, and its name."""
     jumps = data.jump_time.values
     known = np.flatnonzero(np.isfinite(jumps))
     if known.size:
@@ -97,9 +97,9 @@ def repeats_after(data: xr.Dataset) -> int:
 
 
 def revolution_means(data: xr.Dataset, count: int = 1) -> dict[str, np.ndarray]:
-    """Return the mean speed of the revolution around each sample, and mean powers of ``count``
-    revolutions, averaged twice: single means would jump when an impact enters a little late. NaN at
-    the ends.
+    """Return running means: speed over one revolution, powers over ``count``; NaN at the ends.
+
+    Means of powers are averaged twice: single ones would jump when an impact enters a little late.
     """
     angle, powers = np.abs(data.angle.values), means_over(data, count)
     twice = {name: smooth_edges(angle, values, count) for name, values in powers.items()}

@@ -80,7 +80,7 @@ EXPECTED = (
 
 
 def plot(*answers: xr.Dataset, title: str = "", part: str = "", units: str | Units = "") -> Figure:
-    """Draw answers.
+    """Draw an answer, or several that belong into one picture; return the figure.
 
     Parameters
     ----------

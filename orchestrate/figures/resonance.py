@@ -104,9 +104,7 @@ def draw_branches(axes: Axes, branches: Sequence[Overlay], name: str, factor: fl
 
 
 def draw_quantity(axes: Axes, data: xr.Dataset, values: xr.DataArray, x: Along) -> None:
-    """Draw one quantity's curves, with the largest value of each structure; bonded there is no
-    gap.
-    """
+    """Draw one quantity's curves, with each structure's largest value; bonded there is no gap."""
     name = str(values.name)
     factor, unit = unit_of(data, values)
     largest: dict[str, tuple[float, float]] = {}

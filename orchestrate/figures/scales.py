@@ -113,7 +113,7 @@ def parameter_scale(data: xr.Dataset, parameter: str) -> tuple[float, str]:
 
 
 def gap_unit(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
-    """Return the unit in m of an axis of gaps, with its label; 0 where it has them over a eta^2.
+    """Return what an axis of gaps is in, in m (0: over a eta^2), and its label.
 
     It is in m for a structure in SI, or where a unit of length is asked for.
     """

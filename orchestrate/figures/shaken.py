@@ -75,7 +75,7 @@ def outline(axes: Axes, bonded: xr.Dataset, felt: float) -> None:
 
 
 def extremes(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return time, least and largest value of equal parts of a signal."""
+    """Divide a signal into equal parts; return each one's time, least and largest value."""
     edges = np.linspace(0, len(time), min(COLUMNS, len(time)) + 1).astype(int)[:-1]
     return time[edges], np.minimum.reduceat(values, edges), np.maximum.reduceat(values, edges)
 

@@ -76,7 +76,7 @@ def styled(draw: Callable[Arguments, Figure]) -> Callable[Arguments, Figure]:
 def panels(
     rows: int, columns: int, size: tuple[float, float], **more: Any
 ) -> tuple[Figure, list[Axes]]:
-    """Make a figure with its axes as a flat list, row by row.
+    """Make a figure of panels; return it and its axes as a flat list, row by row.
 
     Parameters
     ----------

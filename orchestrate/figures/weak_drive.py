@@ -128,9 +128,7 @@ def draw_theory(axes: Sequence[Axes], theory: xr.Dataset) -> None:
 
 
 def without_beginning(data: xr.Dataset) -> xr.Dataset:
-    """Return a run without its spin-up and settling: up to the end of the first constant
-    voltage.
-    """
+    """Return a run from the end of the first constant voltage: no spin-up, no settling."""
     change = np.abs(np.diff(data.voltage.values))
     holds = change <= 1e-3 * change.max(initial=0.0)
     if not holds.any() or holds.all():
@@ -163,7 +161,7 @@ def format_jumps(name: str, data: xr.Dataset) -> str:
 
 
 def outcome(data: xr.Dataset) -> str:
-    """Format whether the resonance is passed."""
+    """Format whether a run passes the resonance."""
     passed = float(data.passage_time)
     if np.isfinite(passed):
         return f"beyond the resonance from {passed:.4g} s on"

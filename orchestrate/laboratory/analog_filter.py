@@ -148,7 +148,7 @@ def steps_of(moments: Floats, times: Floats) -> NDArray[np.int_]:
 
 
 def sums(steps: NDArray[np.int_], values: Complexes, count: int = 0) -> Complexes:
-    """Sum values by step."""
+    """Sum complex values by the index of their step; return ``count`` sums or more."""
     real = np.bincount(steps, values.real, count)
     found: Complexes = real + 1j * np.bincount(steps, values.imag, count)
     return found

@@ -82,7 +82,7 @@ class Columns:
 
 
 def split_heading(heading: str) -> tuple[str, str]:
-    """Split a column's heading into name and unit.
+    """Split a column's heading; return its name and its unit, an empty string without one.
 
     Examples
     --------
@@ -131,7 +131,7 @@ def channels_of(
     columns: Mapping[str, str | int] | Sequence[str | int] | None,
     unit: str | None,
 ) -> tuple[Floats | None, dict[str, Floats]]:
-    """Return the times in s, and the channels in m/s2 by name.
+    """Return a table's times in s, None without such a column, and its channels in m/s2 by name.
 
     Parameters
     ----------

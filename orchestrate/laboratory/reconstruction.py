@@ -159,7 +159,7 @@ class Motion:
         return after
 
     def _contact_force(self, series: Floats) -> tuple[Floats, float]:
-        """Compute the contact force's derivatives (18) from the displacements', and its scale."""
+        """Compute the contact force's derivatives (18) from displacements; return its scale too."""
         s = self.structure
         own = s.k1 * series[:-1, 0] + s.d1 * series[1:, 0]
         other = s.k2 * series[:-1, 1] + s.d2 * series[1:, 1]
@@ -176,7 +176,7 @@ def taylor(series: Floats, lengths: Floats) -> Floats:
 
 
 def first_fall(derivatives: Floats, scale: float, length: float) -> float | None:
-    """Return the first time in [0, length] from which on a Taylor series is below 0.
+    """Return the first time in [0, length] at which a Taylor series falls below 0, None without.
 
     Rounding errors of numbers of the size ``scale`` are not below 0.
     """
@@ -242,7 +242,7 @@ def smooth_parts(motion: Motion, sample_rate: float) -> SmoothParts:
 
 
 def propagate(motion: Motion, nodes: Floats, releases: Floats) -> tuple[Floats, Flags, float]:
-    """Compute states and contact where cells begin, and the distance to the samples.
+    """Return states and contact at the begin of each cell, and the distance to the samples.
 
     All intervals between samples at once: first their first cells, then their second ones.
     """

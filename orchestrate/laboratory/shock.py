@@ -84,7 +84,7 @@ class Shock(ExcitationSignal):
         return Pieces(nodes, np.where(inside[:, None], found.derivatives, 0.0), error)
 
     def _edges(self, accuracy: float) -> tuple[Floats, float]:
-        """Return where pieces begin, s after the pulse's beginning, and their error."""
+        """Return where pieces begin, s after the pulse's beginning, and the error of this."""
         if self.shape == "trapezoid":
             return self.length * np.array([0.0, 0.1, 0.9]), 0.0
         if self.shape == "sawtooth":

@@ -37,11 +37,11 @@ class EvenBasinJob(BasinJob):
     apart: float = 0.2
 
     def needs(self) -> tuple[str, ...]:
-        """Return the names of both results."""
+        """Return the names of the two jobs whose results are needed."""
         return self.attractors, self.sweep
 
     def frequency(self, inputs: Inputs) -> float:
-        """Return the frequency ratio."""
+        """Return the frequency ratio at which two attractors share the starts most evenly."""
         data = inputs[self.attractors].sel(eta=slice(self.low, self.high))
         frequent = np.argsort(-data.share.values, axis=1, kind="stable")[:, :2]
 
@@ -56,9 +56,7 @@ class EvenBasinJob(BasinJob):
         return float(data.eta.values[(clear if clear.max() > 0.0 else share).argmax()])
 
     def plane(self, inputs: Inputs) -> Plane:
-        """Return the plane of starts at that frequency, scaled to the largest gap of the sweep
-        there.
-        """
+        """Return the plane of starts at the frequency, scaled to the sweep's largest gap there."""
         eta = self.frequency(inputs)
         scale = float(inputs[self.sweep].xi_rel_max.sel(eta=eta, method="nearest"))
         x, y = (

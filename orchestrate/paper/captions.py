@@ -36,7 +36,7 @@ CURVES = (
 
 
 def orbit(number: int, e: float, D: float) -> Caption:
-    """Return the words of an orbit diagram."""
+    """Return the caption of an orbit diagram."""
     text = (
         f"Bifurcation diagram for e = {e:g}, D = {D:g}: all stroboscopic samples of the gap, and "
         "below them the impacts per excitation period. The axis is logarithmic down to its grey "

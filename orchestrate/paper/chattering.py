@@ -94,7 +94,7 @@ class ChatteringJob(Job):
         return {"rows": np.array([row], dtype=float)}
 
     def sequence(self, instance: EventInstance, structure: Structure) -> tuple[Impacts, Point]:
-        """Return the impacts from the kick until the masses stick, or for a quarter of a period."""
+        """Return impacts until the masses stick, a quarter period at most, and their point."""
         crest = 0.5 * np.pi
         point = Point(structure, Excitation.nondimensional(self.eta, structure, crest))
         middle = point.length * (1.0 + structure.mu) / (1.0 + structure.kappa)  # (6) without rates

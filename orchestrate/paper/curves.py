@@ -88,7 +88,7 @@ class CurvesJob(Job):
     item: ClassVar[str] = "curve"
 
     def needs(self) -> tuple[str, ...]:
-        """Return the name of the sweeps."""
+        """Return the name of the job of the sweeps, in a tuple."""
         return self.sweeps
 
     @abstractmethod

@@ -104,7 +104,7 @@ class LargestJob(Job):
     seed: int = 23
 
     def needs(self) -> tuple[str, ...]:
-        """Return the names of all three."""
+        """Return the names of the three jobs whose results are needed."""
         return self.exponents, self.settled, self.limits
 
     def count(self) -> int:

@@ -89,7 +89,7 @@ class LimitsJob(Job):
     item: ClassVar[str] = "branch"
 
     def needs(self) -> tuple[str, ...]:
-        """Return the name of the sweeps."""
+        """Return the name of the job of the sweeps, in a tuple."""
         return self.sweeps
 
     def count(self) -> int:

@@ -35,7 +35,7 @@ COUNTS = {
 
 
 def points() -> tuple[Point, ...]:
-    """Return Figure 6's structure at some frequencies, then structures of alike halves."""
+    """Return points: Figure 6's structure at some frequencies, then structures of alike halves."""
     etas = np.round(np.arange(0.45, 8.0, 0.15), 3).tolist()
     alike = [ELASTIC.replace(mu=mu, kappa=kappa) for mu, kappa in ((1, 1), (2, 2), (2, 2.2))]
     points_along = [Point(ELASTIC, Excitation.nondimensional(eta, ELASTIC)) for eta in etas]

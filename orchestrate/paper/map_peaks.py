@@ -45,7 +45,7 @@ class MapPeakJob(DerivedJob):
     periods: int = 10_000
 
     def needs(self) -> tuple[str, ...]:
-        """Return the name of the map."""
+        """Return the name of the job of the map, in a tuple."""
         return (self.map,)
 
     def count(self) -> int:

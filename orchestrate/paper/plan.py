@@ -220,7 +220,7 @@ def curve_jobs(ups: Sequence[SweepJob], resolution: Resolution) -> dict[str, Job
 
 
 def names_of(jobs: Iterable[Job]) -> tuple[str, ...]:
-    """Return their names."""
+    """Return the names of jobs, in their order."""
     return tuple(job.name for job in jobs)
 
 

@@ -33,12 +33,12 @@ class Region(NamedTuple):
 
     @property
     def is_window(self) -> bool:
-        """Whether one orbit is stable in the whole region."""
+        """Return whether one orbit is stable in the whole region."""
         return " to " not in self.name
 
     @property
     def adds_a_period(self) -> bool:
-        """Whether it lies between the windows nT and (n+1)T, each with one impact."""
+        """Return whether it lies between the windows nT and (n+1)T, each with one impact."""
         before, _, after = self.name.partition(" to ")
         return before.endswith("T/1") and after.endswith("T/1")
 

@@ -82,7 +82,7 @@ class Resolution:
 
     @property
     def decides(self) -> bool:
-        """Whether transients have the paper's 500 periods, so that claims can be decided."""
+        """Return whether transients have the paper's 500 periods, which claims need."""
         return self.transient >= 500
 
 

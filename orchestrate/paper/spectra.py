@@ -28,7 +28,7 @@ class PeakSpectraJob(DerivedJob):
     others: tuple[float, ...] = (0.4, 1.13)
 
     def needs(self) -> tuple[str, ...]:
-        """Return the name of the sweep."""
+        """Return the name of the job of the sweep, in a tuple."""
         return (self.sweep,)
 
     def count(self) -> int:

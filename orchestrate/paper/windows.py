@@ -16,7 +16,7 @@ def runs(flags: np.ndarray) -> list[tuple[int, int]]:
 
 
 def longest(flags: np.ndarray) -> tuple[int, int] | None:
-    """Return the longest run, as a pair of indices; None where there is none."""
+    """Return first and last index of the longest run of true flags; None if all are false."""
     return max(runs(flags), key=lambda run: run[1] - run[0], default=None)
 
 
@@ -28,14 +28,14 @@ def simple(sweep: xr.Dataset, n: int) -> np.ndarray:
 
 
 def window(sweep: xr.Dataset, n: int) -> tuple[float, float] | None:
-    """Return first and last eta of the longest window nT with one impact; None without one."""
+    """Return the first and last eta of the longest window nT with one impact; None without one."""
     run = longest(simple(sweep, n))
     etas = sweep.eta.values
     return None if run is None else (float(etas[run[0]]), float(etas[run[1]]))
 
 
 def relative_peak(sweep: xr.Dataset, n: int) -> float | None:
-    """Return the eta of the largest local maximum of the gap in the window of period nT."""
+    """Return the eta of the gap's largest local maximum in the window nT; None without one."""
     limits = window(sweep, n)
     if limits is None:
         return None
@@ -44,6 +44,6 @@ def relative_peak(sweep: xr.Dataset, n: int) -> float | None:
 
 
 def summit(etas: np.ndarray, gaps: np.ndarray) -> float | None:
-    """Return the eta of the largest local maximum that is not at an end, or None."""
+    """Return the eta of the gap's largest local maximum that is not at an end; None without one."""
     inside = np.flatnonzero((gaps[1:-1] > gaps[:-2]) & (gaps[1:-1] >= gaps[2:])) + 1
     return float(etas[inside[np.argmax(gaps[inside])]]) if len(inside) else None

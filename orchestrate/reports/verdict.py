@@ -235,7 +235,7 @@ def assumed(answer: xr.Dataset) -> Section:
 
 
 def guessed(answer: xr.Dataset) -> list[str]:
-    """The guess that the search began with; its masses were kept."""
+    """Return lines on the guess that the search began with; its masses were kept."""
     numbers = {name: float(answer.attrs.get(name, math.nan)) for name in ("m1", "m2", "k1", "k2")}
     if not all(value > 0.0 for value in numbers.values()):
         return []

@@ -69,9 +69,7 @@ class Rates(NamedTuple):
         return Rates(self.stiffness[:2, rows], self.damping[:2, rows])
 
     def acceleration(self, x: Floats, v: Floats) -> Floats:
-        """Return the acceleration in space of each mass, by the rates that act on it; shape (2,
-        ...).
-        """
+        """Return each mass's acceleration in space by the rates that act on it, shape (2, ...)."""
         restoring = self.restoring_acceleration(x, v)
         return restoring if self.push is None else restoring + self.push
 
@@ -82,8 +80,7 @@ class Rates(NamedTuple):
 
 
 def in_touch(states: Floats, gap_offset: ArrayLike = 0.0) -> Flags:
-    """Return whether states are of permanent contact: there the FMU gives both masses the same
-    velocity and no gap.
+    """Return whether states are of permanent contact: the same velocity and no gap.
 
     Parameters
     ----------

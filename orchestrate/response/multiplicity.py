@@ -210,16 +210,12 @@ def decide(states: Floats, tolerance: float) -> Decision:
 
 
 def later_half(states: Floats) -> tuple[Floats, int]:
-    """Return the later half of the states, one row per co-ordinate, and the most periods
-    compared.
-    """
+    """Return the later half of states, a row per co-ordinate, and the most periods to compare."""
     return np.ascontiguousarray(states[len(states) // 2 :].T), max(1, len(states) // 4)
 
 
 def repeating_periods(later: Floats, limit: int, tolerance: float) -> Iterator[int]:
-    """Yield the numbers of periods after which all states agree within a tolerance, the least
-    first.
-    """
+    """Yield numbers of periods after which states agree within a tolerance, the least first."""
     first = np.abs(later[:, 1 : limit + 1] - later[:, :1]).max(axis=0, initial=0.0)
     for n in ((first <= tolerance).nonzero()[0] + 1).tolist():
         if np.abs(later[:, n:] - later[:, :-n]).max() <= tolerance:
@@ -262,8 +258,7 @@ def spread_of(states: Floats, n: int) -> Floats:
 
 
 def remaining_change(later: Floats, n: int, spread: float) -> float:
-    """Estimate how far states n periods apart still go; infinity where their deviation does not
-    die.
+    """Estimate how far states n periods apart still go; infinity if their deviation stays.
 
     Like a geometric series: what shrinks by q over the samples seen and has moved by ``spread``
     still moves by ``spread q/(1 - q)``, less where it turns round.
@@ -274,8 +269,7 @@ def remaining_change(later: Floats, n: int, spread: float) -> float:
 
 
 def contraction(later: Floats, n: int) -> float:
-    """Return the spread of states n periods apart late over that early; 1 if it cannot be
-    determined.
+    """Return the late spread of states n periods apart over the early one; 1 if unknown.
 
     The spread over many periods sees a deviation that turns round, and that is small after one turn
     of n periods by chance, at its full size.
@@ -291,8 +285,7 @@ def contraction(later: Floats, n: int) -> float:
 
 
 def has_persistent_difference(later: Floats, n: int, minimum: float) -> bool:
-    """Return whether states fewer periods apart differ for good: by more than ``minimum``, and
-    steadily.
+    """Return whether states fewer periods apart differ steadily, by more than ``minimum``.
 
     Next to a period doubling the deviation after half the periods dies slowly: while it does,
     nothing tells the response from the doubled one.

@@ -58,7 +58,7 @@ class Motion(NamedTuple):
         return cls(value, slope, np.concatenate([relative, rate + forces[1]]))
 
     def part(self, index: tuple[Any, ...]) -> Motion:
-        """Return the motion at some of the times."""
+        """Return the motion at the times of an index or mask."""
         return self.each(lambda array: array[(slice(None), *index)])
 
     def each(self, change: Callable[[Floats], Floats]) -> Motion:
@@ -73,9 +73,7 @@ class BoxMotion(NamedTuple):
     amplitude: Floats
 
     def forcing_at(self, angle: Floats) -> tuple[Floats, Floats]:
-        """Return the inertial forcing (minus the box's acceleration) at a phase, and its time
-        derivative.
-        """
+        """Return minus the box's acceleration at a phase, m/s2, and its time derivative."""
         return self.forcing(np.sin(angle), np.cos(angle))
 
     def forcing(self, sine: Floats, cosine: Floats) -> tuple[Floats, Floats]:
@@ -84,9 +82,7 @@ class BoxMotion(NamedTuple):
 
 
 def periods_to_sample(multiplicity: int, max_periods: int) -> int:
-    """Return the periods after which a response repeats, at most ``max_periods``; half of them if
-    it does not.
-    """
+    """Return the periods after which a response repeats; half of ``max_periods`` if it does not."""
     return min(multiplicity, max_periods) or (max_periods + 1) // 2
 
 
@@ -198,7 +194,7 @@ def cubic_extrema(left: Motion, right: Motion, width: Floats) -> Floats:
 def include_cubic_extrema(
     largest: Floats, candidates: Flags, left: Motion, right: Motion, width: Floats
 ) -> None:
-    """Update the largest values by extrema inside intervals.
+    """Raise ``largest`` in place by the extrema inside intervals.
 
     Parameters
     ----------
@@ -243,9 +239,7 @@ class ImpactIntervals(NamedTuple):
 def include_impacts(
     largest: Floats, cut: ImpactIntervals, points: Sequence[Point], rates: Rates, drive: BoxMotion
 ) -> None:
-    """Raise the largest values by those at both sides of impacts, and between impacts and
-    samples.
-    """
+    """Raise ``largest`` in place by values at both sides of impacts, and on to the samples."""
     time = first_touch(cut)
     touches = np.isfinite(time)
     cut, time = cut.part(touches), time[touches]
@@ -265,17 +259,14 @@ def include_impacts(
 
 
 def taylor_step(motion: Motion, time: Floats) -> Floats:
-    """Return the states x1, x2, v1, v2 a time later, by the Taylor series up to the third
-    derivative.
-    """
+    """Return states x1, x2, v1, v2 a time later, by Taylor series up to the third derivative."""
     x, v, a, j = motion.value[:2], motion.slope[:2], motion.bend[:2], motion.bend[2:]
     position = x + time * (v + time * (a / 2.0 + time * j / 6.0))
     return np.concatenate([position, v + time * (a + time * j / 2.0)])
 
 
 def first_touch(cut: ImpactIntervals, iterations: int = 20) -> Floats:
-    """Return the time from the left end to where the gap vanishes; NaN if it does not in the
-    interval.
+    """Return the time from the left end to the first touch; NaN if none is in the interval.
 
     Newton's method, and halving where it would leave what is known to hold the root.
     """
@@ -299,9 +290,7 @@ def first_touch(cut: ImpactIntervals, iterations: int = 20) -> Floats:
 
 
 def after_impacts(before: Floats, points: Sequence[Point]) -> Floats:
-    """Return states after impacts, by (15) with ``(1+e)/(1+mu)`` in its second line; shape (4,
-    n).
-    """
+    """Return states after impacts, (4, n), by (15) with ``(1+e)/(1+mu)`` in its second line."""
     m1, m2 = np.array([(p.structure.m1, p.structure.m2) for p in points]).T
     closing = before[2] - before[3]
     e = np.array([p.structure.restitution(v) for p, v in zip(points, closing, strict=True)])

@@ -43,17 +43,17 @@ class Point(NamedTuple):
 
     @property
     def length(self) -> float:
-        """The unit of xi, a eta^2 in m (3)."""
+        """Return the unit of xi, a eta^2 in m (3)."""
         return self.excitation.length(self.structure)
 
     @property
     def speed(self) -> float:
-        """The unit of xi', omega a eta^2 in m/s."""
+        """Return the unit of the velocity xi', omega a eta^2 in m/s."""
         return self.structure.omega * self.length
 
     @property
     def scale(self) -> NDArray[np.float64]:
-        """Units of the four coordinates of a state."""
+        """Return the units of a state's four co-ordinates: m, m, m/s, m/s."""
         length = self.length
         speed = self.structure.omega * length
         return np.array([length, length, speed, speed])
@@ -267,7 +267,7 @@ def checked_structure(structure: object) -> Structure:
 
 
 def numbers(name: str, argument: ArrayLike | None) -> Numbers | None:
-    """Return a number or a list of numbers, each in the parameter's range.
+    """Return a number or a tuple of them, each in the parameter's range; None if not given.
 
     Parameters
     ----------
@@ -355,7 +355,7 @@ def states(name: str, value: ArrayLike | None, structure: Structure) -> NDArray[
 
 
 def state(name: str, value: ArrayLike | None, structure: Structure) -> tuple[float, ...]:
-    """Return one state."""
+    """Return the four numbers of a start state; raise if several states are given."""
     rows = states(name, value, structure)
     if len(rows) != 1:
         raise InputError(f"{name}: {len(rows)} states; expected one")
@@ -418,7 +418,7 @@ class SeriesQuestion(Question, ABC):
 
     @property
     def series(self) -> Series:
-        """Structures and excitations along the parameter."""
+        """Return structures and excitations along the parameter, a point each."""
         return series(
             self.structure, self.eta, self.frequency, self.amplitude, self.over, self.values
         )

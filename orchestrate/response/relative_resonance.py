@@ -43,8 +43,7 @@ def follow_to_peak(
     samples: int = 80,
     tolerance: float = 1e-2,
 ) -> Peak:
-    """Increase eta from a response with one impact per period until the largest gap has passed its
-    peak.
+    """Increase eta until the largest gap of the 1-impact response has passed its peak; return that.
 
     Parameters
     ----------
@@ -81,8 +80,6 @@ def follow_to_peak(
 
 
 def is_simple(response: Response, multiplicity: int, slack: float = 0.1) -> bool:
-    """Return whether a response has the multiplicity and one impact per period, but for
-    ``slack``.
-    """
+    """Return whether a response has a multiplicity and about one impact per period."""
     impacts = response.impacts_per_period * multiplicity
     return response.multiplicity == multiplicity and abs(impacts - 1.0) < slack

@@ -101,9 +101,7 @@ class ResonanceJob(SweepJob):
         }
 
     def threshold(self) -> dict[str, Variable]:
-        """Return the level at which the delaminated structure opens or touches; with a clearance
-        alone.
-        """
+        """Return the level at which the structure opens or touches; empty without a clearance."""
         structure = self.structure.as_delaminated()
         if structure.gap_offset == 0.0:
             return {}
@@ -126,9 +124,7 @@ class ResonanceJob(SweepJob):
         }
 
     def curves(self, data: xr.Dataset) -> list[xr.Dataset]:
-        """Return the curves that differ, by increasing frequency: bonded, both directions are
-        one.
-        """
+        """Return the distinct curves by increasing frequency: up and down, bonded one for both."""
         ordered = data.sortby(self.series.name)
         glued = [ordered.isel(structure=0, direction=0)]
         return glued + [ordered.isel(structure=1, direction=i) for i in range(data.direction.size)]
@@ -212,8 +208,7 @@ def resonance(
     jump: float = 0.15,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Compute resonance curves of a structure, bonded against delaminated, with their peaks and
-    jumps.
+    """Compute resonance curves, bonded against delaminated, with their peaks and jumps.
 
     Parameters
     ----------

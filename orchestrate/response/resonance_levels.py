@@ -62,7 +62,7 @@ class ResonanceLevelsJob(Question):
 
     @cached_property
     def each(self) -> tuple[ResonanceJob, ...]:
-        """The curves at one level after the other."""
+        """Return one job per level, in the order of the levels."""
         own = {field.name: getattr(self, field.name) for field in fields(self)}
         own.pop("level")
         return tuple(

@@ -58,8 +58,9 @@ class Response:
 
     @cached_property
     def multiplicity(self) -> int:
-        """Least n such that the state repeats after n periods within the tolerance; 0: none.
-        :meth:`decision` says how reliable it is.
+        """Return the least number of periods that the state repeats after; 0: none.
+
+        Within the tolerance; :meth:`decision` says how reliable it is.
         """
         return self.repetition(self.tolerance).multiplicity
 
@@ -78,7 +79,7 @@ class Response:
 
     @cached_property
     def end(self) -> tuple[float, ...]:
-        """State at the last sample, from which a next response starts."""
+        """Return the state at the last sample, from which a next response starts."""
         return round_state(self.samples[-1], self.gap_offset)
 
 
@@ -174,7 +175,7 @@ def respond(
 def sample(
     instance: Instance, period: float, transient: int, samples: int
 ) -> tuple[NDArray[np.float64], float]:
-    """Take stroboscopic samples after the transient, in as few steps as the FMU has room for.
+    """Take stroboscopic samples after the transient; return the states and the largest gap between.
 
     Returns
     -------

@@ -70,7 +70,7 @@ class SimulateJob(Question):
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
     ) -> Table:
-        """Compute the motion."""
+        """Compute the motion and its impacts by the FMU; return them as a table."""
         grid = self.grid()
         with EventInstance(fmus[OSCILLATOR]) as instance:
             begin(instance, *items[0], self.start)

@@ -36,7 +36,7 @@ Floats = NDArray[np.float64]
 
 
 def amplitude_spectrum(signal: ArrayLike, interval: float) -> tuple[Floats, Floats]:
-    """Return the amplitude spectrum through a Hann window: a sine of amplitude A shows as A.
+    """Return frequencies in rad/s and amplitudes (Hann window): a sine of amplitude A shows as A.
 
     Parameters
     ----------
@@ -122,9 +122,7 @@ class SpectraJob(SeriesQuestion):
         return {"acceleration": np.array(amplitudes)}
 
     def spectrum(self, instance: Instance, point: Point) -> tuple[Floats, Floats]:
-        """Return spectra of both masses, shape (2, lines): with impulses, and of the acceleration
-        between them.
-        """
+        """Return both masses' spectra, (2, lines) each: with impulses, and without them."""
         span, count = point.excitation.period, self.periods * self.points
         first, last = self.transient * span, (self.transient + self.periods) * span
         begin(instance, *point, REST)

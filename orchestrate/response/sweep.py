@@ -76,9 +76,7 @@ class SweepJob(SeriesQuestion):
             )
 
     def orders(self) -> list[NDArray[np.intp]]:
-        """Return indices of the values in the order in which they are computed, for each
-        direction.
-        """
+        """Return the indices of the values in the order of computing, for each direction."""
         up = np.argsort(self.series.values, kind="stable")
         known = {"up": [up], "down": [up[::-1]], "both": [up, up[::-1]]}
         return known.get(self.direction) or [np.arange(len(up))]

@@ -90,9 +90,7 @@ def threshold_variables(structure: Structure, along: str, frequency: Floats) -> 
 def lowest_variables(
     structure: Structure, frequency: Floats, amplitudes: Floats
 ) -> dict[str, Variable]:
-    """Return the lowest threshold between some frequencies; none of a single one, and none where
-    no level opens or joins the halves, or any does.
-    """
+    """Return the lowest threshold between some frequencies; empty where there is none to find."""
     low, high = float(frequency.min()), float(frequency.max())
     if not (low < high and np.isfinite(amplitudes).all() and (amplitudes > 0.0).all()):
         return {}
@@ -107,7 +105,7 @@ def lowest_variables(
 
 
 def lowest_threshold(structure: Structure, low: float, high: float) -> tuple[float, float]:
-    """Return where the threshold, as acceleration of the box, is lowest between two frequencies.
+    """Find the lowest threshold between two frequencies; return its rad/s, and the box's m/s2.
 
     The curve is a smooth one with a valley at each natural frequency of the linear response, as
     narrow as that is damped: its minima are bracketed on a grid with these frequencies in it, and

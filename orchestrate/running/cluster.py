@@ -22,9 +22,7 @@ RETRIES = 3  # a chunk whose worker is lost is computed by others
 
 
 def is_worth_logging(record: logging.LogRecord) -> bool:
-    """Decide whether a line of Dask's log stays; lost connections are reported by our own
-    exceptions.
-    """
+    """Return whether a line of Dask's log stays: not if our own exceptions report it."""
     kind = record.exc_info[0] if record.exc_info else None
     lost = kind is not None and issubclass(kind, CONNECTION_ERRORS)
     message = record.getMessage()
@@ -105,9 +103,7 @@ class Cluster:
 
 
 async def check_scheduler(address: str) -> None:
-    """Check that Dask answers at an address; its own client waits for ever for one that does
-    not.
-    """
+    """Raise unless Dask answers at an address; its own client would wait for ever."""
     from dask.utils import parse_timedelta
     from distributed.comm import connect
     from distributed.security import Security

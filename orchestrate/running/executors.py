@@ -38,7 +38,7 @@ def compute(
     warmup_items: Sequence[Any],
     code: Mapping[str, str] | None = None,
 ) -> tuple[bytes, Table]:
-    """Compute one chunk, in any process; to other machines FMUs travel as bytes.
+    """Compute a chunk, on other machines by FMUs sent as bytes; return its start state and table.
 
     Parameters
     ----------
@@ -99,11 +99,11 @@ class Workers(Protocol):
 
     @property
     def remote(self) -> bool:
-        """Whether the workers share no disk with this process."""
+        """Return whether the workers share no disk with this process."""
 
     @property
     def losses(self) -> Mapping[type[BaseException], str]:
-        """Exceptions that show that workers are lost, each with a text for the user."""
+        """Return the exceptions that mean lost workers, each with a text for the user."""
 
     def max_in_flight(self) -> int:
         """Return how many chunks should be submitted at once."""
@@ -179,7 +179,7 @@ class SigintMaskedExecutor(Executor):
             return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """End the processes; ``cancel_futures`` kills them in the middle of their work."""
+        """Shut down the processes; ``cancel_futures`` kills them in the middle of their work."""
         self._pool.shutdown(wait=wait, kill_workers=cancel_futures)
 
 
@@ -213,7 +213,7 @@ def initialize_worker(parent: int) -> None:
 
 @contextmanager
 def workers_ended_on_error(workers: Workers) -> Iterator[None]:
-    """End the workers if something is raised; a lost worker becomes a ``WorkerError``."""
+    """Run a block; if it raises, end the workers, and turn a lost one into ``WorkerError``."""
     try:
         yield
     except BaseException as error:

@@ -62,9 +62,7 @@ def write(data: xr.Dataset, path: Path) -> list[Path]:
 
 
 def tables(data: xr.Dataset) -> dict[str, pd.DataFrame]:
-    """Return tables keyed by their dimensions, in the order of the variables; units in the
-    headers.
-    """
+    """Return tables keyed by their dimensions, in the variables' order, units in headers."""
     data = as_shown(data)
     groups: dict[tuple[str, ...], list[str]] = {}
     for name, array in data.data_vars.items():
@@ -112,7 +110,7 @@ def column_heading(name: str, data: xr.Dataset) -> str:
 
 
 def write_csv(data: xr.Dataset, path: Path) -> list[Path]:
-    """Write one file per table."""
+    """Write each table of a result as a CSV file; return their paths."""
     frames = tables(data)
     written = []
     for name, frame in frames.items():

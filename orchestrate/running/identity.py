@@ -46,7 +46,7 @@ Identity = dict[str, Any]
 
 
 def identity_of(job: Job, fmus: Mapping[str, Fmu], known: Mapping[str, Identity]) -> Identity:
-    """Return the identity of a job's result.
+    """Return what identifies a job's result: question, digests of the code and of the FMUs.
 
     Parameters
     ----------

@@ -83,7 +83,7 @@ class Job(ABC):
 
     @abstractmethod
     def work(self, fmus: Mapping[str, Path], items: Sequence[Any], previous: Table | None) -> Table:
-        """Compute a chunk, in a worker.
+        """Compute a chunk's items, in a worker, by the FMUs; return their results as a table.
 
         Parameters
         ----------
@@ -100,21 +100,21 @@ class Job(ABC):
         """
 
     def progress_note(self, first: int) -> str:
-        """Return a note for the progress bar while a chunk does other work than counting items;
-        empty if it does not.
-        """
+        """Return a note for the progress bar while a chunk counts no items; else ``""``."""
         return ""
 
     def boundary_state(self, table: Table) -> bytes:
-        """Return the bytes of the state a chunk starts from: the last entries of the chunk before.
-        Needed if ``warmup_items`` is set.
+        """Return the bytes of the state a chunk starts from; needed if ``warmup_items`` is set.
+
+        It is in the last entries of the chunk before.
         """
         raise NotImplementedError
 
     @abstractmethod
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return the result, from all chunks concatenated along their first axis; the last chunk of
-        a job that ``gathers`` adds arrays of other names.
+        """Return the result, from all chunks concatenated along their first axis.
+
+        The last chunk of a job that ``gathers`` adds arrays of other names.
         """
 
     def parameters(self) -> dict[str, Any]:
@@ -150,9 +150,7 @@ def last_entries(table: Table) -> Table:
 
 
 def plain(value: Any) -> Any:
-    """Return a value as JSON can hold it; a long list is summarized by its ends, count and
-    digest.
-    """
+    """Return a value as JSON can hold it; a long list by its ends, count and digest."""
     if is_dataclass(value) and not isinstance(value, type):
         return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
     if isinstance(value, Mapping):
@@ -165,9 +163,7 @@ def plain(value: Any) -> Any:
 
 
 def summarize_list(values: Any) -> Any:
-    """Return a list for JSON: unchanged if it is short or holds more than numbers, else a
-    summary.
-    """
+    """Return a list for JSON: a summary if it is long and of numbers, else the list itself."""
     parts = list(values)
     if len(parts) <= MAX_LISTED or not all(
         isinstance(part, (int, float, np.number)) for part in parts

@@ -38,7 +38,7 @@ def discard(path: Path) -> None:
 
 
 def pack(table: Table) -> bytes:
-    """Return arrays as bytes."""
+    """Return a table of arrays as bytes."""
     stream = io.BytesIO()
     np.savez(stream, **table)  # type: ignore[arg-type]
     return stream.getvalue()
@@ -111,7 +111,7 @@ class Journal:
         self._db.execute("COMMIT")
 
     def _read(self) -> tuple[Identity, str]:
-        """Return the identity and the time of the beginning."""
+        """Return the stored identity, and when the journal was begun."""
         if self._db.execute("PRAGMA quick_check(1)").fetchall() != [("ok",)]:
             raise ValueError("damaged")
         entries = dict(self._db.execute("SELECT name, text FROM about").fetchall())
@@ -148,7 +148,7 @@ class Journal:
         return not self._query("SELECT 1 FROM chunks LIMIT 1")
 
     def get(self, index: int) -> Table:
-        """Return one chunk."""
+        """Return a stored chunk as a table; raise where its bytes are damaged."""
         rows = self._query("SELECT sha256, CAST(data AS BLOB) FROM chunks WHERE i = ?", index)
         for digest, data in rows:
             if isinstance(data, bytes) and self._row_checksum(index, data) == digest:
@@ -187,7 +187,7 @@ class Journal:
 
 
 def error_text(error: Exception) -> str:
-    """Return why a file cannot be opened."""
+    """Return why a journal's file cannot be opened, as one line."""
     return str(getattr(error, "strerror", None) or error)
 
 

@@ -93,9 +93,7 @@ class RunOptions:
         return self.jobs or available_cores()
 
     def path(self, name: str) -> Path | None:
-        """Return the result's file: ``store`` itself, or a file of that name where it is a
-        folder.
-        """
+        """Return the result's file, in ``store`` where that is a folder; None without ``store``."""
         if self.store is None:
             return None
         path = Path(self.store)

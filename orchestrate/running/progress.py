@@ -112,7 +112,7 @@ class Progress:
 
     @property
     def complete(self) -> bool:
-        """Whether the job's result is complete."""
+        """Return whether the job's result is complete."""
         return self.result is not None
 
     def done(self) -> int:
@@ -132,9 +132,7 @@ class Progress:
     # -- what may be computed next ----------------------------------------------------------------
 
     def next_task(self) -> Task | None:
-        """Return what to compute now: first certain chunks, then continuations of guesses, then a
-        guess.
-        """
+        """Return what to compute now, a chunk with its start; None if nothing can be begun."""
         for find in (self.certain_tasks, self.continuing_tasks, self.gap_task):
             task = next(find(), None)
             if task is not None:
@@ -146,14 +144,15 @@ class Progress:
         return not (index in self.done_chunks or index in self.under_way or index in self.guesses)
 
     def certain_tasks(self) -> Iterator[Task]:
-        """Yield the chunks whose start is known."""
+        """Yield the chunks whose start is known and that nobody computes yet."""
         for chunk in self.chunks:
             if self.is_certain(chunk):
                 yield Task(chunk, self.items_of(chunk), self.previous_table(chunk), (), False)
 
     def previous_table(self, chunk: Chunk) -> Table | None:
-        """Return what a chunk starts from: the last entries of the preceding chunk; all preceding
-        tables for a final or gathering chunk; None where it starts by itself.
+        """Return the last entries of the chunk before; None for a chunk that starts by itself.
+
+        A final or gathering chunk gets all preceding tables.
         """
         if chunk.after is None:
             return None
@@ -176,8 +175,9 @@ class Progress:
         return chunk.after in self.done_chunks
 
     def continuing_tasks(self) -> Iterator[Task]:
-        """Yield chunks that continue a guessed one, in place of guesses that started elsewhere: a
-        run of chunks is more likely to be right as a whole.
+        """Yield chunks that continue guessed ones, in place of guesses that started elsewhere.
+
+        A run of chunks is more likely to be right as a whole.
         """
         for index in sorted(self.guesses):
             following = index + 1
@@ -276,9 +276,7 @@ class Progress:
         self.inputs, self.items = {}, None
 
     def table(self) -> Table:
-        """Return all chunks concatenated; the last one of a job that gathers has arrays of its
-        own.
-        """
+        """Return all chunks concatenated, and what the last one of a gathering job adds."""
         last = len(self.chunks) - 1
         if self.job.gathers:
             return {**self.store.table(last), **self.store.get(last)}

@@ -269,9 +269,7 @@ def progress_bar(shown: bool) -> Any:
 
 
 def gather(jobs: Iterable[Job], running: Mapping[str, object], find: FmuFinder) -> list[xr.Dataset]:
-    """Compute several jobs side by side with common workers; return their results in the same
-    order.
-    """
+    """Compute jobs side by side with common workers; return their results in the same order."""
     listed = list(jobs)
     results = Runner(listed, RunOptions.from_keywords(running), find).run()
     return [results[job.name] for job in listed]

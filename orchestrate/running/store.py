@@ -67,7 +67,7 @@ class Store(ABC):
 
     @abstractmethod
     def get(self, index: int) -> Table:
-        """Return one chunk."""
+        """Return a stored chunk as a table."""
 
     @abstractmethod
     def put(self, index: int, table: Table) -> None:
@@ -79,7 +79,7 @@ class Store(ABC):
 
     @abstractmethod
     def finish(self, dataset: xr.Dataset) -> xr.Dataset:
-        """Store the result and delete the chunks."""
+        """Write the result, delete the chunks; return the result as it is stored."""
 
     @abstractmethod
     def close(self) -> None:
@@ -108,7 +108,7 @@ class Memory(Store):
         return set(self._chunks)
 
     def get(self, index: int) -> Table:
-        """Return one chunk."""
+        """Return a stored chunk as a table."""
         return self._chunks[index]
 
     def put(self, index: int, table: Table) -> None:
@@ -120,7 +120,7 @@ class Memory(Store):
         del self._chunks[index]
 
     def finish(self, dataset: xr.Dataset) -> xr.Dataset:
-        """Store the result and delete the chunks."""
+        """Keep the result, forget the chunks, and return the result."""
         self._chunks.clear()
         self._result = dataset
         return dataset
@@ -234,7 +234,7 @@ class Disk(Store):
         return self.journal.indices()
 
     def get(self, index: int) -> Table:
-        """Return one chunk."""
+        """Return a stored chunk as a table."""
         return self.journal.get(index)
 
     def put(self, index: int, table: Table) -> None:

@@ -194,8 +194,7 @@ class Drive(Described):
 
     @classmethod
     def from_file(cls, path: str | PathLike[str], structure: Structure | None = None) -> Drive:
-        """Read the ``[motor]`` and ``[box]`` of a TOML file or of a set that comes with the
-        package.
+        """Read ``[motor]`` and ``[box]`` of a TOML file or of a set that comes with the package.
 
         Parameters
         ----------
@@ -256,9 +255,7 @@ class Drive(Described):
 def torque_line(
     rated_voltage: float, no_load_speed: float, stall_torque: float
 ) -> tuple[float, float]:
-    """Return K in N m/A and R_a in Ohm of the line between a datasheet's two points, V, rad/s and N
-    m.
-    """
+    """Return K in N m/A and R_a in Ohm of the line through a motor's no-load and stall points."""
     checked = {
         "rated_voltage": rated_voltage,
         "no_load_speed": no_load_speed,

@@ -54,8 +54,7 @@ class Excitation(Described):
 
     @classmethod
     def nondimensional(cls, eta: float, structure: Structure, phase: float = 0.0) -> Excitation:
-        """Return the excitation of frequency ratio ``eta`` with the amplitude 1/eta^2 m, so that xi
-        of (3) is x in metres.
+        """Return the excitation of ratio ``eta`` and amplitude 1/eta^2 m: xi of (3) is x in m.
 
         Examples
         --------
@@ -97,8 +96,7 @@ class Excitation(Described):
         return 1.0 if math.isclose(length, 1.0, rel_tol=2e-15) else length
 
     def check(self, structure: Structure, least: float = 1e-12) -> None:
-        """Check that the structure has a periodic response with digits to spare: none without
-        damping at a resonance, where amplitudes grow with time.
+        """Raise unless the response is bounded with digits to spare: no undamped resonance.
 
         Parameters
         ----------

@@ -71,7 +71,7 @@ def resolve(source: str | PathLike[str]) -> Path:
 
 
 def read(source: str | PathLike[str], structure: Structure | None = None) -> dict[str, Described]:
-    """Read everything that a file describes.
+    """Read a TOML file; return structure, excitation and drive by name, those that it has.
 
     Parameters
     ----------

@@ -41,13 +41,13 @@ class Quantity:
 
     @property
     def dimension(self) -> dict[str, int]:
-        """Exponents of kg, m and s in the unit."""
+        """Return the exponents of kg, m and s in the unit."""
         exponents = UNITS[self.unit]
         return {base: exponents.get(base, 0) for base in ("kg", "m", "s")}
 
     @property
     def expected(self) -> str:
-        """The range in words."""
+        """Return the range as words for an error message."""
         unit = "" if self.unit == "1" else f" {self.unit}"
         return f"{self.minimum:g} <= {self.name} <= {self.maximum:g}{unit}"
 
@@ -73,14 +73,12 @@ class Quantity:
 
 
 def plain(value: Any) -> Any:
-    """Return the value of an array or labelled array without dimensions; anything else
-    unchanged.
-    """
+    """Return the value of an array without dimensions; anything else unchanged."""
     return value.item() if getattr(value, "shape", None) == () else value
 
 
 def check_flag(name: str, value: Any) -> bool:
-    """Return ``value`` as a bool; raise if it is none.
+    """Return ``value`` as True or False; raise if it is neither.
 
     Raises
     ------

@@ -402,8 +402,9 @@ class Structure(Described):
 
     @classmethod
     def from_attributes(cls, attributes: Mapping[str, Any]) -> Structure:
-        """Return the structure that the attributes of an answer describe; what was added later, and
-        an older file has not, is at its default.
+        """Return the structure that an answer's attributes describe.
+
+        What was added later, and an older file has not, is at its default.
 
         Raises
         ------
@@ -492,9 +493,7 @@ class Structure(Described):
 
     @property
     def alike(self) -> bool:
-        """Whether both oscillators move alike, so that masses that start together never
-        separate.
-        """
+        """Return whether both oscillators move alike: masses that start together stay so."""
         return self.kappa == self.mu and self.D1 == self.D2
 
     @property
@@ -509,14 +508,12 @@ class Structure(Described):
 
     @property
     def at_rest(self) -> tuple[float, float]:
-        """Displacements x1, x2 at rest, m: -F/k1 and F/k2 with the preload F."""
+        """Return displacements x1, x2 at rest, m: -F/k1 and F/k2 with the preload F."""
         return 0.0 - self.preload / self.k1, self.preload / self.k2
 
     @property
     def has_scale(self) -> bool:
-        """Whether a motion at twice the amplitude is another one: a clearance, or a restitution
-        that depends on the speed.
-        """
+        """Return whether twice the amplitude is another motion: by a clearance or e(v)."""
         return any(getattr(self, name) != 0.0 for name in OF_LENGTH)
 
     def restitution(self, closing: Values) -> Values:
@@ -610,9 +607,7 @@ class Structure(Described):
         return fixed
 
     def _by_halves(self, changes: dict[str, float]) -> dict[str, float]:
-        """Return the SI values that change where frequencies and damping ratios of halves are
-        set.
-        """
+        """Return the SI values that change if frequencies and damping ratios of halves are set."""
         new = {}
         for half, mass in (("1", self.m1), ("2", self.m2)):
             f, zeta = f"f{half}", f"zeta{half}"
@@ -644,7 +639,7 @@ class Structure(Described):
         return new
 
     def parameters(self) -> dict[str, float | bool]:
-        """Return the FMU's start values."""
+        """Return all parameters by name in SI, as the FMU takes them at its start."""
         return dict(vars(self))
 
     def _pair(self, letter: str) -> str:
@@ -653,9 +648,7 @@ class Structure(Described):
         return f"{letter}{first}-{second}"
 
     def _is_by_halves(self) -> bool:
-        """Return whether frequencies and damping ratios of the halves give the structure to the
-        last bit.
-        """
+        """Return whether the halves' frequencies and damping ratios give it to the last bit."""
         numbers = {name: self.get(name) for name in HALVES}
         return all(getattr(self, name) == value for name, value in self._by_halves(numbers).items())
 

@@ -46,9 +46,7 @@ class Place(NamedTuple):
 
 
 def mechanics(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomial, Polynomial]:
-    """Return springs and dampers of the masses, their inertia, and the box alone: polynomials in
-    s.
-    """
+    """Return polynomials in s: masses' springs and dampers, their inertia, and the box alone."""
     beta, mu = drive.beta(structure), structure.mu
     damping = 2.0 * beta * (structure.D1 + mu * structure.D2)
     pull = Polynomial([beta * (1.0 + structure.kappa), damping])
@@ -59,8 +57,7 @@ def mechanics(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomia
 
 
 def transfer(structure: Structure, drive: Drive, Omega: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """Return the transfer function from a force on the box to its position, bonded masses included,
-    and the masses' relative displacement over the box's.
+    """Return two transfer functions: force on the box to its position, that to the bonded masses'.
 
     Parameters
     ----------
@@ -94,9 +91,7 @@ def amplitude(structure: Structure, drive: Drive, Omega: ArrayLike) -> np.ndarra
 
 
 def resonance(structure: Structure, drive: Drive) -> float:
-    """Return the speed over omega at which the bonded masses resonate in the box: its faster
-    frequency.
-    """
+    """Return the speed over omega at which bonded masses resonate in the box, the faster one."""
     return float(np.abs(free_roots(structure, drive)).max())
 
 
@@ -241,7 +236,7 @@ def torus_points(
 
 
 def losses(structure: Structure, drive: Drive) -> tuple[Place | None, Place | None]:
-    """Return where slow ramps up and down lose their stable motion: at a fold or before it.
+    """Return where slow ramps up, and down, lose their stable motion; None for never.
 
     Returns
     -------
@@ -260,7 +255,7 @@ def losses(structure: Structure, drive: Drive) -> tuple[Place | None, Place | No
 
 
 def stability(structure: Structure, drive: Drive) -> tuple[list[Place], list[bool]]:
-    """Return all folds and Neimark-Sacker points by their speeds, and which motions are stable.
+    """Return folds and Neimark-Sacker points by speed, and flags of stability around them.
 
     Returns
     -------

@@ -202,7 +202,7 @@ def threshold_voltage(
     start: Callable[[float], Outcome],
     tolerance: float,
 ) -> tuple[End, End]:
-    """Return the highest voltage that captures, and the lowest above it from which all tried pass.
+    """Return two ends by bisection: the highest voltage captured, and the lowest passing above it.
 
     Bisection brings them together to ``tolerance``. An undecided start is neither: the interval
     that is left then is wider than that, and both its sides are brought close to it.
@@ -259,7 +259,7 @@ def axis(over: str, values: ArrayLike) -> Variable:
 
 
 def voltages_of(voltage: tuple[float, float], count: int) -> tuple[float, ...]:
-    """Return voltages at equal distances."""
+    """Return ``count`` voltages at equal distances between two ends, V."""
     try:
         low, high = (float(value) for value in voltage)
     except (TypeError, ValueError):

@@ -112,9 +112,7 @@ class CompiledMaster(Master):
         h: float | None = None,
         kept: np.ndarray | None = None,
     ) -> int:
-        """Do intervals, as :meth:`.master.Master.run`; an ``array`` of voltages is used without a
-        copy.
-        """
+        """Do intervals as :meth:`.master.Master.run`; return how many. No array is copied."""
         buffer = voltages if isinstance(voltages, array) else array("d", voltages)
         if kept is not None:
             rows = len(buffer), len(self._memory)

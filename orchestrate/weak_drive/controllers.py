@@ -110,15 +110,13 @@ class SpeedControl(Controller):
                 check(name, getattr(self, name), unit, low=0.0, exclusive=True)
 
     def begin(self, speed: float) -> ControllerState:
-        """Return the speed wanted at first, and the integral of the deviation over the reset
-        time.
-        """
+        """Return the controller's state at the start: the first speed wanted, and no integral."""
         return (self.speed if self.rise == math.inf else speed), 0.0
 
     def update(
         self, measured: Measurement, state: ControllerState
     ) -> tuple[float, ControllerState]:
-        """Return proportional and integral part, limited."""
+        """Return proportional and integral part as one limited voltage, V, and the next state."""
         setpoint, integral = state
         deviation = setpoint - measured.speed
         grown = integral + deviation * measured.h / self.reset_time
@@ -184,9 +182,7 @@ class SpeedGradient(Controller):
     def update(
         self, measured: Measurement, state: ControllerState
     ) -> tuple[float, ControllerState]:
-        """Return the full voltage while the rotor is faster than its running mean, else the lower
-        part.
-        """
+        """Return the voltage, V, full while the rotor beats its running mean; and the state."""
         (mean,) = state
         mean -= (measured.speed - mean) * math.expm1(-measured.h / self.filter_time)
         direction = math.copysign(1.0, measured.available)

@@ -148,7 +148,7 @@ class CoupleJob(CoupledRun):
         return np.array(verdicts)
 
     def sweep_leg(self, table: Table, up: bool) -> tuple[SweepLeg, np.ndarray]:
-        """Return the revolutions on which the voltage goes up or down, and their rows."""
+        """Return the revolutions on which the voltage goes up or down, and their row indices."""
         eta0 = np.abs(table["voltage"]) / self.drive.volts(self.structure)
         Omega = np.abs(table["speed"]) / self.structure.omega
         trend = self.schedule.trend(table["time"])
@@ -167,7 +167,7 @@ class CoupleJob(CoupledRun):
         return Passing(row, before, after, rows_in_leg.look, half)
 
     def doubt(self, table: Table, up: bool) -> tuple[Passing, tuple[int, int]] | None:
-        """Return a doubtful passing in steps, and the first and last step of its sweep."""
+        """Return a doubtful passing, and first and last step of its sweep; None if it is clear."""
         passing = None if self.control else self.passing(table, up)
         theory = theories(self.structure, self.drive)[UPWARD.index(up)]
         if passing is None or not is_doubtful(passing, self.structure.bonded, theory):
@@ -180,7 +180,7 @@ class CoupleJob(CoupledRun):
         return Passing(row, before, after, passing.look, float(row)), (first, last)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return all revolutions, and the jumps.
+        """Return all revolutions and the jumps up and down as a dataset with units.
 
         Raises
         ------
@@ -221,9 +221,7 @@ class CoupleJob(CoupledRun):
         return dataset.assign_coords(jump=("jump", ["up", "down"], names))
 
     def jumps(self, table: Table) -> dict[str, Variable]:
-        """Return the jumps up and down, or why there is none; if bonded, the averaged theory's
-        too.
-        """
+        """Return the jumps up and down, or why there is none; if bonded, with the theory's."""
         held = [Verdict(int(row[0]), *row[1:]) for row in table["verdicts"][-1]]
         theory, volts = theories(self.structure, self.drive), self.drive.volts(self.structure)
         final = list(held)
@@ -249,9 +247,7 @@ class CoupleJob(CoupledRun):
         return columns | held_columns(final)
 
     def theory(self, jumps: np.ndarray) -> dict[str, Variable]:
-        """Return where the averaged theory loses the motion of the bonded structure, and by
-        what.
-        """
+        """Return where and by what the averaged theory loses the bonded structure's motion."""
         structure, volts = self.structure, self.drive.volts(self.structure)
         text = "how late the jump comes on the ramp, by the averaged theory (bonded only)"
         late = {"units": "V", "long_name": text}
@@ -411,9 +407,7 @@ def scheme_of(
     tolerance: float | None = None,
     sampled: bool = False,
 ) -> Scheme:
-    """Return a scheme from the arguments of :func:`couple`; ``sampled`` where each step is a
-    sample.
-    """
+    """Return a scheme from arguments of :func:`couple`; ``sampled``: each step is a sample."""
     omega = structure.omega
     if tolerance is None:
         controlled = step is None and Scheme(algorithm).goes_back

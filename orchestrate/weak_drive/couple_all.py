@@ -34,9 +34,7 @@ System = tuple[Structure, Drive]
 
 
 def ends_of(structure: Structure, drive: Drive) -> tuple[float, float]:
-    """Return voltages over K omega below the resonances, bonded and delaminated, and past them and
-    the jump up, by the averaged theory.
-    """
+    """Return voltages over K omega, by the averaged theory: below all resonances, and past all."""
     low, high = own_resonance.resonances(structure, drive)
     first, last = (
         float(averaged.no_load_speed(structure, drive, speed))

@@ -89,7 +89,7 @@ class DriveSpectraJob(Job):
         return {"acceleration": np.array(spectra), "speed": np.array(speeds)}
 
     def record(self, fmus: Mapping[str, Path], structure: Structure) -> tuple[np.ndarray, float]:
-        """Return displacements of both masses in space, shape (2, samples), and the mean speed."""
+        """Return both masses' displacements in space, (2, samples), m, and mean speed, rad/s."""
         scheme = scheme_of(structure, self.step, "rollback", 0.0)
         job = couple_job(structure, self.drive, self.approach, scheme)
         steps = range(math.ceil((self.approach.duration + self.hold) / self.step))
@@ -104,8 +104,9 @@ class DriveSpectraJob(Job):
             return self.sample(run, TURN / speed / self.points), float(speed)
 
     def sample(self, run: Run, interval: float) -> np.ndarray:
-        """Return displacements of both masses in space at equal times, from rest: a preload's own
-        would leak into the lowest lines.
+        """Return both masses' displacements in space at equal times, from those at rest, m.
+
+        A preload's own displacements would leak into the lowest lines.
         """
         count = self.revolutions * self.points
         kept = np.empty((count, len(run.master.get_state())))
@@ -186,8 +187,7 @@ def drive_spectra(
     highest: float = 12.0,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Compute amplitude spectra of the masses' accelerations in space, shaken by a motor of limited
-    power.
+    """Compute spectra of the masses' accelerations in space, shaken by a motor of limited power.
 
     Parameters
     ----------

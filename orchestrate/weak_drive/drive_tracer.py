@@ -144,7 +144,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         return motion_at(self.shooter, root, self.stepper.root.tangent)
 
     def limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
-        """Return the limits of the speed."""
+        """Return the index of the speed among the unknowns, and its limits in a list."""
         return self.shooter.size + 1, [self.speeds]
 
     def go_on_from(self, point: Motion) -> Motion:
@@ -181,7 +181,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         return {"xtol": ACCURACY * length}
 
     def end_before(self, step: BranchStep[Motion]) -> tuple[str, Iterable[Motion]]:
-        """Return why a branch ends where a motion of half the period is passed; else empty.
+        """Return a reason where a motion of half the period is passed, else ``""``; no points.
 
         Beyond it come the same motions again, half a period later.
         """
@@ -189,7 +189,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         return (HALVED if self.half_period_change @ change < 0.0 else ""), ()
 
     def end_without_root(self, segment: BranchSegment[Motion]) -> None:
-        """Return why a branch ends where Newton's method finds no motion further on.
+        """Set why a segment ends where Newton's method fails; drop motions crowded there.
 
         Steps are short there: one motion stands for all that are too near to be seen in a plot.
         """
@@ -259,8 +259,7 @@ def double_period(shooter: Shooter, flip: Motion) -> Motion:
 
 
 def start_far_from_impacts(shooter: Shooter, motion: Motion) -> Motion:
-    """Return the same motion begun where the gap is wide, or under a preload, if it is ever in
-    contact, where the masses are pressed hard.
+    """Return a motion begun where the gap is wide, or the masses are pressed hard.
 
     A motion that begins with an impact has no derivative.
     """

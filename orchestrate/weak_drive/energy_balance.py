@@ -123,7 +123,7 @@ class EnergyBalance:
     def _momentum(
         self, before: OscillatorOutputs, after: OscillatorOutputs, acceleration: Cubic, h: float
     ) -> tuple[float, ...]:
-        """Return the masses' momentum over a step, relative to the box: coefficients in t/h."""
+        """Return coefficients in t/h of the masses' momentum over a step, relative to the box."""
         m1, m2 = self._masses
         mass = m1 + m2
         ends = (m1 * before.v1 + m2 * before.v2, m1 * after.v1 + m2 * after.v2)
@@ -133,7 +133,7 @@ class EnergyBalance:
         return quartic(ends, (first, last), mean)
 
     def _accounts(self, motion: OscillatorOutputs, shaking: ShakerOutputs) -> tuple[float, ...]:
-        """Return motor, damper of the box, impacts, stored, dampers: since the instances' start."""
+        """Return energies since the start: motor, damper of the box, impacts, stored, dampers."""
         return (
             shaking.motor_energy,
             shaking.box_damper_energy,

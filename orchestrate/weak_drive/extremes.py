@@ -29,9 +29,7 @@ class Range(NamedTuple):
 
 
 def taylor_value(series: Series, time: float, order: int = 0) -> float:
-    """Return the value of a Taylor series, or its derivative of an order, at a time from its
-    centre.
-    """
+    """Return the value, or a derivative, of a Taylor series at a time from its centre."""
     total = 0.0
     for power in range(len(series) - 1 - order, -1, -1):
         total = series[power + order] + total * time / (power + 1)
@@ -41,9 +39,7 @@ def taylor_value(series: Series, time: float, order: int = 0) -> float:
 def taylor_coefficients(
     structure: Structure, motion: OscillatorOutputs, acceleration: Cubic
 ) -> Series:
-    """Return derivatives of x1 from a state, with the box's acceleration and its derivatives
-    there.
-    """
+    """Return x1's derivatives at a state, from the box's acceleration and its derivatives."""
     mass, stiffness, damping = structure.m1, structure.k1, structure.d1
     balance = 0.0  # where the springs' forces are
     if motion.x_rel == 0.0 and motion.v1 == motion.v2:  # in contact
@@ -58,9 +54,7 @@ def taylor_coefficients(
 
 
 def position_in_balance(structure: Structure) -> float:
-    """Return the x1 at which the springs balance with the masses in contact, m: 0 without a
-    clearance.
-    """
+    """Return the x1 at which springs balance in contact, m: 0 without a clearance."""
     return structure.gap_offset * structure.k2 / (structure.k1 + structure.k2)
 
 
@@ -90,7 +84,7 @@ def range_of_mass(
     begin: float,
     h: float,
 ) -> Range:
-    """Return the range of x1.
+    """Return the least and largest x1 in a step, from Taylor series at both ends.
 
     Parameters
     ----------

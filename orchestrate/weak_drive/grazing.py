@@ -86,7 +86,7 @@ def turning_gap(
 def next_grazing(
     shooter: Shooter, motions: Sequence[tuple[Floats, float]]
 ) -> tuple[BifurcationKind | None, float]:
-    """Extrapolate from a branch's last motions what grazes next, and how far on.
+    """Extrapolate what grazes next along a branch; return its kind, None without, and the distance.
 
     A margin is taken to fall as it did over the last motions. The very last ones may be beyond.
 

@@ -303,9 +303,7 @@ class HeldVoltageTest:
         return points[1:]
 
     def target(self, after: int, last: int, sign: float) -> float:
-        """Return the voltage to go to: well past the passing, but no further than the run goes,
-        V.
-        """
+        """Return the voltage to go to, V: well past the passing, within the run's range."""
         past = self.voltage(after) + sign * self.settings.past * self.volts
         end = self.voltage(last)
         return min(past, end) if sign > 0.0 else max(past, end)
@@ -386,8 +384,9 @@ class HeldVoltageTest:
         return FOLLOWS if comes_back else UNDECIDED
 
     def later(self, point: Settled) -> Settled:
-        """Return a motion, or, where an irregular one ends when its voltage is held again, what
-        comes after: it may have been lost before. Others have settled.
+        """Hold an irregular motion's voltage again and return what comes; others unchanged.
+
+        An irregular one may have been lost before its voltage ended; others have settled.
         """
         later, left = point, self.settings.again if point.error > self.settings.tolerance else 0
         for _ in range(left):
@@ -411,9 +410,7 @@ def noise(point: Settled, other: Settled) -> float:
 
 
 def largest_change(points: list[Settled], sign: float) -> tuple[int, Settled, Settled]:
-    """Return the two neighbours between which the speed rises (``sign`` -1: falls) most, and the
-    index of the first one.
-    """
+    """Find neighbours between which the speed rises (-1: falls) most; return index and both."""
     pairs = list(pairwise(points))
     i = int(np.argmax([sign * (high.speed - low.speed) for low, high in pairs]))
     return i, *pairs[i]

@@ -61,9 +61,7 @@ def theories(structure: Structure, drive: Drive) -> tuple[Theory, Theory]:
 
 
 def is_doubtful(passing: Passing, bonded: bool, theory: Theory) -> bool:
-    """Return whether the held-voltage test is needed: where the record does not decide, or the
-    theory objects.
-    """
+    """Return whether the held-voltage test is needed: no clear record, or theory objects."""
     if passing.look == JUMP:
         return bonded and not theory.losses
     if passing.look == SMOOTH:
@@ -72,9 +70,7 @@ def is_doubtful(passing: Passing, bonded: bool, theory: Theory) -> bool:
 
 
 def check_against_theory(verdict: Verdict, theory: Theory, volts: float) -> Verdict:
-    """Return the verdict on a bonded structure, undecided where the averaged theory contradicts
-    it.
-    """
+    """Return the verdict on a bonded structure; undecided where the averaged theory objects."""
     if theory.narrow or verdict.outcome not in (LOST, FOLLOWS):
         return verdict
     if verdict.outcome == FOLLOWS:

@@ -79,9 +79,7 @@ def extrapolate(rates: np.ndarray, voltages: np.ndarray) -> tuple[float, float]:
 def at_zero(
     rates: np.ndarray, voltages: np.ndarray, exponents: tuple[float, ...]
 ) -> tuple[float, float]:
-    """Return the constant of a fit with powers of the rate, and its error by the scatter around
-    it.
-    """
+    """Fit powers of the rate to voltages; return the constant and its error by the scatter."""
     design = np.stack([np.ones(len(rates)), *(rates**power for power in exponents)], axis=1)
     design /= design.max(axis=0)
     solution = np.linalg.lstsq(design, voltages, rcond=None)[0]
@@ -195,8 +193,7 @@ def jump_voltages(
     step: float | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Find the voltages at which the speed jumps, bonded against delaminated, extrapolated to rate
-    0.
+    """Find the voltages of the speed's jumps, bonded against delaminated, extrapolated to rate 0.
 
     Parameters
     ----------

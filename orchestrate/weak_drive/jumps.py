@@ -144,9 +144,7 @@ def find_passing(
 
 
 def running_mean(values: np.ndarray, width: int) -> np.ndarray:
-    """Return means of ``width`` values each: motions that repeat after some revolutions look
-    steady.
-    """
+    """Return means of ``width`` values each, so that motions over some revolutions look steady."""
     return np.convolve(values, np.full(width, 1.0 / width), "valid")
 
 
@@ -166,9 +164,7 @@ def extent(runs: np.ndarray, top: int) -> tuple[int, int]:
 
 
 def half_slip_row(slip: np.ndarray, before: int, up: bool) -> float | None:
-    """Return where the slip falls below (down: rises above) half of its largest value, between
-    rows.
-    """
+    """Return the row, with decimals, where the slip crosses half of its largest; None without."""
     level = slip[before:]
     highest, half = int(np.argmax(level)), 0.5 * float(level.max())
     first = highest + 1 if up else 0

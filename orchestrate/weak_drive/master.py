@@ -51,7 +51,7 @@ STATE_INDEX = {  # of what is remembered
 def parts_of(
     numbers: Any,
 ) -> tuple[Any, OscillatorOutputs, ShakerOutputs, Any]:
-    """Split a state into the master's own part, both outputs, and the balance's."""
+    """Split a state; return the master's own part, both FMUs' outputs, and the energy balance's."""
     motion, shaking = (
         STATE_INDEX[OscillatorOutputs._fields[0]],
         STATE_INDEX[ShakerOutputs._fields[0]],
@@ -254,8 +254,7 @@ class Master:
         return len(voltages)
 
     def _substeps_by_defect(self, voltage: float, h: float) -> None:
-        """Do an interval in halved steps h, h/2, h/4 ... until the energy defect of each is small
-        enough.
+        """Do an interval in halved steps until the energy defect of each is small enough.
 
         A step is halved where its defect is too large. After one with a defect that twice the
         length would still do with, the next is twice as long, where that ends on its own grid: so
@@ -282,9 +281,7 @@ class Master:
         self.shaking = self._outputs_with_force(self.motion)
 
     def _step(self, voltage: float, h: float, may_refuse: bool = False) -> float:
-        """Do a step, unless it is refused for its defect; return the defect over the work exchanged
-        in it.
-        """
+        """Do a step unless its defect forbids; return the defect over the work exchanged."""
         if voltage != self.voltage:  # the acceleration belongs to the inputs as set now
             self.voltage = voltage
             self.shaking = self._outputs_with_force(self.motion)
@@ -327,9 +324,7 @@ class Master:
         return tuple.__new__(ShakerOutputs, self.shaker.get())
 
     def _outputs_with_force(self, motion: OscillatorOutputs) -> ShakerOutputs:
-        """Return the shaker's outputs with the force at the present point, and its slope, as
-        inputs.
-        """
+        """Return the shaker's outputs with the force at the present point, and its slope."""
         self.shaker.put(motion.box_force, self.slope, 0.0, 0.0, self.voltage)
         return self._shaking()
 
@@ -349,9 +344,7 @@ class Master:
         )
 
     def _acceleration_for_structure(self, after: ShakerOutputs, h: float) -> Cubic:
-        """Return the acceleration over a step that the shaker has done, as it is passed to the
-        structure.
-        """
+        """Return the acceleration over a step of the shaker, as the structure takes it."""
         now = self.shaking
         first, last = now.box_acceleration, after.box_acceleration
         if not self.scheme.matched:
@@ -392,9 +385,7 @@ class Master:
         return Step(acceleration, self._motion(), self._shaking())
 
     def _gauss_seidel_step(self, h: float) -> Step:
-        """Step structure, then shaker (Gauss-Seidel); once, twice, or until the force does not
-        change.
-        """
+        """Step structure, then shaker; once, twice, or until the force does not change."""
         passes = self._algorithm.passes
         if self.scheme.goes_back:
             self.oscillator.save()

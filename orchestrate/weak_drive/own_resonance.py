@@ -61,9 +61,7 @@ def elastic_resonance(structure: Structure, drive: Drive) -> float:
 
 
 def free_modes(structure: Structure, drive: Drive) -> tuple[np.ndarray, np.ndarray]:
-    """Return frequencies over omega of the halves and the box without contact, ascending, and the
-    change of the gap in each mode of mass 1.
-    """
+    """Return frequencies over omega without contact, ascending; and each mode's change of gap."""
     from scipy.linalg import eigh
 
     beta, mu = drive.beta(structure), structure.mu
@@ -92,25 +90,19 @@ def resonance(structure: Structure, drive: Drive) -> float:
 
 
 def resonances(structure: Structure, drive: Drive) -> tuple[float, float]:
-    """Return the least and the largest speed over omega of the resonances of a structure, bonded
-    and delaminated; the same unless they lie clearly apart.
-    """
+    """Return the least and the largest resonance, bonded and delaminated, as speeds over omega."""
     both = (structure.as_bonded(), structure.as_delaminated())
     low, high = sorted(resonance(kind, drive) for kind in both)
     return low, high
 
 
 def dividing_speed(structure: Structure, drive: Drive) -> float:
-    """Return the speed over omega between motions below and beyond the structure's resonance: as
-    :func:`.averaged.dividing_speed`, moved with the resonance.
-    """
+    """Return the speed over omega between motions below and beyond a structure's own resonance."""
     return averaged.dividing_speed(structure, drive) + clear_shift(structure, drive)
 
 
 def dividing_speeds(structure: Structure, drive: Drive) -> tuple[float, float]:
-    """Return the least and the largest speed over omega that may divide motions: by the bonded
-    resonance, and by the delaminated structure's own; the same for a bonded one.
-    """
+    """Return the least and the largest speed over omega that may divide motions below and above."""
     bonded = averaged.dividing_speed(structure, drive)
     low, high = sorted((bonded, bonded + shift(structure, drive)))
     return low, high

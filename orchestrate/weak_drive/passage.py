@@ -125,7 +125,7 @@ class PassageJob(Job):
         return xr.Dataset(variables, time, {**revolutions.attrs, **title}).merge(of_jumps)
 
     def centres(self, revolutions: xr.Dataset) -> tuple[np.ndarray, str]:
-        """Return times around which samples are stored, and what they are."""
+        """Return the times around which samples are stored, s, and what happens at them."""
         jumps = revolutions.jump_time.values
         passed = float(revolutions.passage_time)
         if self.around is None:
@@ -138,7 +138,7 @@ class PassageJob(Job):
 
 
 def samples(master: Master, kept: np.ndarray) -> tuple[Any, ...]:
-    """Return the communication points of a master's states, in the order of ``SAMPLES``."""
+    """Return a tuple of arrays, the communication points of a master's states, as ``SAMPLES``."""
     own_state, motion, shaking, balance = parts_of(kept.T)
     accounts = copy(master.balance)
     accounts.set_state(balance)
@@ -228,8 +228,7 @@ def passage(
 def waterfall(
     found: xr.Dataset, *, mass: int = 1, revolutions: int = 16, highest: float = 6.0
 ) -> xr.Dataset:
-    """Compute spectra of a mass's acceleration in space over the motor's revolutions, one after the
-    other.
+    """Compute spectra of a mass's acceleration in space, one revolution of the motor after another.
 
     Parameters
     ----------
@@ -300,7 +299,7 @@ def waterfall(
 
 
 def over_angle(data: xr.Dataset, mass: int, points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Interpolate displacements in space at equal angles; return them with their times.
+    """Interpolate displacements in space at equal angles; return times and displacements.
 
     Where the motor turns back for a moment, samples are left out until it has come as far again.
     """

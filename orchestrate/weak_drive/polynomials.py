@@ -64,18 +64,14 @@ def coefficients(cubic: Cubic, h: float) -> Cubic:
 
 
 def work(force: Cubic, velocity: float, acceleration: Cubic, h: float) -> float:
-    """Return the integral of a cubic force times a velocity, given by its start and cubic
-    derivative.
-    """
+    """Return the integral of a cubic force times a velocity (start and cubic derivative)."""
     a0, a1, a2, a3 = acceleration
     speeds = (velocity, a0 * h, a1 * h * h / 2.0, a2 * h * h * h / 6.0, a3 * h * h * h * h / 24.0)
     return h * product(coefficients(force, h), speeds)
 
 
 def product(f: Sequence[float], g: Sequence[float]) -> float:
-    """Return the integral over [0, 1] of the product of two polynomials in s, each as its
-    coefficients.
-    """
+    """Return the integral over [0, 1] of the product of two polynomials (coefficients in s)."""
     total = 0.0
     for a, powers in zip(f, POWERS):  # noqa: B905 the table is as long as needed
         for b, power in zip(g, powers):  # noqa: B905
@@ -86,9 +82,7 @@ def product(f: Sequence[float], g: Sequence[float]) -> float:
 def quartic(
     ends: tuple[float, float], slopes: tuple[float, float], mean: float
 ) -> tuple[float, ...]:
-    """Return the coefficients in s of the quartic with given ends, slopes (by s) there, and
-    mean.
-    """
+    """Return the coefficients in s of the quartic with given ends, slopes (by s) and mean."""
     p0, p1 = ends
     d0, d1 = slopes
     rise = p1 - p0

@@ -99,7 +99,7 @@ class Branches:
         return float(np.ptp(values)) or 1.0
 
     def nearest(self, motions: Motions, i: int, kind: str) -> int | None:
-        """Return the bifurcation of a kind between a motion and the next one; None without any."""
+        """Return the index of a bifurcation between a motion and the next one; None without."""
         ends = np.stack([motions.voltage[i : i + 2], motions.speed[i : i + 2]], 1) / self.spans
         of_kind = [
             k
@@ -127,7 +127,7 @@ class Branches:
         return path
 
     def first_leg(self, up: bool, sign: float) -> Motions | None:
-        """Return the leg that a ramp begins on, from its first stable motion."""
+        """Return the leg that a ramp begins on, from its first stable motion; None without one."""
         leg, below = self.legs.get(FIRST_LEG[up]), self.legs.get(FIRST_LEG[True])
         if leg is None and not up and below is not None and below.end == LIMIT:
             leg = below.from_index(len(below.speed) - 1, forward=False)
@@ -197,7 +197,7 @@ class Branches:
     def leg_after_period_doubling(
         self, flip: int | None, motions: Motions, i: int, path: Path, sign: float
     ) -> Motions | None:
-        """Return the traced leg of twice the period; without one say why the path ends."""
+        """Return the leg of twice the period; None without one, with the reason in ``path``."""
         voltage = float(motions.voltage[i])
         if flip is not None:
             voltage = float(self.places[flip][0])

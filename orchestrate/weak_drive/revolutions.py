@@ -51,7 +51,7 @@ class Revolutions:
         self._now = master.revolution = Revolution.begin(master.motion, master.shaking)
 
     def add(self) -> tuple[float, ...] | None:
-        """Add the state after a step; return a row if it completes a revolution.
+        """Add the state after a step; return the row of a revolution that it completes, else None.
 
         Returns
         -------

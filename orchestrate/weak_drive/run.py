@@ -24,9 +24,7 @@ from .schedule import Schedule
 
 
 def oscillator_start(structure: Structure) -> dict[str, float | bool]:
-    """Return the structure's start values in the coupled system: its own harmonic box motion is
-    off.
-    """
+    """Return the structure's start values in the coupled system: no harmonic box motion."""
     off = {"box_amplitude": 0.0, "box_frequency": 0.0, "x_rel_max_on": False}
     return {**structure.parameters(), **off}
 

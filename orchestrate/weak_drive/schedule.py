@@ -52,9 +52,7 @@ class Schedule(ABC):
 
     @abstractmethod
     def trend(self, times: np.ndarray) -> np.ndarray:
-        """Return the direction of the voltage: 1 where it rises, -1 where it falls, 0 where it
-        holds.
-        """
+        """Return the voltage's direction at times: 1 where it rises, -1 falls, 0 holds."""
 
 
 @dataclass(frozen=True)

@@ -107,7 +107,7 @@ class SettlingTest:
     stay: int
 
     def outcome(self, time: np.ndarray, speed: np.ndarray) -> Outcome:
-        """Classify a record of the speed.
+        """Return whether a record of the speed is captured, passes, or stays undecided.
 
         Parameters
         ----------
@@ -154,8 +154,7 @@ class SettlingTest:
         return None
 
     def bounded(self, means: np.ndarray, turn: float) -> Settled | None:
-        """Return the end of a speed that has long stayed within bounds, neither drifting nor
-        calming down.
+        """Return the end of a speed that stayed within bounds without drift; None otherwise.
 
         The last quarter of the record is compared with the one before: its extremes, its mean and
         its range. An irregular or a swinging motion is told so. None where it has not.

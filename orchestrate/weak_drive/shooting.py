@@ -202,7 +202,7 @@ class Shooter:
         return master_of(oscillator, shaker, self.structure, Scheme("rollback", h))
 
     def begin_period(self, unknowns: Floats) -> tuple[Master, float]:
-        """Start both FMUs at the begin of a period; return the voltage, V, too."""
+        """Start both FMUs at the begin of a period; return the master, and the voltage, V."""
         voltage = float(unknowns[-2]) * self.volts
         period = self.turns * TURN / (float(unknowns[-1]) * self.structure.omega)
         return self.start_master(unknowns[:-2], voltage, period / self.count), voltage
@@ -217,8 +217,12 @@ class Shooter:
         return np.array([values[name] for name in self.names]) / self.units
 
     def settle(self, voltage: float, speed: float, time: float) -> Floats:
-        """Return the state after a time at a speed, with the masses apart unless they are bonded,
-        or a preload presses them together.
+        """Return the state after a time at a speed, begun with the masses apart unless bonded.
+
+        A preload presses them together.
+
+        A preload brings them together. The speed is held by a heavy rotor: so motions are found
+        that a motor would not stay on.
 
         The speed is held by a heavy rotor: so motions are found that a motor would not stay on.
         """
@@ -252,7 +256,7 @@ class Shooter:
         return not self.structure.bonded and master.motion.x_rel == 0.0
 
     def shoot(self, unknowns: Floats) -> Shot:
-        """Run both FMUs over a period.
+        """Run both FMUs over a period; return the state at its end and what happened in it.
 
         Raises
         ------
@@ -289,7 +293,7 @@ class Shooter:
         return Period(amplitude, impacts, self.turns, *self.best_start(kept[:-1]))
 
     def best_start(self, kept: Floats) -> tuple[int, float, bool, bool]:
-        """Return a period's best start: ``clear``, ``share``, ``together``, ``sticks``.
+        """Return a period's best start: index, share of the gap, contact there, sticking in it.
 
         Parameters
         ----------

@@ -11,9 +11,9 @@ from fmu_src.export.errors import CannotExport
 from fmu_src.export.forms import FORMS
 from fmu_src.export.platforms import usual
 from fmu_src.export.source_code import kernel_source
+from tools import importers
 
 from ..exports import guid_inside, once, refresh
-from . import importers
 
 VERSIONS = ("fmi2", "fmi3")
 

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from fmu_src.export import native_form
+from tools import importers
 
-from . import importers
 from .object_files import Elf, Pe
 from .slave import COMMON, harmonic
 

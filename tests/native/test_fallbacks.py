@@ -10,8 +10,8 @@ from fmu_src.export import compiler, errors, pythonfmu_form
 from fmu_src.export.errors import CannotExport
 from fmu_src.export.forms import FORMS, export
 from fmu_src.export.source_code import kernel_source
+from tools import importers
 
-from . import importers
 from .slave import COMMON, harmonic
 from .test_bit_identity import run
 

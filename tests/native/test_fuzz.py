@@ -12,14 +12,12 @@ from pathlib import Path
 import pytest
 
 from fmu_src.export import forms
-from fmu_src.export.compiler import kernel_object
-from fmu_src.export.platforms import this_machine
-from fmu_src.export.source_code import kernel_source
+from tools import importers
 
-from . import importers
 from .conftest import VERSIONS
 from .test_memory_checks import VALGRIND, needs_valgrind
 
+HERE = Path(__file__).parent
 MODELS = tuple(forms.MODELS)
 SECONDS = int(os.environ.get("FUZZ_SECONDS", "600"))  # of the coverage-guided fuzzer, each
 CORPUS = Path(os.environ["FUZZ_CORPUS"]) if "FUZZ_CORPUS" in os.environ else None  # kept there
@@ -50,7 +48,7 @@ def is_shaker(importer):
 
 def seeds(version):
     """Inputs that the fuzzer has found to take different ways, in hexadecimal digits."""
-    return (importers.HERE / "corpus" / f"{version}.txt").read_text().split()
+    return (HERE / "corpus" / f"{version}.txt").read_text().split()
 
 
 def test_calls_drawn_at_random_are_survived(importer_of_model):
@@ -91,30 +89,13 @@ def test_no_leak_and_no_error_under_valgrind(importer_of_model):
         assert "FAILURES 0" in done.stdout and done.stderr == ""
 
 
-def kernel(model):
-    """A model's object file for this machine."""
-    source = kernel_source(forms.MODELS[model])
-    return {this_machine(): kernel_object(this_machine(), source)}
-
-
-def checked(version, model, exported, folder, sanitizer):
-    """Importer and shim with a sanitizer in both."""
-    path = exported / version / f"{model}.fmu"
-    options = ("-O1", "-g", *sanitizer)
-    program = importers.compile_importer(version, path, folder / "importer", options=options)
-    library = importers.rebuild_shim(
-        version, folder / "shim", kernel(model), sanitizer, forms.MODELS[model]
-    )
-    return importers.Importer(program, library, version)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("version", VERSIONS)
 @pytest.mark.parametrize("sanitizer", [importers.SANITIZE, ("-fsanitize=thread",)], ids=["a", "t"])
 def test_no_error_with_sanitizers_in_the_shim(exported, fmus, tmp_path, version, model, sanitizer):
     """Address, undefined behaviour and leaks; or threads."""
-    importer = checked(version, model, exported, tmp_path, sanitizer)
+    importer = importers.checked(version, model, exported, tmp_path, sanitizer)
     for mode in (
         ("hostile",),
         ("random", 5, 2000),
@@ -134,7 +115,7 @@ def test_the_hostile_tests_reach_the_whole_shim(exported, fmus, tmp_path, versio
     lines, branches, left = {}, {}, []
     for model in MODELS:
         folder = tmp_path / model
-        importer = checked(version, model, exported, folder, ("--coverage",))
+        importer = importers.checked(version, model, exported, folder, ("--coverage",))
         importer.run("random", 11, 4000, timeout=1800)
         importer.run("many", 50, 40, 400)
         importer.run("forge")
@@ -143,32 +124,13 @@ def test_the_hostile_tests_reach_the_whole_shim(exported, fmus, tmp_path, versio
             importer.run("simulate", "x1", "e=0.5", times=[0.0, 1.0])
             importer.run("corrupt", 64, "nan")
         for unit in importers.units(version):
-            read_coverage(folder / "shim", unit, lines, branches)
+            importers.read_coverage(folder / "shim", unit, lines, branches)
     for found, what in ((lines, "lines"), (branches, "branches")):
         left += [key for key, taken in found.items() if not taken]
         share = sum(found.values()) / len(found)
         print(f"{version}: {what} {100 * share:.1f} % of {len(found)}")
         assert share > 0.95, left
     print("\n".join(map(str, left)))
-
-
-def read_coverage(folder, unit, lines, branches):
-    """Add what gcov says of a C file: lines run, and branches taken."""
-    notes = next(folder.glob(f"*{Path(unit).stem}.gcda"))
-    command = ["gcov", "-b", "-c", "-o", notes.name, unit]
-    subprocess.run(command, cwd=folder, capture_output=True, check=True)
-    number = text = None
-    for row in (folder / f"{unit}.gcov").read_text().splitlines():
-        if row.startswith("branch"):
-            key = (unit, number, row.split()[1], text)
-            taken = "taken" in row and "taken 0" not in row
-            branches[key] = branches.get(key, False) or taken
-            continue
-        parts = row.split(":", 2)
-        if len(parts) == 3 and parts[0].strip() not in ("-", ""):
-            number, text = parts[1].strip(), parts[2].strip()
-            key = (unit, number, text)
-            lines[key] = lines.get(key, False) or parts[0].strip()[0] not in "#="
 
 
 @pytest.mark.slow
@@ -183,7 +145,7 @@ def test_a_coverage_guided_fuzzer_finds_nothing(exported, fmus, tmp_path, versio
     library = importers.rebuild_shim(
         version,
         tmp_path / "shim",
-        kernel(model),
+        importers.kernel(model),
         (f"-fsanitize=fuzzer-no-link,{guards}", "-fno-sanitize-recover=all"),
         forms.MODELS[model],
         ("clang",),
@@ -195,7 +157,8 @@ def test_a_coverage_guided_fuzzer_finds_nothing(exported, fmus, tmp_path, versio
     command = [
         "clang",
         *options,
-        importers.HERE / "fuzzer.c",
+        HERE / "fuzzer.c",
+        f"-I{importers.HERE}",
         *units,
         "-ldl",
         "-lm",

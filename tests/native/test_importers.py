@@ -9,8 +9,8 @@ import subprocess
 import pytest
 
 from fmu_src.kernels.oscillator import memory as at
+from tools.importers import Importer, binary, compile_importer, ziglang
 
-from .importers import Importer, binary, compile_importer, ziglang
 from .slave import COMMON, harmonic, slave
 
 # bytes before the numbers of a serialised state, and numbers before the memory

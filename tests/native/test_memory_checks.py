@@ -6,8 +6,9 @@ import shutil
 
 import pytest
 
+from tools import importers
+
 from ..sparing import ordinary
-from . import importers
 
 VALGRIND = (
     "valgrind",

@@ -14,8 +14,8 @@ from fmu_src.export import compiler, forms
 from fmu_src.export.errors import CannotExport
 from fmu_src.export.platforms import ALL, chosen, this_machine, universal_binary, usual
 from fmu_src.export.source_code import kernel_source
+from tools import importers
 
-from . import importers
 from .slave import COMMON, harmonic
 
 MULTIPLY_ADD = b"""

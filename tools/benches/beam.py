@@ -143,7 +143,7 @@ class DelaminatedBeam:
 
     @cached_property
     def matrices(self) -> tuple[Floats, Floats, Floats]:
-        """Stiffness, mass matrix and base excitation of the free displacements.
+        """Return stiffness, mass matrix and base excitation of the free displacements.
 
         The pull is the inertia times a unit displacement of base and beam.
         """
@@ -201,7 +201,7 @@ class DelaminatedBeam:
         return bool(inside[node] and (before or after))
 
     def modes(self, count: int) -> tuple[Floats, Floats, Floats]:
-        """Compute the lowest modes of the beam without contact.
+        """Compute the lowest modes without contact; return frequencies, shapes, participations.
 
         Returns
         -------

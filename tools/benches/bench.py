@@ -51,7 +51,7 @@ class Bench:
         return math.ceil(max(self.steps * fastest, 1.0 / BASE, 8.0 * self.rate) / self.rate)
 
     def move(self, system: ModalSystem) -> tuple[Floats, Motion, int]:
-        """Compute the base's acceleration and the motion; return them with the steps per sample."""
+        """Compute the base's acceleration and the motion; return both, and the steps per sample."""
         factor = self.factor_for(system)
         step = 1.0 / (factor * self.rate)
         samples = int(self.excitation.duration * self.rate)
@@ -64,7 +64,7 @@ class Bench:
         return base[::2], integrate(system, base, step), factor
 
     def measure(self, system: ModalSystem, seed: int) -> tuple[xr.Dataset, Motion]:
-        """Shake a system and record what the sensors read.
+        """Shake a system; return the record of what the sensors read, and the true motion.
 
         Parameters
         ----------

@@ -114,7 +114,7 @@ def integrate(
 
 
 def passed_system(system: ModalSystem) -> tuple[list[Floats], CSystem]:
-    """Return the system as a C structure, and the arrays it points at, to be kept alive."""
+    """Return arrays to be kept alive, and the C structure of the system that points at them."""
     n, empty = system.modes, np.zeros(0)
     contacts = system.contacts or no_contacts(n)
     springs = system.springs or no_springs(n)

@@ -182,7 +182,7 @@ def split(own: Halves, touching: Faces) -> Specimen:
 
 
 def whole(own: Halves, system: ModalSystem, cubic: float = 0.0) -> Specimen:
-    """Return a specimen of a bonded beam."""
+    """Return a specimen of a bonded beam: its modal system and the true numbers of it."""
     one = own.whole()
     numbers = (own.m1, own.m2, one.f, one.f, one.zeta, one.zeta)
     return Specimen(system, *numbers, cubic=cubic, sound=True)
@@ -296,7 +296,7 @@ KINDS: Mapping[str, Maker] = {
 
 
 def excitation(rng: np.random.Generator, name: str, level: float) -> tuple[str, Excitation]:
-    """Draw a base excitation of a kind, of any kind by name ``"any"``; return the kind with it."""
+    """Draw a base excitation of a kind, or of any kind; return its kind and it."""
     if name == "any":
         name = str(rng.choice(EXCITATIONS, p=(0.6, 0.15, 0.1, 0.1, 0.05)))
     ends = (LAST, FIRST) if name == "down" else (FIRST, LAST)

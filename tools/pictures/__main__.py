@@ -48,7 +48,7 @@ def verdict() -> Figure:
 
 
 def states() -> Figure:
-    """A period of the paper's Figure 5."""
+    """Draw a period of the paper's Figure 5, as a figure."""
     motion = orchestrate.simulate(PAPER, eta=0.4, transient=100, periods=1, points=1200)
     return theory.draw_states(motion)
 
@@ -63,7 +63,7 @@ def engineer() -> Figure:
 
 
 def researcher() -> Figure:
-    """A part of the paper's Figure 6."""
+    """Draw a part of the paper's Figure 6, as a figure."""
     eta = np.arange(0.9, 4.0, 0.004)
     return cards.draw_orbits(orchestrate.sweep(PAPER, eta=eta, samples=40, progress=False))
 

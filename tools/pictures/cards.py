@@ -19,7 +19,7 @@ STYLES: dict[str, dict[str, Any]] = {
 
 
 def card() -> tuple[Figure, Axes]:
-    """Make one panel."""
+    """Make a figure with one panel; return both."""
     figure, (axes,) = panels(1, 1, SIZE)
     return figure, axes
 

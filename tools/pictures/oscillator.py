@@ -13,7 +13,7 @@ from orchestrate.figures.style import panels, styled
 
 
 def sketch(width: float) -> tuple[Figure, Axes]:
-    """Make a figure for a drawing by hand, half as high as it is wide."""
+    """Make a figure for a drawing by hand, half as high as wide; return it and its axes."""
     figure = Figure(figsize=(width, width * 0.5))
     return figure, figure.add_subplot()
 

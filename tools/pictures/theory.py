@@ -64,8 +64,9 @@ def derivative(time: float | np.ndarray, order: int) -> Any:
 
 
 def safe_bound(time: float) -> Polynomial:
-    """Return a polynomial in the time from a point on that lies below the gap, by a bound of the
-    second derivative: the code has the fifth one's, and comes so close that no picture shows it.
+    """Return a polynomial below the gap from a point on, by a bound of the second derivative.
+
+    The code has the fifth one's, and comes so close that no picture shows it.
     """
     largest = sum(a * k**2 for a, k, _ in WAVES)
     return Polynomial([float(derivative(time, 0)), float(derivative(time, 1)), -0.5 * largest])

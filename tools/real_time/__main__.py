@@ -17,13 +17,13 @@ from .targets import all_targets
 
 
 def print_targets(sources: Path, folder: Path) -> None:
-    """The trajectory on each target."""
+    """Run the trajectory on each target, and print its results."""
     for name, result in all_targets(sources, folder).items():
         print(f"{name}: " + ", ".join(f"{key} {value}" for key, value in result.items()))
 
 
 def print_stack(sources: Path) -> None:
-    """Bytes of stack of each call."""
+    """Print a table of the bytes of stack of each call."""
     if missing(*(compiler for compiler, *_ in MACHINES.values())):
         return
     for machine, calls in stack_table(sources, "-O2").items():
@@ -32,7 +32,7 @@ def print_stack(sources: Path) -> None:
 
 
 def print_times(fmu: Path, steps: int) -> None:
-    """The table of step times, us."""
+    """Run steps and print a table of their times, us."""
     columns = ["eta", "steps", *PARTS, "impacts", "contacts", "most evaluations"]
     print(f"| {' | '.join(columns)} |")
     print(f"|{'---|' * len(columns)}")
@@ -44,7 +44,7 @@ def print_times(fmu: Path, steps: int) -> None:
 
 
 def main() -> None:
-    """The command."""
+    """Run the measurements on real-time targets that the options name."""
     parser = argparse.ArgumentParser(prog="python -m tools.real_time", description=__doc__)
     parser.add_argument("--steps", type=int, default=100_000_000, help="to be timed (default 1e8)")
     arguments = parser.parse_args()

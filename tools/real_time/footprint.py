@@ -105,8 +105,9 @@ def call_graph(sources: Path, compiler: str, *flags: str) -> CallGraph:
 
 
 def stack_table(sources: Path, *flags: str) -> dict[str, dict[str, int]]:
-    """Return bytes of stack by machine and by what a call is for; "a refusal" is a step with its
-    message, but without what the C library's ``snprintf`` takes.
+    """Return bytes of stack by machine and by what a call is for.
+
+    "a refusal" is a step with its message, but without what the C library's ``snprintf`` takes.
     """
     table = {}
     for machine, (compiler, *own) in MACHINES.items():

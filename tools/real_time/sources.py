@@ -23,7 +23,7 @@ def unpack(fmu: str | PathLike[str], folder: Path) -> Path:
 
 
 def c_files(sources: Path) -> list[Path]:
-    """Return what is compiled."""
+    """Return the paths of the C files that are compiled."""
     return sorted(sources.glob("*.c"))
 
 

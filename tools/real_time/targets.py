@@ -23,7 +23,7 @@ def printed(text: str) -> dict[str, str]:
 
 
 def on_desktop(sources: Path, folder: Path, *flags: str) -> dict[str, str]:
-    """Return the trajectory on this machine."""
+    """Run the trajectory on this machine; return what the program prints, by name."""
     program = build(sources, [PROGRAM], folder / "desktop", "gcc", "-O2", *BITS, *flags)
     return printed(run(program))
 

@@ -73,7 +73,7 @@ def keep(campaign: Campaign, seed: int, budget: int, store: Path = STORE) -> rec
 
 
 def job_of(campaign: Campaign, seed: int, budget: int) -> CampaignJob:
-    """Return a run as a job."""
+    """Return a run of a campaign as a job that the package's runner takes."""
     return CampaignJob(
         name=campaign.name,
         campaign=campaign.name,

@@ -62,7 +62,7 @@ def by_fmu(fmu: Path, drawn: ParameterSet, grid: Sequence[float]) -> Bits:
 def web_module() -> Any:
     """Return the kernel as WebAssembly under wasmtime."""
     from orchestrate.access.webassembly import web_kernel
-    from tests.orchestrate.explorer.kernels import Web
+    from tools.web_instance import Web
 
     return Web(web_kernel(OSCILLATOR))
 
@@ -90,7 +90,7 @@ def by_web(drawn: ParameterSet, grid: Sequence[float]) -> Bits:
 def arm() -> Any:
     """Return the C importer with the FMU's 64-bit ARM binary; None where nothing runs them here."""
     from fmu_src.export import forms
-    from tests.native import importers
+    from tools import importers
 
     command = importers.ziglang("aarch64-linux-gnu.2.28")
     if shutil.which(ARM[0]) is None or not Path(ARM[2]).is_dir() or command is None:

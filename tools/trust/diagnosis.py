@@ -150,7 +150,7 @@ class Answer(NamedTuple):
 
 
 def run_detector(case: Case) -> Answer:
-    """Run the detector on a case."""
+    """Run :func:`orchestrate.detect` on a case; return its verdict and its numbers."""
     try:
         answer = orchestrate.detect(case.record, case.guess, jobs=1, progress=False)
     except VibroimpactError as error:
@@ -168,7 +168,7 @@ def run_detector(case: Case) -> Answer:
 
 
 def errors_of(parameters: Mapping[str, float], truth: Truth) -> dict[str, float | None]:
-    """Return the relative errors of the frequencies of two masses; finite elements have none."""
+    """Return relative errors of two masses' frequencies; empty for finite elements."""
     if not math.isnan(truth.size) or not truth.is_delaminated:
         return {}
     return {
@@ -179,9 +179,7 @@ def errors_of(parameters: Mapping[str, float], truth: Truth) -> dict[str, float 
 
 
 def deviations_of(parameters: Mapping[str, float], truth: Truth) -> dict[str, float | None]:
-    """Errors over the standard errors that were stated, where two masses are described; of the
-    restitution against the mean over the impacts.
-    """
+    """Return parameters' errors of two masses over stated standard errors; None if unknown."""
     if not math.isnan(truth.size) or not truth.is_delaminated:
         return {}
     every = {}

@@ -25,7 +25,7 @@ def killed(trial: Trial) -> str:
 
 
 def terminated(trial: Trial) -> str:
-    """Send SIGTERM at a random moment."""
+    """Send SIGTERM at a random moment, go on by the same command; return what is wrong ("")."""
     trial.struck(signal.SIGTERM)
     return trial.goes_on()
 

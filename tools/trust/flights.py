@@ -153,21 +153,21 @@ def deviation(flight: Flight) -> float:
     """Return a flight's error over the error that is allowed."""
     from mpmath import mp
 
-    from tests.kernels.oscillator import truth
+    from tools import exact_motion
 
     values, end = flight.values, flight.end
     state = [values[name] for name in ("x1", "v1", "x2", "v2")]
     with mp.workdps(50):
-        first, second = truth.apart(values, state, mp.mpf(values["phase_start"]))
-        gap = truth.gap_of(values, first, second)
+        first, second = exact_motion.apart(values, state, mp.mpf(values["phase_start"]))
+        gap = exact_motion.gap_of(values, first, second)
         speed = gap.derivative()
         terms = size(first, end) + size(second, end) + abs(values["clearance"])
         if not flight.impact:
-            return 0.0 if gap(end) > -truth.ROUNDING * terms else float("inf")
+            return 0.0 if gap(end) > -exact_motion.ROUNDING * terms else float("inf")
         root = mp.mpf(end)
         for _ in range(2):  # from a place that is right to ten digits at the least
             root -= gap(root) / speed(root)
-        allowed = 1e-15 * (1.0 + end) + truth.ROUNDING * terms / abs(speed(root))
+        allowed = 1e-15 * (1.0 + end) + exact_motion.ROUNDING * terms / abs(speed(root))
         return float(abs(root - end) / allowed)
 
 

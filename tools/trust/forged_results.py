@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from orchestrate.errors import InputError
+from tools.chromium import headless
 
 CANARY = "window.canary = 1; document.title = 'canary'; alert(1)"
 KEPT = ("start", "direction", "over")  # texts that have to be what they are, or there is no page
@@ -149,15 +150,13 @@ class Window:
 @contextmanager
 def window() -> Iterator[Window]:
     """Provide a browser for a block of code."""
-    programs = shutil.which("chromium"), shutil.which("chromedriver")
-    if None in programs:
+    program, driver = shutil.which("chromium"), shutil.which("chromedriver")
+    if program is None or driver is None:
         raise InputError("pages are opened in Chromium: expected chromium and chromedriver")
-    from tests.orchestrate.explorer.chromium import Chromium
-
     with tempfile.TemporaryDirectory(prefix="vibroimpact-trust-") as folder, server() as asked:
-        browser = Chromium(*programs, Path(folder))
+        browser = headless(program, driver, Path(folder))
         try:
-            yield Window(browser.driver, *asked)
+            yield Window(browser, *asked)
         finally:
             browser.quit()
 
@@ -195,7 +194,7 @@ def fragment(chance: random.Random, address: str) -> str:
 
 
 def clean_up(*paths: Path) -> None:
-    """Remove files."""
+    """Delete the forged files of a trial."""
     for path in paths:
         with contextlib.suppress(FileNotFoundError):
             path.unlink()

@@ -1,4 +1,4 @@
-"""Calls that nobody would think of, with sanitizers in the shim: the tests' fuzzers, for longer."""
+"""Calls that nobody would think of, with sanitizers in the shim, as in the tests, for longer."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from orchestrate.access import MODELS
+from tools import importers
 
 from .campaign import Campaign, Outcome
 from .programs import temporary
@@ -19,11 +20,9 @@ COVERAGE = 400  # sequences of the build that counts branches
 
 @functools.cache
 def importer(fmu: Path, version: str, model: str, options: tuple[str, ...]) -> Any:
-    """Compile the tests' importer for a model, with sanitizer options in it and in the shim."""
-    from tests.native import test_fuzz
-
+    """Compile the importer for a model, with sanitizer options in it and in the shim."""
     folder = temporary() / f"{version}-{model}-{len(options)}{options[0][2:10]}"
-    return test_fuzz.checked(version, model, fmu.parents[1], folder, options)
+    return importers.checked(version, model, fmu.parents[1], folder, options)
 
 
 class Fuzzing(Campaign):
@@ -45,8 +44,6 @@ class Fuzzing(Campaign):
 
     def run(self, fmu: Path, seed: int, count: int) -> Outcome:
         """Make random calls; count those that a sanitizer objects to."""
-        from tests.native import importers
-
         counts, notes, done = {}, [], 0
         pairs = [(version, model) for version in VERSIONS for model in MODELS]
         for version, model in pairs:
@@ -65,13 +62,11 @@ class Fuzzing(Campaign):
 
 def left_out(fmu: Path, seed: int) -> float:
     """Return the percentage of the shim's branches that random calls of no version take."""
-    from tests.native import importers, test_fuzz
-
     branches: dict[object, bool] = {}
     for version in VERSIONS:
         for model in MODELS:
             program = importer(fmu, version, model, ("--coverage",))
             program.run("random", seed % 2**31, COVERAGE, timeout=3600)
             for unit in importers.units(version):
-                test_fuzz.read_coverage(program.library.parent, unit, {}, branches)
+                importers.read_coverage(program.library.parent, unit, {}, branches)
     return 100.0 * (1.0 - sum(branches.values()) / len(branches))

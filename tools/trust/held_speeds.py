@@ -27,7 +27,7 @@ class System(NamedTuple):
     drive: Drive
 
     def of_kind(self, kind: str) -> System:
-        """Return the same, bonded or delaminated."""
+        """Return the system with its structure bonded or delaminated."""
         bonded = kind == "bonded"
         structure = self.structure.as_bonded() if bonded else self.structure.as_delaminated()
         return self._replace(structure=structure)

@@ -65,7 +65,7 @@ class Hostile(Campaign):
 
 
 def good_results(folder: Path) -> tuple[Path, Path]:
-    """Compute a sweep and a branch, to be damaged and forged."""
+    """Compute a sweep and a branch, to be damaged and forged; return the paths of their files."""
     import orchestrate
 
     places = folder / "good.nc", folder / "branch.nc"

@@ -71,7 +71,7 @@ class Intervals(Campaign):
 
 
 def trial(rng: np.random.Generator) -> list[float | None]:
-    """Noise, misfit, and errors of the fitted numbers over the stated standard errors."""
+    """Fit a noisy record; return noise, misfit, and errors over their standard errors or None."""
     middle, apart = rng.uniform(33.0, 50.0), math.sqrt(rng.uniform(1.1, 1.4))
     first, second = rng.permutation([middle / apart, middle * apart]).tolist()
     zeta = np.exp(rng.uniform(math.log(0.008), math.log(0.02), 2)).tolist()
@@ -111,5 +111,5 @@ def recorded(
 
 
 def rounded(value: float) -> float:
-    """Three digits."""
+    """Round a number to three significant digits."""
     return float(f"{value:.3g}")

@@ -44,7 +44,7 @@ def all_of(records: Sequence[Record], campaign: Campaign) -> list[Record]:
 
 
 def batches(record: Record) -> tuple[str, int, str, str]:
-    """Return what identifies a run's batches, apart from their number."""
+    """Return campaign, seed, subject and campaigns' digest: they identify a run's batches."""
     return record.campaign, record.seed, subject(record), record.campaigns
 
 

@@ -3,26 +3,18 @@
 from __future__ import annotations
 
 import functools
-import shutil
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
 from fmu_src.export import native_form
 from orchestrate.access import describe
 from orchestrate.access.unpacked import unpacked
-from tests.native import importers
+from tools import importers
 
 NATIVE = Path(__file__).parent / "native"
 OPTIONS = ("-std=gnu11", "-O3", "-march=native", "-Wall", "-Wextra", "-Wno-unused-function")
 CALLS = ("-fno-math-errno", "-fno-trapping-math", "-fcx-limited-range")
-
-
-def compiler() -> list[str]:
-    """Return the command of the machine's own C compiler, else of ziglang's."""
-    own = shutil.which("cc") or shutil.which("gcc")
-    return [own] if own else [sys.executable, "-m", "ziglang", "cc"]
 
 
 @functools.cache
@@ -47,7 +39,7 @@ def compiled(fmu: Path, name: str) -> Path:
     program = folder / name
     files = [NATIVE / f"{name}.c", importers.HERE / "importer3.c"]
     places = [f"-I{folder}", f"-I{importers.HERE}"]
-    own = [*compiler(), *OPTIONS, *CALLS, *places]
+    own = [*(importers.compiler() or ["cc"]), *OPTIONS, *CALLS, *places]
     subprocess.run([*own, "-o", program, *files, "-ldl", "-lm"], check=True)
     return program
 

@@ -46,7 +46,7 @@ class Course:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the compared outputs; those at a point of time first."""
+        """Return the names of the compared outputs; those at a point of time first."""
         return (*POINT[self.model], *OF_STEP[self.model])
 
 
@@ -96,7 +96,7 @@ def motor(rng: random.Random) -> list[Values]:
 def steps_of(
     rng: random.Random, start: float, duration: float, inputs: Sequence[Values]
 ) -> tuple[tuple[Values, float], ...]:
-    """Draw steps of any length, a third of them with inputs set before."""
+    """Draw steps of any length: pairs of inputs to set, none in most, and end time, s."""
     parts = sorted(rng.random() for _ in range(STEPS))
     return tuple(
         (rng.choice(inputs) if rng.random() < 0.35 else {}, start + duration * part)
@@ -218,7 +218,7 @@ def moved(
 def disturbed(
     rng: random.Random, course: Course, rows: Sequence[Bits], pool: Sequence[Instance]
 ) -> tuple[int, str]:
-    """Compute a run with a restore before each step; return their number, and what is wrong."""
+    """Run with a restore before each step; return the restores' number, and what is wrong ("")."""
     here, time, restored = pool[0], course.start_time, 0
     here.initialize(course.start_time, **given(course.values))
     for number, ((inputs, target), row) in enumerate(zip(course.steps, rows, strict=False)):
@@ -305,7 +305,7 @@ class Restores(Campaign):
         rows: Sequence[Bits],
         kinds: Sequence[tuple[type, str]],
     ) -> tuple[int, str]:
-        """Compare a course in a pool of instances; return restores, and what is wrong."""
+        """Compare a course in a pool of instances; return restores, and what is wrong ("")."""
         rng = random.Random(f"{seed} {number} {kinds[0][1]}")
         with ExitStack() as stack:
             pool = [stack.enter_context(k(path_of(course.model, form))) for k, form in kinds]

@@ -65,7 +65,7 @@ def area_error(area: float, positive: int, negative: int) -> float:
 
 
 def interval(count: int, of: int) -> tuple[float, float]:
-    """Return Wilson's 95 % interval of a share."""
+    """Return the lower and upper end of Wilson's 95 % interval of a share."""
     if not of:
         return 0.0, 1.0
     z, part = 1.96, count / of

@@ -103,7 +103,7 @@ def with_slope(system: System, slope: float) -> System:
 
 
 def ends_of(system: System) -> tuple[float, float]:
-    """Return the ends of ramps over K omega: past both jumps, and past a fast ramp's lag."""
+    """Return lowest and highest voltage of ramps over K omega: past both jumps, past a lag."""
     folds = averaged.folds(*system)
     at = averaged.resonance(*system)
     places = [fold.eta0 for fold in folds] or [float(averaged.no_load_speed(*system, at))]
@@ -111,7 +111,7 @@ def ends_of(system: System) -> tuple[float, float]:
 
 
 def answers(system: System, rate: float) -> tuple[Answer, ...]:
-    """Run ``couple`` at a rate; return its answers up and down."""
+    """Run ``couple`` at a rate; return its answer up, then that down."""
     structure, drive = system
     volts = drive.volts(structure)
     first, last = (end * volts for end in ends_of(system))

@@ -103,7 +103,7 @@ class Channels:
 
 
 def channel_variable(record: xr.Dataset, name: str) -> xr.DataArray | None:
-    """Return a record's channel by its name, or by its name in :func:`orchestrate.shake`."""
+    """Return a channel by its name or :func:`orchestrate.shake`'s name of it; None without."""
     for candidate in (name, CHANNELS[name]):
         if candidate in record and record[candidate].dims == ("time",):
             return record[candidate]

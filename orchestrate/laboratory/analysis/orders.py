@@ -153,7 +153,7 @@ def fit_windows(
     periods: float,
     overlap: float,
 ) -> tuple[list[Window], Floats, Floats]:
-    """Divide a record into windows and fit the orders in each, by least squares.
+    """Fit orders in windows of a record by least squares; return windows, amplitudes, residuals.
 
     Returns
     -------
@@ -342,7 +342,7 @@ def window(channels: Channels, phase: Floats, part: slice, smooth: bool) -> Wind
 
 
 def fit(channels: Channels, window: Window, orders: tuple[float, ...]) -> tuple[Floats, Floats]:
-    """Fit orders in a window by least squares.
+    """Fit orders in a window by least squares; return each channel's amplitudes and residual.
 
     Returns
     -------

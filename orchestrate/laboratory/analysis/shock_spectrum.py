@@ -117,7 +117,7 @@ def natural_frequencies(channels: Channels, given: ArrayLike | None) -> Floats:
 
 
 def peaks(channels: Channels, frequency: float, damping: float) -> tuple[Floats, Floats]:
-    """Compute an oscillator's largest absolute response during and after the record.
+    """Compute an oscillator's largest absolute response; return it during and after the record.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def straight_between(values: Floats, parts: int) -> Floats:
 def ramp_invariant(
     frequency: float, damping: float, rate: float
 ) -> tuple[list[float], list[float]]:
-    """Make the ramp-invariant digital filter from base acceleration to an oscillator's response.
+    """Return numerator and denominator of the ramp-invariant filter from base to response.
 
     Parameters
     ----------

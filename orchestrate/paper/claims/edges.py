@@ -94,7 +94,7 @@ def orbit_start(
 
 
 def numbers_of(orbit: str) -> tuple[int, int]:
-    """Return periods and impacts of mT/k."""
+    """Return m and k of an orbit named mT/k: its periods, and its impacts."""
     periods, impacts = orbit.split("T/")
     return int(periods or 1), int(impacts)
 

@@ -49,7 +49,7 @@ class Limit(NamedTuple):
 
     @property
     def digits(self) -> int:
-        """Number of known digits; the loss of permanent contact depends on gamma."""
+        """Return the number of known digits: fewer at a loss of contact, which depends on gamma."""
         return 6 if "contact" in self.kind else 8
 
 
@@ -78,7 +78,7 @@ class Results:
         return Limit(window.low, window.below, orbit)
 
     def ends(self, case: str, orbit: str, inside: float) -> Limit:
-        """Return the upper one."""
+        """Return where an orbit's window ends, its upper edge, as a limit."""
         window = self.window(case, orbit, inside)
         return Limit(window.high, window.above, orbit)
 
@@ -96,7 +96,7 @@ class Results:
         return self.of("settled", case, "_up")
 
     def get(self, name: str) -> xr.Dataset:
-        """Return a dataset by name."""
+        """Return a computed dataset of the paper's plan by its name."""
         return self._datasets[name]
 
     def of(self, kind: str, case: str, ending: str = "") -> xr.Dataset:

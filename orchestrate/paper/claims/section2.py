@@ -71,7 +71,7 @@ def scale(results: Results) -> Finding:
 
 @misprint("(10)", "cos kappa_i tau, e^(-D tau)")
 def free_part(results: Results) -> Finding:
-    """Check (10): kappa_i, or nu_i of (11)."""
+    """Decide whether (10) has kappa_i or nu_i of (11), by what they leave of (6)."""
     nu = math.sqrt(STIFFNESS - D * D)
     printed, right = residual(solution(STIFFNESS, D)), residual(solution(nu, D))
     return compared("left of (6)", printed, right, "nu_i for kappa_i (and D_i for D)")
@@ -190,7 +190,7 @@ def next_state(results: Results) -> Finding:
 
 @misprint("(22)", "T = eta/2 pi")
 def period(results: Results) -> Finding:
-    """Check (22): eta/2 pi, or 2 pi/eta."""
+    """Decide whether (22) is eta/2 pi or 2 pi/eta, by which is a period of the excitation."""
 
     def change(span: float) -> float:
         return float(np.abs(np.sin(ETA * (TAUS + span)) - np.sin(ETA * TAUS)).max())

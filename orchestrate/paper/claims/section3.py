@@ -215,7 +215,7 @@ def first_sample(up: xr.Dataset, later: xr.Dataset) -> int:
 
 
 def count_changed(up: xr.Dataset, later: xr.Dataset) -> tuple[int, int, str]:
-    """Count the responses of a sweep that are others later; return count, total and kinds."""
+    """Count responses that change later in a sweep; return count, total, and kinds of change."""
     kinds = {what: int(part.sum()) for what, part in changed(up, later, CHANGE).items()}
     named = ", ".join(f"{count} {what}" for what, count in kinds.items() if count)
     return sum(kinds.values()), later.sizes["eta"], f" ({named})" if named else ""

@@ -10,7 +10,7 @@ import math
 import mpmath as mp
 from scipy.integrate import solve_ivp
 
-from . import truth
+from tools import exact_motion as truth
 
 FLIGHT, CONTACT = "flight", "contact"
 

@@ -8,7 +8,9 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from . import flights, truth
+from tools import exact_motion as truth
+
+from . import flights
 
 ROOT = Path(__file__).resolve().parents[3]
 

@@ -15,8 +15,9 @@ from hypothesis import strategies as st
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator import stepper
 from fmu_src.kernels.oscillator.motion import FAINTEST, move_origin, state_at
+from tools import exact_motion as truth
 
-from . import reference, truth
+from . import reference
 from .kernel import DEFAULTS, advanced, examples, least_work, pieces, started
 
 STATE = (-0.3, 0.2, 0.4, -0.5)  # x1, v1, x2, v2

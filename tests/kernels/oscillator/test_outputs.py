@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.motion import state_at
+from tools import exact_motion as truth
 
-from . import truth
 from .kernel import (
     CHAOTIC,
     DEFAULTS,

@@ -17,8 +17,8 @@ from fmu_src.kernels.oscillator.excitation import cubic_at, set_cubic_response, 
 from fmu_src.kernels.oscillator.nodes import free_part_after
 from fmu_src.kernels.oscillator.parameters import set_oscillator
 from fmu_src.kernels.oscillator.response import displacement, fundamental_solutions, set_free
+from tools import exact_motion as truth
 
-from . import truth
 from .kernel import examples, sizes
 
 BRANCH, HARMONIC, FREE, CUBIC = at.OSCILLATOR_1, at.HARMONIC_1, at.FREE_A, at.CUBIC_A

@@ -19,8 +19,8 @@ from fmu_src.kernels.oscillator.roots import (
     taylor_root,
     walk,
 )
+from tools import exact_motion as truth
 
-from . import truth
 from .kernel import (
     CHAOTIC,
     DEFAULTS,

@@ -14,8 +14,9 @@ from fmu_src.kernels.oscillator import event_function, roots, secular, stepper
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator.motion import state_at
 from fmu_src.kernels.oscillator.nodes import phasors_at
+from tools import exact_motion as truth
 
-from . import reference, truth
+from . import reference
 from .kernel import (
     DEFAULTS,
     advanced,

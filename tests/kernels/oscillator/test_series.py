@@ -12,8 +12,8 @@ from fmu_src.kernels.oscillator import series
 from fmu_src.kernels.oscillator.event_function import evaluate
 from fmu_src.kernels.oscillator.motion import state_at
 from fmu_src.kernels.oscillator.parameters import SAME
+from tools import exact_motion as truth
 
-from . import truth
 from .kernel import DEFAULTS, examples, flight, sizes, structures, unloaded
 
 PLACES = st.floats(-1.0, 1.0), st.floats(-1.0, 1.0)

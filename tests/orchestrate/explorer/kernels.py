@@ -1,54 +1,8 @@
-"""The oscillator's kernel twice, driven alike: WebAssembly under wasmtime, and the native FMU."""
+"""The oscillator's kernel as a native FMU, driven as :class:`tools.web_instance.Web` is."""
 
 import math
 
-import numpy as np
-
 from ...native.slave import Slave
-
-
-class Web:
-    """An instance in the WebAssembly module."""
-
-    def __init__(self, kernel):
-        import wasmtime
-
-        self.slots, self.store = kernel.slots, wasmtime.Store()
-        module = wasmtime.Module(self.store.engine, kernel.module)
-        assert not module.imports
-        self.exports = wasmtime.Instance(self.store, module, []).exports(self.store)
-        base = self.exports["__heap_base"].value(self.store)
-        self.address = -(-base // 16) * 16
-        memory = self.exports["memory"]
-        missing = self.address + 8 * self.slots["SIZE"] - memory.data_len(self.store)
-        if missing > 0:
-            memory.grow(self.store, -(-missing // 65536))
-        self.starts = kernel.starts
-
-    def bytes(self):
-        end = self.address + 8 * self.slots["SIZE"]
-        return bytes(self.exports["memory"].read(self.store, self.address, end))
-
-    def memory(self):
-        return np.frombuffer(self.bytes())
-
-    def set(self, **values):
-        for name, value in values.items():
-            place = self.address + 8 * self.slots[name]
-            self.exports["memory"].write(self.store, np.float64(value).tobytes(), place)
-            if self.slots["CUBIC"] <= self.slots[name] < self.slots["CUBIC_END"]:
-                self.set(SET=1.0)
-
-    def begin(self, **values):
-        size = 8 * self.slots["SIZE"]
-        self.exports["memory"].write(self.store, bytes(size), self.address)
-        self.set(**{**self.starts, **values})
-        assert self.exports["kernel_initialize"](self.store, self.address, 0.0) == 0
-
-    def step(self, time, target):
-        self.set(STOP=0.0)
-        target = max(time + (target - time), self.memory()[self.slots["TIME"]])
-        assert self.exports["kernel_advance"](self.store, self.address, target) == 0
 
 
 class Native:

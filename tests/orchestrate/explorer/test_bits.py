@@ -5,8 +5,9 @@ import struct
 import pytest
 
 from orchestrate.access.webassembly import web_kernel
+from tools.web_instance import Web
 
-from .kernels import Native, Web, period
+from .kernels import Native, period
 
 pytest.importorskip("wasmtime", reason="wasmtime runs the WebAssembly module")
 REST = {}

@@ -5,7 +5,8 @@ import json
 import subprocess
 import time
 
-from .chromium import WORDS
+from tools.chromium import WORDS
+
 from .firefox import address
 
 CATEGORIES = ("toplevel", "blink.user_timing")

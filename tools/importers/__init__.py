@@ -1,6 +1,8 @@
-"""The project's importers in C, compiled against an FMU, and the FMU's shim rebuilt with checks
-inside.
+"""Importers in C for tests and campaigns, compiled against an FMU; and the FMU's shim rebuilt with
+checks inside.
 """
+
+from __future__ import annotations
 
 import importlib.util
 import math
@@ -8,14 +10,17 @@ import shutil
 import subprocess
 import sys
 import zipfile
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import fmpy
-
-from fmu_src.export import native_form, sources
+from fmu_src.export import forms, native_form, sources
+from fmu_src.export.compiler import kernel_object
 from fmu_src.export.model_header import model_header
+from fmu_src.export.platforms import this_machine
+from fmu_src.export.source_code import kernel_source
 from fmu_src.kernels.shaker import memory as shaker
+from orchestrate.access import describe
 
 HERE = Path(__file__).parent
 TYPES = {"Real": "R", "Float64": "R", "Integer": "I", "Int32": "I", "Boolean": "B"}
@@ -24,14 +29,14 @@ SANITIZE = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-o
 WARNINGS = ("-std=gnu11", "-Wall", "-Wextra", "-Werror", "-Wno-unused-function")
 
 
-def own_compiler():
-    """The machine's C compiler, as a command; None where there is none."""
+def own_compiler() -> list[str] | None:
+    """Return the command of the machine's C compiler; None where there is none."""
     own = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
     return [own] if own else None
 
 
-def ziglang(target="native"):
-    """The C compiler of ziglang, as a command; None where it is not installed."""
+def ziglang(target: str = "native") -> list[str] | None:
+    """Return the command of ziglang's C compiler; None where it is not installed."""
     return (
         [sys.executable, "-m", "ziglang", "cc", "-target", target]
         if importlib.util.find_spec("ziglang")
@@ -39,19 +44,19 @@ def ziglang(target="native"):
     )
 
 
-def compiler():
-    """A C compiler for this machine, as a command; None where there is none."""
+def compiler() -> list[str] | None:
+    """Return the command of a C compiler for this machine; None where there is none."""
     return own_compiler() or ziglang()
 
 
-def run_compiler(command, folder):
-    """Compile, or show what the compiler said."""
+def run_compiler(command: Sequence[object], folder: Path) -> None:
+    """Run a compiler in a folder; raise with what it prints where it fails."""
     done = subprocess.run([*map(str, command)], cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr[-4000:]
 
 
-def binary(fmu, version, folder, windows=False):
-    """The FMU's binary, unpacked; returns its path."""
+def binary(fmu: Path, version: str, folder: Path, windows: bool = False) -> Path:
+    """Unpack an FMU's binary into a folder; return its path."""
     suffix = ".dll" if windows else ".so"
     with zipfile.ZipFile(fmu) as archive:
         return Path(
@@ -59,11 +64,11 @@ def binary(fmu, version, folder, windows=False):
         )
 
 
-def names_header(fmu):
-    """``names.h`` from the FMU's model description: what the importer knows of the FMU."""
-    description = fmpy.read_model_description(str(fmu))
+def names_header(fmu: Path) -> str:
+    """Return ``names.h``, what an importer knows of an FMU, from its model description."""
+    description = describe(fmu)
     rows, time = [], 0xFFFFFFFF
-    for variable in description.modelVariables:
+    for variable in description.variables.values():
         if variable.causality == "independent":
             time = variable.valueReference
         if variable.type not in TYPES or variable.dimensions or variable.causality == "independent":
@@ -79,23 +84,32 @@ def names_header(fmu):
         rows.append(
             "    {" + ", ".join([*cells, str(int(variable.variability == "fixed")), *limits]) + "},"
         )
-    token = description.guid or description.instantiationToken
-    defines = ["#include <math.h>", f'#define TOKEN "{token}"', f"#define TIME_REFERENCE {time}u"]
-    is_shaker = description.modelName == "MotorShaker"
+    defines = [
+        "#include <math.h>",
+        f'#define TOKEN "{description.guid}"',
+        f"#define TIME_REFERENCE {time}u",
+    ]
+    is_shaker = description.name == "MotorShaker"
     defines += ["#define MOTOR_SHAKER"] * is_shaker
     first, end = (shaker.RATES, shaker.STATE) if is_shaker else (0, 0)
     defines += [f"#define SCRATCH_FIRST {first}", f"#define SCRATCH_COUNT {end - first}"]
     return "\n".join([*defines, "static const Name NAMES[] = {", *rows, "};", ""])
 
 
-def c_double(text, otherwise):
-    """A number of the model description as a C literal."""
+def c_double(text: str | None, otherwise: float) -> str:
+    """Return a number of the model description as a C literal."""
     value = otherwise if text is None else float(text)
     return repr(value).replace("inf", "INFINITY") if math.isinf(value) else value.hex()
 
 
-def compile_importer(version, fmu, folder, command=None, options=("-O1", "-g")):
-    """Compile the importer of an FMI version for an FMU; returns its path."""
+def compile_importer(
+    version: str,
+    fmu: Path,
+    folder: Path,
+    command: Sequence[str] | None = None,
+    options: Sequence[str] = ("-O1", "-g"),
+) -> Path:
+    """Compile the importer of an FMI version for an FMU; return the program's path."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "names.h").write_text(names_header(fmu), encoding="utf-8")
     for name, content in native_form.fmi_headers(version).items():
@@ -122,15 +136,20 @@ def compile_importer(version, fmu, folder, command=None, options=("-O1", "-g")):
     return target
 
 
-def units(version):
-    """The shim's C files."""
+def units(version: str) -> list[str]:
+    """Return the names of the shim's C files."""
     return [name for name in native_form.shim_sources(version) if name.endswith(".c")]
 
 
-def rebuild_shim(version, folder, objects, options=SANITIZE, model="oscillator", command=None):
-    """The FMU's binary again, from its own C sources and kernel, with other options; returns its
-    path.
-    """
+def rebuild_shim(
+    version: str,
+    folder: Path,
+    objects: Mapping[str, bytes],
+    options: Sequence[str] = SANITIZE,
+    model: str = "oscillator",
+    command: Sequence[str] | None = None,
+) -> Path:
+    """Compile an FMU's binary from its own sources with other options; return its path."""
     folder.mkdir(parents=True, exist_ok=True)
     token = native_form.guid(model, version)
     header = model_header(sources.load_model(model), token, sources.model_digest(model))
@@ -161,8 +180,17 @@ class Importer:
     library: Path
     version: str
 
-    def run(self, *arguments, under=(), times=(), text="", timeout=300, success=True, env=None):
-        """Run a mode, with times or a text as its standard input; returns the completed process."""
+    def run(
+        self,
+        *arguments: object,
+        under: Sequence[str] = (),
+        times: Iterable[float] = (),
+        text: str = "",
+        timeout: float = 300,
+        success: bool = True,
+        env: Mapping[str, str] | None = None,
+    ) -> subprocess.CompletedProcess[str]:
+        """Run a mode, with times or a text as standard input; return the completed process."""
         command = [*under, self.program, self.library, *arguments]
         text += "".join(f"{float(time).hex()}\n" for time in times)
         done = subprocess.run(
@@ -179,8 +207,14 @@ class Importer:
             )
         return done
 
-    def simulate(self, names, times, under=(), **values):
-        """Outputs at each of ``times``, the first one being the start: a list of lists of float."""
+    def simulate(
+        self,
+        names: Sequence[str],
+        times: Iterable[float],
+        under: Sequence[str] = (),
+        **values: float,
+    ) -> list[list[float]]:
+        """Return outputs at each of ``times``, the first one being the start."""
         settings = [f"{name}={float(value).hex()}" for name, value in values.items()]
         done = self.run("simulate", ",".join(names), *settings, under=under, times=times)
         return [
@@ -188,3 +222,41 @@ class Importer:
             for line in done.stdout.splitlines()
             if not line.startswith("CHECKS")
         ]
+
+
+def kernel(model: str) -> dict[str, bytes]:
+    """Compile a model's kernel; return its object file by this machine's platform."""
+    source = kernel_source(forms.MODELS[model])
+    return {this_machine(): kernel_object(this_machine(), source)}
+
+
+def checked(
+    version: str, model: str, exported: Path, folder: Path, sanitizer: Sequence[str]
+) -> Importer:
+    """Compile importer and shim for a model, with a sanitizer in both."""
+    path = exported / version / f"{model}.fmu"
+    options = ("-O1", "-g", *sanitizer)
+    program = compile_importer(version, path, folder / "importer", options=options)
+    library = rebuild_shim(version, folder / "shim", kernel(model), sanitizer, forms.MODELS[model])
+    return Importer(program, library, version)
+
+
+def read_coverage(
+    folder: Path, unit: str, lines: dict[object, bool], branches: dict[object, bool]
+) -> None:
+    """Add to ``lines`` and ``branches`` which ones of a C file were run and taken, by gcov."""
+    notes = next(folder.glob(f"*{Path(unit).stem}.gcda"))
+    command = ["gcov", "-b", "-c", "-o", notes.name, unit]
+    subprocess.run(command, cwd=folder, capture_output=True, check=True)
+    number = text = None
+    for row in (folder / f"{unit}.gcov").read_text().splitlines():
+        if row.startswith("branch"):
+            key = (unit, number, row.split()[1], text)
+            taken = "taken" in row and "taken 0" not in row
+            branches[key] = branches.get(key, False) or taken
+            continue
+        parts = row.split(":", 2)
+        if len(parts) == 3 and parts[0].strip() not in ("-", ""):
+            number, text = parts[1].strip(), parts[2].strip()
+            key = (unit, number, text)
+            lines[key] = lines.get(key, False) or parts[0].strip()[0] not in "#="

@@ -1,12 +1,18 @@
-"""Independent truth: the two oscillators in SI units as sums of complex exponentials, in high
-precision; first roots by scan and polish.
+"""Independent truth for tests and campaigns: the two oscillators in SI units as sums of complex
+exponentials, in high precision; first roots by scan and polish.
 
 Nothing here comes from the kernel: no omega, no mu, no branches of damping. Newton's law of each
 mass, its characteristic roots, and mpmath.
 """
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
 import mpmath as mp
 import numpy as np
+from numpy.typing import NDArray
 
 mp.mp.dps = 50
 
@@ -21,56 +27,55 @@ BESIDE = mp.mpf("1e-24")  # a drive is that far from any resonance: wrong by as 
 class Signal:
     """``Re sum c_k e^{s_k t} + sum p_k t^k / k!``."""
 
-    def __init__(self, terms, polynomial):
+    def __init__(self, terms: Sequence[tuple[Any, Any]], polynomial: Sequence[Any]) -> None:
         self.terms, self.polynomial = terms, polynomial
         self._coarse = [(complex(c), complex(s)) for c, s in terms], [float(p) for p in polynomial]
 
-    def __sub__(self, other):
+    def __sub__(self, other: Signal) -> Signal:
         return self + -1 * other
 
-    def __add__(self, other):
+    def __add__(self, other: Signal) -> Signal:
         return Signal(
             self.terms + other.terms,
             [a + b for a, b in zip(self.polynomial, other.polynomial, strict=True)],
         )
 
-    def __rmul__(self, factor):
+    def __rmul__(self, factor: Any) -> Signal:
         return Signal(
             [(factor * c, s) for c, s in self.terms], [factor * p for p in self.polynomial]
         )
 
-    def derivative(self):
+    def derivative(self) -> Signal:
+        """Return the derivative by t."""
         return Signal([(c * s, s) for c, s in self.terms], [*self.polynomial[1:], mp.mpf(0)])
 
-    def __call__(self, t):
-        """In high precision."""
+    def __call__(self, t: Any) -> Any:
+        """Return the value at t, in high precision."""
         t = mp.mpf(t)
         return mp.re(sum(c * mp.exp(s * t) for c, s in self.terms)) + taylor(self.polynomial, t)
 
-    def sample(self, t):
-        """In double precision, on an array; in high precision where the terms cancel."""
+    def sample(self, t: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return values in double precision on an array, by high precision where terms cancel."""
         terms, polynomial = self._coarse
         if max(abs(c) for c, _ in terms) > LARGE:
             return np.array([float(self(x)) for x in t])
         return sum((c * np.exp(s * t)).real for c, s in terms) + taylor(polynomial, t)
 
-    def fastest(self):
-        """Largest rate of change."""
+    def fastest(self) -> float:
+        """Return the largest rate of change of a term."""
         return max([abs(s) for _, s in self._coarse[0]] + [1e-3])
 
 
-def taylor(derivatives, t):
-    """A polynomial by its derivatives at 0."""
-    value = 0
+def taylor(derivatives: Sequence[Any], t: Any) -> Any:
+    """Return a polynomial, given by its derivatives at 0, at t."""
+    value: Any = 0
     for k in range(len(derivatives), 0, -1):
         value = derivatives[k - 1] + value * t / k
     return value
 
 
-def box(values, phase):
-    """The box's acceleration as a Signal; ``values`` are inputs by name, ``phase`` (rad) that of
-    the harmonic part at t = 0.
-    """
+def box(values: Mapping[str, float], phase: Any) -> Signal:
+    """Return the box's acceleration from the inputs; ``phase``, rad, is the harmonic part's."""
     a, frequency = (
         mp.mpf(values.get("box_amplitude", 1.0)),
         mp.mpf(values.get("box_frequency", 0.0)),
@@ -83,14 +88,16 @@ def box(values, phase):
     return Signal([(mp.mpc(0, 1) * a * frequency**2 * mp.expj(phase), mp.mpc(0, frequency))], cubic)
 
 
-def beside(s, damping, stiffness):
-    """An exponent, or one next to it where the oscillator has just this one."""
+def beside(s: Any, damping: Any, stiffness: Any) -> Any:
+    """Return an exponent, or one next to it where the oscillator has just this one."""
     at_resonance = abs(s * s + damping * s + stiffness) < BESIDE * stiffness
     return s * (1 + BESIDE) if at_resonance else s
 
 
-def oscillator(mass, damping, stiffness, x, v, acceleration):
-    """Displacement relative to a box of given acceleration, from initial conditions at t = 0."""
+def oscillator(
+    mass: Any, damping: Any, stiffness: Any, x: Any, v: Any, acceleration: Signal
+) -> Signal:
+    """Return the displacement in a box of given acceleration, from initial conditions at t = 0."""
     mass, damping, stiffness = mp.mpf(mass), mp.mpf(damping), mp.mpf(stiffness)
     exponents = [(c, beside(s, damping / mass, stiffness / mass)) for c, s in acceleration.terms]
     forced = [(-c / (s * s + damping / mass * s + stiffness / mass), s) for c, s in exponents]
@@ -113,23 +120,24 @@ def oscillator(mass, damping, stiffness, x, v, acceleration):
     return Signal(forced + free, cubic)
 
 
-def apart(values, state, phase):
-    """Both masses on their own from a state (x1, v1, x2, v2)."""
+def apart(values: Mapping[str, float], state: Sequence[Any], phase: Any) -> tuple[Signal, Signal]:
+    """Return both masses' displacements on their own, from a state (x1, v1, x2, v2)."""
     x1, v1, x2, v2 = (mp.mpf(value) for value in state)
     shaken = box(values, phase)
     first = oscillator(values["m1"], values["d1"], values["k1"], x1, v1, shaken)
     return first, oscillator(values["m2"], values["d2"], values["k2"], x2, v2, shaken)
 
 
-def gap_of(values, first, second):
-    """The gap between both masses' motions: the clearance, and what they have moved apart."""
+def gap_of(values: Mapping[str, float], first: Signal, second: Signal) -> Signal:
+    """Return the gap: the clearance, and what both masses' motions are apart."""
     constant = [mp.mpf(values.get("clearance", 0.0)), 0, 0, 0]
     return second - first + Signal([], constant)
 
 
-def together(values, x, v, phase):
-    """Motion of mass 1 where both move as one, and the force with which mass 2 is pushed by mass 1
-    (Newton's law of mass 1).
+def together(values: Mapping[str, float], x: Any, v: Any, phase: Any) -> tuple[Signal, Signal]:
+    """Return mass 1's motion where both move as one, and the force with which it pushes mass 2.
+
+    The force is by Newton's law of mass 1.
 
     With a clearance mass 2 is by so much behind, and its spring loaded by so much: that moves the
     position around which both swing.
@@ -144,14 +152,15 @@ def together(values, x, v, phase):
     return common, -1 * (m1 * (speed.derivative() + shaken) + d1 * speed + k1 * common)
 
 
-def polish(signal, low, high):
-    """Root in a bracket."""
+def polish(signal: Signal, low: Any, high: Any) -> Any:
+    """Return the root of a signal in a bracket."""
     return mp.findroot(signal, (mp.mpf(low), mp.mpf(high)), solver="anderson", verify=False)
 
 
-def first_root(signal, stop, start=0.0):
-    """First root in ``start < t <= stop``, or None: a scan with hundreds of points a period, each
-    near miss settled by its own minimum.
+def first_root(signal: Signal, stop: float, start: float = 0.0) -> Any | None:
+    """Return the first root in ``start < t <= stop``, None without one.
+
+    By a scan with hundreds of points a period, each near miss settled by its own minimum.
     """
     spacing = 0.02 / signal.fastest()
     fine = start + np.geomspace(1e-8, 1.0, 60) * min(spacing, stop - start)
