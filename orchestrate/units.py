@@ -8,6 +8,7 @@ none.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
@@ -98,10 +99,13 @@ def units_of(data: xr.Dataset) -> Units:
     return Units.from_text(str(data.attrs.get(SHOWN_IN, "")))
 
 
-def omega_of(data: xr.Dataset) -> float:
-    """Return sqrt(k1/m1) of an answer's structure, rad/s; nan where it varies."""
+def omega_of(data: xr.Dataset | Mapping[str, float]) -> float:
+    """Return sqrt(k1/m1) of an answer's structure or of its parameters, rad/s; nan where it
+    varies.
+    """
+    known: Mapping[Any, Any] = getattr(data, "attrs", data)
     try:
-        return math.sqrt(float(data.attrs["k1"]) / float(data.attrs["m1"]))
+        return math.sqrt(float(known["k1"]) / float(known["m1"]))
     except (KeyError, TypeError, ValueError):
         return math.nan
 
@@ -150,9 +154,14 @@ def scale_of(data: xr.Dataset, unit: str) -> tuple[float, str]:
 
 def text_of(data: xr.Dataset, value: float, unit: str, form: str = ".6g") -> str:
     """Format a number of an SI unit as an answer is shown: ``12.5 Hz``, ``eta = 0.8``."""
-    factor, word = scale_of(data, unit)
-    number = format(float(value) / factor, form)
+    number, word = shown_number(data, value, unit, form)
     return f"eta = {number}" if word == "eta" else f"{number} {word}"
+
+
+def shown_number(data: xr.Dataset, value: float, unit: str, form: str = ".6g") -> tuple[str, str]:
+    """Format a number of an SI unit as an answer is shown, and return its unit apart."""
+    factor, word = scale_of(data, unit)
+    return format(float(value) / factor, form), word
 
 
 def as_shown(data: xr.Dataset) -> xr.Dataset:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import InputError
+from ..units import text_of
 from .grammar import changes_of, plain_float
 from .options import (
     FREQUENCIES,
@@ -19,7 +20,7 @@ from .options import (
     structure_and_drive,
 )
 from .output import Files, add_results, add_units, digest, running_of
-from .question import carry_out, format_parameter, picture_of, with_unit
+from .question import carry_out, format_parameter, picture_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -115,5 +116,5 @@ def print_line_ratio(data: xr.Dataset, name: str, amplitude: xr.DataArray) -> No
     largest = float(amplitude.max())
     above = float(amplitude.where(amplitude.order > 1.5, 0.0).max())
     share = above / largest if largest else 0.0
-    line = with_unit(data, largest, "m/s2")
+    line = text_of(data, largest, "m/s2", ".4g")
     print(f"{name}: largest line {line}, {share:.2g} of it above the excitation")
