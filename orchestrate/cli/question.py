@@ -14,7 +14,15 @@ from typing import TYPE_CHECKING, Any
 
 from ..constants import TURN
 from ..errors import InputError, StoreError
-from ..units import Units, as_shown, omega_of, shown_number, units_of, with_units
+from ..units import (
+    Units,
+    as_shown,
+    omega_of,
+    shown_number,
+    units_of,
+    with_readable_lengths,
+    with_units,
+)
 from .output import Files, name_of, preparing_a_picture, running_of, units_option
 
 if TYPE_CHECKING:
@@ -84,8 +92,8 @@ def carry_out(
     import orchestrate
 
     command = function or arguments.command
-    asked, units = asked_units(arguments, question)
-    named = name_of(command, structure, question, asked.frequency)
+    usual, units = asked_units(arguments, question)
+    named = name_of(command, structure, question, usual.frequency)
     files = Files.from_options(arguments, "_".join(filter(None, [named, ending])), over)
     ask = getattr(orchestrate, command)
     print_frequency_notes(arguments, structure, question)
@@ -93,9 +101,10 @@ def carry_out(
         data: xr.Dataset = ask(structure, **question, **running_of(arguments, files.result))
     for line in trivial_notes(structure, question):
         print(line)
-    shown = with_units(data, units)
+    asked = with_units(data, units)
+    (shown,) = with_readable_lengths(asked)
     print_result(shown)
-    files.write(shown, partial(draw, shown) if draw else None)
+    files.write(asked, partial(draw, shown) if draw else None)
     return data
 
 

@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import InputError
-from ..units import text_of
+from ..units import text_of, with_units
+from .drives import drive_units
 from .grammar import changes_of, plain_float
 from .options import (
     FREQUENCIES,
@@ -82,9 +83,11 @@ def motor_spectra(arguments: argparse.Namespace) -> None:
     from ..weak_drive.drive_spectra import drive_spectra
 
     data = drive_spectra(structure, drive, voltage=voltage, **running_of(arguments, files.result))
+    data = with_units(data, drive_units(arguments))
     for kind in map(str, data.kind.values):
         part = data.sel(kind=kind, mass=1)
-        print_line_ratio(data, f"{kind} at {float(part.speed):.4f} rad/s", part.acceleration)
+        speed = text_of(data, part.speed, "rad/s", ".5g")
+        print_line_ratio(data, f"{kind} at {speed}", part.acceleration)
     words = str(data.attrs["title"])
     title = f"{Path(arguments.drive).stem}: {words[0].lower()}{words[1:]}, mass 1 in space"
     files.write(data, lambda: figure.draw(data, title=title))
