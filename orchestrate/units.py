@@ -8,6 +8,7 @@ none.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +25,7 @@ FACTORS: dict[str, dict[str, float]] = {  # SI of each word; nan where it depend
     "acceleration": {"m/s2": 1.0, "g": GRAVITY},
     "time": {"s": 1.0, "periods": math.nan},
 }
+OF_ACCELERATION = {"m/s2": (1, "g"), "m2/s4/Hz": (2, "g2/Hz"), "s2/m": (-1, "1/g")}
 ALIKE = {"hz": "Hz", "µm": "um", "μm": "um", "rad_s": "rad/s", "m/s^2": "m/s2", "m/s²": "m/s2"}
 EXPECTED = "; ".join(f"{' or '.join(words)}" for words in FACTORS.values())
 OVER_OMEGA = "Omega/omega"
@@ -98,10 +100,50 @@ def units_of(data: xr.Dataset) -> Units:
     return Units.from_text(str(data.attrs.get(SHOWN_IN, "")))
 
 
-def omega_of(data: xr.Dataset) -> float:
-    """Return sqrt(k1/m1) of an answer's structure, rad/s; nan where it varies."""
+def has_own_frequency(data: xr.Dataset) -> bool:
+    """Return whether an answer's structure is in SI: the paper's has sqrt(k1/m1) = 1 rad/s."""
+    omega = omega_of(data)
+    return math.isfinite(omega) and not math.isclose(omega, 1.0, rel_tol=1e-9)
+
+
+def with_readable_lengths(*answers: xr.Dataset) -> list[xr.Dataset]:
+    """Return answers of one table or picture, shown in the unit of length that suits the largest.
+
+    This is m, mm or um, so that the largest number is 1 at least. Answers stay as they are where
+    a unit of length was asked for, and where their structure is not in SI.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> beam = xr.Dataset({"x": ("t", [2e-5, 0.0], {"units": "m"})}, attrs={"k1": 4.0, "m1": 1.0})
+    >>> str(units_of(*with_readable_lengths(beam)))
+    'um'
+    """
+    if not all(has_own_frequency(data) and not units_of(data).length for data in answers):
+        return list(answers)
+    largest = max(map(largest_length, answers), default=0.0)
+    sizes = FACTORS["length"].items()
+    word = next((word for word, size in sizes if 0.0 < size <= largest < math.inf), "")
+    return [with_units(data, word) for data in answers]
+
+
+def largest_length(data: xr.Dataset) -> float:
+    """Return the largest length among an answer's variables, m; 0 without any."""
+    lengths = [
+        float(abs(array).max())
+        for array in data.data_vars.values()
+        if array.attrs.get("units") == "m" and array.dtype.kind == "f" and array.size
+    ]
+    return max((length for length in lengths if math.isfinite(length)), default=0.0)
+
+
+def omega_of(data: xr.Dataset | Mapping[str, float]) -> float:
+    """Return sqrt(k1/m1) of an answer's structure or of its parameters, rad/s; nan where it
+    varies.
+    """
+    known: Mapping[Any, Any] = getattr(data, "attrs", data)
     try:
-        return math.sqrt(float(data.attrs["k1"]) / float(data.attrs["m1"]))
+        return math.sqrt(float(known["k1"]) / float(known["m1"]))
     except (KeyError, TypeError, ValueError):
         return math.nan
 
@@ -111,7 +153,8 @@ def period_of(data: xr.Dataset) -> float:
     for holder in (data.attrs, data.coords):
         for name, factor in (("frequency", 1.0), ("eta", omega_of(data))):
             value = holder.get(name)
-            if value is not None and not getattr(value, "shape", ()):
+            in_hertz = getattr(value, "attrs", {}).get("units") == "Hz"  # of a record's line
+            if value is not None and not getattr(value, "shape", ()) and not in_hertz:
                 return TURN / (factor * float(value))
     return math.nan
 
@@ -123,7 +166,8 @@ def scale_of(data: xr.Dataset, unit: str) -> tuple[float, str]:
     ----------
     data : xarray.Dataset
     unit : str
-        As the dataset's variables have it: rad/s, m, m/s, m/s2 or s; others stay.
+        As the dataset's variables have it: rad/s, Hz, m, m/s, s, m/s2 or a density over or of it;
+        others stay.
 
     Examples
     --------
@@ -133,15 +177,17 @@ def scale_of(data: xr.Dataset, unit: str) -> tuple[float, str]:
     """
     units = units_of(data)
     word, factor = unit, 1.0
-    if unit == "rad/s" and units.frequency:
+    if unit in ("rad/s", "Hz") and units.frequency:
         word = units.frequency
         factor = omega_of(data) if word == "eta" else FACTORS["frequency"][word]
+        factor /= FACTORS["frequency"][unit]
     elif unit in ("m", "m/s") and units.length:
         word = unit.replace("m", units.length, 1)
         factor = FACTORS["length"][units.length]
-    elif unit == "m/s2" and units.acceleration:
-        word = units.acceleration
-        factor = FACTORS["acceleration"][word]
+    elif unit in OF_ACCELERATION and units.acceleration:
+        power, in_g = OF_ACCELERATION[unit]
+        word = in_g if units.acceleration == "g" else unit
+        factor = FACTORS["acceleration"][units.acceleration] ** power
     elif unit == "s" and units.time:
         word = units.time
         factor = period_of(data) if word == "periods" else 1.0
@@ -150,22 +196,34 @@ def scale_of(data: xr.Dataset, unit: str) -> tuple[float, str]:
 
 def text_of(data: xr.Dataset, value: float, unit: str, form: str = ".6g") -> str:
     """Format a number of an SI unit as an answer is shown: ``12.5 Hz``, ``eta = 0.8``."""
-    factor, word = scale_of(data, unit)
-    number = format(float(value) / factor, form)
+    number, word = shown_number(data, value, unit, form)
     return f"eta = {number}" if word == "eta" else f"{number} {word}"
+
+
+def range_text(data: xr.Dataset, low: float, high: float, unit: str, form: str = ".4g") -> str:
+    """Format both ends of a range as an answer is shown: ``41 to 45 Hz``, ``eta = 0.8 to 0.9``."""
+    (first, word), (last, _) = (shown_number(data, end, unit, form) for end in (low, high))
+    return f"eta = {first} to {last}" if word == "eta" else f"{first} to {last} {word}"
+
+
+def shown_number(data: xr.Dataset, value: float, unit: str, form: str = ".6g") -> tuple[str, str]:
+    """Format a number of an SI unit as an answer is shown, and return its unit apart."""
+    factor, word = scale_of(data, unit)
+    return format(float(value) / factor, form), word
 
 
 def as_shown(data: xr.Dataset) -> xr.Dataset:
     """Return an answer for a table, its numbers and ``units`` attributes as it is shown.
 
-    A frequency ratio stands beside the frequency already, which stays in rad/s then.
+    A frequency ratio stands beside the frequency already, which stays in rad/s then; what is named
+    for its unit keeps it.
     """
     if SHOWN_IN not in data.attrs:
         return data
     changed: dict[str, Any] = {}
     for name, array in data.variables.items():
         factor, word = scale_of(data, str(array.attrs.get("units", "")))
-        if word == "eta" and "eta" in data.variables:
+        if str(name).endswith("hertz") or (word == "eta" and "eta" in data.variables):
             continue
         if array.dtype.kind == "f" and word != array.attrs.get("units", ""):
             about = {**array.attrs, "units": OVER_OMEGA if word == "eta" else word}

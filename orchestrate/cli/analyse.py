@@ -10,17 +10,23 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
+from ..units import scale_of, text_of, with_units
 from .grammar import orders_of, plain_float
 from .options import Commands
 from .output import (
     FORMATS,
     PLOTS,
     add_files,
+    add_units,
     check_output,
     digest,
     draw_picture,
     endings_of,
     export_formats,
+    print_units_note,
+    record_units,
+    units_ending,
+    with_ending,
 )
 from .question import read_stored
 
@@ -91,6 +97,7 @@ def add_parser(commands: Commands) -> None:
     option("--to", dest="end", type=plain_float, metavar="S", help="time it ends at, s")
     add_reading(parser)
     add_settings(parser)
+    add_units(parser)
     add_files(parser, store=False)
     option = parser.add_argument_group("results").add_argument
     place = "folder of the results (default: results)"
@@ -136,16 +143,20 @@ def run(arguments: argparse.Namespace) -> None:
     paths = paths_of(arguments)
     records = {label: part_of(arguments, path) for label, path in paths.items()}
     warn_without_sensor(arguments, records)
+    units = record_units(arguments)
     for name in names:
         results = {
             label: analyse(ANALYSES[name], record, paths[label], settings[name])
             for label, record in records.items()
         }
-        print_result(name, results)
+        shown = {label: with_units(data, units) for label, data in results.items()}
+        print_result(name, shown)
+        print_units_note(arguments, *shown.values())
         read = {label: str(path) for label, path in paths.items()}
         told = digest(read, settings[name], *part_and_reading(arguments))
         stem = f"analyse_{name}_{arguments.record.stem}_{told}"
-        write(arguments.output / f"{stem}.nc", results, formats, plots)
+        place = arguments.output / f"{stem}.nc"
+        write(place, results, shown, formats, plots, units_ending(arguments))
 
 
 def warn_without_sensor(arguments: argparse.Namespace, records: Mapping[str, xr.Dataset]) -> None:
@@ -274,9 +285,25 @@ def analyse(
 
 
 def write(
-    place: Path, results: dict[str, xr.Dataset], formats: tuple[str, ...], plots: tuple[str, ...]
+    place: Path,
+    results: dict[str, xr.Dataset],
+    shown: dict[str, xr.Dataset],
+    formats: tuple[str, ...],
+    plots: tuple[str, ...],
+    units: str = "",
 ) -> None:
-    """Write each record's result to a file, and one picture of all."""
+    """Write each record's result to a file, and one picture of all.
+
+    Parameters
+    ----------
+    place : Path
+    results, shown : dict of xarray.Dataset
+        By label, as they are stored, and as tables and pictures have them.
+    formats, plots : tuple of str
+        Endings.
+    units : str
+        In the names of tables and pictures.
+    """
     from ..figures.analysis import draw
     from ..files import open_folder
     from ..running.store import write_netcdf
@@ -286,10 +313,12 @@ def write(
         words = "".join(letter if letter.isalnum() else "-" for letter in label)
         ending = f"_{words}" if len(results) > 1 else ""
         path = write_netcdf(data, place.with_name(f"{place.stem}{ending}.nc"))
-        for file in (path, *export_formats(data, path, formats, fresh=True)):
+        table = with_ending(path, units)
+        for file in (path, *export_formats(shown[label], table, formats, fresh=True)):
             print(file)
-    (label, first), *others = results.items()
-    for file in draw_picture(place, plots, True, lambda: draw(first, label, dict(others))):
+    (label, first), *others = shown.items()
+    picture = with_ending(place, units)
+    for file in draw_picture(picture, plots, True, lambda: draw(first, label, dict(others))):
         print(file)
 
 
@@ -317,6 +346,11 @@ def largest(values: xr.DataArray) -> xr.DataArray:
     return flat.isel(every=int(flat.fillna(-1.0).values.argmax()))
 
 
+def at_frequency(data: xr.Dataset, peak: xr.Dataset | xr.DataArray) -> str:
+    """Format the frequency of a value, as an answer is shown."""
+    return text_of(data, peak.frequency, "Hz", ".5g")
+
+
 def say_frf(data: xr.Dataset) -> Iterator[str]:
     """Yield a line on the peak of H1, its error, and the coherence."""
     if not data.excited.any():
@@ -327,7 +361,7 @@ def say_frf(data: xr.Dataset) -> Iterator[str]:
         peak = band.isel(frequency=int(band.magnitude.sel(estimator="H1").values.argmax()))
         height = float(peak.magnitude.sel(estimator="H1"))
         yield (
-            f"{name}: |H1| has its largest value {height:.4g} at {float(peak.frequency):.5g} Hz, "
+            f"{name}: |H1| has its largest value {height:.4g} at {at_frequency(data, peak)}, "
             f"random error {100.0 * float(peak.random_error):.2g} %; coherence "
             f"{float(peak.coherence):.4f} there, {float(band.coherence.median()):.4f} in the median"
         )
@@ -336,21 +370,21 @@ def say_frf(data: xr.Dataset) -> Iterator[str]:
 def say_psd(data: xr.Dataset) -> Iterator[str]:
     """Yield a line on root mean square and peak."""
     for name, part in channels_of(data):
-        at = float(part.psd.idxmax())
-        yield (
-            f"{name}: {float(part.rms):.4g} m/s2 rms, largest density {float(part.psd.max()):.4g} "
-            f"(m/s2)2/Hz at {at:.5g} Hz"
-        )
+        at = text_of(data, part.psd.idxmax(), "Hz", ".5g")
+        rms = text_of(data, part.rms, "m/s2", ".4g")
+        density = text_of(data, part.psd.max(), "m2/s4/Hz", ".4g").replace("m2/s4", "(m/s2)2")
+        yield f"{name}: {rms} rms, largest density {density} at {at}"
 
 
 def say_orders(data: xr.Dataset) -> Iterator[str]:
     """Yield lines on the largest amplitude of each order, and its frequency."""
     for name, part in channels_of(data, box=False):
-        peaks = []
+        peaks, (felt, unit) = [], scale_of(data, "m/s2")
         for order in map(float, part.order.values):
             peak = largest(part.amplitude.sel(order=order))
-            peaks.append(f"order {order:g} {float(peak):.4g} at {float(peak.frequency):.5g} Hz")
-        yield f"{name}: largest amplitudes in m/s2: {', '.join(peaks)}"
+            size = f"{float(peak) / felt:.4g}"
+            peaks.append(f"order {order:g} {size} at {at_frequency(data, peak)}")
+        yield f"{name}: largest amplitudes in {unit}: {', '.join(peaks)}"
 
 
 def say_harmonics(data: xr.Dataset) -> Iterator[str]:
@@ -359,7 +393,7 @@ def say_harmonics(data: xr.Dataset) -> Iterator[str]:
         peak, usual = largest(part.distortion), 100.0 * float(part.distortion.median())
         yield (
             f"{name}: distortion {usual:.3g} % in the median, {100.0 * float(peak):.3g} % at the "
-            f"most, at {float(peak.frequency):.5g} Hz"
+            f"most, at {at_frequency(data, peak)}"
         )
 
 
@@ -368,8 +402,8 @@ def say_spectrogram(data: xr.Dataset) -> Iterator[str]:
     for name, part in channels_of(data):
         peak = largest(part.amplitude)
         yield (
-            f"{name}: largest amplitude {float(peak):.4g} m/s2 at {float(peak.frequency):.5g} Hz, "
-            f"{float(peak.time):.4g} s"
+            f"{name}: largest amplitude {text_of(data, peak, 'm/s2', '.4g')} at "
+            f"{at_frequency(data, peak)}, {float(peak.time):.4g} s"
         )
 
 
@@ -377,7 +411,8 @@ def say_shock(data: xr.Dataset) -> Iterator[str]:
     """Yield a line on the largest response."""
     for name, part in channels_of(data):
         peak = largest(part.maximax)
-        yield f"{name}: largest response {float(peak):.4g} m/s2 at {float(peak.frequency):.5g} Hz"
+        size = text_of(data, peak, "m/s2", ".4g")
+        yield f"{name}: largest response {size} at {at_frequency(data, peak)}"
 
 
 def say_density(data: xr.Dataset) -> Iterator[str]:
@@ -386,7 +421,7 @@ def say_density(data: xr.Dataset) -> Iterator[str]:
         yield (
             f"{name}: skewness {float(part.skewness):.3f} +- {float(part.skewness_error):.3f}, "
             f"kurtosis {float(part.kurtosis):.3f} +- {float(part.kurtosis_error):.3f}, standard "
-            f"deviation {float(part.standard_deviation):.4g} m/s2"
+            f"deviation {text_of(data, part.standard_deviation, 'm/s2', '.4g')}"
         )
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import orchestrate
 
+from ..units import range_text
 from .grammar import side_of, state_of
 from .options import Commands, excitation_of, structure_of
 from .question import carry_out, picture_of, print_attractors
@@ -54,11 +55,21 @@ def print_result(data: xr.Dataset) -> None:
     """Print the attractors and their shares of the plane."""
     labels = data.attractor_of.values
     started, overlapping = int((labels >= 0).sum()), int((labels < 0).sum())
-    print(f"{data.sizes['attractor']} found, of {started} starts")
+    print(f"{data.sizes['attractor']} found, of {started} starts in {format_plane(data)}")
     print_attractors(data, "the plane")
     if overlapping:
         print(f"{overlapping} starts left out: there the masses would overlap")
     print_entropy(data)
+
+
+def format_plane(data: xr.Dataset) -> str:
+    """Format the ranges of both coordinates of the plane."""
+    axes = [data[name] for name in map(str, data.attractor_of.dims)]
+    ranges = (
+        range_text(data, axis.min().item(), axis.max().item(), str(axis.attrs["units"]))
+        for axis in axes
+    )
+    return ", ".join(f"{axis.name} {text}" for axis, text in zip(axes, ranges, strict=True))
 
 
 def print_entropy(data: xr.Dataset) -> None:

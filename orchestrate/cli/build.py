@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ..errors import InputError
 from .options import Commands
-from .output import check_output
+from .output import add_units, check_output, refuse_units
 
 EXAMPLES = """  {program} build
   {program} build --folder /tmp/fmus
@@ -48,10 +48,12 @@ def add_parser(commands: Commands) -> None:
         "fmi3-plain-sources/): native FMUs without binaries, for targets that compile the C "
         "sources inside; no compiler is needed here",
     )
+    add_units(parser)
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Export the FMUs."""
+    refuse_units(arguments, "FMUs are in SI")
     from ..access import (
         FORMS,
         PLAIN_FORMS,

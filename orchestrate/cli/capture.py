@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
+from ..units import text_of
 from .drives import (
     add_control,
     add_ends,
@@ -128,8 +129,8 @@ def format_border(data: xr.Dataset) -> str:
     low, high = float(data.border_low), float(data.border_high)
     slowest = f"in at most {float(data.passage_time.max()):.4g} s as tried"
     below, beyond = float(data.speed_low), float(data.speed_high)
-    speeds = "" if math.isnan(below) else f"{below:.4g} rad/s below, "
-    speeds = f"{speeds}{beyond:.4g} rad/s beyond"
+    speeds = "" if math.isnan(below) else f"{text_of(data, below, 'rad/s', '.4g')} below, "
+    speeds = f"{speeds}{text_of(data, beyond, 'rad/s', '.4g')} beyond"
     if high - low > float(data.border.attrs["tolerance"]):
         between = f"captured up to {low:.5f} V, passes from {high:.5f} V on, {slowest}; {speeds}"
         return f"{between}; undecided between"

@@ -9,23 +9,36 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..units import range_text, units_of, with_units
 from .drives import (
     add_control,
     add_hold,
     add_only,
     add_schedule,
     add_step,
+    asked_runs,
     check_files,
     control_of,
     file_name,
+    picture_path,
     schedule_from,
+    shown_runs,
     states_of,
     times_of,
     title_of_runs,
 )
 from .grammar import plain_float
 from .options import Commands, structure_and_drive
-from .output import add_results, digest, draw_picture, export_formats, running_of, user_fmus
+from .output import (
+    add_results,
+    digest,
+    draw_picture,
+    export_formats,
+    running_of,
+    units_ending,
+    user_fmus,
+    with_ending,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -115,20 +128,21 @@ def run(arguments: argparse.Namespace) -> None:
     answer_all(jobs, arguments.output, RunOptions.from_keywords(running), finder(running))
     states = states_of(arguments, structure)
     results = {state: load(path) for state, path in zip(states, paths, strict=True)}
+    shown = shown_runs(arguments, results)
     branches = branches_of(arguments, structure, drive)
-    print_result(results, drive.volts(structure), folds_crossed(branches, structure, drive))
-    for data, path in zip(results.values(), paths, strict=True):
-        for file in (path, *export_formats(data, path, formats, fresh)):
+    print_result(shown, drive.volts(structure), folds_crossed(branches, structure, drive))
+    for data, path in zip(asked_runs(arguments, results).values(), paths, strict=True):
+        table = with_ending(path, units_ending(arguments))
+        for file in (path, *export_formats(data, table, formats, fresh)):
             print(file)
-    name = jobs[0].name.rpartition("_")[0] + (f"_{arguments.only}" if arguments.only else "")
-    picture = arguments.output / f"{name}.nc"
+    picture = picture_path(arguments, jobs[0].name.rpartition("_")[0])
     files = draw_picture(
         picture,
         plots,
         fresh,
-        lambda: picture_of(arguments, results, structure, drive, jobs[0], branches),
+        lambda: picture_of(arguments, shown, structure, drive, jobs[0], branches),
     )
-    for file in (*files, *draw_jumps(arguments, results, picture, plots, fresh)):
+    for file in (*files, *draw_jumps(arguments, shown, picture, plots, fresh)):
         print(file)
 
 
@@ -214,10 +228,18 @@ def picture_of(
     amplitude = averaged.amplitude(structure, drive, Omega) * drive.length
     points, stable = averaged.stability(structure, drive)
     part = np.searchsorted([point.Omega for point in points], Omega)
-    along = {"voltage": ("speed", volts), "amplitude": ("speed", amplitude)}
-    along["stable"] = ("speed", np.array(stable)[part])
-    theory = xr.Dataset(along, {"speed": Omega * structure.omega})
-    return draw(results, theory, branches, title)
+    theory = xr.Dataset(
+        {
+            "voltage": ("speed", volts),
+            "amplitude": ("speed", amplitude, {"units": "m"}),
+            "stable": ("speed", np.array(stable)[part]),
+        },
+        {"speed": ("speed", Omega * structure.omega, {"units": "rad/s"})},
+        structure.parameters(),
+    )
+    units = units_of(next(iter(results.values())))
+    under = None if branches is None else with_units(branches, units)
+    return draw(results, with_units(theory, units), under, title)
 
 
 def folds_crossed(branches: xr.Dataset | None, structure: Structure, drive: Drive) -> Folds:
@@ -264,8 +286,15 @@ def print_result(results: dict[str, xr.Dataset], volts: float, folds: Folds | No
         passed = float(data.passage_time)
         if not any("V" in text for text in texts) and math.isfinite(passed):
             texts.append(f"beyond the resonance from {passed:.4g} s on")
-        print(f"{name}: {data.sizes['revolution']} revolutions; {'; '.join(texts)}")
+        print(f"{name}: {format_revolutions(data)}; {'; '.join(texts)}")
         print_accuracy(data)
+
+
+def format_revolutions(data: xr.Dataset) -> str:
+    """Format the number of revolutions, and the slowest and the quickest."""
+    ends = (float(data.speed.min()), float(data.speed.max()))
+    speeds = range_text(data, *ends, "rad/s")
+    return f"{data.sizes['revolution']} revolutions at {speeds}"
 
 
 def format_jump(

@@ -10,17 +10,22 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import InputError
+from ..units import with_units
 from .options import Commands, add_set, plain_float, structure_of
 from .output import (
     FORMATS,
     PLOTS,
     add_results,
+    add_units,
     check_output,
     digest,
     draw_picture,
     endings_of,
     export_formats,
+    record_units,
     running_of,
+    units_ending,
+    with_ending,
 )
 
 if TYPE_CHECKING:
@@ -68,6 +73,7 @@ def add_parser(commands: Commands) -> None:
     option("--sample-rate", type=plain_float, metavar="HZ", help=rate)
     option = parser.add_argument_group("report").add_argument
     option("--notes", default="", metavar="WORDS", help="below the title: which beam, who, when")
+    add_units(parser)
     add_results(parser, store=False)
 
 
@@ -83,8 +89,9 @@ def run(arguments: argparse.Namespace) -> None:
     records = {path: read(arguments, path) for path in dict.fromkeys(arguments.records)}
     names = {path: name_of(path, guess, arguments) for path in records}
     verdicts = verdicts_of(arguments, records, names, guess)
+    units = record_units(arguments)
     for path, verdict in verdicts.items():
-        print_verdict(path, verdict)
+        print_verdict(path, with_units(verdict, units))
         signs = signs_of(records[path], others, guess)
         write(arguments, names[path], {"": verdict, "_signs": signs}, formats, plots)
 
@@ -187,15 +194,17 @@ def write(
     from ..files import open_folder
     from ..running.store import write_netcdf
 
-    folder = open_folder(arguments.output)
+    folder, units = open_folder(arguments.output), record_units(arguments)
     for ending, answer in answers.items():
         place = folder / f"{stem}{ending}.nc"
         if ending:  # the verdict is stored already
             write_netcdf(answer, place)
-        pictures = draw_picture(place, plots, True, partial(plot, answer))
-        for file in (place, *export_formats(answer, place, formats, fresh=True), *pictures):
+        shown, named = with_units(answer, units), with_ending(place, units_ending(arguments))
+        pictures = draw_picture(named, plots, True, partial(plot, shown))
+        for file in (place, *export_formats(shown, named, formats, fresh=True), *pictures):
             print(file)
-    print(report(*answers.values(), output=folder / f"{stem}.html", notes=arguments.notes))
+    page, notes = folder / f"{stem}.html", arguments.notes
+    print(report(*answers.values(), output=page, notes=notes, units=units))
 
 
 def print_verdict(path: Path, verdict: xr.Dataset) -> None:

@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..units import text_of
 from .drives import ask_once
 from .grammar import ends_of
 from .options import Commands, structure_and_drive
@@ -71,8 +72,9 @@ def print_result(data: xr.Dataset) -> None:
         zip(*(data[f"bifurcation_{name}"].values for name in names), strict=True)
     ):
         direction = jump_at(data.sel(structure=structure), voltage, speed) if kind == FOLD else ""
-        what = meaning(paths[structure], i, direction)
-        print(f"{structure}: {kind} at {voltage:.5f} V, {speed:.5g} rad/s{what}")
+        what = meaning(data, paths[structure], i, direction)
+        at = text_of(data, speed, "rad/s", ".5g")
+        print(f"{structure}: {kind} at {voltage:.5f} V, {at}{what}")
     for structure, both in paths.items():
         for direction, path in both.items():
             if path.end and len(path.landings) in (0, len(path.jumps) - 1):
@@ -90,11 +92,13 @@ def print_result(data: xr.Dataset) -> None:
                 print_unlocated(at, data.bifurcation_speed.values)
 
 
-def meaning(paths: dict[str, RampPath], i: int, direction: str) -> str:
+def meaning(data: xr.Dataset, paths: dict[str, RampPath], i: int, direction: str) -> str:
     """Format what a bifurcation means to slow ramps.
 
     Parameters
     ----------
+    data : xarray.Dataset
+        Whose units speeds are shown in.
     paths : dict of Path
         Of ramps ``"up"`` and ``"down"``.
     i : int
@@ -108,7 +112,8 @@ def meaning(paths: dict[str, RampPath], i: int, direction: str) -> str:
         if i in path.jumps:
             turn = path.jumps.index(i)
             next_one = "the next jump" if turn else "the jump"
-            landing = f", to {path.landings[turn]:.5g} rad/s" if turn < len(path.landings) else ""
+            landings = [text_of(data, speed, "rad/s", ".5g") for speed in path.landings[turn:]]
+            landing = f", to {landings[0]}" if landings else ""
             return f": {next_one} {name} of a slow ramp, at rate 0{landing}"
     if not direction:
         return ""
@@ -146,4 +151,5 @@ def print_unlocated(leg: xr.Dataset, speeds: np.ndarray) -> None:
     for i in (stable[1:] != stable[:-1]).nonzero()[0]:
         low, high = sorted(at.speed.values[i : i + 2])
         if not ((speeds > low - (high - low)) & (speeds < high + (high - low))).any():
-            print(f"  stability changes near {low:.5g} rad/s too, not located: see --period")
+            where = text_of(at, low, "rad/s", ".5g")
+            print(f"  stability changes near {where} too, not located: see --period")

@@ -5,10 +5,12 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
+from ..units import Units, with_readable_lengths, with_units
 from .grammar import ends_of, number_or_ends, plain_float, rates_of
 from .output import (
     FORMATS,
@@ -18,7 +20,10 @@ from .output import (
     digest,
     draw_picture,
     endings_of,
+    print_units_note,
     running_of,
+    units_ending,
+    units_option,
 )
 
 if TYPE_CHECKING:
@@ -269,6 +274,35 @@ def without_none(values: Mapping[str, float | None]) -> dict[str, float]:
 # -- answers --------------------------------------------------------------------------------------
 
 
+def drive_units(arguments: argparse.Namespace) -> Units:
+    """Return the units of ``--units``; where a motor's speed is given in rpm, speeds are too."""
+    in_rpm = arguments.no_load_rpm is not None
+    return units_option(arguments).completed(Units("rpm" if in_rpm else ""))
+
+
+def asked_runs(
+    arguments: argparse.Namespace, results: Mapping[str, xr.Dataset]
+) -> dict[str, xr.Dataset]:
+    """Return runs in the units that are asked for."""
+    return {state: with_units(data, drive_units(arguments)) for state, data in results.items()}
+
+
+def shown_runs(
+    arguments: argparse.Namespace, results: Mapping[str, xr.Dataset]
+) -> dict[str, xr.Dataset]:
+    """Return runs as they are printed and drawn: in the units that are asked for, with lengths
+    that can be read.
+    """
+    asked = asked_runs(arguments, results)
+    return dict(zip(asked, with_readable_lengths(*asked.values()), strict=True))
+
+
+def picture_path(arguments: argparse.Namespace, base_name: str) -> Path:
+    """Return the name of a picture of both structures, or of the one asked for."""
+    parts = [base_name, arguments.only or "", units_ending(arguments)]
+    return Path(arguments.output) / f"{'_'.join(filter(None, parts))}.nc"
+
+
 def file_name(
     arguments: argparse.Namespace, structure: Structure, drive: Drive, question: Any
 ) -> str:
@@ -309,17 +343,17 @@ def ask_each(
     for state, chosen in states.items():
         running = running_of(arguments, files[state].result)
         results[state] = ask(chosen, drive, **question, **running)
-    for state, data in results.items():
+    shown = shown_runs(arguments, results)
+    for state, data in shown.items():
         print_result(state, data)
-    for state, data in results.items():
+    print_units_note(arguments, *shown.values())
+    for state, data in asked_runs(arguments, results).items():
         files[state].write(data, None)
     fresh = any(one_file.fresh for one_file in files.values())
     plots = endings_of("--plot", arguments.plot, PLOTS)
-    only = f"_{arguments.only}" if arguments.only else ""
-    for path in draw_picture(
-        arguments.output / f"{base_name}{only}.nc", plots, fresh, lambda: draw(results)
-    ):
-        print(path)
+    path = picture_path(arguments, base_name)
+    for file in draw_picture(path, plots, fresh, lambda: draw(shown)):
+        print(file)
 
 
 def ask_once(
@@ -336,8 +370,10 @@ def ask_once(
     ask = getattr(orchestrate, arguments.command.replace("-", "_"))
     files = Files.from_options(arguments, file_name(arguments, structure, drive, question))
     data = ask(structure, drive, **question, **running_of(arguments, files.result))
-    print_result(data)
-    files.write(data, (lambda: draw(data)) if draw else None)
+    (shown,) = shown_runs(arguments, {"": data}).values()
+    print_result(shown)
+    print_units_note(arguments, shown)
+    files.write(with_units(data, drive_units(arguments)), partial(draw, shown) if draw else None)
 
 
 def check_files(arguments: argparse.Namespace) -> tuple[tuple[str, ...], tuple[str, ...]]:

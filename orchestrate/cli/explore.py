@@ -8,6 +8,7 @@ from typing import Any
 
 from ..errors import InputError
 from .options import Commands, add_structure, structure_of
+from .output import add_units, units_option
 from .question import read_stored
 
 EXAMPLES = """  {program} explore                              the paper's Figure 6
@@ -27,6 +28,7 @@ def add_parser(commands: Commands) -> None:
     option("--branches", type=Path, metavar="FILE", help=branches)
     place = "the page (default: %(default)s)"
     option("--output", type=Path, default=Path("explorer.html"), metavar="FILE", help=place)
+    add_units(parser)
     option("--no-open", action="store_true", help="only write it")
     folder = "where the compiled kernel is looked for and put"
     option("--build-folder", type=Path, metavar="FOLDER", help=folder)
@@ -46,6 +48,7 @@ def run(arguments: argparse.Namespace) -> None:
         data,
         output=arguments.output,
         branches=branches,
+        units=units_option(arguments),
         build_folder=arguments.build_folder,
     )
     print(f"{page}  {page.stat().st_size / 1024:.0f} kB")

@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..units import range_text
 from .options import Commands, amplitude_of, excitation_of, frequency_option, structure_of
 from .question import carry_out, picture_of, read_stored
 
@@ -43,7 +44,8 @@ def print_result(data: xr.Dataset) -> None:
     from ..flags import flag_words
 
     words, size = flag_words(data.end.attrs), float(data.orbit_size)
-    print(f"saddle: multiplier {float(data.multiplier):.6f}")
+    gaps = range_text(data, float(data.x_rel.min()), float(data.x_rel.max()), "m")
+    print(f"saddle: multiplier {float(data.multiplier):.6f}; gaps along the curve {gaps}")
     for number, side in enumerate(map(str, data.side.values)):
         part = data.sel(side=side)
         points, far = int(part.arclength.count()), float(part.arclength.max()) / size

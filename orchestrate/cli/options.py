@@ -144,6 +144,7 @@ class Commands:
         """Add a command that asks for a structure on a motor; arguments as of :meth:`add`."""
         parser = self.add(name, run, text, examples.replace("{eta0}", ETA0))
         add_drive(parser)
+        add_units(parser)
         return parser
 
     def finish(self) -> None:

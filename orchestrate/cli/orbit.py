@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import orchestrate
 
-from ..units import units_of, with_units
+from ..units import text_of, units_of, with_units
 from .grammar import state_of
 from .options import Commands, excitation_of, structure_of
-from .question import carry_out, with_unit
+from .question import carry_out
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -61,7 +61,7 @@ def print_result(data: xr.Dataset) -> None:
     times = data.impact_time.values
     for time, speed in zip(times, data.impact_velocity.values, strict=True):
         if time == time:
-            at, closing = with_unit(data, time, "s", ".8g"), with_unit(data, speed, "m/s", ".6g")
+            at, closing = text_of(data, time, "s", ".8g"), text_of(data, speed, "m/s")
             print(f"impact at {at}, closing at {closing}")
     for i, state in enumerate(data.state.values):
         numbers = ", ".join(f"{value:.8g}" for value in state)

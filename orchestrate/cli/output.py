@@ -111,6 +111,53 @@ def units_option(arguments: argparse.Namespace) -> Units:
     return Units.from_text(getattr(arguments, "units", ""), "--units")
 
 
+def record_units(arguments: argparse.Namespace) -> Units:
+    """Return the units of ``--units``, accelerations as ``--unit`` has them in a record."""
+    from ..units import FACTORS, Units
+
+    own = arguments.unit if arguments.unit in FACTORS["acceleration"] else ""
+    return units_option(arguments).completed(Units(acceleration=own))
+
+
+def refuse_units(arguments: argparse.Namespace, reason: str) -> None:
+    """Refuse ``--units`` of a command that shows nothing in units.
+
+    Raises
+    ------
+    InputError
+    """
+    if str(units_option(arguments)):
+        raise InputError(f"--units {arguments.units}: {reason}; expected the command without it")
+
+
+def units_ending(arguments: argparse.Namespace) -> str:
+    """Return what names of tables and pictures end with: the units of ``--units``."""
+    return str(units_option(arguments)).replace(", ", "-").replace("/", "_")
+
+
+def with_ending(path: Path, *endings: str) -> Path:
+    """Return a file's name with endings, those that are not empty."""
+    return path.with_stem("_".join(filter(None, [path.stem, *endings])))
+
+
+def print_units_note(arguments: argparse.Namespace, *answers: xr.Dataset) -> None:
+    """Print that ``--units`` changes nothing of some answers, where that is so."""
+    from ..units import scale_of
+
+    kinds = {
+        str(array.attrs.get("units", "1"))
+        for data in answers
+        for array in data.variables.values()
+        if array.dtype.kind == "f"
+    }
+    units = units_option(arguments)
+    changed = any(scale_of(data, kind)[1] != kind for data in answers for kind in kinds)
+    same = {getattr(units, field) for field in ("frequency", "length", "acceleration", "time")}
+    if str(units) and not changed and not same & kinds:
+        words = ", ".join(sorted(kinds - {"1"}))
+        print(f"--units {units}: these have no such numbers, only {words}")
+
+
 def running_of(arguments: argparse.Namespace, store: Path | None = None) -> Running:
     """Return keywords of the public API from the options."""
     running: Running = {
@@ -287,8 +334,8 @@ class Files:
             raise InputError(f"--store {store}: expected a name that ends in .nc")
         result = store or arguments.output / f"{name}.nc"
         check_output(result.parent)
-        units = str(units_option(arguments)).replace(", ", "-").replace("/", "_")
-        files = cls(result, formats, plots, arguments.force or not result.exists(), units, over)
+        fresh = arguments.force or not result.exists()
+        files = cls(result, formats, plots, fresh, units_ending(arguments), over)
         others = [path for path in files.beside() if existing_files(path)]
         if store is not None and others and not result.exists():
             raise InputError(
@@ -306,16 +353,12 @@ class Files:
     @property
     def shown(self) -> Path:
         """Return the result's name for tables, whose units may be others than asked in."""
-        return self._with_endings(self.units)
+        return with_ending(self.result, self.units)
 
     @property
     def picture(self) -> Path:
         """Return the result's name for pictures, with its own ending."""
-        return self._with_endings(self.units, self.over)
-
-    def _with_endings(self, *endings: str) -> Path:
-        name = "_".join(filter(None, [self.result.stem, *endings]))
-        return self.result.with_name(f"{name}{self.result.suffix}")
+        return with_ending(self.result, self.units, self.over)
 
     def pictures(self) -> list[Path]:
         """Return the paths of the result's pictures."""

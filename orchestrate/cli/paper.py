@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from .options import Commands
-from .output import add_running, check_output, running_of
+from .output import add_running, add_units, check_output, refuse_units, running_of
 
 EXAMPLES = """\
   {program} paper                     all at the paper's resolution, into results/paper/
@@ -34,11 +34,13 @@ def add_parser(commands: Commands) -> None:
         action="store_true",
         help="reduced resolution: the same frequencies, fewer periods, starts and map points",
     )
+    add_units(parser)
     add_running(parser, output=None, shown="results/paper, with --quick results/paper-quick")
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Compute the paper's figures and numbers; write its report."""
+    refuse_units(arguments, "figures and numbers are those of the paper, ratios")
     from ..paper.reproduce import reproduce
     from ..paper.resolution import FULL, QUICK
 

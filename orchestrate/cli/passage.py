@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
+from ..units import text_of
 from .drives import (
     add_control,
     add_hold,
@@ -109,4 +110,6 @@ def print_result(state: str, data: xr.Dataset) -> None:
     count, first, last = data.sizes["time"], float(data.time[0]), float(data.time[-1])
     stored_part = data.attrs["kept"]
     samples = f"{count} samples, {first:.4g} s to {last:.4g} s ({stored_part})"
-    print(f"{state}: {format_jumps(data)}; {samples}")
+    moved = text_of(data, abs(data.x1).max(), "m", ".4g")
+    fastest = text_of(data, abs(data.speed).max(), "rad/s", ".4g")
+    print(f"{state}: {format_jumps(data)}; {samples}; largest |x1| {moved}, speed up to {fastest}")

@@ -14,7 +14,15 @@ from typing import TYPE_CHECKING, Any
 
 from ..constants import TURN
 from ..errors import InputError, StoreError
-from ..units import Units, as_shown, omega_of, text_of, units_of, with_units
+from ..units import (
+    Units,
+    as_shown,
+    omega_of,
+    shown_number,
+    units_of,
+    with_readable_lengths,
+    with_units,
+)
 from .output import Files, name_of, preparing_a_picture, running_of, units_option
 
 if TYPE_CHECKING:
@@ -84,8 +92,8 @@ def carry_out(
     import orchestrate
 
     command = function or arguments.command
-    asked, units = asked_units(arguments, question)
-    named = name_of(command, structure, question, asked.frequency)
+    usual, units = asked_units(arguments, question)
+    named = name_of(command, structure, question, usual.frequency)
     files = Files.from_options(arguments, "_".join(filter(None, [named, ending])), over)
     ask = getattr(orchestrate, command)
     print_frequency_notes(arguments, structure, question)
@@ -93,9 +101,10 @@ def carry_out(
         data: xr.Dataset = ask(structure, **question, **running_of(arguments, files.result))
     for line in trivial_notes(structure, question):
         print(line)
-    shown = with_units(data, units)
+    asked = with_units(data, units)
+    (shown,) = with_readable_lengths(asked)
     print_result(shown)
-    files.write(shown, partial(draw, shown) if draw else None)
+    files.write(asked, partial(draw, shown) if draw else None)
     return data
 
 
@@ -281,29 +290,32 @@ def parameter_of(data: xr.Dataset) -> str:
 
 
 def format_parameter(data: xr.Dataset, name: str, value: float) -> str:
-    """Format a value of a parameter in the units that an answer is shown in; by default
-    frequencies in Hz and levels in g.
+    """Format a value of a parameter as :func:`parameter_parts` has it: ``12.5 Hz``, ``e = 0.7``."""
+    before, number, unit = parameter_parts(data, name, value)
+    return f"{before} = {number} {unit}".rstrip() if before else f"{number} {unit}"
+
+
+def parameter_parts(data: xr.Dataset, name: str, value: float) -> tuple[str, str, str]:
+    """Return a parameter's name, its value and its unit as an answer is shown; by default
+    frequencies in Hz and levels in g, which need no name.
     """
-    units = units_of(data)
+    units, omega = units_of(data), omega_of(data)
+    if name == "eta" and units.frequency not in ("", "eta") and math.isfinite(omega):
+        name, value = "frequency", value * omega
     if name == "frequency":
-        return text_of(data if units.frequency else with_units(data, "Hz"), value, "rad/s")
+        shown = data if units.frequency else with_units(data, "Hz")
+        number, unit = shown_number(shown, value, "rad/s")
+        return ("eta", number, "") if unit == "eta" else ("", number, unit)
     if name == "level":
-        return text_of(data if units.acceleration else with_units(data, "g"), value, "m/s2")
-    if name == "eta" and units.frequency not in ("", "eta") and math.isfinite(omega_of(data)):
-        return text_of(data, value * omega_of(data), "rad/s")
-    unit = unit_of(data, name)
-    return f"{name} = {text_of(data, value, unit) if unit else format(value, '.6g')}"
+        shown = data if units.acceleration else with_units(data, "g")
+        return ("", *shown_number(shown, value, "m/s2"))
+    return (name, *shown_number(data, value, unit_of(data, name)))
 
 
 def unit_of(data: xr.Dataset, name: str) -> str:
     """Return the SI unit of a parameter; empty where it has none."""
     unit = str(data[name].attrs.get("units", "")) if name in data.variables else ""
     return unit.removeprefix("1")
-
-
-def with_unit(data: xr.Dataset, value: Any, unit: str, form: str = ".4g") -> str:
-    """Format a length, a velocity, an acceleration or a time as an answer is shown."""
-    return text_of(data, float(value), unit, form)
 
 
 def is_flag(values: xr.DataArray, word: str) -> xr.DataArray:
@@ -334,14 +346,12 @@ def format_ranges(data: xr.Dataset, name: str, values: Any, flags: Any, max_rang
         elif holds:
             runs.append((index, index))
     longest = sorted(sorted(runs, key=lambda run: run[0] - run[1])[:max_ranges])
-    shown = [
-        [format_parameter(data, name, float(values[i])) for i in dict.fromkeys(run)]
+    ends = [
+        [parameter_parts(data, name, float(values[i])) for i in dict.fromkeys(run)]
         for run in longest
     ]
-    before, _, first = shown[0][0].rpartition(" = ") if shown else ("", "", "")
-    unit = first.partition(" ")[2]
-    ends = [[text.rpartition(" = ")[2].removesuffix(f" {unit}") for text in run] for run in shown]
-    text = ", ".join(" to ".join(pair) for pair in ends)
+    before, _, unit = ends[0][0] if ends else ("", "", "")
+    text = ", ".join(" to ".join(number for _, number, _ in run) for run in ends)
     left = len(runs) - len(longest)
     words = f"{before} = {text}" if before else text
     return f"{words} {unit}".rstrip() + (f" and {left} shorter ranges" if left else "")

@@ -8,7 +8,7 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from ..units import scale_of
+from ..units import scale_of, text_of
 from .grammar import (
     RANGE,
     breakpoints_of,
@@ -20,7 +20,7 @@ from .grammar import (
 )
 from .options import Commands, add_beside, add_structure, option_name, options, structure_of
 from .output import add_results, add_units
-from .question import carry_out_beside, with_unit
+from .question import carry_out_beside
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -205,7 +205,7 @@ def print_result(data: xr.Dataset) -> None:
     felt = [float(abs(data[name]).max()) / factor for name in names]
     text = "largest accelerations: box {:.4g}, masses 1 and 2 between impacts {:.4g} and {:.4g} {}"
     print(text.format(*felt, unit))
-    print(f"largest gap {with_unit(data, data.x_rel.max(), 'm')}")
+    print(f"largest gap {text_of(data, data.x_rel.max(), 'm', '.4g')}")
     over = float(data.transient_time)
     print(f"the start is forgotten after {over:.3g} s where the motion is linear")
     count = data.sizes["impact"]

@@ -5,9 +5,10 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from ..units import text_of
 from .grammar import state_of
 from .options import Commands, add_beside, excitation_of, structure_of
-from .question import carry_out_beside, with_unit
+from .question import carry_out_beside
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -38,14 +39,15 @@ def run(arguments: argparse.Namespace) -> None:
 
 def print_result(data: xr.Dataset) -> None:
     """Print the result."""
-    reach = [with_unit(data, abs(data[n]).max(), "m", ".6g") for n in ("x1", "x2", "x_rel")]
+    reach = [text_of(data, abs(data[n]).max(), "m") for n in ("x1", "x2", "x_rel")]
     print("largest |x1| {}, |x2| {}, gap {}".format(*reach))
-    felt = [with_unit(data, abs(data[name]).max(), "m/s2") for name in ("a1_abs", "a2_abs")]
+    felt = [text_of(data, abs(data[name]).max(), "m/s2", ".4g") for name in ("a1_abs", "a2_abs")]
     print("largest acceleration between impacts {} and {}".format(*felt))
     count = data.sizes["impact"]
     if not count:
         print("no impacts")
         return
-    print(f"{count} impacts, the fastest at {with_unit(data, data.impact_velocity.max(), 'm/s')}")
+    fastest = text_of(data, data.impact_velocity.max(), "m/s", ".4g")
+    print(f"{count} impacts, the fastest at {fastest}")
     sticks = int(data.sticks.sum())
     print(f"{sticks} of them begin permanent contact" if sticks else "no permanent contact begins")

@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import InputError
+from ..units import text_of, with_units
+from .drives import drive_units
 from .grammar import changes_of, plain_float
 from .options import (
     FREQUENCIES,
@@ -19,7 +21,7 @@ from .options import (
     structure_and_drive,
 )
 from .output import Files, add_results, add_units, digest, running_of
-from .question import carry_out, format_parameter, picture_of, with_unit
+from .question import carry_out, format_parameter, picture_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -81,9 +83,11 @@ def motor_spectra(arguments: argparse.Namespace) -> None:
     from ..weak_drive.drive_spectra import drive_spectra
 
     data = drive_spectra(structure, drive, voltage=voltage, **running_of(arguments, files.result))
+    data = with_units(data, drive_units(arguments))
     for kind in map(str, data.kind.values):
         part = data.sel(kind=kind, mass=1)
-        print_line_ratio(data, f"{kind} at {float(part.speed):.4f} rad/s", part.acceleration)
+        speed = text_of(data, part.speed, "rad/s", ".5g")
+        print_line_ratio(data, f"{kind} at {speed}", part.acceleration)
     words = str(data.attrs["title"])
     title = f"{Path(arguments.drive).stem}: {words[0].lower()}{words[1:]}, mass 1 in space"
     files.write(data, lambda: figure.draw(data, title=title))
@@ -115,5 +119,5 @@ def print_line_ratio(data: xr.Dataset, name: str, amplitude: xr.DataArray) -> No
     largest = float(amplitude.max())
     above = float(amplitude.where(amplitude.order > 1.5, 0.0).max())
     share = above / largest if largest else 0.0
-    line = with_unit(data, largest, "m/s2")
+    line = text_of(data, largest, "m/s2", ".4g")
     print(f"{name}: largest line {line}, {share:.2g} of it above the excitation")

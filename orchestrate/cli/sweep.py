@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from ..units import text_of
 from .grammar import state_of
 from .options import Commands, add_over, structure_of, varied_arguments
 from .overlay import add_overlay, drawing
@@ -15,7 +16,6 @@ from .question import (
     is_flag,
     parameter_of,
     print_table,
-    with_unit,
 )
 
 if TYPE_CHECKING:
@@ -74,11 +74,11 @@ def print_result(data: xr.Dataset) -> None:
         return
     top = data.isel(data.xi_rel_max.argmax(...))
     where = format_parameter(data, name, float(top[name]))
-    gap = with_unit(data, top.xi_rel_max * top.amplitude * top.eta**2, "m")
+    gap = text_of(data, top.xi_rel_max * top.amplitude * top.eta**2, "m", ".4g")
     print(f"largest gap: xi_Rel = {float(top.xi_rel_max):.6g}, {gap}, at {where}")
     for mass in (1, 2):
-        far = with_unit(data, data[f"x{mass}_max"].max(), "m")
-        felt = with_unit(data, data[f"a{mass}_max"].max(), "m/s2")
+        far = text_of(data, data[f"x{mass}_max"].max(), "m", ".4g")
+        felt = text_of(data, data[f"a{mass}_max"].max(), "m/s2", ".4g")
         print(f"mass {mass}: largest displacement {far}, acceleration {felt}")
     decided = data.multiplicity_decided
     periodic = int(is_flag(decided, "repeated").sum())

@@ -10,6 +10,7 @@ from ..access import OSCILLATOR
 from ..access.webassembly import kernel_digest
 from ..running.store import load
 from ..structures import Structure
+from ..units import Units
 from .shipped import Shipped, nothing, shipped
 
 if TYPE_CHECKING:
@@ -21,18 +22,19 @@ STAMP = "kernel"  # attribute: digest of the kernel that computed it
 log = logging.getLogger(__name__)
 
 
-def first_diagram(structure: Structure) -> Shipped:
+def first_diagram(structure: Structure, units: Units | None = None) -> Shipped:
     """Return the diagram a page opens with: Figure 6 for the paper's structure, else an empty one.
 
     Nothing as well where the kernel is no longer the one that computed Figure 6: its states would
     then belong to no response of the page.
     """
-    if structure != Structure():
-        return nothing(structure)
+    units = units or Units()
+    if structure != Structure() or units.frequency not in ("", "eta"):
+        return nothing(structure, units)
     data = load(FILE)
     if not is_present(data):
         log.warning("Figure 6 was computed by another kernel: the page computes its own")
-        return nothing(structure)
+        return nothing(structure, units)
     return shipped(data)
 
 

@@ -19,11 +19,12 @@ from ..errors import InputError
 from ..files import open_folder, write_whole
 from ..structures import Drive, Structure
 from ..structures.ranges import STRUCTURE
+from ..units import Units
 from ..version import __version__
 from .branches import overlay
 from .bundle import bundle
 from .figure6 import first_diagram
-from .shipped import Shipped, shipped
+from .shipped import Shipped, check_units, shipped
 from .tour import TOUR
 from .words import WORDS
 
@@ -41,6 +42,7 @@ def explore(
     *,
     output: str | PathLike[str] = "explorer.html",
     branches: xr.Dataset | None = None,
+    units: str | Units = "",
     build_folder: str | PathLike[str] | None = None,
 ) -> Path:
     """Write the explorer, one HTML file that needs nothing else.
@@ -55,6 +57,9 @@ def explore(
         The file.
     branches : xarray.Dataset, optional
         Of :func:`orchestrate.branch` over ``eta``, drawn over the diagram.
+    units : str
+        What the page opens in: ``"eta"``, the paper's ratios, or ``"Hz, mm, g"``. By default the
+        ratios for a structure of omega = 1 rad/s, and for a sweep as it was shaken.
     build_folder : path-like, optional
         Where the kernel's WebAssembly is looked for and compiled to.
 
@@ -83,10 +88,13 @@ def explore(
     >>> page.stat().st_size < 1_500_000
     True
     """
+    asked = units if isinstance(units, Units) else Units.from_text(units)
+    check_units(asked)
     if data is None or isinstance(data, Structure):
-        chosen = first_diagram(data or Structure())
+        chosen = first_diagram(data or Structure(), asked)
     else:
         chosen = shipped(data)
+        check_units(asked, chosen.level)
     path = Path(output)
     if path.is_dir():
         raise InputError(f"output = {str(output)!r}: is a folder; expected a file to write")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..constants import GRAVITY
 from ..errors import InputError
 from ..structures import Excitation, Structure
+from ..units import Units
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -21,6 +22,7 @@ SWEPT = ("eta", "frequency")
 SETTINGS = ("transient", "samples", "tolerance")
 READING = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)  # of a file
 MOST_PERIODS = 1_000_000  # of a response that a page computes within seconds
+PAGE_UNITS = ("Hz", "mm", "g", "s")  # of a page that shows no ratios
 PAPER = (0.1, 8.0)  # frequency ratios of Figure 6
 
 
@@ -60,10 +62,11 @@ class Shipped:
     source: str
 
 
-def nothing(structure: Structure) -> Shipped:
+def nothing(structure: Structure, units: Units) -> Shipped:
     """No sweep: the page computes its first diagram itself, over the paper's frequency ratios."""
     settings = {"transient": 500, "samples": 200, "tolerance": 1e-2}
-    level = ("paper", 1.0) if is_scaled(structure) else ("g", 1.0)
+    by_ratio = units.frequency == "eta" if units.frequency else is_scaled(structure)
+    level = ("paper", 1.0) if by_ratio else ("g", 1.0)
     return Shipped(structure, ("up",), settings, np.empty(0), 0, *PAPER, level, "")
 
 
@@ -118,6 +121,34 @@ def read(data: xr.Dataset, direction: str) -> Shipped:
         level=level_of(data, structure),
         source=f"{data.attrs['source']}, {data.attrs['fmu_model']} {data.attrs['fmu_guid']}",
     )
+
+
+def check_units(units: Units, level: tuple[str, float] | None = None) -> None:
+    """Check that a page shows numbers in some units: it has the paper's, or Hz, mm, g and s.
+
+    Parameters
+    ----------
+    units : Units
+    level : tuple of str and float, optional
+        Of a sweep, whose responses the page replays as they were shaken.
+
+    Raises
+    ------
+    InputError
+    """
+    asked = [getattr(units, field.name) for field in fields(units)]
+    other = [word for word in asked if word and word not in ("eta", *PAGE_UNITS)]
+    if other:
+        raise InputError(
+            f"units {units}: the page has no {other[0]}; expected eta, or some of "
+            f"{', '.join(PAGE_UNITS)}"
+        )
+    own = "eta" if level and level[0] == "paper" else "Hz"
+    if level and units.frequency and units.frequency != own:
+        raise InputError(
+            f"units {units}: the page replays the sweep as it was shaken; expected {own}, or a "
+            "structure instead of the sweep"
+        )
 
 
 def is_scaled(structure: Structure) -> bool:

@@ -11,7 +11,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ..units import as_shown
 from .labels import plain_title
+from .scales import unit_text, with_unit
 from .style import (
     BLACK,
     BLUE,
@@ -63,7 +65,7 @@ def draw(
     if other:
         wrong = results[other[0]].attrs["analysis"]
         raise ValueError(f"others[{other[0]!r}]: result of {wrong}; expected one of {kind}")
-    figure = DRAW[kind](results)
+    figure = DRAW[kind]({name: as_shown(result) for name, result in results.items()})
     set_title(figure, title or plain_title(str(data.attrs["title"])))
     return figure
 
@@ -90,6 +92,16 @@ def grid_of(results: Results, rows: int, heights: tuple[float, ...]) -> tuple[Fi
     for name, column in columns.items():
         column[0].set_title(CHANNELS[name])
     return figure, columns
+
+
+def first_of(results: Results) -> xr.Dataset:
+    """Return the result of the first record; all are shown in its units."""
+    return next(iter(results.values()))
+
+
+def frequency_label(results: Results, words: str = "frequency") -> str:
+    """Return the label of an axis of frequencies."""
+    return with_unit(words, first_of(results).frequency)
 
 
 def present(results: Results) -> list[str]:
@@ -178,7 +190,7 @@ def draw_frf(results: Results) -> Figure:
             coherence.plot(part.frequency, part.coherence, **line)
             shown.append(part.magnitude.values)
         phase.set(ylim=(-280.0, 100.0), yticks=(-270, -180, -90, 0, 90))
-        coherence.set(ylim=(-0.03, 1.03), xlabel="frequency in Hz")
+        coherence.set(ylim=(-0.03, 1.03), xlabel=frequency_label(results))
     first = next(iter(columns.values()))
     for axes, word in zip(first, ("|H1|", "phase in degrees", "coherence"), strict=True):
         axes.set_ylabel(word)
@@ -195,21 +207,23 @@ def draw_psd(results: Results) -> Figure:
     for channel, plane in zip(names, axes, strict=True):
         shown = []
         for label, data, colour in of_channel(results, channel):
-            words = f"{label + ': ' if label else ''}{float(data.rms):.4g} m/s$^2$ rms"
+            rms = f"{float(data.rms):.4g} {unit_text(data.rms)} rms"
+            words = f"{label + ': ' if label else ''}{rms}"
             plane.plot(data.frequency, data.psd, color=colour, linewidth=1.0, label=words)
             shown.append(data.psd.values[1:])
         from_the_top(plane, shown)
         plane.set_title(CHANNELS[channel])
-        plane.set_ylabel("(m/s$^2$)$^2$/Hz")
+        plane.set_ylabel(unit_text(first_of(results).psd))
         plane.legend(loc="upper right")
-    axes[-1].set_xlabel("frequency in Hz")
+    axes[-1].set_xlabel(frequency_label(results))
     return figure
 
 
 def draw_orders(results: Results) -> Figure:
     """Draw the amplitudes of the orders, a row per order, and the phase of the first."""
-    orders = [float(order) for order in next(iter(results.values())).order.values]
-    rows = [(f"order {n:g}\nin m/s$^2$", order_reader(n, "amplitude", 1.0)) for n in orders]
+    first = first_of(results)
+    orders, unit = [float(order) for order in first.order.values], unit_text(first.amplitude)
+    rows = [(f"order {n:g}\nin {unit}", order_reader(n, "amplitude", 1.0)) for n in orders]
     figure, columns = draw_rows(results, rows, (1.0,) * len(orders) + (0.8,))
     for channel, column in columns.items():
         for _, data, colour in of_channel(results, channel):
@@ -223,7 +237,7 @@ def draw_orders(results: Results) -> Figure:
 
 def draw_harmonics(results: Results) -> Figure:
     """Draw the total harmonic distortion and the lowest harmonics."""
-    orders = [float(order) for order in next(iter(results.values())).order.values[:2]]
+    orders = [float(order) for order in first_of(results).order.values[:2]]
     rows: list[tuple[str, Reader]] = [("distortion\n(THD) in %", lambda x: 100.0 * x.distortion)]
     words = "order {:g}\nover order 1 in %"
     rows += [(words.format(n), order_reader(n, "ratio", 100.0)) for n in orders]
@@ -258,7 +272,7 @@ def draw_rows(
                     curve = values_of(part)
                     axes.plot(part.frequency, curve, **line)
                     values.setdefault(label, []).append(curve.values)
-        column[-1].set_xlabel("frequency of the excitation in Hz")
+        column[-1].set_xlabel(frequency_label(results, "frequency of the excitation"))
     first = next(iter(columns.values()))
     for axes, (word, _), values in zip(first, rows, shown, strict=False):
         axes.set_ylabel(word)
@@ -293,10 +307,11 @@ def draw_spectrograms(results: Results) -> Figure:
             plane.grid(visible=False)
             plane.set_title(", ".join(filter(None, [CHANNELS[channel], label])))
             if column == 0:
-                plane.set_ylabel("frequency in Hz")
+                plane.set_ylabel(frequency_label(results))
             if row == len(names) - 1:
                 plane.set_xlabel("time in s")
-    figure.colorbar(mesh, ax=axes, label=f"amplitude in dB re {top:.3g} m/s$^2$", aspect=40)
+    unit = unit_text(first_of(results).amplitude)
+    figure.colorbar(mesh, ax=axes, label=f"amplitude in dB re {top:.3g} {unit}", aspect=40)
     return figure
 
 
@@ -312,9 +327,9 @@ def draw_shock_spectra(results: Results) -> Figure:
             plane.loglog(data.frequency, data.residual, color=colour, linewidth=0.7, linestyle=":")
             shown.append(data.maximax.values)
         plane.set_title(f"{CHANNELS[channel]} (dotted: after the record)")
-        plane.set_xlabel("natural frequency in Hz")
-    damping = float(next(iter(results.values())).damping)
-    axes[0].set_ylabel(f"largest acceleration in m/s$^2$, damping ratio {100.0 * damping:g} %")
+        plane.set_xlabel(frequency_label(results, "natural frequency"))
+    damping, unit = float(first_of(results).damping), unit_text(first_of(results).maximax)
+    axes[0].set_ylabel(f"largest acceleration in {unit}, damping ratio {100.0 * damping:g} %")
     from_the_top(axes[0], shown, 4)
     add_legend(figure, axes[0], results)
     return figure

@@ -11,7 +11,9 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
+from ..units import as_shown
 from .labels import plain_title
+from .scales import unit_text, with_unit
 from .style import (
     BLACK,
     BLUE,
@@ -99,6 +101,7 @@ def draw_plan(data: xr.Dataset, title: str = "") -> Figure:
     """
     size = (8.0, 6.2)
     figure, (plane, below) = panels(2, 1, size, sharex=True, height_ratios=(1.5, 1.0))
+    data = as_shown(data)
     limit = float(data.threshold)
     if data.sizes["level"] > 1:
         draw_map(figure, plane, data, limit)
@@ -107,8 +110,10 @@ def draw_plan(data: xr.Dataset, title: str = "") -> Figure:
     for number, level in enumerate(data.level.values):
         line: Any = {"color": COLOURS[number % len(COLOURS)], "linewidth": 1.1}
         force = data.closing_force.isel(level=number)
-        below.semilogy(data.frequency, force, label=f"at {level:.3g} m/s$^2$", **line)
-    below.set(xlabel="frequency of the box in Hz", ylabel="preload that keeps\nit shut, in N")
+        label = f"at {level:.3g} {unit_text(data.level)}"
+        below.semilogy(data.frequency, force, label=label, **line)
+    across = with_unit("frequency of the box", data.frequency)
+    below.set(xlabel=across, ylabel="preload that keeps\nit shut, in N")
     legend_below(figure, [plane, below], 4)
     set_title(figure, title or plain_title(str(data.attrs["title"])))
     return figure
@@ -139,7 +144,7 @@ def draw_map(figure: Figure, plane: Axes, data: xr.Dataset, limit: float) -> Non
             label="recommended sweep",
         )
     )
-    plane.set(yscale="log", ylabel="level of the box in m/s$^2$")
+    plane.set(yscale="log", ylabel=with_unit("level of the box", data.level))
     plane.set_ylim(float(data.level.min()) / 1.3, float(data.level.max()) * 1.3)
     plane.grid(visible=False)
     words = "difference by orders 2 and 3\nin standard deviations of the noise"
@@ -169,7 +174,7 @@ def draw_detect(data: xr.Dataset, title: str = "") -> Figure:
     title : str
         By default the answer's own.
     """
-    data = by_hypothesis(data)
+    data = by_hypothesis(as_shown(data))
     channels = [str(channel) for channel in data.channel.values]
     orders = [float(order) for order in data.order.values]
     rows, columns = len(orders), len(channels)
@@ -191,11 +196,11 @@ def draw_detect(data: xr.Dataset, title: str = "") -> Figure:
         plane.set_yscale("log")
         limit_decades(plane, at.measured.values)
         if place % columns == 0:
-            plane.set_ylabel(f"order {order:g}\nin m/s$^2$")
+            plane.set_ylabel(f"order {order:g}\nin {unit_text(data.measured)}")
         if place < columns:
             plane.set_title(CHANNELS.get(channel, channel))
     for plane in axes[-columns:]:
-        plane.set_xlabel("frequency of the excitation in Hz")
+        plane.set_xlabel(with_unit("frequency of the excitation", data.frequency))
     legend_below(figure, axes, 3)
     set_title(figure, title or str(data.attrs.get("title", "")))
     return figure
@@ -240,13 +245,15 @@ def draw_misfit(data: xr.Dataset, title: str = "") -> Figure:
         By default the answer's own.
     """
     figure, (axes,) = panels(1, 1, (8.0, 3.4))
+    data = as_shown(data)
     for number, name in enumerate(best_fits(data)):
         one = data.sel(hypothesis=name)
         line: Any = {"color": FITS[number % len(FITS)], "linewidth": 1.0}
         words = f"{name}: {float(one.misfit):.3g}"
         axes.semilogy(one.frequency, one.misfit_at, label=words, **line)
     axes.axhline(1.0, color=GREY, linewidth=0.8)
-    axes.set(xlabel="frequency of the excitation in Hz", ylabel="misfit over its usual size")
+    across = with_unit("frequency of the excitation", data.frequency)
+    axes.set(xlabel=across, ylabel="misfit over its usual size")
     legend_below(figure, [axes], 2)
     set_title(figure, title or str(data.attrs.get("title", "")))
     return figure

@@ -5,7 +5,10 @@ from __future__ import annotations
 import xarray as xr
 from matplotlib.figure import Figure
 
+from ..units import units_of, with_units
+from .labels import frequency_text
 from .marks import draw_stems
+from .scales import acceleration_scale
 from .style import panels, set_title, styled
 from .weak_drive import COLOURS
 
@@ -27,13 +30,15 @@ def draw(data: xr.Dataset, mass: int = 1, title: str = "") -> Figure:
     """
     count = data.sizes["kind"]
     figure, axes = panels(count, 1, (10, 3.5 * count), sharex=True, sharey=True)
-    shown = data.acceleration.sel(mass=mass)
+    turning = data if units_of(data).frequency else with_units(data, "rad/s")
+    felt, unit = acceleration_scale(data)
+    shown = data.acceleration.sel(mass=mass) / felt
     top = float(shown.max())
     for panel, kind in zip(axes, map(str, data.kind.values), strict=True):
         amplitude = shown.sel(kind=kind).values
         draw_stems(panel, data.order.values, amplitude, FLOOR * top, color=COLOURS[kind])
-        speed = float(data.speed.sel(kind=kind))
-        panel.set(title=f"{kind}, $\\Omega$ = {speed:.4f} rad/s", ylabel="acceleration in m/s$^2$")
+        speed = frequency_text(turning, float(data.speed.sel(kind=kind)))
+        panel.set(title=f"{kind}, {speed}", ylabel=f"acceleration in {unit}")
         panel.set_ylim(FLOOR * top, 2.0 * top)
     axes[-1].set_xlabel(r"frequency over the motor's speed $\Omega$")
     set_title(figure, title)

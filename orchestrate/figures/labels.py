@@ -195,7 +195,7 @@ def ratios(known: Mapping[str, float]) -> dict[str, float]:
     if not {"m1", "m2", "k1", "k2", "d1", "d2"} <= set(known):
         return {}
     m1, m2, k1, k2 = (known[name] for name in ("m1", "m2", "k1", "k2"))
-    omega = math.sqrt(k1 / m1)
+    omega = omega_of(known)
     D1, D2 = (round(known[d] / (2.0 * omega * m), 12) for d, m in (("d1", m1), ("d2", m2)))
     damping = {"D": D1} if D1 == D2 else {"D1": D1, "D2": D2}
     return {**damping, "mu": m2 / m1, "kappa": k2 / k1, "omega": omega}

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 
 from ..errors import InputError
 from ..structures.ranges import OF_LENGTH, STRUCTURE
+from ..units import omega_of
 from .branch_lines import draw_bifurcations, draw_lines
 from .scales import ETA, acceleration_scale, along, frequency_scale, parameter_scale
 from .style import BLUE, RED
@@ -134,7 +135,7 @@ class Overlay:
         """Return values of the branch's parameter as the responses' axis has them."""
         name, numbers = str(self.branch.attrs["over"]), values.values
         if name in ALIKE[0]:
-            omega = math.sqrt(self.branch.attrs["k1"] / self.branch.attrs["m1"])
+            omega = omega_of(self.branch)
             frequency = numbers * omega if name == "eta" else numbers
             on_ratios = along(self.data, self.parameter).label == ETA
             return np.asarray(frequency / (omega if on_ratios else frequency_scale(self.data)[0]))

@@ -12,7 +12,9 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from ..constants import TURN
+from ..units import as_shown, scale_of
 from .powers import ACCOUNTS, draw_powers
+from .scales import acceleration_scale, with_unit
 from .style import BLUE, GREY, panels, set_title, styled
 from .weak_drive import COLOURS, jump_texts, outcome
 
@@ -38,8 +40,10 @@ def draw(
     """
     count = len(runs)
     figure, axes = panels(5, count, (6.5 * count + 1.0, 14), sharex="col", sharey="row")
-    top = max(float(spectrum.acceleration.max()) for spectrum in spectra.values())
-    for column, (name, data) in enumerate(runs.items()):
+    shown = {name: as_shown(data) for name, data in runs.items()}
+    felt, unit = acceleration_scale(next(iter(runs.values())))
+    top = max(float(spectrum.acceleration.max()) for spectrum in spectra.values()) / felt
+    for column, (name, data) in enumerate(shown.items()):
         begin, words = time_origin(data)
         column_axes = axes[column::count]
         period = repeats_after(data)
@@ -49,7 +53,7 @@ def draw(
         column_axes[1].plot(time, data.voltage, color="k", linewidth=1.0)
         column_axes[2].plot(time, data.x1, color=COLOURS.get(name, BLUE), linewidth=0.3)
         draw_powers(column_axes[3], time, means)
-        mesh = draw_waterfall(column_axes[4], spectra[name], begin, top)
+        mesh = draw_waterfall(column_axes[4], spectra[name], begin, felt, top)
         for panel in column_axes[:4]:
             panel.axvline(0.0, color=GREY, linewidth=0.8, zorder=0)
         column_axes[0].set_title(f"{name}: {format_jumps(data)}")
@@ -57,12 +61,13 @@ def draw(
         column_axes[3].set_title(f"means of {turns}, twice")
         column_axes[4].set_xlabel(f"time {words} in s")
         column_axes[4].set_xlim(time[0], time[-1])
-    labels = ("speed in rad/s", "voltage in V", "$x_1$ in m", "power in W", "multiple of the speed")
+    speed, place = with_unit("speed", data.speed), with_unit("$x_1$", data.x1)
+    labels = (speed, "voltage in V", place, "power in W", "multiple of the speed")
     for panel, label in zip(axes[::count], labels, strict=True):
         panel.set_ylabel(label)
     for row in (0, 3):
         axes[row * count].legend(loc="best", fontsize=7)
-    bar = "amplitude of the acceleration in m/s$^2$"
+    bar = f"amplitude of the acceleration in {unit}"
     figure.colorbar(mesh, ax=axes[4 * count :], label=bar, pad=0.01)
     set_title(figure, title)
     return figure
@@ -143,13 +148,13 @@ def draw_speed(
     instant: Any = {"color": BLUE, "linewidth": 0.4, "alpha": 0.6, "label": "at the instant"}
     axes.plot(time, np.abs(data.speed), **instant)
     mean: Any = {"color": "k", "linewidth": 1.2, "label": "mean of a revolution"}
-    axes.plot(time, revolution["speed"], **mean)
+    axes.plot(time, revolution["speed"] / scale_of(data, "rad/s")[0], **mean)
 
 
-def draw_waterfall(axes: Axes, spectra: xr.Dataset, begin: float, top: float) -> Any:
+def draw_waterfall(axes: Axes, spectra: xr.Dataset, begin: float, felt: float, top: float) -> Any:
     """Draw spectra over time as colours, without the slow motion below half the speed."""
     shown = spectra.sel(order=slice(0.25, None))
-    values = shown.acceleration.values.T.clip(FLOOR * top)
+    values = (shown.acceleration.values.T / felt).clip(FLOOR * top)
     norm = LogNorm(FLOOR * top, top)
     return axes.pcolormesh(
         shown.time.values - begin, shown.order.values, values, norm=norm, shading="nearest"

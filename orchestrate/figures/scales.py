@@ -4,14 +4,13 @@ the paper's ratios.
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from ..units import FACTORS, omega_of, scale_of, units_of
-from .labels import gap_name, is_number, prefix, symbol
+from ..units import FACTORS, OVER_OMEGA, has_own_frequency, omega_of, scale_of, units_of
+from .labels import gap_name, prefix, symbol
 from .style import XI_REL
 
 ETA = symbol("eta")
@@ -51,9 +50,7 @@ def in_si(data: xr.Dataset) -> bool:
     """Return whether frequencies are shown with a unit, not as ratios eta."""
     if units_of(data).frequency:
         return units_of(data).frequency != "eta"
-    known = all(is_number(data.attrs.get(name)) for name in ("k1", "m1"))
-    has_own_frequency = known and not math.isclose(data.attrs["k1"], data.attrs["m1"], rel_tol=1e-9)
-    return bool(has_own_frequency or "frequency" in data.dims)
+    return has_own_frequency(data) or "frequency" in data.dims
 
 
 def frequency_scale(data: xr.Dataset) -> tuple[float, str]:
@@ -82,6 +79,20 @@ def acceleration_scale(data: xr.Dataset, usual: str = "m/s2") -> tuple[float, st
     """
     word = units_of(data).acceleration or usual
     return FACTORS["acceleration"][word], word.replace("m/s2", "m/s$^2$")
+
+
+def with_unit(words: str, array: xr.DataArray) -> str:
+    """Return an axis' label with the unit of what it shows, see :func:`.units.as_shown`."""
+    if array.attrs.get("units") == OVER_OMEGA:
+        return rf"{words} over $\omega$"
+    return f"{words} in {unit_text(array)}" if "units" in array.attrs else words
+
+
+def unit_text(array: xr.DataArray) -> str:
+    """Return the unit of what is shown, as a picture has it: ``m/s$^2$``, ``g$^2$/Hz``."""
+    unit = str(array.attrs["units"])
+    signs = {"um": "µm", "m/s2": "m/s$^2$", "m2/s4/Hz": "(m/s$^2$)$^2$/Hz", "g2/Hz": "g$^2$/Hz"}
+    return signs.get(unit, unit.replace("um/", "µm/"))
 
 
 def along(data: xr.Dataset, parameter: str) -> Along:

@@ -14,7 +14,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ..units import as_shown, omega_of
 from .powers import POWER_REVOLUTIONS, draw_powers, mean_powers
+from .scales import with_unit
 from .style import (
     BLACK,
     BLUE,
@@ -38,7 +40,7 @@ MARKS = {  # of bifurcations
     **{"fold": "o", "Neimark-Sacker": "s", "period doubling": "^"},
     **{"grazing of a flight": "x", "grazing of an impact": "+"},
 }
-HISTORIES = {"speed": "mean speed in rad/s", "amplitude": "amplitude of $x_1$ in m"}
+HISTORIES = {"speed": "mean speed", "amplitude": "amplitude of $x_1$"}
 
 
 @styled
@@ -61,7 +63,7 @@ def draw(
     title : str
         What is shown: set, rate, volts.
     """
-    shown = {name: without_beginning(data) for name, data in runs.items()}
+    shown = {name: without_beginning(as_shown(data)) for name, data in runs.items()}
     figure, axes = panels(2, 2, (11, 9.4))
     for name, data in shown.items():
         for part, style, direction in split_directions(data):
@@ -73,14 +75,14 @@ def draw(
                 draw_impacts(axes[2], data.isel(revolution=part), direction)
         mark_jumps(axes[0], data, name)
     if theory is not None:
-        draw_theory(axes, theory)
+        draw_theory(axes, as_shown(theory))
     if branches is not None:
-        draw_branches(axes, branches.sel(structure=list(runs)))
+        draw_branches(axes, as_shown(branches).sel(structure=list(runs)))
     set_title(figure, title)
     name = list(runs)[-1]
     draw_powers_way_there(axes[3], shown[name], name)
     axes[0].set_title("\n".join(filter(None, (format_jumps(*item) for item in runs.items()))))
-    label_axes(axes)
+    label_axes(axes, shown[name])
     legend_below(figure, axes[:2], title="upper panels")
     for panel in axes[2:]:
         legend_under(panel)
@@ -99,11 +101,12 @@ def draw_jumps(runs: Mapping[str, xr.Dataset], title: str = "") -> Figure:
     title : str
         What is shown: set, rate, volts.
     """
-    jumps = jumps_of(runs)
+    shown = {name: as_shown(data) for name, data in runs.items()}
+    jumps = jumps_of(shown)
     figure, axes = panels(max(len(jumps), 1), len(HISTORIES), (10, 0.8 + 3.6 * max(len(jumps), 1)))
     for row, jump in enumerate(jumps):
         for panel, what in zip(axes[len(HISTORIES) * row :], HISTORIES, strict=False):
-            draw_histories(panel, runs, jump, what)
+            draw_histories(panel, shown, jump, what)
     if not jumps:
         for panel in axes:
             write_in_panel(panel, "no jump")
@@ -196,6 +199,7 @@ def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
     title : str
     """
     figure, axes = panels(1, 2, (12, 5))
+    branches = as_shown(branches)
     draw_branches(axes, branches)
     for name in branches.structure.values:
         of_one = branches.bifurcation_structure == name
@@ -205,9 +209,9 @@ def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
             marker = MARKS.get(str(kind), "o")
             axes[0].plot(at.bifurcation_voltage, at.bifurcation_speed, marker, **mark)
             axes[1].plot(at.bifurcation_speed, at.bifurcation_amplitude, marker, **mark)
-    speed = "mean speed in rad/s"
+    speed, amplitude = (label_of(branches, name) for name in HISTORIES)
     axes[0].set(xlabel="voltage in V", ylabel=speed)
-    axes[1].set(xlabel=speed, ylabel="amplitude of $x_1$ in m")
+    axes[1].set(xlabel=speed, ylabel=amplitude)
     legend_below(figure, axes[:1])
     set_title(figure, title)
     return figure
@@ -270,12 +274,13 @@ def draw_histories(axes: Axes, runs: Mapping[str, xr.Dataset], jump: str, what: 
         at = data.sel(jump=jump)
         if not jumped(data, jump):
             continue
-        span = TIME_AROUND_JUMP * float(data.Omega[-1] / data.speed[-1])
+        span = TIME_AROUND_JUMP / omega_of(data)
         time = data.time.values - float(at.jump_time)
         near = np.abs(time) < span
         label = f"{name}, {float(at.jumps):.4f} V"
         axes.plot(time[near], data[what].values[near], color=COLOURS[name], label=label)
-    axes.set(xlabel=f"time from the jump {jump} in s", ylabel=HISTORIES[what])
+        axes.set_ylabel(label_of(data, what))
+    axes.set_xlabel(f"time from the jump {jump} in s")
     legend_under(axes)
 
 
@@ -296,11 +301,16 @@ def draw_powers_way_there(axes: Axes, data: xr.Dataset, name: str) -> None:
     axes.set_title(f"power on the way there, {name}\n{means}")
 
 
-def label_axes(axes: Sequence[Axes]) -> None:
+def label_of(data: xr.Dataset, name: str) -> str:
+    """Return the label of an axis of speeds or amplitudes, with the unit that they are shown in."""
+    return with_unit(HISTORIES[name], data[name])
+
+
+def label_axes(axes: Sequence[Axes], data: xr.Dataset) -> None:
     """Label all axes."""
-    speed = "mean speed in rad/s"
+    speed, amplitude = (label_of(data, name) for name in HISTORIES)
     axes[0].set(xlabel="voltage in V", ylabel=speed)
-    axes[1].set(xlabel=speed, ylabel="amplitude of $x_1$ in m")
+    axes[1].set(xlabel=speed, ylabel=amplitude)
     axes[2].set(xlabel=speed, ylabel="impacts in a revolution")
     axes[3].set(xlabel=speed, ylabel="power in W")
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..constants import TURN
 from ..figures.diagnosis import PARTED, draw_detect, draw_misfit
+from ..units import scale_of, units_of, with_units
 from .page import MISSING, Picture, Section, Table, Verdict, text_of, with_error
 
 if TYPE_CHECKING:
@@ -39,8 +40,12 @@ def verdict_of(answer: xr.Dataset) -> Verdict:
 def range_text(answer: xr.Dataset) -> str:
     """Format the levels and frequencies that the record covers."""
     low, high = number(answer, "frequency_low"), number(answer, "frequency_high")
-    level = number(answer, "level_high")
-    return f"up to {text_of(level)} m/s² over {text_of(low)} to {text_of(high)} Hz"
+    felt, unit = scale_of(answer, "m/s2")
+    turn, word = scale_of(answer, "Hz")
+    level = f"{text_of(number(answer, 'level_high') / felt)} {unit.replace('m/s2', 'm/s²')}"
+    over = "Omega/omega" if word == "eta" else word
+    first, last = (text_of(end / turn, digits=4) for end in (low, high))
+    return f"up to {level} over {first} to {last} {over}"
 
 
 def delaminated(answer: xr.Dataset) -> str:
@@ -59,9 +64,12 @@ def no_opening(answer: xr.Dataset) -> str:
     smallest = number(answer, "smallest_opening")
     seen = ""
     if math.isfinite(smallest):
+        shown = answer if units_of(answer).length else with_units(answer, "um")
+        factor, unit = scale_of(shown, "m")
+        opening = f"{text_of(smallest / factor)} {unit.replace('um', 'µm')}"
         seen = (
-            f" Faces at the sensor that part by {text_of(1e6 * smallest)} µm or more would have "
-            "been seen; away from it an opening may be larger."
+            f" Faces at the sensor that part by {opening} or more would have been seen; away from "
+            "it an opening may be larger."
         )
     return f"No opening of the faces was seen {range_text(answer)}.{seen}"
 
@@ -221,10 +229,11 @@ def by_misfit(answer: xr.Dataset) -> list[xr.Dataset]:
 
 def parameter_text(at: xr.Dataset, unit: str) -> str:
     """Format a parameter of one hypothesis with its error; a dash if it has none."""
-    value = float(at.value)
-    return (
-        with_error(value, number(at, "standard_error"), unit) if math.isfinite(value) else MISSING
-    )
+    factor, word = scale_of(at, unit)
+    if word == "eta":  # a half's own frequency is no ratio to itself
+        factor, word = 1.0, unit
+    value, error = float(at.value) / factor, number(at, "standard_error") / factor
+    return with_error(value, error, word) if math.isfinite(value) else MISSING
 
 
 def assumed(answer: xr.Dataset) -> Section:

@@ -54,11 +54,11 @@ class Roots(Campaign):
     asks = (
         "No impact is missed and none is made up. Flights of seven kinds (near grazing, nearly "
         "equal oscillators, chattering, high frequency ratio, cubic inputs, steep damping, long "
-        "contact) are flown by the native FMU, and up to three flights that follow. A search in C, "
-        "written by Newton's law as sums of complex exponentials, samples the gap (or the contact "
-        "force) up to the flight's end at 25 points or more a radian of its fastest oscillation, "
-        "and goes to the bottom of every dip. A gap below -1e-14 of the sum of its terms is a "
-        "finding."
+        "contact), half of them with a clearance or a preload, are flown by the native FMU, and up "
+        "to three flights that follow. A search in C, written by Newton's law as sums of complex "
+        "exponentials, samples the gap (or the contact force) up to the flight's end at 25 points "
+        "or more a radian of its fastest oscillation, and goes to the bottom of every dip. A gap "
+        "below -1e-14 of the sum of its terms is a finding."
     )
     unit, target, batch = "flights", 100_000_000, 1_000_000
 

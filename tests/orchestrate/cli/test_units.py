@@ -25,7 +25,9 @@ def test_prints_are_in_the_units_asked_for_and_in_no_other(ask, command):
     text = said(done).replace("um/s", "um")
     assert not re.search(FOREIGN, text), text
     assert " um" in text
-    plain = said(ask(command, *BEAM, *box, *short, "--plot", "none").success())
+    usual = said(ask(command, *BEAM, *box, *short, "--plot", "none").success())
+    assert re.search(r" [mu]m\b", usual) and not re.search(r"\d m\b| m\b", usual)
+    plain = said(ask(command, *BEAM, *box, *short, "--plot", "none", "--units", "m").success())
     assert " um" not in plain and re.search(r"\d m\b| m\b|m/s", plain)
 
 
