@@ -2,14 +2,20 @@
 
 Run as ``python fresh_process.py FOLDER MODULE FUNCTION`` with the arguments as JSON on the standard
 input; prints the answer as JSON. Floats survive to the last bit.
+
+Run as ``python fresh_process.py`` it forks such a process for each line of JSON on the standard
+input. What most programs import is imported once, before the forks; no FMU is ever opened there.
+Prints the process's id, and at its end its exit code.
 """
 
 import json
+import os
 import sys
 from importlib import import_module
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
+PREPARED = ("numpy", "fmpy")  # of others; a program's own modules are imported in its own process
 
 
 def is_ours(place):
@@ -18,18 +24,53 @@ def is_ours(place):
     return folder == HERE or (folder / "fmu_src").is_dir()
 
 
-def main(folder, module, function):
-    """Call the function and print what it returns."""
-    sys.path[:] = [folder, *(place for place in sys.path if not is_ours(place))]
+def leave_the_project():
+    """Take the project from the path."""
+    sys.path[:] = [place for place in sys.path if not is_ours(place)]
     try:
         import_module("fmu_src")
         raise SystemExit("the project is on the path")
     except ModuleNotFoundError:
         pass
-    arguments = json.load(sys.stdin)
+
+
+def main(folder, module, function, arguments):
+    """Call the function and print what it returns."""
+    sys.path.insert(0, folder)
     answer = getattr(import_module(module), function)(*arguments)
     print("ANSWER " + json.dumps(answer))
 
 
+def become(request):
+    """Make this process the one that was asked for: its folder, environment and streams."""
+    os.chdir(request["cwd"])
+    os.environ.clear()
+    os.environ.update(request["environment"])
+    streams = (os.devnull, os.O_RDONLY), *((path, os.O_WRONLY) for path in request["outputs"])
+    for number, (path, mode) in enumerate(streams):
+        opened = os.open(path, mode)
+        os.dup2(opened, number)
+        os.close(opened)
+
+
+def serve():
+    """Fork a process for each request; returns in the forked process, with what it is to call."""
+    for name in PREPARED:
+        import_module(name)
+    while line := sys.stdin.readline():
+        request = json.loads(line)
+        child = os.fork()
+        if child == 0:
+            become(request)
+            return request["call"]
+        print(child, flush=True)
+        _, status = os.waitpid(child, 0)
+        print(os.waitstatus_to_exitcode(status), flush=True)
+    return None
+
+
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    leave_the_project()
+    call = [*sys.argv[1:], json.load(sys.stdin)] if len(sys.argv) > 1 else serve()
+    if call:
+        main(*call)

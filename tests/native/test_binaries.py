@@ -94,6 +94,7 @@ def test_there_is_no_global_state_to_share(version, kernel_objects, tmp_path):
         assert sum(writable.values()) == 0, (name, writable)
 
 
+@pytest.mark.slow  # in ordinary runs test_fallbacks builds all forms again
 def test_two_builds_have_the_same_bytes(fmus, version, hide, tmp_path):
     """The other build is made now: its own compilation, its own scratch folders."""
     hide()

@@ -9,6 +9,7 @@ import pytest
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator import restore, stepper
 
+from ...sparing import ordinary
 from .kernel import started
 
 NOT_KEPT = {at.TARGET, at.REPORT, at.STOPPED, at.STOP_AT_IMPACT, at.WORK, at.WORK_LIMIT}
@@ -91,7 +92,8 @@ def check(seed, steps):
         assert bits(m[: at.TIME + 1]) == bits(other[: at.TIME + 1]), (seed, time)
 
 
-@pytest.mark.parametrize("seed", range(12))
+# seed 10, a resonance without any loss, costs more than the others together; 5 has its series too
+@pytest.mark.parametrize("seed", ordinary(range(12), set(range(12)) - {10}))
 def test_a_restored_run_has_the_same_bits(seed):
     check(seed, 12)
 

@@ -10,23 +10,30 @@ from pathlib import Path
 import pytest
 
 from fmu_src.version import VERSION
-from orchestrate.access import Instance, describe
+from orchestrate.access import FORMS, Instance, describe
 from orchestrate.access.unpacked import unpacked
 from orchestrate.errors import InputError, StoreError
 from orchestrate.temporary import PREFIX, process_folder
 
+from ...sparing import ordinary
 from .altered import altered_fmu
 
 PROGRAM = Path(__file__).with_name("processes.py")
 
 
+@pytest.fixture(params=ordinary(FORMS, ["fmi3"]))
+def used_fmu(request, oscillator_in):
+    """The usual form, and the others in the slow tests: what cleans up knows no form."""
+    return oscillator_in(request.param)
+
+
 @pytest.fixture
-def process(tmp_path, any_fmu):
+def process(tmp_path, used_fmu):
     """Start a process whose temporary folder is the test's."""
     started = []
 
     def start(ending):
-        command = [sys.executable, str(PROGRAM), str(any_fmu), ending]
+        command = [sys.executable, str(PROGRAM), str(used_fmu), ending]
         pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
         environment = {**os.environ, "TMPDIR": str(tmp_path)}
         started.append(subprocess.Popen(command, env=environment, text=True, **pipes))

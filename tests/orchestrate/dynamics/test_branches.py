@@ -27,6 +27,7 @@ PAPER = Structure.nondimensional(e=0.7, D=0.005)
 DOCS = Path(__file__).resolve().parents[3] / "docs"
 FOLD, FLIP, TORUS, GRAZING, TOUCHING, CONTACT_LOST = range(6)
 STARTS = {1: 1.5, 2: 4.0, 3: 6.0, 4: 8.0}
+PERIODS = ordinary(STARTS, 2)  # of those that last longer nothing is written otherwise
 WALL_RATE = 1e5  # of mass 2 where it is a wall: the difference is 1e-10
 
 
@@ -59,7 +60,7 @@ def test_borders_of_stability_are_those_of_the_closed_form(period, low, high):
     assert np.abs(found - truth).min() < 1e-9
 
 
-@pytest.mark.parametrize("period", STARTS)
+@pytest.mark.parametrize("period", PERIODS)
 def test_all_orbits_of_a_branch_are_those_of_the_closed_form(period):
     found = windows(period)
     eta = found.eta.values
@@ -73,7 +74,7 @@ def test_all_orbits_of_a_branch_are_those_of_the_closed_form(period):
     assert found.fmu_same_impacts.values.mean() > 0.99  # but where a flight grazes
 
 
-@pytest.mark.parametrize("period", [2, 3, 4])
+@pytest.mark.parametrize("period", ordinary([2, 3, 4]))
 def test_a_window_begins_where_a_flight_grazes(period):
     """The smallest gap of the closed form's flight is zero there."""
     found = windows(period)
@@ -177,7 +178,8 @@ def contacts(instance, eta, found):
     return instance.get("contact_count")[0] - before
 
 
-@pytest.mark.parametrize("over", ["e", "D", "mu", "kappa"])
+# D and kappa stand in the tests of borders too
+@pytest.mark.parametrize("over", ordinary(["e", "mu", "D", "kappa"], 2))
 def test_other_parameters_cross_the_same_border(over):
     """Multipliers along other parameters are the closed form's, and limits are reached exactly."""
     limits = {"e": (0.3, 1.0), "D": (0.0, 0.1), "mu": (0.8, 1.1), "kappa": (1.1, 1.5)}[over]
@@ -191,7 +193,7 @@ def test_other_parameters_cross_the_same_border(over):
         assert np.hypot(*found.multipliers.values[i, 0]) == pytest.approx(truth.largest, abs=1e-8)
 
 
-@pytest.mark.parametrize("period", STARTS)
+@pytest.mark.parametrize("period", PERIODS)
 def test_the_table_in_the_documentation_is_this(period):
     """Eight digits each; the T/1 branch is followed further down there."""
     label = f"{'' if period == 1 else period}T/1"
@@ -213,19 +215,19 @@ def test_the_table_in_the_documentation_is_this(period):
     assert values_own == pytest.approx(values_printed, abs=1.1e-8)
 
 
-def test_no_bifurcation_is_missed():
+@pytest.mark.parametrize("period", PERIODS)
+def test_no_bifurcation_is_missed(period):
     """The number of multipliers outside the unit circle changes at bifurcations alone."""
-    for period in STARTS:
-        found = windows(period)
-        outside = (np.hypot(*np.moveaxis(found.multipliers.values, -1, 0)) > 1.0).sum(axis=1)
-        for i in np.flatnonzero(np.diff(outside)):
-            place = found.bifurcation_place.values
-            inside = found.bifurcation_kind.values[(place > i) & (place < i + 1)]
-            steps = [1 if kind == FLIP else 2 for kind in inside]
-            assert abs(np.diff(outside)[i]) <= sum(steps)
+    found = windows(period)
+    outside = (np.hypot(*np.moveaxis(found.multipliers.values, -1, 0)) > 1.0).sum(axis=1)
+    for i in np.flatnonzero(np.diff(outside)):
+        place = found.bifurcation_place.values
+        inside = found.bifurcation_kind.values[(place > i) & (place < i + 1)]
+        steps = [1 if kind == FLIP else 2 for kind in inside]
+        assert abs(np.diff(outside)[i]) <= sum(steps)
 
 
-@pytest.mark.parametrize("longest", [0.03, 0.2, 1.0])
+@pytest.mark.parametrize("longest", ordinary([1.0, 0.2, 0.03]))
 def test_two_bifurcations_of_a_kind_within_a_step_are_found(longest):
     """Two period doublings that damping has all but merged: no step ends between them."""
     structure, limits = PAPER.replace(D=0.06876), (1.1, 1.4)
