@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from ..access import Impacts, finder
 from ..checks import checked_integer
-from ..response.labels import variable
+from ..response.labels import columns
 from ..response.questions import series_arguments
 from ..running.job import Inputs, Table
 from ..running.runner import answer
@@ -60,10 +60,7 @@ class ImpactStatisticsJob(FollowingQuestion):
         import xarray as xr
 
         along = self.series.name
-        variables = {
-            name: variable(along, column, "1", text)
-            for (name, text), column in zip(FIELDS.items(), table["rows"].T, strict=True)
-        }
+        variables = columns(along, FIELDS, table["rows"].T)
         title = f"Responses along {along}, impact by impact: {self.structure.label()}"
         return xr.Dataset(variables, self.series.coordinates(), {"title": title})
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from ..access import OSCILLATOR, EventInstance, Impacts, begin
-from ..response.labels import variable
+from ..response.labels import columns, variable
 from ..response.questions import Point
 from ..running.job import Inputs, Job, Table
 from ..structures import Excitation, Structure
@@ -117,10 +117,7 @@ class ChatteringJob(Job):
 
         dims = "e", "gamma"
         shape = len(self.restitutions), len(self.gammas)
-        variables = {
-            name: variable(dims, column.reshape(shape), "1", text)
-            for (name, text), column in zip(NUMBERS.items(), table["rows"].T, strict=True)
-        }
+        variables = columns(dims, NUMBERS, table["rows"].T.reshape(-1, *shape))
         coordinates = {
             "e": variable("e", np.array(self.restitutions), "1", "coefficient of restitution"),
             "gamma": variable("gamma", np.array(self.gammas), "1", "end of chattering (17)"),

@@ -16,7 +16,7 @@ import numpy as np
 from ..access import OSCILLATOR, Instance
 from ..dynamics.clusters import AttractorSettings, features, run_until_settled
 from ..dynamics.following import Followed, OnwardQuestion
-from ..response.labels import nondimensional_state, variable, yes_or_no
+from ..response.labels import columns, nondimensional_state, variable, yes_or_no
 from ..response.respond import impacts_in
 from ..running.job import Inputs, Table
 
@@ -66,10 +66,7 @@ class SettledJob(OnwardQuestion):
         import xarray as xr
 
         along = self.series.name
-        variables = {
-            name: variable(along, column, "1", text)
-            for (name, text), column in zip(FIELDS.items(), table["rows"].T, strict=True)
-        }
+        variables = columns(along, FIELDS, table["rows"].T)
         contact = "whether permanent contact occurs"
         variables["permanent_contact"] = yes_or_no(along, table["contact"], contact)
         text = "state at phase 0 at the end"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,12 @@ STATE = ("x1", "x2", "v1", "v2")  # of a state in m and m/s
 def variable(dims: Dims, values: Any, units: str, long_name: str, **more: Any) -> Variable:
     """Return a variable or coordinate as :class:`xarray.Dataset` takes it."""
     return dims, values, {"units": units, "long_name": long_name, **more}
+
+
+def columns(dims: Dims, texts: Mapping[str, str], values: Iterable[Any]) -> dict[str, Variable]:
+    """Return columns as dimensionless variables, by their names and long names in ``texts``."""
+    parts = zip(texts.items(), values, strict=True)
+    return {name: variable(dims, column, "1", text) for (name, text), column in parts}
 
 
 def flags(dims: Dims, values: Any, long_name: str, meanings: Mapping[int, str]) -> Variable:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import sys
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from orchestrate.access import OSCILLATOR, find
 from tools.trust import flights, programs
 from tools.trust.flights import Energy, Impacts, Roots
 
-pytestmark = pytest.mark.skipif(programs.sys.platform != "linux", reason="programs for Linux")
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="programs for Linux")
 
 
 @pytest.fixture(scope="module")
