@@ -15,7 +15,9 @@ START = (0.0, 0.0, 0.0, 0.0)
 OTHER = (-0.055, -0.041, -2.263, -2.141)  # leads to the second motion at 1.3
 OMEGA = 2.0 * math.pi * 40.0  # of the pressed beam, whose other numbers are the paper's, rad/s
 HILL = (36.2, 47.0)  # Hz: where the pressed beam opens at 0.5 g, and nowhere else in its region
-AT_LOW_LEVEL = f"The diagram is of 0.5 g: the beam opens between {HILL[0]:g} and {HILL[1]:g} Hz alone."
+AT_LOW_LEVEL = (
+    f"The diagram is of 0.5 g: the beam opens between {HILL[0]:g} and {HILL[1]:g} Hz alone."
+)
 AT_HIGH_LEVEL = "The diagram is of 3 g: the beam opens at every frequency of it."
 PRESSED: dict[str, Any] = {
     "region": (0.25, 1.5),

@@ -16,6 +16,12 @@ const TITLES = {
   drive: "A weak motor shakes the box: its speed over its voltage",
 };
 
+/** What computed a picture: the page, or the sweep that it came with. @param {boolean} swept */
+function madeBy(swept) {
+  const names = swept ? ["source", "swept"] : ["source"];
+  return names.flatMap((name) => document.getElementById(name)?.textContent ?? []).join("; ");
+}
+
 /**
  * Save a picture or its numbers; says so.
  * @param {string} words what, and the kind of file
@@ -31,7 +37,7 @@ export function saveShown(words, { eta, regions, inspector, basin, drive }) {
     const caption = [TITLES[name]];
     if (name === "drive") caption.push("A lighter beam, the parameter set quick");
     else if (choice) caption.push(beamWords(choice.point, choice.level));
-    caption.push(document.getElementById("source")?.textContent ?? "");
+    caption.push(madeBy(name === "diagram" && regions.diagram === regions.shipped));
     if (kind === "png") shown[name].savePng(file, caption);
     else shown[name].saveSvg(file, caption);
     return `${file}.${kind} saved`;
