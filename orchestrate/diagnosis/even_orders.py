@@ -19,7 +19,7 @@ NOISE_FACTOR, FLOOR_FACTOR = 5.0, 2.0
 MIN_RATIO = 0.005  # of order 1: sensors and bases that are not linear make less
 MIN_DIFFERENCE = 0.03  # of order 1: what two sensors on one body may differ by
 MIN_PART_OF_ORDER_2 = 0.2  # of order 2: the same there, where gains and delays are less certain
-# Order 2 of the distance between two faces over their largest distance: the least of 29 benches
+# Order 2 of the distance between two faces over their largest distance: the least of 15 benches
 # that opened for a part of each period; they had 0.14 to 0.31
 ORDER_2_OF_OPENING = 0.14
 
