@@ -194,7 +194,7 @@ def scale_of(data: xr.Dataset, unit: str) -> tuple[float, str]:
     return (factor, word) if math.isfinite(factor) else (1.0, unit)
 
 
-def text_of(data: xr.Dataset, value: float, unit: str, form: str = ".6g") -> str:
+def text_of(data: xr.Dataset, value: float | xr.DataArray, unit: str, form: str = ".6g") -> str:
     """Format a number of an SI unit as an answer is shown: ``12.5 Hz``, ``eta = 0.8``."""
     number, word = shown_number(data, value, unit, form)
     return f"eta = {number}" if word == "eta" else f"{number} {word}"
@@ -206,7 +206,9 @@ def range_text(data: xr.Dataset, low: float, high: float, unit: str, form: str =
     return f"eta = {first} to {last}" if word == "eta" else f"{first} to {last} {word}"
 
 
-def shown_number(data: xr.Dataset, value: float, unit: str, form: str = ".6g") -> tuple[str, str]:
+def shown_number(
+    data: xr.Dataset, value: float | xr.DataArray, unit: str, form: str = ".6g"
+) -> tuple[str, str]:
     """Format a number of an SI unit as an answer is shown, and return its unit apart."""
     factor, word = scale_of(data, unit)
     return format(float(value) / factor, form), word

@@ -73,8 +73,8 @@ def print_result(data: xr.Dataset) -> None:
     ):
         direction = jump_at(data.sel(structure=structure), voltage, speed) if kind == FOLD else ""
         what = meaning(data, paths[structure], i, direction)
-        at = text_of(data, speed, "rad/s", ".5g")
-        print(f"{structure}: {kind} at {voltage:.5f} V, {at}{what}")
+        rate = text_of(data, speed, "rad/s", ".5g")
+        print(f"{structure}: {kind} at {voltage:.5f} V, {rate}{what}")
     for structure, both in paths.items():
         for direction, path in both.items():
             if path.end and len(path.landings) in (0, len(path.jumps) - 1):
