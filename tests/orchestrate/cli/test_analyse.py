@@ -176,7 +176,7 @@ def test_records_of_all_kinds_of_files(ask, tmp_path, files, kind):
     else:
         pytest.importorskip("pyuff") if kind == "uff" else None
         write_record(record, path)
-    show = ("--show", "psd,orders", "--orders", "2", "--plot", "none")
+    show = ("--show", "psd,orders", "--orders", "2", "--plot", "none", "--units", "m/s2")
     done = ask("analyse", path, *options, *show).success()
     record.to_netcdf(tmp_path / "plain.nc")
     assert said(done) == said(ask("analyse", tmp_path / "plain.nc", *show).success())
@@ -188,7 +188,7 @@ def test_measured_beside_simulated(ask, tmp_path, files):
     columns = "box_acceleration=1,acceleration1=2"
     done = ask(
         *("analyse", files["parted"], "--beside", f"measured={tmp_path / 'bench.csv'}"),
-        *("--unit", "g", "--columns", columns, "--show", "orders"),
+        *("--unit", "g", "--columns", columns, "--show", "orders", "--units", "m/s2"),
     ).success()
     lines = [line for line in said(done) if "mass 1" in line]
     assert len(lines) == 2 and all("order 1 6 at" in line for line in lines)

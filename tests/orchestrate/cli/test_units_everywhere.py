@@ -255,7 +255,7 @@ def test_a_verdict_is_said_in_the_units_asked_for(capsys, tmp_path):
     ):
         diagnose.print_verdict(tmp_path / "a.csv", with_units(verdict, units))
         said = capsys.readouterr().out
-        assert f" up to {level}. An opening of {words} or more would have been seen." in said
+        assert f" up to {level}. Faces at the sensor that part by {words} or more would" in said
     data = xr.Dataset(
         {"frequency": variable([40.0, 50.0], "Hz", ("frequency",)), "name": ("frequency", [1, 2])}
     )
