@@ -34,7 +34,11 @@ class System(NamedTuple):
 
 
 def held_speeds(
-    system: System, first: float, voltages: Sequence[float], part: float = 1.0
+    system: System,
+    first: float,
+    voltages: Sequence[float],
+    part: float = 1.0,
+    rate: float = RATE,
 ) -> np.ndarray:
     """Compute mean speeds at the ends of consecutive holds.
 
@@ -47,6 +51,8 @@ def held_speeds(
         Those that are held, over K omega.
     part : float
         Of the usual time of a hold.
+    rate : float
+        Of the voltage between holds, of K omega in a time 1/omega.
 
     Returns
     -------
@@ -57,7 +63,7 @@ def held_speeds(
     hold = part * (LONG + LONG_OF_ROTOR / drive.b(structure))
     times, course, ends = [0.0, BEGIN], [first, first], []
     for voltage in voltages:
-        arrival = times[-1] + max(abs(voltage - course[-1]) / RATE, 1.0)
+        arrival = times[-1] + max(abs(voltage - course[-1]) / rate, 1.0)
         times += [arrival, arrival + hold]
         course += [voltage, voltage]
         ends.append(times[-1])

@@ -16,7 +16,7 @@ from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.held import FOLLOWS, LEFT_BEFORE, LOST, UNDECIDED
 
 from .campaign import Campaign, Outcome
-from .held_speeds import System, held_speeds
+from .held_speeds import RATE, System, held_speeds
 
 RATES = (2e-4, 1e-4, 5e-5, 2e-5)  # of eta0 in a time 1/omega
 FEW_RATES = RATES[::3]  # for drives near the edge of folds
@@ -32,6 +32,7 @@ SAME = 4e-3  # of omega: speeds at one voltage that differ by more are of two mo
 GRID = 4e-3  # of eta0: between voltages that are held there and back
 AROUND = (0.06, 0.04)  # of eta0: of them, below the lowest fold and above the highest
 SHORT = 0.25  # of a hold, on that grid
+SLOW_RATE = 0.1 * RATE  # between holds, where those at the usual rate speak against an answer
 SLOPES = (-0.6, 0.3)  # least slopes d eta0 / d Omega of drives that nearly have, or lack, folds
 
 
@@ -231,6 +232,19 @@ def refuted(system: System, answer: Answer, way: str) -> str:
 def refuted_bracket(system: System, answer: Answer, way: str) -> str:
     """Hold voltages before and past the bracket, and go back to its beginning.
 
+    A motion with a narrow basin is thrown out of it by the ramp between two holds, long before it
+    ends: what speaks against an answer has to do so on a slow way too.
+    """
+    for rate in (RATE, SLOW_RATE):
+        problem = bracket_problem(system, answer, way, rate)
+        if not problem:
+            break
+    return problem
+
+
+def bracket_problem(system: System, answer: Answer, way: str, rate: float) -> str:
+    """Return what held voltages say against a bracket, with a rate between the holds, or empty.
+
     An irregular motion may be lost before: so the first one is further away, and the speed past a
     jump differs the more from the one there.
     """
@@ -238,7 +252,7 @@ def refuted_bracket(system: System, answer: Answer, way: str) -> str:
     stays, lost = ordered((answer.low, answer.high), way)
     far, past = stays - sign * EARLY, lost + sign * 0.5 * TOLERANCE
     before, there, beyond, back = held_speeds(
-        system, first_of(system, way), (far, stays, past, stays)
+        system, first_of(system, way), (far, stays, past, stays), rate=rate
     )
     if abs(beyond - before) < CHANGE:
         return f"lost at {stays:.5f}, but past it, held, the speed is that of {far:.5f}"
@@ -366,8 +380,8 @@ class Verdicts(Campaign):
         "course of held voltages of its own meets it, and its speed changes there by more than "
         "8e-3 omega: a change to another motion of nearly the same speed is no jump. Where the "
         "branches do not say, such courses are held beside the bracket and back, or through the "
-        "resonance and back, and must not speak against the answer. What is left undecided is "
-        "counted."
+        "resonance and back, and must not speak against the answer, nor do so when the voltage "
+        "goes to them ten times as slowly. What is left undecided is counted."
     )
     unit, target, batch, package = "drives", 40, 1, True
 

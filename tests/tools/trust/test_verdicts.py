@@ -107,18 +107,21 @@ class Motions:
     """Speeds at held voltages, with a memory: lost at one voltage up, at another one down.
 
     Speeds rise with the voltage; ``gap`` lies between those of both motions. One more fold, of a
-    motion that goes on with nearly the same speed, is met on the way up at 1.25.
+    motion that goes on with nearly the same speed, is met on the way up at 1.25. ``thrown``: how
+    much earlier a ramp at the usual rate loses the motion.
     """
 
-    def __init__(self, monkeypatch, gap=0.05, up=FIRST_FOLD, down=LAST_FOLD):
+    def __init__(self, monkeypatch, gap=0.05, up=FIRST_FOLD, down=LAST_FOLD, thrown=0.0):
         self.gap, self.up, self.down, self.courses = gap, up, down, []
+        self.thrown = thrown
         monkeypatch.setattr(verdicts, "held_speeds", self.held)
 
-    def held(self, _system, first, voltages, part=1.0):
+    def held(self, _system, first, voltages, part=1.0, rate=held_speeds.RATE):
         self.courses.append(list(voltages))
+        up = self.up - self.thrown * (rate >= held_speeds.RATE)
         beyond, speeds = first > self.up, []
         for voltage in voltages:
-            beyond = voltage > self.up or (beyond and voltage > self.down)
+            beyond = voltage > up or (beyond and voltage > self.down)
             small = 0.003 if voltage > 1.25 else 0.0
             speeds.append(0.9 * voltage + small + self.gap * beyond)
         return np.array(speeds)
@@ -169,6 +172,15 @@ def test_a_fold_counts_where_held_voltages_meet_it_and_the_speed_jumps(monkeypat
         assert verdicts.fold_that_is_met(SYSTEM, data, "up").kind == UNKNOWN
     bonded = branch_with_folds(FOLDS, "bonded")
     assert verdicts.fold_that_is_met(SYSTEM, bonded, "up").kind == UNKNOWN
+
+
+def test_a_motion_that_a_ramp_throws_away_is_held_again_on_a_slow_one(monkeypatch):
+    Motions(monkeypatch, down=1.2, thrown=0.02)
+    right = verdicts.Answer("lost", FIRST_FOLD - 5e-5, FIRST_FOLD + 5e-5, True)
+    assert verdicts.bracket_problem(SYSTEM, right, "up", held_speeds.RATE)
+    assert not verdicts.refuted_bracket(SYSTEM, right, "up")
+    late = verdicts.Answer("lost", FIRST_FOLD + 3e-3, FIRST_FOLD + 3.1e-3, True)
+    assert verdicts.refuted_bracket(SYSTEM, late, "up")
 
 
 @pytest.mark.parametrize(("way", "place"), [("up", FIRST_FOLD), ("down", LAST_FOLD)])
