@@ -67,7 +67,8 @@ def test_limits_are_reached_exactly(over):
     assert sorted(found[over].values[[0, -1]]) == list(LIMITS[over])
 
 
-def test_impacts_begin_along_the_resonance_curve():
+@pytest.mark.parametrize("frequencies", ordinary([(0.8, 1.2), (0.5, 1.5)]))
+def test_impacts_begin_along_the_resonance_curve(frequencies):
     """A linear response reaches a wall at 1 at the force sqrt((1 - omega^2)^2 + c^2 omega^2).
 
     The box's amplitude is A/omega^2.
@@ -78,14 +79,14 @@ def test_impacts_begin_along_the_resonance_curve():
     start = orbit(wall, frequency=1.0, amplitude=0.2, guess={"impact_time": [2.0]}, **given)
     above = branch(wall, start=start, over="amplitude", limits=(0.02, 0.3), **given)
     (at,) = np.flatnonzero(above.bifurcation_kind.values == 3)
-    over, limits = ("amplitude", "frequency"), [(0.05, 4.0), (0.8, 1.2)]
+    over, limits = ("amplitude", "frequency"), [(0.05, 4.0), frequencies]
     found = border(
         wall, start=above, bifurcation=at, over=over, limits=limits, longest=0.1, **given
     )
     omega = found.frequency.values
     force = np.sqrt((1.0 - omega**2) ** 2 + 0.01 * omega**2)
     assert found.amplitude.values * omega**2 == pytest.approx(force, abs=1e-8)
-    assert (omega.min(), omega.max()) == (0.8, 1.2)
+    assert (omega.min(), omega.max()) == frequencies
 
 
 @pytest.mark.parametrize(
