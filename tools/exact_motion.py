@@ -97,7 +97,7 @@ def beside(s: Any, damping: Any, stiffness: Any) -> Any:
 def oscillator(
     mass: Any, damping: Any, stiffness: Any, x: Any, v: Any, acceleration: Signal
 ) -> Signal:
-    """Return the displacement in a box of given acceleration, from initial conditions at t = 0."""
+    """Return the displacement relative to the box as a Signal; x, v: its value and rate at 0."""
     mass, damping, stiffness = mp.mpf(mass), mp.mpf(damping), mp.mpf(stiffness)
     exponents = [(c, beside(s, damping / mass, stiffness / mass)) for c, s in acceleration.terms]
     forced = [(-c / (s * s + damping / mass * s + stiffness / mass), s) for c, s in exponents]

@@ -216,7 +216,7 @@ class SweepComputation:
 
     @property
     def sound(self) -> SoundStructure:
-        """Bonded form of the structure."""
+        """The bonded structure as a linear oscillator: natural frequency and damping ratio."""
         return SoundStructure.from_structure(self.structure)
 
     @property

@@ -524,7 +524,7 @@ def attractors(
 
 
 def check_scale(given: ArrayLike | None) -> Numbers | None:
-    """Return half widths in m, None if not given; raise unless they are above zero.
+    """Return half widths in m, a number or a tuple; None if not given; raise unless > 0.
 
     Raises
     ------

@@ -228,7 +228,7 @@ class BifurcationTracer(BranchTracer[BifurcationCurve, Root]):
         return reason, self.last_motion(step) if reason else ()
 
     def last_motion(self, step: BranchStep[Root]) -> list[Root]:
-        """Return the last root of a step that is a bifurcation of a motion, by bisection."""
+        """Return a step's last root that is still a motion, in a list; empty if there is none."""
         low, high = 0.0, step.length
         last: list[Root] = []
         for _ in range(HALVINGS):

@@ -41,7 +41,7 @@ LATEX = tuple(WORDS.values())
 
 @functools.cache
 def mathml(latex: str) -> Markup:
-    """Return a formula of LaTeX in a line of text."""
+    """Convert a LaTeX formula to inline MathML, as HTML that needs no escaping."""
     return Markup(tex2mathml(latex).replace("\n", ""))
 
 

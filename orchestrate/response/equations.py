@@ -64,9 +64,9 @@ class Rates(NamedTuple):
         push = None if self.push is None else np.where(touching, columns(self.push), 0.0)
         return Rates(chosen(self.stiffness), chosen(self.damping), push)
 
-    def part(self, rows: NDArray[np.intp]) -> Rates:
-        """Return the rates of some structures' masses in flight."""
-        return Rates(self.stiffness[:2, rows], self.damping[:2, rows])
+    def in_flight(self, indices: NDArray[np.intp]) -> Rates:
+        """Return stiffness and damping in flight of the structures at these indices."""
+        return Rates(self.stiffness[:2, indices], self.damping[:2, indices])
 
     def acceleration(self, x: Floats, v: Floats) -> Floats:
         """Return each mass's acceleration in space by the rates that act on it, shape (2, ...)."""

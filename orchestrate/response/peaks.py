@@ -243,7 +243,7 @@ def include_impacts(
     time = first_touch(cut)
     touches = np.isfinite(time)
     cut, time = cut.part(touches), time[touches]
-    effective_rates = rates.part(cut.row)
+    effective_rates = rates.in_flight(cut.row)
     drive = BoxMotion(drive.frequency[cut.row, 0], drive.amplitude[cut.row, 0])
     forcing = drive.forcing_at(cut.angle + drive.frequency * time)
     before = taylor_step(cut.left, time)

@@ -135,7 +135,7 @@ def impact_variables(table: Table) -> dict[str, Variable]:
 
 
 def impact_columns(impacts: Impacts, structure: Structure) -> Table:
-    """Return impacts as columns of a table."""
+    """Return time, closing speed, impulse and whether it sticks, of each impact, as columns."""
     return {
         "impact_time": impacts.time,
         "impact_velocity": impacts.closing,

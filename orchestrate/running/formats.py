@@ -1,4 +1,4 @@
-"""Export of a result to other tools: CSV, MATLAB and Excel, each file whole or not at all.
+"""Export of all variables of a result: CSV, MATLAB and Excel, each file whole or not at all.
 
 =======  =========================================================================================
 ending   what

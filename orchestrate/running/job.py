@@ -126,7 +126,7 @@ class Job(ABC):
         }
 
     def call(self) -> str:
-        """Return the question as one line of text."""
+        """Return class name and parameters in one line; of a long list, its ends and count."""
         parts = [f"{name}={brief(value)}" for name, value in self.parameters().items()]
         return f"{type(self).__name__}({', '.join(parts)})"
 

@@ -1,4 +1,4 @@
-"""Held-voltage test: whether a motion is lost on the way through the resonance.
+"""Held-voltage test: bracket the voltage at which a motion is lost near the resonance.
 
 Where the record of a ramp does not tell a jump from a steep branch, a state of the run is restored
 and its voltage is held until the speed has settled. From there the voltage goes on in short steps,

@@ -45,7 +45,7 @@ class Ended:
 
     @property
     def lines(self) -> list[str]:
-        """Lines of the error output, without the progress bar."""
+        """The stripped lines of the error output, no empty ones and no progress bar."""
         parts = (part.strip() for part in re.split(r"[\r\n]+", self.err))
         return [part for part in parts if part and not re.search(r"\d+%\|", part)]
 

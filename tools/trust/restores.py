@@ -96,7 +96,7 @@ def motor(rng: random.Random) -> list[Values]:
 def steps_of(
     rng: random.Random, start: float, duration: float, inputs: Sequence[Values]
 ) -> tuple[tuple[Values, float], ...]:
-    """Draw steps of any length: pairs of inputs to set, none in most, and end time, s."""
+    """Draw ``STEPS`` pairs by time: inputs to set, often ``{}``, and the end time, s."""
     parts = sorted(rng.random() for _ in range(STEPS))
     return tuple(
         (rng.choice(inputs) if rng.random() < 0.35 else {}, start + duration * part)
