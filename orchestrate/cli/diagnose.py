@@ -130,8 +130,9 @@ def read(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
         path, columns=columns, unit=arguments.unit, sample_rate=arguments.sample_rate
     )
     if "acceleration1" not in record and "acceleration2" not in record:
-        text = "expected the acceleration of a face beside the base's (--columns)"
-        raise InputError(f"{path}: no acceleration1; {text}")
+        taken = record.attrs.get("columns", "no columns")
+        text = "expected a face's beside the base's, such as --columns 0,1,2 or Time,Table,Beam"
+        raise InputError(f"{path}: no acceleration1 in {taken}; {text}")
     return record
 
 
@@ -169,6 +170,7 @@ def verdicts_of(
         path: verdicts[name].assign_attrs(
             record_file=path.name,
             record_sha256=checksum(path),
+            record_columns=records[path].attrs.get("columns", ""),
             guess_file=str(arguments.structure),
         )
         for path, name in names.items()
@@ -213,6 +215,7 @@ def print_verdict(path: Path, verdict: xr.Dataset) -> None:
 
     said = verdict_of(verdict)
     print(f"{path}: {said.word} {said.sentence}")
-    for name, words in (("reason", "decided by"), ("settle", "to settle it")):
+    columns = ("record_columns", "columns")
+    for name, words in (("reason", "decided by"), ("settle", "to settle it"), columns):
         if verdict.attrs.get(name):
             print(f"  {words}: {verdict.attrs[name]}")

@@ -35,9 +35,10 @@ TIMES = {  # in s
 NAMES = {  # as files call them; letters and digits alone, small
     "time": ("time", "t", "zeit"),
     "box_acceleration": ("boxacceleration", "box", "base", "table", "shaker", "abox", "abase"),
-    "acceleration1": ("acceleration1", "mass1", "a1", "acc1", "accel1"),
-    "acceleration2": ("acceleration2", "mass2", "a2", "acc2", "accel2"),
+    "acceleration1": ("acceleration1", "mass1", "a1", "acc1", "accel1", "face1", "beam", "face"),
+    "acceleration2": ("acceleration2", "mass2", "a2", "acc2", "accel2", "face2"),
 }
+WORDS = {"box_acceleration": "base", "acceleration1": "face 1", "acceleration2": "face 2"}
 HEADING = re.compile(r"^(?P<name>.*?)[\s_]*[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
 
 
@@ -130,8 +131,8 @@ def channels_of(
     table: Columns,
     columns: Mapping[str, str | int] | Sequence[str | int] | None,
     unit: str | None,
-) -> tuple[Floats | None, dict[str, Floats]]:
-    """Return a table's times in s, None without such a column, and its channels in m/s2 by name.
+) -> tuple[Floats | None, dict[str, Floats], str]:
+    """Return times in s, None without them, channels in m/s2 by name, and which columns they are.
 
     Parameters
     ----------
@@ -146,7 +147,7 @@ def channels_of(
     InputError
     """
     places = chosen(table, columns)
-    time = None
+    time, taken = None, taken_text(table, places, columns)
     if "time" in places:
         column = table.columns[places.pop("time")]
         label = label_of(table, column)
@@ -158,7 +159,14 @@ def channels_of(
         column = table.columns[place]
         own = column.unit if unit is None else unit
         values[name] = scaled(table, column, factor_of(label_of(table, column), own, ACCELERATIONS))
-    return time, values
+    return time, values, taken
+
+
+def taken_text(table: Columns, places: Mapping[str, int], columns: object) -> str:
+    """Return a text that says which column was taken for what, and if by nothing but its order."""
+    parts = [f'{WORDS.get(name, name)} "{table.columns[i].name}"' for name, i in places.items()]
+    by_order = columns is None and not known_places(table)
+    return ", ".join(parts) + (", by their order: no name is known" if by_order else "")
 
 
 def label_of(table: Columns, column: Column) -> str:
@@ -185,14 +193,7 @@ def chosen(
     """
     wanted = (*(() if table.sample_rate else ("time",)), *CHANNELS)
     if columns is None:
-        plain = [re.sub(r"[\W_]", "", column.name.lower()) for column in table.columns]
-        known = {
-            name: plain.index(one)
-            for name, all_names in NAMES.items()
-            for one in all_names
-            if one in plain
-        }
-        if set(known) & set(CHANNELS):
+        if known := known_places(table):
             return known
         if len(table.columns) > len(wanted):
             names = ", ".join(column.name for column in table.columns[:8])
@@ -212,6 +213,18 @@ def chosen(
         named = [i for i, one in enumerate(table.columns) if one.name.lower() in NAMES["time"]]
         places["time"] = (named or [0])[0]
     return places
+
+
+def known_places(table: Columns) -> dict[str, int]:
+    """Return the column index of each channel and the time by usual names; empty if no channel."""
+    plain = [re.sub(r"[\W_]", "", column.name.lower()) for column in table.columns]
+    known = {
+        name: plain.index(one)
+        for name, all_names in NAMES.items()
+        for one in all_names
+        if one in plain
+    }
+    return known if set(known) & set(CHANNELS) else {}
 
 
 def place_of(table: Columns, wish: str | int) -> int:

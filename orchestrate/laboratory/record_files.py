@@ -100,10 +100,11 @@ def read_record(
         table = readers[kind](path)
     if sample_rate is not None:
         table = replace(table, sample_rate=sample_rate)
-    time, values = channels_of(table, columns, unit)
+    time, values, taken = channels_of(table, columns, unit)
     if time is None and table.sample_rate is None:
         raise InputError(f"{path}: no column of times; expected one, or sample_rate=")
     words = {"title": f"Record {path.name}", "source": path.name, **table.attributes}
+    words |= {"columns": taken} if kind != "netcdf" else {}
     try:
         return checked_record(time, values, table.sample_rate, words, first_row=table.first_row)
     except InputError as error:

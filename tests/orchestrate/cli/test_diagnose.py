@@ -41,7 +41,10 @@ def sine(tmp_path):
         (["FILE", "--structure", "lost.toml"], ["lost.toml"]),
         (["FILE", "--structure", GUESS, "--columns", "0"], ["--columns 0", "acceleration1"]),
         (["FILE", "--structure", GUESS, "--columns", "0,1,9"], ["9"]),
-        (["FILE", "--structure", GUESS, "--columns", "0,1"], ["no acceleration1", "--columns"]),
+        (
+            ["FILE", "--structure", GUESS, "--columns", "0,1"],
+            ["no acceleration1 in time", "base", "--columns"],
+        ),
         (["FILE", "FILE", "--structure", GUESS, "--other", "FILE"], ["--other: of one beam"]),
         (["FILE", "--structure", GUESS, "--set", "f1=-3"], ["f1 = -3"]),
         (["FILE", "--structure", GUESS, "--plot", "gif"], ["--plot gif"]),

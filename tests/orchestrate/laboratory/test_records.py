@@ -212,6 +212,28 @@ def test_text_as_analysers_write_it(tmp_path, name, encoding):
 
 
 @pytest.mark.parametrize(
+    ("heading", "columns", "said"),
+    [
+        ("t,Table,Beam", None, 'base "Table", face 1 "Beam", time "t"'),
+        (
+            "t,tip,foot",
+            None,
+            'time "t", base "tip", face 1 "foot", by their order: no name is known',
+        ),
+        ("t,tip,foot", [0, 2, 1], 'time "t", base "foot", face 1 "tip"'),
+    ],
+)
+def test_a_record_says_which_columns_were_taken(tmp_path, heading, columns, said):
+    """Columns without usual names are taken by their order; a wrong order made a wrong verdict."""
+    path = tmp_path / "a.csv"
+    path.write_text(f"{heading}\n0,1,2\n1,3,4\n2,5,6\n3,7,8\n")
+    found = read_record(path, columns=columns, unit="g").attrs["columns"]
+    head, _, end = said.partition(", by")
+    assert sorted(found.partition(", by")[0].split(", ")) == sorted(head.split(", "))
+    assert found.endswith(end)
+
+
+@pytest.mark.parametrize(
     ("unit", "factor"),
     [("g", G), ("m/s\u00b2", 1.0), ("m/s^2", 1.0), ("mm/s2", 1e-3), ("mg", 1e-3 * G)],
 )
