@@ -79,8 +79,13 @@ class Units:
             chosen[kind] = word
         return cls(**chosen)
 
+    @property
+    def words(self) -> tuple[str, ...]:
+        """The units that were asked for."""
+        return tuple(filter(None, (getattr(self, field.name) for field in fields(self))))
+
     def __str__(self) -> str:
-        return ", ".join(filter(None, (getattr(self, field.name) for field in fields(self))))
+        return ", ".join(self.words)
 
     def completed(self, usual: Units) -> Units:
         """Return these, and where none was asked for the usual ones."""

@@ -128,10 +128,11 @@ def run(arguments: argparse.Namespace) -> None:
     answer_all(jobs, arguments.output, RunOptions.from_keywords(running), finder(running))
     states = states_of(arguments, structure)
     results = {state: load(path) for state, path in zip(states, paths, strict=True)}
-    shown = shown_runs(arguments, results)
+    asked = asked_runs(arguments, results)
+    shown = shown_runs(asked)
     branches = branches_of(arguments, structure, drive)
     print_result(shown, drive.volts(structure), folds_crossed(branches, structure, drive))
-    for data, path in zip(asked_runs(arguments, results).values(), paths, strict=True):
+    for data, path in zip(asked.values(), paths, strict=True):
         table = with_ending(path, units_ending(arguments))
         for file in (path, *export_formats(data, table, formats, fresh)):
             print(file)

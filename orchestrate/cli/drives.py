@@ -287,13 +287,10 @@ def asked_runs(
     return {state: with_units(data, drive_units(arguments)) for state, data in results.items()}
 
 
-def shown_runs(
-    arguments: argparse.Namespace, results: Mapping[str, xr.Dataset]
-) -> dict[str, xr.Dataset]:
-    """Return runs as they are printed and drawn: in the units that are asked for, with lengths
-    that can be read.
+def shown_runs(asked: Mapping[str, xr.Dataset]) -> dict[str, xr.Dataset]:
+    """Return runs in the units that are asked for as they are printed and drawn: with lengths that
+    can be read.
     """
-    asked = asked_runs(arguments, results)
     return dict(zip(asked, with_readable_lengths(*asked.values()), strict=True))
 
 
@@ -343,11 +340,12 @@ def ask_each(
     for state, chosen in states.items():
         running = running_of(arguments, files[state].result)
         results[state] = ask(chosen, drive, **question, **running)
-    shown = shown_runs(arguments, results)
+    asked = asked_runs(arguments, results)
+    shown = shown_runs(asked)
     for state, data in shown.items():
         print_result(state, data)
     print_units_note(arguments, *shown.values())
-    for state, data in asked_runs(arguments, results).items():
+    for state, data in asked.items():
         files[state].write(data, None)
     fresh = any(one_file.fresh for one_file in files.values())
     plots = endings_of("--plot", arguments.plot, PLOTS)
@@ -370,10 +368,11 @@ def ask_once(
     ask = getattr(orchestrate, arguments.command.replace("-", "_"))
     files = Files.from_options(arguments, file_name(arguments, structure, drive, question))
     data = ask(structure, drive, **question, **running_of(arguments, files.result))
-    (shown,) = shown_runs(arguments, {"": data}).values()
+    asked = asked_runs(arguments, {"": data})
+    (shown,) = shown_runs(asked).values()
     print_result(shown)
     print_units_note(arguments, shown)
-    files.write(with_units(data, drive_units(arguments)), partial(draw, shown) if draw else None)
+    files.write(asked[""], partial(draw, shown) if draw else None)
 
 
 def check_files(arguments: argparse.Namespace) -> tuple[tuple[str, ...], tuple[str, ...]]:

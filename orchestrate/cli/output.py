@@ -152,8 +152,7 @@ def print_units_note(arguments: argparse.Namespace, *answers: xr.Dataset) -> Non
     }
     units = units_option(arguments)
     changed = any(scale_of(data, kind)[1] != kind for data in answers for kind in kinds)
-    same = {getattr(units, field) for field in ("frequency", "length", "acceleration", "time")}
-    if str(units) and not changed and not same & kinds:
+    if units.words and not changed and kinds.isdisjoint(units.words):
         words = ", ".join(sorted(kinds - {"1"}))
         print(f"--units {units}: these have no such numbers, only {words}")
 

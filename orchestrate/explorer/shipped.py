@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -136,8 +136,7 @@ def check_units(units: Units, level: tuple[str, float] | None = None) -> None:
     ------
     InputError
     """
-    asked = [getattr(units, field.name) for field in fields(units)]
-    other = [word for word in asked if word and word not in ("eta", *PAGE_UNITS)]
+    other = [word for word in units.words if word not in ("eta", *PAGE_UNITS)]
     if other:
         raise InputError(
             f"units {units}: the page has no {other[0]}; expected eta, or some of "

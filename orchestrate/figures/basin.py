@@ -11,7 +11,7 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
 from ..units import scale_of, units_of
-from .labels import gap_name, orbit_label, symbol, title_from_attributes
+from .labels import gap_name, orbit_label, symbol, title_from_attributes, unit_sign
 from .style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, XI_REL, panels, set_title, styled
 
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, RED)  # of the most frequent attractors
@@ -57,7 +57,7 @@ def coordinate_scale(data: xr.Dataset, name: str) -> tuple[float, str]:
         return 1.0, symbol(name)
     factor, word = scale_of(data, unit)
     words = gap_name(data) if name == "x_rel" else symbol(name).rpartition(" in ")[0]
-    return factor, f"{words} in {word.replace('um', 'µm')}"
+    return factor, f"{words} in {unit_sign(word)}"
 
 
 def mark_attractors(plane: Axes, data: xr.Dataset) -> None:

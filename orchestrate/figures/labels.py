@@ -49,6 +49,11 @@ EXCITATION = ("eta", "frequency", "amplitude")
 HALF_PARAMETERS = {"m1", "m2", "k1", "k2", "d1", "d2", "mu", "kappa", "omega", "D", "D1", "D2"}
 HALF_PARAMETERS |= {"f1", "f2", "zeta1", "zeta2"}
 PART_OF_LABEL = re.compile(r"bonded|(?P<name>[A-Za-z]+?)(?P<values>-?\d[\d.e+-]*)")
+UNIT_SIGNS = {
+    "m/s2": "m/s$^2$",
+    "m2/s4/Hz": "(m/s$^2$)$^2$/Hz",
+    "g2/Hz": "g$^2$/Hz",
+}
 PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
@@ -130,11 +135,16 @@ def clearance_text(clearance: float, data: xr.Dataset) -> str:
     return f"{words} {length_text(data, abs(clearance))}"
 
 
+def unit_sign(unit: str) -> str:
+    """Return a unit as a picture has it: ``µm/s``, ``m/s$^2$``, ``g$^2$/Hz``."""
+    return UNIT_SIGNS.get(unit, unit.replace("um", "µm") if unit.startswith("um") else unit)
+
+
 def length_text(data: xr.Dataset, length: float) -> str:
     """Format a length in the unit that an answer is shown in, or with an SI prefix."""
     if units_of(data).length:
         factor, word = scale_of(data, "m")
-        return f"{length / factor:.4g} {word.replace('um', 'µm')}"
+        return f"{length / factor:.4g} {unit_sign(word)}"
     factor, letter = prefix(length)
     return f"{length / factor:.4g} {letter}m"
 

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from ..units import FACTORS, OVER_OMEGA, has_own_frequency, omega_of, scale_of, units_of
-from .labels import gap_name, prefix, symbol
+from .labels import gap_name, prefix, symbol, unit_sign
 from .style import XI_REL
 
 ETA = symbol("eta")
@@ -78,7 +78,7 @@ def acceleration_scale(data: xr.Dataset, usual: str = "m/s2") -> tuple[float, st
         The unit where none is asked for.
     """
     word = units_of(data).acceleration or usual
-    return FACTORS["acceleration"][word], word.replace("m/s2", "m/s$^2$")
+    return FACTORS["acceleration"][word], unit_sign(word)
 
 
 def with_unit(words: str, array: xr.DataArray) -> str:
@@ -90,9 +90,7 @@ def with_unit(words: str, array: xr.DataArray) -> str:
 
 def unit_text(array: xr.DataArray) -> str:
     """Return the unit of what is shown, as a picture has it: ``m/s$^2$``, ``g$^2$/Hz``."""
-    unit = str(array.attrs["units"])
-    signs = {"um": "µm", "m/s2": "m/s$^2$", "m2/s4/Hz": "(m/s$^2$)$^2$/Hz", "g2/Hz": "g$^2$/Hz"}
-    return signs.get(unit, unit.replace("um/", "µm/"))
+    return unit_sign(str(array.attrs["units"]))
 
 
 def along(data: xr.Dataset, parameter: str) -> Along:
