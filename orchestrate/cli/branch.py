@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from ..units import scale_of
 from .grammar import ends_of, plain_int
 from .options import (
     UNITS,
@@ -17,7 +16,7 @@ from .options import (
     frequency_option,
     structure_of,
 )
-from .question import carry_out, format_parameter, read_stored
+from .question import carry_out, format_parameter, parameter_parts, read_stored
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -117,9 +116,12 @@ def print_result(data: xr.Dataset) -> None:
         print("no bifurcation in this range")
     else:
         words = flag_words(data.bifurcation_kind.attrs)
-        factor, unit = scale_of(data, str(data.bifurcation_value.attrs["units"]))
-        print(f"number  {'bifurcation':28}{name} ({unit})")
-        for i in range(count):
+        values = data.bifurcation_value.values.tolist()
+        parts = [parameter_parts(data, name, value, ".8f") for value in values]
+        before, _, unit = parts[0]
+        heading = before or ("frequency" if name == "eta" else name)
+        print(f"number  {'bifurcation':28}{heading}{f' ({unit})' if unit else ''}")
+        for i, (_, number, _) in enumerate(parts):
             kind = words[int(data.bifurcation_kind[i])]
-            print(f"{i:6}  {kind:28}{float(data.bifurcation_value[i]) / factor:.8f}")
+            print(f"{i:6}  {kind:28}{number}")
     print(f"first end: {data.attrs['first_end']}; last end: {data.attrs['last_end']}")

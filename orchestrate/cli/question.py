@@ -19,6 +19,7 @@ from ..units import (
     as_shown,
     omega_of,
     shown_number,
+    text_of,
     units_of,
     with_readable_lengths,
     with_units,
@@ -99,10 +100,10 @@ def carry_out(
     print_frequency_notes(arguments, structure, question)
     with preparing_a_picture(draw is not None and files.lacks_pictures()):
         data: xr.Dataset = ask(structure, **question, **running_of(arguments, files.result))
-    for line in trivial_notes(structure, question):
-        print(line)
     asked = with_units(data, units)
     (shown,) = with_readable_lengths(asked)
+    for line in trivial_notes(structure, question, shown):
+        print(line)
     print_result(shown)
     files.write(asked, partial(draw, shown) if draw else None)
     return data
@@ -172,8 +173,8 @@ def print_table(data: xr.Dataset, name: str) -> None:
             print(f"  {key:20} {values} {unit}".rstrip())
 
 
-def trivial_notes(structure: Structure, question: Question) -> list[str]:
-    """Return remarks on what makes an answer trivial."""
+def trivial_notes(structure: Structure, question: Question, shown: xr.Dataset) -> list[str]:
+    """Return remarks on what makes an answer trivial, with lengths as it is shown."""
     varied = isinstance(question.get("level"), tuple) or question.get("over") == "level"
     if varied and not structure.has_scale:
         from ..structures.ranges import OF_LENGTH
@@ -187,7 +188,7 @@ def trivial_notes(structure: Structure, question: Question) -> list[str]:
         return ["bonded: both masses move as one, there are no impacts"]
     if structure.alike:
         return ["both oscillators are alike: masses that start together never part"]
-    return clearance_notes(structure, question)
+    return clearance_notes(structure, question, shown)
 
 
 def print_frequency_notes(
@@ -238,7 +239,7 @@ def warn_of_other_unit(
             )
 
 
-def clearance_notes(structure: Structure, question: Question) -> list[str]:
+def clearance_notes(structure: Structure, question: Question, shown: xr.Dataset) -> list[str]:
     """Return a remark where the box's motion stays below the threshold of a clearance: the
     response from rest is the linear one.
     """
@@ -263,8 +264,9 @@ def clearance_notes(structure: Structure, question: Question) -> list[str]:
         )
     kind = "pressed together" if opens else "open"
     return [
-        f"{kind} by {abs(structure.clearance):g} m, it first {'opens' if opens else 'touches'} at "
-        f"{ratio:.4g} times this level: from rest the response is linear"
+        f"{kind} by {text_of(shown, abs(structure.clearance), 'm')}, it first "
+        f"{'opens' if opens else 'touches'} at {ratio:.4g} times this level: from rest the "
+        "response is linear"
     ]
 
 
@@ -295,21 +297,23 @@ def format_parameter(data: xr.Dataset, name: str, value: float) -> str:
     return f"{before} = {number} {unit}".rstrip() if before else f"{number} {unit}"
 
 
-def parameter_parts(data: xr.Dataset, name: str, value: float) -> tuple[str, str, str]:
-    """Return a parameter's name, its value and its unit as an answer is shown; by default
-    frequencies in Hz and levels in g, which need no name.
+def parameter_parts(
+    data: xr.Dataset, name: str, value: float, form: str = ".6g"
+) -> tuple[str, str, str]:
+    """Return a parameter's name, its formatted value and its unit as an answer is shown; by
+    default frequencies in Hz and levels in g, which need no name.
     """
     units, omega = units_of(data), omega_of(data)
     if name == "eta" and units.frequency not in ("", "eta") and math.isfinite(omega):
         name, value = "frequency", value * omega
     if name == "frequency":
         shown = data if units.frequency else with_units(data, "Hz")
-        number, unit = shown_number(shown, value, "rad/s")
+        number, unit = shown_number(shown, value, "rad/s", form)
         return ("eta", number, "") if unit == "eta" else ("", number, unit)
     if name == "level":
         shown = data if units.acceleration else with_units(data, "g")
-        return ("", *shown_number(shown, value, "m/s2"))
-    return (name, *shown_number(data, value, unit_of(data, name)))
+        return ("", *shown_number(shown, value, "m/s2", form))
+    return (name, *shown_number(data, value, unit_of(data, name), form))
 
 
 def unit_of(data: xr.Dataset, name: str) -> str:

@@ -1,5 +1,6 @@
 """What a command takes for granted, and what somebody hardly means: said in one line."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -128,6 +129,7 @@ def test_a_level_below_the_threshold_is_said(ask):
         setting = ("--set", f"clearance={clearance}")
         out = said(ask, *HALVES, *MASSES, *setting, shaken=quiet)[0]
         assert word in out and "times this level: from rest the response is linear" in out
+        assert re.search(r"by [\d.]+ [mu]m, it first", out)
         assert "no impacts" in out
     loud = said(
         ask, *HALVES, *MASSES, "--set", "clearance=-2e-5", shaken=("--hz", "48", "--g", "3")

@@ -102,6 +102,18 @@ def test_a_printed_number_follows_and_the_result_stays(ask, tmp_path, command):
     assert any(f"[{unit}]" in name for name in columns), columns
 
 
+def test_bifurcations_stand_in_the_unit_of_the_range_above_them(ask):
+    """A branch over eta that is shown in Hz has its bifurcations in Hz too, and ratios without."""
+    options = ("--eta", "2.62", "--limits", "2.62:2.66", "--jobs", "1", "--plot", "none")
+    ratios = ask("branch", *options).success().out
+    hertz = ask("branch", *options, "--units", "Hz").success().out
+    assert re.search(r"number +bifurcation +eta\n", ratios)
+    assert re.search(r"number +bifurcation +frequency \(Hz\)\n", hertz)
+    row = re.compile(r"^ +0  .*?([\d.]+)$", re.MULTILINE)
+    (ratio,), (frequency,) = row.findall(ratios), row.findall(hertz)
+    assert float(frequency) == pytest.approx(float(ratio) / (2.0 * np.pi), abs=1e-8)
+
+
 @pytest.mark.parametrize("command", REFUSED)
 def test_a_command_without_such_numbers_says_why(ask, command):
     words = ask(command, "--units", "Hz") if command == "paper" else run("build", "--units", "Hz")
