@@ -64,6 +64,7 @@ MAX_STEPS = 1e9  # more is a typing error: it would run for weeks
 TOLERANCE = 1e-8  # of the step control: errors of the displacements are about ten times as large
 LONGEST, FIXED = 0.4, 0.1  # steps with the control and without, in 1/omega
 LAST_REVOLUTIONS = 20  # of a ramp: their mean speed is where it ends
+LATE = 3.0  # of the rotor's time 1/b: how much later a ramp may show what it loses
 UPWARD = (True, False)  # ways: whether the voltage rises
 HOLD, HOLD_OF_ROTOR = 4000.0, 200.0  # usual longest hold: in 1/omega, and in the rotor's time 1/b
 
@@ -186,20 +187,32 @@ class CoupleJob(CoupledRun):
         """Hold voltages at further places of the record, less those that are clear or held."""
         found = [(THROUGH, verdict) for verdict in course.further]
         known, volts = outcomes(course), self.drive.volts(self.structure)
+        sign = 1.0 if up else -1.0
+        crossed = sorted(known, key=lambda verdict: sign * verdict.low)[:-1]  # before the passing
         Omega = np.abs(table["speed"]) / self.structure.omega
         for place, passing in enumerate(places[:MOST]):
             ends = [passing.before, passing.after]
             if passing.look == JUMP and not self.structure.bonded:
                 continue
-            if course.covers(*table["voltage"][ends]):
-                found.append((place, Verdict(NOT_ASKED)))
+            if crossed and sign * (table["voltage"][passing.after] - crossed[0].low) > 0.0:
+                crossed = crossed[1:]
+                found.append((place, Verdict(NOT_ASKED)))  # the course has met what is seen here
                 continue
             middle = float(Omega[ends].mean())
-            held = test.classify(*self.by_steps(table, passing, up), middle, up)
+            held = test.classify(
+                *self.by_steps(table, self.earlier(table, passing, up), up), middle, up
+            )
             told = without_known(outcomes(held), known, volts)
             known += told
             found += [(place, verdict) for verdict in told or [Verdict(FOLLOWS)]]
         return as_rows(found)
+
+    def earlier(self, table: Table, passing: Passing, up: bool) -> Passing:
+        """Return a place that begins before: a ramp shows late that a motion is lost."""
+        time, rows = table["time"], self.sweep_leg(table, up)[1]
+        late = LATE / (self.drive.b(self.structure) * self.structure.omega)
+        before = max(int(np.searchsorted(time, time[passing.before] - late)) - 1, int(rows[0]))
+        return passing._replace(before=min(before, passing.before))
 
     def further_places(self, table: Table, up: bool) -> list[Passing]:
         """Return where else a motion may be lost in a direction, by rows of the table."""
@@ -657,8 +670,12 @@ def couple(
         and ``no_jump`` says why. ``decided`` says how it was told: by the record of the ramp, or
         by held voltages, or that it is undecided. ``held_verdict`` says what held voltages say, as
         a number with a meaning: 0 not asked, 1 lost, 2 follows, 3 left before, 4 undecided; with
-        ``held_jumps`` and ``held_error`` (V), the voltage and half of its bracket. For a bonded
-        structure
+        ``held_jumps`` and ``held_error`` (V), the voltage and half of its bracket. Where the speed
+        jumps more than once in a direction, these are about the first sure jump; over ``jump`` and
+        ``order`` the others are told, in the ramp's order: ``further_jumps`` (V), ``further_time``
+        (s), ``further_held`` and ``further_error`` (V), and ``further_decided``, which is
+        "undecided" where there may be one, and empty where there is none. ``further_count`` says
+        how many there are. For a bonded structure
         ``averaged_jumps`` (V), ``averaged_kind`` and ``jump_lag`` (V): where the averaged theory
         loses the motion, by a fold or a Neimark-Sacker point. From
         ``passage_time`` (s) on the speed stays beyond the resonance.
@@ -676,6 +693,12 @@ def couple(
     last at one voltage, see :mod:`orchestrate.weak_drive.held`. Such a verdict does not depend on
     the rate. Of a bonded structure none is given that the averaged theory contradicts by more than
     its own error: it is undecided then.
+
+    A further jump beside the passing of the resonance is looked for where the held voltages cross
+    it, and where the torque that the vibration takes shows it in the record
+    (:mod:`orchestrate.weak_drive.further_jumps`); voltages are held there too. A change of that
+    torque by less than 4e-3, as a speed over omega, or by less than eight times its scatter, is
+    none.
 
     Whatever the clearance, a passage of the resonance is one past the speed that divides the
     motions of the bonded structure, by the averaged theory, moved with the resonance where that of

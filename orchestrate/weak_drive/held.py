@@ -73,21 +73,10 @@ class HeldCourse(NamedTuple):
         On the largest change of the speed.
     further : tuple of Verdict
         On the others at which a motion is lost, or may be.
-    first, last : float
-        Voltages where the course begins and ends, V; NaN where nothing has settled.
     """
 
     verdict: Verdict
     further: tuple[Verdict, ...] = ()
-    first: float = math.nan
-    last: float = math.nan
-
-    def covers(self, first: float, last: float) -> bool:
-        """Return whether the course decides, and two voltages lie on it, V."""
-        low, high = sorted((self.first, self.last))
-        return self.verdict.outcome in (LOST, FOLLOWS) and all(
-            low <= voltage <= high for voltage in (first, last)
-        )
 
 
 class Settled(NamedTuple):
@@ -305,13 +294,12 @@ class HeldVoltageTest:
         points = self.stairs(low, target)
         if not beyond(points[-1], far):
             points += self.further(points[-1], target, ends[1], sign, far)
-        ends = low.voltage, points[-1].voltage
         if not beyond(points[-1]):
-            return HeldCourse(Verdict(UNDECIDED, points[-1].voltage, target), (), *ends)
+            return HeldCourse(Verdict(UNDECIDED, points[-1].voltage, target))
         verdict, *others = self.changes(list(points), sign)
         if verdict.outcome == FOLLOWS and not (beyond(points[-1], far) and self.comes_back(points)):
-            verdict = Verdict(UNDECIDED, *ends)
-        return HeldCourse(verdict, tuple(others), *ends)
+            verdict = Verdict(UNDECIDED, low.voltage, points[-1].voltage)
+        return HeldCourse(verdict, tuple(others))
 
     def changes(self, points: list[Settled], sign: float) -> list[Verdict]:
         """Bracket the largest change, and then all others that may be losses.
