@@ -284,6 +284,7 @@ def print_result(results: dict[str, xr.Dataset], volts: float, folds: Folds | No
         for jump in map(str, data.jump.values):
             at, bonded_at = data.sel(jump=jump), None if bonded is None else bonded.sel(jump=jump)
             texts.append(format_jump(at, volts, bonded_at, (folds or {}).get((name, jump))))
+            texts += format_further(at)
         passed = float(data.passage_time)
         if not any("V" in text for text in texts) and math.isfinite(passed):
             texts.append(f"beyond the resonance from {passed:.4g} s on")
@@ -328,6 +329,23 @@ def format_jump(
             f"{text}, by the held-voltage test: the motion is lost at {held:.4f} +- {error:.4f} V"
         )
     return f"{text}, {format_lag(at, volts, bonded, fold)}"
+
+
+def format_further(at: xr.Dataset) -> list[str]:
+    """Format the further jumps of a direction, sure and undecided ones."""
+    texts = []
+    for place in at.order.values if "further_decided" in at else ():
+        one = at.sel(order=place)
+        decided, jump = str(one.further_decided.item()), at.jump.item()
+        held, error = float(one.further_held), float(one.further_error)
+        if decided == "undecided":
+            ends = f"between {held - error:.5g} and {held + error:.5g} V"
+            texts.append(f"a further jump {jump} undecided {ends}: a longer --hold may tell")
+        elif decided:
+            text = f"a further jump {jump} at {float(one.further_jumps):.4f} V"
+            lost = f": the motion is lost at {held:.4f} +- {error:.4f} V"
+            texts.append(f"{text}, {decided}{lost if math.isfinite(held) else ''}")
+    return texts
 
 
 def format_lag(at: xr.Dataset, volts: float, bonded: xr.Dataset | None, fold: float | None) -> str:

@@ -155,7 +155,25 @@ def jump_texts(data: xr.Dataset) -> list[str]:
         for direction in ("up", "down")
         if jumped(data, direction)
     ]
-    return jumps + [f"{direction} undecided" for direction in undecided_directions(data)]
+    undecided = [f"{direction} undecided" for direction in undecided_directions(data)]
+    further = [
+        f"{direction} at {value:.4f} V too" if sure else f"{direction} at {value:.4f} V undecided"
+        for direction, value, sure in further_jumps(data)
+    ]
+    return jumps + undecided + further
+
+
+def further_jumps(data: xr.Dataset) -> list[tuple[str, float, bool]]:
+    """Return direction and voltage of each further jump, and whether it is sure."""
+    if "further_decided" not in data:
+        return []
+    return [
+        (str(way), float(at.further_jumps if sure else at.further_held), sure)
+        for way in data.jump.values
+        for at in (data.sel(jump=way, order=place) for place in data.order.values)
+        if at.further_decided.item()
+        for sure in (at.further_decided.item() != "undecided",)
+    ]
 
 
 def format_jumps(name: str, data: xr.Dataset) -> str:
@@ -260,6 +278,9 @@ def mark_jumps(axes: Axes, data: xr.Dataset, name: str) -> None:
     for value in data.jumps.values:
         if np.isfinite(value):
             axes.axvline(value, color=COLOURS[name], linewidth=0.6, alpha=0.6)
+    for _, value, sure in further_jumps(data):
+        style = "--" if sure else ":"
+        axes.axvline(value, color=COLOURS[name], linestyle=style, linewidth=0.6, alpha=0.6)
     for direction in undecided_directions(data):
         at = data.sel(jump=direction)
         ends = [float(at.held_jumps) + sign * float(at.held_error) for sign in (-1.0, 1.0)]

@@ -14,8 +14,10 @@ module                  idea
 :mod:`.revolutions`     a run as one row per revolution of the motor
 :mod:`.run`             a run under way, step by step
 :mod:`.jumps`           where the speed jumps
+:mod:`.further_jumps`   where a ramp's record shows that it may jump once more
 :mod:`.held`            held-voltage test: whether a motion is lost at the resonance
 :mod:`.jump_verdicts`   jump, none or undecided in each direction, and why
+:mod:`.losses`          all jumps of a direction, in the ramp's order
 :mod:`.couple`          a run of both FMUs under a voltage over time
 :mod:`.couple_all`      many coupled runs at once
 :mod:`.jump_voltages`   jump voltages extrapolated to rate 0, with an error

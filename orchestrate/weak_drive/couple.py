@@ -24,9 +24,33 @@ from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged, own_resonance
 from .controllers import Controller
-from .held import MEANINGS, NOT_ASKED, UNDECIDED, HeldVoltageTest, Verdict, with_final_chunk
-from .jump_verdicts import check_against_theory, how_decided, is_doubtful, is_jump, reason, theories
-from .jumps import Passing, SweepLeg, find_passing, stays_beyond, why_none
+from .further_jumps import find_further
+from .held import (
+    FOLLOWS,
+    MEANINGS,
+    NOT_ASKED,
+    UNDECIDED,
+    HeldCourse,
+    HeldVoltageTest,
+    Verdict,
+    with_final_chunk,
+)
+from .jump_verdicts import check_against_theory, how_decided, is_doubtful, reason, theories
+from .jumps import JUMP, Passing, SweepLeg, find_passing, stays_beyond, why_none
+from .losses import (
+    MOST,
+    SLOTS,
+    THROUGH,
+    Loss,
+    as_rows,
+    from_rows,
+    further_columns,
+    gather_losses,
+    jump_and_further,
+    no_rows,
+    outcomes,
+    without_known,
+)
 from .master import Scheme
 from .revolutions import COLUMNS
 from .run import CoupledRun, Run, begin_run
@@ -40,6 +64,7 @@ MAX_STEPS = 1e9  # more is a typing error: it would run for weeks
 TOLERANCE = 1e-8  # of the step control: errors of the displacements are about ten times as large
 LONGEST, FIXED = 0.4, 0.1  # steps with the control and without, in 1/omega
 LAST_REVOLUTIONS = 20  # of a ramp: their mean speed is where it ends
+LATE = 3.0  # of the rotor's time 1/b: how much later a ramp may show what it loses
 UPWARD = (True, False)  # ways: whether the voltage rises
 HOLD, HOLD_OF_ROTOR = 4000.0, 200.0  # usual longest hold: in 1/omega, and in the rotor's time 1/b
 
@@ -105,7 +130,7 @@ class CoupleJob(CoupledRun):
         if items[0] == self.steps():
             assert previous is not None
             nothing = {name: values[:0] for name, values in previous.items()}
-            return {**nothing, "verdicts": self.verdicts(fmus, previous, every)[np.newaxis]}
+            return {**nothing, **self.verdicts(fmus, previous, every)}
         with begin_run(self, fmus) as run:
             if previous is not None:
                 run.set_state(previous)
@@ -115,8 +140,8 @@ class CoupleJob(CoupledRun):
         """Return the note that the progress bar shows during the held-voltage test."""
         return "voltages held where a jump is in doubt" if first == self.steps() else ""
 
-    def verdicts(self, fmus: Mapping[str, Path], table: Table, every: int) -> np.ndarray:
-        """Run the held-voltage test where the record does not decide; shape (2, 3).
+    def verdicts(self, fmus: Mapping[str, Path], table: Table, every: int) -> Table:
+        """Run the held-voltage test where the record does not decide; return what is stored.
 
         Parameters
         ----------
@@ -126,9 +151,10 @@ class CoupleJob(CoupledRun):
         every : int
         """
         doubts = [self.doubt(table, up) for up in UPWARD]
-        verdicts = [Verdict(NOT_ASKED)] * len(doubts)
-        if not any(doubts):
-            return np.array(verdicts)
+        places = [self.further_places(table, up) for up in UPWARD]
+        verdicts, further = [Verdict(NOT_ASKED)] * len(doubts), [no_rows()] * len(doubts)
+        if not any(doubts) and not any(places):
+            return stored_verdicts(verdicts, further)
         structure, drive = self.structure, self.drive
         threshold = own_resonance.dividing_speed(structure, drive)
         resonance = own_resonance.dividing_speeds(structure, drive)
@@ -143,9 +169,68 @@ class CoupleJob(CoupledRun):
             test = HeldVoltageTest(begin, self.schedule, *units, self.hold)
             test.add_checkpoints(table, every, self.steps())
             for i, doubt in enumerate(doubts):
+                course = HeldCourse(Verdict(NOT_ASKED))
                 if doubt is not None:
-                    verdicts[i] = test.classify(*doubt, threshold, UPWARD[i], resonance)
-        return np.array(verdicts)
+                    course = test.classify(*doubt, threshold, UPWARD[i], resonance)
+                verdicts[i] = course.verdict
+                further[i] = self.further_verdicts(test, table, course, places[i], UPWARD[i])
+        return stored_verdicts(verdicts, further)
+
+    def further_verdicts(
+        self,
+        test: HeldVoltageTest,
+        table: Table,
+        course: HeldCourse,
+        places: Sequence[Passing],
+        up: bool,
+    ) -> np.ndarray:
+        """Hold voltages at further places of the record, less those that are clear or held."""
+        found = [(THROUGH, verdict) for verdict in course.further]
+        known, volts = outcomes(course), self.drive.volts(self.structure)
+        sign = 1.0 if up else -1.0
+        crossed = sorted(known, key=lambda verdict: sign * verdict.low)[:-1]  # before the passing
+        Omega = np.abs(table["speed"]) / self.structure.omega
+        for place, passing in enumerate(places[:MOST]):
+            ends = [passing.before, passing.after]
+            if passing.look == JUMP and not self.structure.bonded:
+                continue
+            if crossed and sign * (table["voltage"][passing.after] - crossed[0].low) > 0.0:
+                crossed = crossed[1:]
+                found.append((place, Verdict(NOT_ASKED)))  # the course has met what is seen here
+                continue
+            middle = float(Omega[ends].mean())
+            held = test.classify(
+                *self.by_steps(table, self.earlier(table, passing, up), up), middle, up
+            )
+            told = without_known(outcomes(held), known, volts)
+            known += told
+            found += [(place, verdict) for verdict in told or [Verdict(FOLLOWS)]]
+        return as_rows(found)
+
+    def earlier(self, table: Table, passing: Passing, up: bool) -> Passing:
+        """Return a place that begins before: a ramp shows late that a motion is lost."""
+        time, rows = table["time"], self.sweep_leg(table, up)[1]
+        late = LATE / (self.drive.b(self.structure) * self.structure.omega)
+        before = max(int(np.searchsorted(time, time[passing.before] - late)) - 1, int(rows[0]))
+        return passing._replace(before=min(before, passing.before))
+
+    def further_places(self, table: Table, up: bool) -> list[Passing]:
+        """Return where else a motion may be lost in a direction, by rows of the table."""
+        leg, rows = self.sweep_leg(table, up)
+        if self.control or not rows.size:
+            return []
+        divide = own_resonance.dividing_speed(self.structure, self.drive)
+        main, b = self.passing(table, up), self.drive.b(self.structure)
+        places = []
+        for part in np.split(np.arange(len(rows)), np.flatnonzero(np.diff(rows) > 1) + 1):
+            first = int(rows[part[0]])
+            span = None if main is None else (main.before - first, main.after - first)
+            one_ramp = SweepLeg(*(values[part] for values in leg))
+            places += [
+                Passing(row + first, before + first, after + first, look, half + first)
+                for row, before, after, look, half in find_further(one_ramp, b, up, divide, span)
+            ]
+        return places
 
     def sweep_leg(self, table: Table, up: bool) -> tuple[SweepLeg, np.ndarray]:
         """Return the revolutions on which the voltage goes up or down, and their row indices."""
@@ -172,6 +257,10 @@ class CoupleJob(CoupledRun):
         theory = theories(self.structure, self.drive)[UPWARD.index(up)]
         if passing is None or not is_doubtful(passing, self.structure.bonded, theory):
             return None
+        return self.by_steps(table, passing, up)
+
+    def by_steps(self, table: Table, passing: Passing, up: bool) -> tuple[Passing, tuple[int, int]]:
+        """Return a passing by steps of the run, and first and last step of its sweep."""
         rows = self.sweep_leg(table, up)[1]
         times = table["time"][[*passing[:3], rows[0], rows[-1]]]
         row, before, after, first, last = (
@@ -218,33 +307,58 @@ class CoupleJob(CoupledRun):
             {**variables, **self.jumps(table)}, coordinates, self.attributes(table)
         )
         names = {"long_name": "direction in which the speed jumps"}
-        return dataset.assign_coords(jump=("jump", ["up", "down"], names))
+        places = {"units": "1", "long_name": "place of a further jump, in the ramp's order"}
+        return dataset.assign_coords(
+            jump=("jump", ["up", "down"], names),
+            order=("order", np.arange(1, SLOTS + 1), places),
+        )
 
     def jumps(self, table: Table) -> dict[str, Variable]:
         """Return the jumps up and down, or why there is none; if bonded, with the theory's."""
         held = [Verdict(int(row[0]), *row[1:]) for row in table["verdicts"][-1]]
-        theory, volts = theories(self.structure, self.drive), self.drive.volts(self.structure)
-        final = list(held)
-        if self.structure.bonded:
-            final = [check_against_theory(*pair, volts) for pair in zip(held, theory, strict=True)]
-        passings = [None if self.control else self.passing(table, up) for up in UPWARD]
-        pairs = list(zip(passings, final, strict=True))
-        jumps = [passing if is_jump(passing, verdict) else None for passing, verdict in pairs]
+        theory = theories(self.structure, self.drive)
+        found = [self.losses(table, i, held[i]) for i in range(len(UPWARD))]
+        told = [
+            jump_and_further(*pair, 1.0 if up else -1.0)
+            for pair, up in zip(found, UPWARD, strict=True)
+        ]
+        jumps = [first.passing if first and first.is_sure else None for first, _ in told]
+        final = [first.verdict if first else held[i] for i, (first, _) in enumerate(told)]
         columns = jump_columns(table, jumps)
         columns |= self.theory(np.array(columns["jumps"][1], dtype=float))
         reasons = []
-        for i, (passing, verdict) in enumerate(pairs):
-            if passing is None:
+        for i, (first, _) in enumerate(told):
+            if first is None:
                 reasons.append(self.why_none(table, UPWARD[i]))
             elif jumps[i] is None:
                 ends = self.ends_within(table, UPWARD[i]) if held[i].outcome == UNDECIDED else ""
-                reasons.append(ends or reason(passing, held[i], verdict, theory[i], self.hold))
+                reasons.append(
+                    ends or reason(first.passing, held[i], final[i], theory[i], self.hold)
+                )
             else:
                 reasons.append("")
-        decided = [how_decided(*pair) for pair in pairs]
+        decided = [
+            how_decided(first and first.passing, final[i]) for i, (first, _) in enumerate(told)
+        ]
         columns["no_jump"] = ("jump", reasons, {"long_name": "why there is no jump"})
         columns["decided"] = ("jump", decided, {"long_name": "how jump or none was told"})
+        columns |= further_columns(table, [further for _, further in told])
         return columns | held_columns(final)
+
+    def losses(self, table: Table, i: int, primary: Verdict) -> tuple[Loss | None, list[Loss]]:
+        """Return the passing of the resonance in a direction, and all other losses there."""
+        if self.control:
+            return None, []
+        up, volts = UPWARD[i], self.drive.volts(self.structure)
+        further = from_rows(table["further_verdicts"][-1, i])
+        if self.structure.bonded:
+            theory = theories(self.structure, self.drive)[i]
+            primary = check_against_theory(primary, theory, volts)
+            further = [
+                (place, check_against_theory(verdict, theory, volts)) for place, verdict in further
+            ]
+        rows, places = self.sweep_leg(table, up)[1], self.further_places(table, up)
+        return gather_losses(table, rows, self.passing(table, up), primary, places, further)
 
     def theory(self, jumps: np.ndarray) -> dict[str, Variable]:
         """Return where and by what the averaged theory loses the bonded structure's motion."""
@@ -297,8 +411,21 @@ class CoupleJob(CoupledRun):
 
 
 def no_verdicts() -> Table:
-    """Return an empty array: chunks of steps have no held-voltage results."""
-    return {"verdicts": np.empty((0, len(UPWARD), len(Verdict._fields)))}
+    """Return empty arrays: chunks of steps have no held-voltage results."""
+    return {
+        name: values[:0]
+        for name, values in stored_verdicts(
+            [Verdict(NOT_ASKED)] * len(UPWARD), [no_rows()] * len(UPWARD)
+        ).items()
+    }
+
+
+def stored_verdicts(verdicts: Sequence[Verdict], further: Sequence[np.ndarray]) -> Table:
+    """Return the verdicts on the passings, and those on further places, as they are stored."""
+    return {
+        "verdicts": np.array(verdicts, dtype=float)[np.newaxis],
+        "further_verdicts": np.array(further)[np.newaxis],
+    }
 
 
 def concatenate_tables(tables: Sequence[Table]) -> Table:
@@ -543,8 +670,12 @@ def couple(
         and ``no_jump`` says why. ``decided`` says how it was told: by the record of the ramp, or
         by held voltages, or that it is undecided. ``held_verdict`` says what held voltages say, as
         a number with a meaning: 0 not asked, 1 lost, 2 follows, 3 left before, 4 undecided; with
-        ``held_jumps`` and ``held_error`` (V), the voltage and half of its bracket. For a bonded
-        structure
+        ``held_jumps`` and ``held_error`` (V), the voltage and half of its bracket. Where the speed
+        jumps more than once in a direction, these are about the first sure jump; over ``jump`` and
+        ``order`` the others are told, in the ramp's order: ``further_jumps`` (V), ``further_time``
+        (s), ``further_held`` and ``further_error`` (V), and ``further_decided``, which is
+        "undecided" where there may be one, and empty where there is none. ``further_count`` says
+        how many there are. For a bonded structure
         ``averaged_jumps`` (V), ``averaged_kind`` and ``jump_lag`` (V): where the averaged theory
         loses the motion, by a fold or a Neimark-Sacker point. From
         ``passage_time`` (s) on the speed stays beyond the resonance.
@@ -562,6 +693,12 @@ def couple(
     last at one voltage, see :mod:`orchestrate.weak_drive.held`. Such a verdict does not depend on
     the rate. Of a bonded structure none is given that the averaged theory contradicts by more than
     its own error: it is undecided then.
+
+    A further jump beside the passing of the resonance is looked for where the held voltages cross
+    it, and where the torque that the vibration takes shows it in the record
+    (:mod:`orchestrate.weak_drive.further_jumps`); voltages are held there too. A change of that
+    torque by less than 4e-3, as a speed over omega, or by less than eight times its scatter, is
+    none.
 
     Whatever the clearance, a passage of the resonance is one past the speed that divides the
     motions of the bonded structure, by the averaged theory, moved with the resonance where that of

@@ -64,6 +64,21 @@ class Verdict(NamedTuple):
     high: float = math.nan
 
 
+class HeldCourse(NamedTuple):
+    """What a course of held voltages tells.
+
+    Attributes
+    ----------
+    verdict : Verdict
+        On the largest change of the speed.
+    further : tuple of Verdict
+        On the others at which a motion is lost, or may be.
+    """
+
+    verdict: Verdict
+    further: tuple[Verdict, ...] = ()
+
+
 class Settled(NamedTuple):
     """The end of a motion at a held voltage.
 
@@ -242,8 +257,8 @@ class HeldVoltageTest:
         threshold: float,
         up: bool,
         resonance: tuple[float, float] | None = None,
-    ) -> Verdict:
-        """Classify whether a motion is lost on the way through the resonance.
+    ) -> HeldCourse:
+        """Classify whether motions are lost on the way past a speed.
 
         Parameters
         ----------
@@ -269,9 +284,9 @@ class HeldVoltageTest:
         while math.isnan(low.speed) or beyond(low, near) or self.falls_back(low, sign):
             if step <= ends[0]:
                 if math.isnan(low.speed):
-                    return Verdict(UNDECIDED)
+                    return HeldCourse(Verdict(UNDECIDED))
                 if beyond(low):
-                    return Verdict(LEFT_BEFORE)
+                    return HeldCourse(Verdict(LEFT_BEFORE))
                 break
             step, back = max(ends[0], step - back), 2 * back
             low = self.hold_step(step)
@@ -280,11 +295,32 @@ class HeldVoltageTest:
         if not beyond(points[-1], far):
             points += self.further(points[-1], target, ends[1], sign, far)
         if not beyond(points[-1]):
-            return Verdict(UNDECIDED, points[-1].voltage, target)
-        verdict = self.between(list(points), sign)
+            return HeldCourse(Verdict(UNDECIDED, points[-1].voltage, target))
+        verdict, *others = self.changes(list(points), sign)
         if verdict.outcome == FOLLOWS and not (beyond(points[-1], far) and self.comes_back(points)):
-            return Verdict(UNDECIDED, low.voltage, points[-1].voltage)
-        return verdict
+            verdict = Verdict(UNDECIDED, low.voltage, points[-1].voltage)
+        return HeldCourse(verdict, tuple(others))
+
+    def changes(self, points: list[Settled], sign: float) -> list[Verdict]:
+        """Bracket the largest change, and then all others that may be losses.
+
+        Others count where the speed changes from one voltage to the next by more than the voltage
+        does, and by as much as tells two motions apart: a branch is steeper only beside a fold.
+        """
+        verdicts = [self.between(points, sign)]
+        places = [i for i, point in enumerate(points) if point.voltage == verdicts[0].low]
+        if verdicts[0].outcome != LOST or not places:
+            return verdicts
+        for part in (points[: places[0] + 1], points[places[0] + 1 :]):
+            if any(self.may_be_a_loss(low, high, sign) for low, high in pairwise(part)):
+                found = self.changes(part, sign)
+                verdicts += [verdict for verdict in found if verdict.outcome != FOLLOWS]
+        return verdicts
+
+    def may_be_a_loss(self, low: Settled, high: Settled, sign: float) -> bool:
+        """Return whether the speed changes more than the voltage, by two motions' difference."""
+        allowed = abs(high.voltage - low.voltage) / self.volts + self.smallest_change(low, high)
+        return sign * (high.speed - low.speed) > allowed
 
     def further(
         self, point: Settled, voltage: float, last: int, sign: float, speed: float

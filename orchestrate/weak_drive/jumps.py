@@ -101,18 +101,16 @@ def find_passing(
     criterion : Criterion, optional
     """
     limits, sign = criterion or Criterion(), 1.0 if up else -1.0
-    if len(leg.time) < 2:
+    width = mean_width(leg, b)
+    if not width:
         return None
-    width = max(4, math.ceil(0.5 / (b * float(np.median(np.diff(leg.time))))))
-    if len(leg.time) < 4 * width:
-        return None
-    time, eta0, speed = (running_mean(values, width) for values in leg)
-    rise, change = sign * lag_difference(speed, width), np.abs(lag_difference(eta0, width))
+    means = SweepLeg(*(running_mean(values, width) for values in leg))
+    speed = means.Omega
+    fast = fast_rows(means, width, sign, limits)
     early = np.flatnonzero(sign * (speed - threshold) <= 0.0)
     if not early.size or early[-1] == len(speed) - 1:
         return None
-    cross = min(max(0, int(early[-1]) - width // 2), len(rise) - 1)
-    fast = rise > limits.growth * change
+    cross = min(max(0, int(early[-1]) - width // 2), len(fast) - 1)
     near = np.flatnonzero(fast[max(0, cross - 2 * width) : cross + 2 * width + 1])
     if near.size:
         cross = max(0, cross - 2 * width) + int(near[np.argmin(np.abs(near - 2 * width))])
@@ -120,19 +118,59 @@ def find_passing(
     last = min(after + 2 * width, len(leg.time) - 1)
     half = half_slip_row(np.abs(leg.eta0 - leg.Omega), before, up)
     half = float(cross + width) if half is None else half
-    row = math.ceil(half)
-    if not fast[cross]:
-        return Passing(row, before, last, SMOOTH, half)
+    look = look_of(leg, means, b, sign, (before, after), limits) if fast[cross] else SMOOTH
+    return Passing(math.ceil(half), before, last, look, half)
+
+
+def mean_width(leg: SweepLeg, b: float) -> int:
+    """Return of how many revolutions means are taken; 0 where the record is too short."""
+    if len(leg.time) < 2:
+        return 0
+    width = max(4, math.ceil(0.5 / (b * float(np.median(np.diff(leg.time))))))
+    return width if len(leg.time) >= 4 * width else 0
+
+
+def fast_rows(means: SweepLeg, width: int, sign: float, limits: Criterion) -> np.ndarray:
+    """Return where the mean speed changes faster than the voltage, by far."""
+    rise = sign * lag_difference(means.Omega, width)
+    return np.asarray(rise > limits.growth * np.abs(lag_difference(means.eta0, width)))
+
+
+def look_of(
+    leg: SweepLeg,
+    means: SweepLeg,
+    b: float,
+    sign: float,
+    stretch: tuple[int, int],
+    limits: Criterion,
+) -> str:
+    """Return what the record tells of a stretch on which the speed changes fast.
+
+    Parameters
+    ----------
+    leg, means : SweepLeg
+        The record, and its running means.
+    b : float
+    sign : float
+        1 where the voltage rises, else -1.
+    stretch : (int, int)
+        First and last row of the means.
+    limits : Criterion
+    """
+    before, after = stretch
+    width = len(leg.time) - len(means.time) + 1
+    last = min(after + 2 * width, len(leg.time) - 1)
+    time, rise = means.time, sign * lag_difference(means.Omega, width)
     top = before + int(
         np.argmax(rise[before : after + 1] / lag_difference(time, width)[before : after + 1])
     )
     if after == len(rise) - 1 and rise[-1] > 0.5 * rise[top]:
-        return Passing(row, before, last, UNFINISHED, half)
+        return UNFINISHED
     slip = sign * (leg.eta0 - leg.Omega)
     inertia = rise[top] / (b * (time[top + width] - time[top]))
     growth = abs(leg.Omega[last] - leg.Omega[before]) / np.ptp(leg.eta0[before : last + 1])
     if growth < limits.growth:
-        return Passing(row, before, last, SMOOTH, half)
+        return SMOOTH
     free = slip[before] - slip[last]
     strong = inertia * growth**2 >= limits.strength * free
     far = limits.around * width
@@ -140,7 +178,7 @@ def find_passing(
     noise = max((float(np.std(part)) for part in around if len(part)), default=0.0)
     clear = strong and abs(leg.Omega[last] - leg.Omega[before]) >= limits.clearness * noise
     sure = before > width and inertia >= limits.share * free and clear
-    return Passing(row, before, last, JUMP if sure else DOUBTFUL, half)
+    return JUMP if sure else DOUBTFUL
 
 
 def running_mean(values: np.ndarray, width: int) -> np.ndarray:

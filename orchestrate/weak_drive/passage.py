@@ -108,7 +108,7 @@ class PassageJob(Job):
         """Return samples over time, and the jumps."""
         import xarray as xr
 
-        of_run = {name: table[name] for name in (*COLUMNS, "verdicts")}
+        of_run = {name: table[name] for name in (*COLUMNS, "verdicts", "further_verdicts")}
         revolutions = self.run.dataset(of_run, inputs)
         samples = {name: table[KEPT + name] for name in SAMPLES}
         centres, what = self.centres(revolutions)

@@ -45,11 +45,19 @@ class Truth(NamedTuple):
         ``FOLD``, ``TORUS``, ``NONE`` where it loses none, or ``UNKNOWN``.
     low, high : float
         Voltages over K omega between which it may be lost.
+    further : tuple of float
+        Voltages over K omega of other folds at which it jumps too.
     """
 
     kind: str
     low: float = np.nan
     high: float = np.nan
+    further: tuple[float, ...] = ()
+
+    @property
+    def places(self) -> tuple[tuple[float, float], ...]:
+        """Ranges of the voltage in each of which a motion is lost."""
+        return ((self.low, self.high), *((fold, fold) for fold in self.further))
 
 
 class Answer(NamedTuple):
@@ -63,12 +71,15 @@ class Answer(NamedTuple):
         Where it is lost: the bracket of held voltages, or the one voltage of the record.
     held : bool
         Whether held voltages decided.
+    further : tuple of Answer
+        On further jumps of the direction, sure and undecided ones.
     """
 
     said: str
     low: float
     high: float
     held: bool
+    further: tuple[Answer, ...] = ()
 
 
 def draw(rng: np.random.Generator) -> System:
@@ -118,7 +129,26 @@ def answers(system: System, rate: float) -> tuple[Answer, ...]:
     first, last = (end * volts for end in ends_of(system))
     rate *= volts * structure.omega
     run = couple(structure, drive, voltage=(first, last), rate=rate, progress=False)
-    return tuple(answer_of(run.sel(jump=way), volts) for way in WAYS)
+    return tuple(
+        answer_of(at, volts)._replace(further=further_of(at, volts))
+        for at in (run.sel(jump=way) for way in WAYS)
+    )
+
+
+def further_of(at: xr.Dataset, volts: float) -> tuple[Answer, ...]:
+    """Return the answers on further jumps in one direction from the dataset."""
+    found = []
+    for place in at.order.values:
+        one = at.sel(order=place)
+        how = str(one.further_decided.item())
+        if how == "by the record":
+            jump = float(one.further_jumps) / volts
+            found.append(Answer("lost", jump, jump, False))
+        elif how:
+            middle, half = float(one.further_held) / volts, float(one.further_error) / volts
+            said = "undecided" if how == "undecided" else "lost"
+            found.append(Answer(said, middle - half, middle + half, True))
+    return tuple(found)
 
 
 def answer_of(at: xr.Dataset, volts: float) -> Answer:
@@ -166,7 +196,7 @@ def fold_that_is_met(system: System, branch: xr.Dataset, way: str) -> Truth:
     motion of nearly the same speed. So voltages are held closely before and past each fold, in one
     course that begins far away: wider steps than these may land on other motions. A fold is met
     where the speed before it is that of the branch, and it is a jump where the speed past it is
-    another. Unknown without any.
+    another. Unknown without any; where there are more, all count.
     """
     sign = 1.0 if way == "up" else -1.0
     folds = sorted(folds_of(system, branch, way), reverse=way == "down")
@@ -180,7 +210,10 @@ def fold_that_is_met(system: System, branch: xr.Dataset, way: str) -> Truth:
         before, past = (speeds[voltage + side * sign * BESIDE] for side in (-1.0, 1.0))
         if abs(before - speed) < CHANGE and sign * (past - before) > CHANGE:
             met.append((sign * (past - before), voltage))
-    return Truth(FOLD, max(met)[1], max(met)[1]) if met else Truth(UNKNOWN)
+    if not met:
+        return Truth(UNKNOWN)
+    *others, largest = (voltage for _, voltage in sorted(met))
+    return Truth(FOLD, largest, largest, tuple(others))
 
 
 def folds_of(system: System, branch: xr.Dataset, way: str) -> list[tuple[float, float]]:
@@ -328,17 +361,36 @@ def truth(branch: xr.Dataset, kind: str, way: str, units: tuple[float, float]) -
 
 def complaint(answer: Answer, known: Truth, way: str) -> str:
     """Return what is wrong with an answer; empty where nothing is, or nothing is known."""
-    if known.kind == UNKNOWN or answer.said in ("undecided", "not passed"):
+    if known.kind == UNKNOWN or answer.said == "not passed":
         return ""
+    told = [one for one in (answer, *answer.further) if one.said == "lost"]
     if known.kind == NONE:
-        return "" if answer.said == "none" else f"lost at {answer.low:.5f}, but no motion is lost"
-    if answer.said == "none":
+        return f"lost at {told[0].low:.5f}, but no motion is lost" if told else ""
+    if answer.said == "none" and not told:
         return f"none, but a motion is lost at {known.low:.5f}"
+    if answer.said == "undecided":
+        return ""
+    for place in known.places:
+        if not any(agrees(one, place, way) for one in (*told, *answer.further)):
+            return f"lost at {told[0].low:.5f} to {told[0].high:.5f}, in truth at {place[0]:.5f}"
+    return ""
+
+
+def agrees(answer: Answer, place: tuple[float, float], way: str) -> bool:
+    """Return whether an answer is about a loss of a motion in a range of the voltage."""
     early, late = (EARLY, np.inf) if not answer.held else (TOLERANCE, TOLERANCE)
     before, after = (early, late) if way == "up" else (late, early)
-    if known.low - before <= answer.high and answer.low <= known.high + after:
-        return ""
-    return f"lost at {answer.low:.5f} to {answer.high:.5f}, in truth at {known.low:.5f}"
+    return place[0] - before <= answer.high and answer.low <= place[1] + after
+
+
+def unknown_ones(answer: Answer, known: Truth, way: str) -> list[Answer]:
+    """Return the sure answers on losses that the branches do not know."""
+    sure = [one for one in (answer, *answer.further) if one.said == "lost"]
+    if known.kind == UNKNOWN:
+        return sure or [answer]
+    if known.kind == NONE or not answer.further:
+        return []
+    return [one for one in sure if not any(agrees(one, place, way) for place in known.places)]
 
 
 def judged(
@@ -348,8 +400,9 @@ def judged(
     said: dict[str, set[str]] = {way: set() for way in WAYS}
     for rate in rates:
         for way, answer in zip(WAYS, answers(system, rate), strict=True):
-            if known[way].kind == UNKNOWN and answer.said not in said[way]:
-                problem = refuted(system, answer, way)
+            new = answer.said not in said[way]
+            for one in unknown_ones(answer, known[way], way) if new else ():
+                problem = refuted(system, one, way)
                 yield (
                     "held by themselves",
                     f"{kind}, {way}, rate {rate:g}: {problem}" * bool(problem),
@@ -360,6 +413,8 @@ def judged(
             name = f"{answer.said} {by}" if decided else answer.said
             wrong = complaint(answer, known[way], way)
             yield name, f"{kind}, {way}, rate {rate:g}: {wrong}" if wrong else ""
+            for one in answer.further:
+                yield f"further jump {one.said}", ""
     for way in WAYS:
         if {"lost", "none"} <= said[way]:
             yield "", f"{kind}, {way}: lost at some rates, none at others"

@@ -56,7 +56,7 @@ def judged(
     units = (H, 1.0, 1.0, longest, HoldSettings(**settings))
     test = HeldVoltageTest(lambda other: Rotor(other, slope, start, stiff), schedule, *units)
     passing = Passing(round(0.8 * steps), steps // 4, steps - 1, DOUBTFUL, 0.8 * steps)
-    return test.classify(passing, (0, steps - 1), 1.3, up)
+    return test.classify(passing, (0, steps - 1), 1.3, up).verdict
 
 
 def fold_of(slope, up=True):
@@ -146,7 +146,9 @@ class Scripted(HeldVoltageTest):
         return self.at(voltage, self.back if voltage < point.voltage else 0.0)
 
     def verdict(self):
-        return self.classify(Passing(28, 15, 35, DOUBTFUL, 28.0), (0, 39), 1.3, True).outcome
+        return self.classify(
+            Passing(28, 15, 35, DOUBTFUL, 28.0), (0, 39), 1.3, True
+        ).verdict.outcome
 
 
 def test_another_motion_on_the_way_back_is_undecided():
@@ -213,7 +215,7 @@ def around(steps, passing, up=True, last=1.6, **settings):
     )
     row, before, after = (round(part * count) for part in steps)
     marks = Passing(row, before, after, DOUBTFUL, float(row))
-    return test.classify(marks, (0, count - 1), passing, up, **settings)
+    return test.classify(marks, (0, count - 1), passing, up, **settings).verdict
 
 
 def test_the_held_course_goes_on_until_the_resonance_is_behind():

@@ -1,0 +1,136 @@
+"""Further jumps of a ramp: places of its record where another motion may be lost.
+
+Beside the passing of the resonance the speed may jump once more, by less. On a stable branch below
+the resonance the torque that the vibration takes grows with the speed. It is the slip less what
+turns the rotor faster. Where it falls on the way up, or rises on the way down, a motion may be
+lost there; so where the speed changes much faster than the voltage. What falls by less than two
+motions differ in speed, or by no more than the scatter of an irregular motion, says nothing.
+
+Non-dimensional, as :mod:`.jumps`.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from .jumps import (
+    DOUBTFUL,
+    JUMP,
+    SMOOTH,
+    Criterion,
+    Passing,
+    SweepLeg,
+    extent,
+    fast_rows,
+    lag_difference,
+    look_of,
+    mean_width,
+    running_mean,
+)
+
+LEAST = 4e-3  # change of the torque, as a speed over omega, below which there is no jump
+LASTING = 10  # widths of the mean before and after, over which an irregular motion's torque falls
+APART = 4  # widths of the mean between two places; for fewer no scatter is known
+
+
+def find_further(
+    leg: SweepLeg, b: float, up: bool, threshold: float, main: tuple[int, int] | None = None
+) -> list[Passing]:
+    """Find where a motion may be lost beside the passing of the resonance, in the ramp's order.
+
+    Parameters
+    ----------
+    leg : SweepLeg
+        Of one ramp, without a gap.
+    b : float
+        Slope of the torque line, the inverse of the time in which a rotor without load settles.
+    up : bool
+        Whether the voltage rises.
+    threshold : float
+        Speed between the motions below and beyond the resonance. Beyond it the torque falls with
+        the speed on stable branches too: the speed has to change fast there.
+    main : (int, int), optional
+        Rows between which the speed passes the resonance: nothing is looked for there.
+    """
+    limits, sign = Criterion(), 1.0 if up else -1.0
+    width = mean_width(leg, b)
+    if not width or len(leg.time) < 2 * APART * width:
+        return []
+    means = SweepLeg(*(running_mean(values, width) for values in leg))
+    fast = fast_rows(means, width, sign, limits)
+    torque, first = sign * vibration_torque(means, b, width), 3 * width // 2
+    found: list[Passing] = []
+
+    def spans() -> list[tuple[int, int]]:
+        return [(other.before, other.after) for other in found] + ([main] if main else [])
+
+    def is_elsewhere(before: int, after: int) -> bool:
+        return all(after < low or before > high for low, high in spans())
+
+    for high, low in falls(torque, LEAST):
+        before, after = high + first, low + first
+        ended = [end - first for _, end in spans() if end <= before]
+        looks = {look_of(leg, means, b, sign, part, limits) for part in stretches(fast, high, low)}
+        is_natural = leg.Omega[before] > threshold and not looks - {SMOOTH}
+        if not high or is_natural or not is_elsewhere(before, after):
+            continue
+        earlier = torque[max(0, high - limits.around * width, *ended) : high]
+        later = torque[low : low + limits.around * width]
+        known = earlier if ended or len(earlier) >= APART * width else later
+        noise, fall = limits.clearness * scatter_of(known, width), torque[high] - torque[low]
+        reach = LASTING * width
+        lasts = noise <= LEAST or earlier[-reach:].mean() - later[:reach].mean() > 0.5 * fall
+        if fall > max(LEAST, noise) and lasts:
+            rows = np.flatnonzero(torque[high : low + 1] < 0.5 * (torque[high] + torque[low]))
+            half = float(before + rows[0])
+            look = JUMP if looks == {JUMP} else DOUBTFUL
+            found.append(Passing(math.ceil(half), before, after, look, half))
+    for before, after in stretches(fast, 0, len(fast)):
+        last = min(after + 2 * width, len(leg.time) - 1)
+        excess = sign * (leg.Omega[last] - leg.Omega[before]) - np.ptp(leg.eta0[before : last + 1])
+        is_jump = look_of(leg, means, b, sign, (before, after), limits) == JUMP
+        if is_jump and excess > LEAST and is_elsewhere(before, last):
+            half = 0.5 * (before + after)
+            found.append(Passing(math.ceil(half), before, last, JUMP, half))
+    return sorted(found)
+
+
+def vibration_torque(means: SweepLeg, b: float, width: int) -> np.ndarray:
+    """Return the torque that the vibration takes, as a speed over omega; of 2 widths less rows."""
+    middle = slice(width, len(means.time) - width)
+    acceleration = lag_difference(means.Omega, 2 * width) / lag_difference(means.time, 2 * width)
+    return np.asarray((means.eta0 - means.Omega)[middle] - acceleration / b)
+
+
+def falls(values: np.ndarray, least: float) -> list[tuple[int, int]]:
+    """Return from where to where values fall by a least amount, between rises by it."""
+    found, high, low, falling = [], 0, 0, False
+    for i, value in enumerate(values.tolist()):
+        if falling:
+            low = i if value < values[low] else low
+            if value >= values[low] + least:
+                found.append((high, low))
+                high, falling = i, False
+        elif value > values[high]:
+            high = i
+        elif value <= values[high] - least:
+            low, falling = i, True
+    return [*found, (high, low)] if falling else found
+
+
+def scatter_of(values: np.ndarray, width: int) -> float:
+    """Return the standard deviation of values about a smooth course; infinite for too few."""
+    if len(values) < APART * width:
+        return math.inf
+    third = values
+    for _ in range(3):
+        third = lag_difference(third, width)
+    return float(np.sqrt(np.mean(third**2) / 20.0))
+
+
+def stretches(runs: np.ndarray, first: int, last: int) -> list[tuple[int, int]]:
+    """Return first and last index of each stretch of true values that begins in a range."""
+    begins = np.flatnonzero(runs & ~np.concatenate([[False], runs[:-1]]))
+    return [extent(runs, int(i)) for i in begins if first <= i <= last]

@@ -1,0 +1,219 @@
+"""All losses of a ramp in one direction, in its order: which is the jump, and which are further.
+
+The held course through the resonance may cross more than one loss, and the record may show more
+than the passing of the resonance. Each is told by the same rules. The first sure one is the jump.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..response.labels import Variable
+from ..running.job import Table
+from .held import LOST, NOT_ASKED, UNDECIDED, HeldCourse, Verdict
+from .jump_verdicts import how_decided, is_jump
+from .jumps import DOUBTFUL, JUMP, Passing
+
+SLOTS = 6  # further jumps of a direction that a dataset tells
+ROWS = 12  # verdicts of a direction that are stored beside that on the passing
+MOST = 4  # further places of a direction at which voltages are held
+THROUGH = -1  # place of a further verdict of the course through the resonance
+SAME = 2e-4  # of K omega: brackets so close are of one loss
+
+
+class Loss(NamedTuple):
+    """A loss of stability on a ramp, or a place where there may be one.
+
+    Attributes
+    ----------
+    passing : Passing
+        By rows of the run.
+    verdict : Verdict
+        Of held voltages.
+    voltage : float
+        Where it is, for the order of several, V.
+    """
+
+    passing: Passing
+    verdict: Verdict
+    voltage: float
+
+    @property
+    def is_sure(self) -> bool:
+        """Whether the speed jumps."""
+        return is_jump(self.passing, self.verdict)
+
+
+def no_rows() -> np.ndarray:
+    """Return the stored form of no further verdicts; shape (``ROWS``, 4)."""
+    return np.full((ROWS, 4), math.nan)
+
+
+def as_rows(verdicts: Sequence[tuple[int, Verdict]]) -> np.ndarray:
+    """Return verdicts with the places that they are about as an array to store."""
+    rows = no_rows()
+    for i, (place, verdict) in enumerate(verdicts[:ROWS]):
+        rows[i] = (place, *verdict)
+    return rows
+
+
+def from_rows(rows: np.ndarray) -> list[tuple[int, Verdict]]:
+    """Return the verdicts that :func:`as_rows` stored."""
+    known = rows[np.isfinite(rows[:, 0])]
+    return [(int(row[0]), Verdict(int(row[1]), *row[2:])) for row in known.tolist()]
+
+
+def without_known(
+    verdicts: Sequence[Verdict], known: Sequence[Verdict], volts: float
+) -> list[Verdict]:
+    """Return verdicts less those on losses that are known already, from another course."""
+
+    def is_known(verdict: Verdict) -> bool:
+        low, high = sorted((verdict.low, verdict.high))
+        ends = [sorted((other.low, other.high)) for other in known]
+        return any(
+            low <= end + SAME * volts and high >= begin - SAME * volts for begin, end in ends
+        )
+
+    return [verdict for verdict in verdicts if not is_known(verdict)]
+
+
+def outcomes(course: HeldCourse) -> list[Verdict]:
+    """Return the verdicts of a course on losses, sure and undecided ones."""
+    return [
+        verdict
+        for verdict in (course.verdict, *course.further)
+        if verdict.outcome in (LOST, UNDECIDED)
+    ]
+
+
+def reached(table: Table, rows: np.ndarray, voltage: float) -> Passing:
+    """Return where a ramp reaches a voltage, for a loss that its record does not show."""
+    voltages = table["voltage"][rows]
+    sign = math.copysign(1.0, voltages[-1] - voltages[0])
+    half = float(np.interp(sign * voltage, sign * voltages, rows))
+    row = min(math.ceil(half), int(rows[-1]) - 1)
+    return Passing(row, max(row - 1, int(rows[0])), row + 1, DOUBTFUL, half)
+
+
+def gather_losses(
+    table: Table,
+    rows: np.ndarray,
+    passing: Passing | None,
+    primary: Verdict,
+    places: Sequence[Passing],
+    further: Sequence[tuple[int, Verdict]],
+) -> tuple[Loss | None, list[Loss]]:
+    """Return the passing of the resonance with its verdict, and all other losses.
+
+    Parameters
+    ----------
+    table : dict of ndarray
+    rows : ndarray
+        Of the direction.
+    passing : Passing, optional
+        Of the resonance.
+    primary : Verdict
+        On the largest change of the held course through the resonance.
+    places : sequence of Passing
+        Further places of the record.
+    further : sequence of (int, Verdict)
+        Verdicts on these, and of the course through the resonance.
+    """
+    through = [verdict for place, verdict in further if place == THROUGH]
+    covered = [
+        places[place]
+        for place, verdict in further
+        if place != THROUGH and verdict.outcome == NOT_ASKED
+    ]
+    main, others = None, []
+    if passing is not None:
+        *before, last = in_order(table, rows, [*covered, passing], [primary, *through])
+        main, others = last, before
+    for place, look in enumerate(places):
+        found = [verdict for other, verdict in further if other == place]
+        untold = Verdict(NOT_ASKED if look.look == JUMP else UNDECIDED)
+        told = [verdict for verdict in found if verdict.outcome in (LOST, UNDECIDED)]
+        if told or not found:
+            others += in_order(table, rows, [look], told or [untold])
+    return main, others
+
+
+def in_order(
+    table: Table, rows: np.ndarray, passings: Sequence[Passing], verdicts: Sequence[Verdict]
+) -> list[Loss]:
+    """Return losses in the ramp's order, each with the place where the record shows it.
+
+    The last one is shown last. Earlier ones that the record does not show are where the ramp
+    reaches their voltages.
+    """
+    voltages = table["voltage"]
+    sign = math.copysign(1.0, voltages[rows[-1]] - voltages[rows[0]])
+    ordered = sorted(verdicts, key=lambda verdict: sign * np.nan_to_num(verdict.low))
+    losses = []
+    for i, verdict in enumerate(reversed(ordered)):
+        middle = 0.5 * (verdict.low + verdict.high)
+        shown = i < len(passings)
+        passing = passings[-1 - i] if shown else reached(table, rows, middle)
+        seen = float(np.interp(passing.half, np.arange(len(voltages)), voltages))
+        losses.append(Loss(passing, verdict, middle if math.isfinite(middle) else seen))
+    return losses[::-1]
+
+
+def jump_and_further(
+    main: Loss | None, others: Sequence[Loss], sign: float
+) -> tuple[Loss | None, list[Loss]]:
+    """Return the first sure loss on the way, else the passing itself; and all further ones."""
+    known = [*([main] if main else []), *others]
+    sure = [loss for loss in known if loss.is_sure]
+    first = min(sure, key=lambda loss: sign * loss.voltage, default=main)
+    told = [
+        loss
+        for loss in known
+        if loss is not first and (loss.is_sure or loss.verdict.outcome == UNDECIDED)
+    ]
+    return first, sorted(told, key=lambda loss: sign * loss.voltage)
+
+
+def further_columns(table: Table, further: Sequence[Sequence[Loss]]) -> dict[str, Variable]:
+    """Return further jumps of both directions, sure and undecided ones, in the ramp's order."""
+    shape = len(further), SLOTS
+    names = ("further_jumps", "further_time", "further_held", "further_error")
+    numbers = {name: np.full(shape, math.nan) for name in names}
+    decided = np.full(shape, "", dtype=object)
+    rows = np.arange(len(table["voltage"]))
+    for i, losses in enumerate(further):
+        for j, loss in enumerate(losses[:SLOTS]):
+            passing, (_, low, high) = loss.passing, loss.verdict
+            decided[i, j] = how_decided(passing, loss.verdict)
+            if loss.is_sure:
+                for name, column in (("further_jumps", "voltage"), ("further_time", "time")):
+                    numbers[name][i, j] = np.interp(passing.half, rows, table[column])
+            elif not math.isfinite(low + high):
+                low, high = table["voltage"][[passing.before, passing.after]]
+            numbers["further_held"][i, j] = 0.5 * (low + high)
+            numbers["further_error"][i, j] = 0.5 * abs(high - low)
+    texts = {
+        "further_jumps": ("V", "voltage at which the speed jumps besides, on the ramp"),
+        "further_time": ("s", "time of that voltage"),
+        "further_held": ("V", "voltage at which the motion is lost though it is held, or may be"),
+        "further_error": ("V", "half the bracket of that voltage"),
+    }
+    dims = ("jump", "order")
+    columns: dict[str, Any] = {
+        name: (dims, numbers[name], {"units": unit, "long_name": text})
+        for name, (unit, text) in texts.items()
+    }
+    columns["further_decided"] = (
+        dims,
+        decided.astype(str),
+        {"long_name": "how the further jump was told; empty where there is none"},
+    )
+    counts = [len(losses) for losses in further]
+    text = "further jumps, sure and undecided ones"
+    columns["further_count"] = ("jump", counts, {"units": "1", "long_name": text})
+    return columns

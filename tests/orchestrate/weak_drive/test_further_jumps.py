@@ -1,0 +1,179 @@
+"""A ramp that jumps twice: both are told, each by the record, by held voltages, or as undecided."""
+
+import numpy as np
+import pytest
+
+from orchestrate import couple
+from orchestrate.weak_drive.further_jumps import falls, find_further
+from orchestrate.weak_drive.held import LOST, UNDECIDED, HeldVoltageTest, HoldSettings, Verdict
+from orchestrate.weak_drive.jumps import DOUBTFUL, JUMP, Passing, SweepLeg, find_passing
+from orchestrate.weak_drive.losses import (
+    SLOTS,
+    THROUGH,
+    as_rows,
+    from_rows,
+    further_columns,
+    gather_losses,
+    jump_and_further,
+)
+from orchestrate.weak_drive.schedule import Ramp
+from tools.trust.verdicts import RATES, ends_of, with_folds
+
+from .test_held import H, Rotor
+
+B = 0.02
+
+
+def ramp(rate, first=0.03, scatter=0.0, sign=1.0):
+    """A rotor on a ramp: the torque falls by ``first`` at 1.3, by 0.15 at 1.45."""
+    time = np.arange(0.0, 0.5 / rate, 5.0)
+    eta0, speed, torque, speeds = 1.2 + rate * time, 1.14, 0.06, []
+    noise = scatter * np.random.default_rng(1).normal(size=len(time))
+    for voltage, kick in zip(eta0, noise, strict=True):
+        branch = 0.06 + 0.6 * (voltage - 1.2) - first * (voltage > 1.3) - 0.15 * (voltage > 1.45)
+        torque += 5.0 * B * (branch - torque)
+        speed += 5.0 * B * (voltage - torque - speed) + kick
+        speeds.append(speed)
+    return SweepLeg(time, eta0, np.array(speeds))
+
+
+def places(leg, threshold=1.3):
+    main = find_passing(leg, B, up=True, threshold=threshold)
+    return find_further(leg, B, True, threshold, (main.before, main.after))
+
+
+@pytest.mark.parametrize("rate", [2e-4, 1e-4, 2e-5])
+def test_a_first_jump_is_seen_at_every_rate(rate):
+    """Also where the speed hardly changes faster than the voltage."""
+    leg = ramp(rate)
+    (found,) = places(leg)
+    assert leg.eta0[found.before] - 5e-3 < 1.3 < leg.eta0[found.after]
+    assert leg.eta0[found.row] == pytest.approx(1.3, abs=3.0 * rate / B + 1e-3)
+
+
+@pytest.mark.parametrize("rate", [2e-4, 1e-4, 2e-5])
+def test_one_jump_has_no_further_one(rate):
+    assert places(ramp(rate, first=0.0)) == []
+    assert places(ramp(rate, first=0.003)) == []  # less than two motions differ by
+
+
+def test_what_an_irregular_motion_does_by_itself_is_no_place():
+    assert places(ramp(1e-4, first=0.0, scatter=5e-3)) == []
+
+
+def test_falls_are_between_rises():
+    values = np.array([0.0, 3.0, 1.0, 1.5, 0.0, 2.0, 1.9, 2.5, 1.0])
+    assert falls(values, 1.0) == [(1, 4), (7, 8)]
+
+
+class TwoFolds(Rotor):
+    """Two folds up, at 1.45 to a motion in the middle, and that at 1.5."""
+
+    def revolve(self, steps):
+        speeds = []
+        for i in steps:
+            voltage = self.schedule.voltage((i + 0.5) * H)
+            self.level = max(self.level, (voltage > 1.45) + (voltage > 1.5))
+            self.level *= voltage > 1.42
+            target = 0.5 * voltage + 0.5 + (0.0, 0.05, 0.15)[int(self.level)]
+            self.speed += 0.02 * H * (target - self.speed)
+            speeds.append(self.speed)
+        return {"speed": np.array(speeds)}
+
+    level = 0.0
+
+    def get_state(self):
+        return {"speed": np.array([self.speed, self.level])}
+
+    def set_state(self, table):
+        self.speed, self.level = table["speed"].tolist()
+
+
+def test_a_held_course_keeps_every_loss_that_it_crosses():
+    """It told the largest change alone."""
+    schedule = Ramp(1.4, 1.6, 1e-4, back=False)
+    count = round(schedule.duration / H)
+    begin = lambda other: TwoFolds(other, 0.0, 1.2)  # noqa: E731
+    test = HeldVoltageTest(begin, schedule, H, 1.0, 1.0, 2e4, HoldSettings())
+    passing = Passing(count // 2, count // 10, 3 * count // 4, DOUBTFUL, count / 2)
+    course = test.classify(passing, (0, count - 1), 1.3, True)
+    found = [course.verdict, *course.further]
+    assert [verdict.outcome for verdict in found] == [LOST, LOST]
+    for verdict, place in zip(found, (1.5, 1.45), strict=True):
+        assert verdict.low - 1e-9 <= place <= verdict.high + 1e-9
+        assert verdict.high - verdict.low <= 1.01e-4
+
+
+TABLE = {"voltage": np.linspace(1.2, 1.6, 401), "time": np.linspace(0.0, 4000.0, 401)}
+ROWS = np.arange(401)
+MAIN = Passing(300, 290, 320, DOUBTFUL, 300.0)
+EARLY = Passing(110, 100, 130, DOUBTFUL, 110.0)
+LATE_LOSS, EARLY_LOSS = Verdict(LOST, 1.48, 1.4801), Verdict(LOST, 1.29, 1.2901)
+
+
+def told(primary, look=DOUBTFUL, further=()):
+    """The jump and the further ones of a ramp with the place ``EARLY`` before its passing."""
+    place = EARLY._replace(look=look)
+    stored = from_rows(as_rows(list(further)))
+    losses = gather_losses(TABLE, ROWS, MAIN, primary, [place], stored)
+    return jump_and_further(*losses, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("look", "further"),
+    [
+        (DOUBTFUL, [(0, EARLY_LOSS)]),
+        (DOUBTFUL, [(THROUGH, EARLY_LOSS), (0, Verdict(0))]),
+        (JUMP, []),
+    ],
+)
+def test_the_first_sure_jump_is_the_jump(look, further):
+    first, others = told(LATE_LOSS, look, further)
+    assert first.passing.row == EARLY.row and first.is_sure
+    assert [loss.passing for loss in others] == [MAIN]
+    columns = further_columns(TABLE, [others, []])
+    assert columns["further_jumps"][1][0, 0] == pytest.approx(1.5)
+    assert columns["further_held"][1][0, 0] == pytest.approx(1.48005)
+    assert columns["further_decided"][1][0, 0] == "by held voltages"
+    assert columns["further_count"][1] == [1, 0]
+    assert np.isnan(columns["further_jumps"][1]).sum() == 2 * SLOTS - 1
+
+
+def test_a_loss_that_the_record_does_not_show_is_where_the_ramp_reaches_it():
+    losses = gather_losses(TABLE, ROWS, MAIN, LATE_LOSS, [], [(THROUGH, EARLY_LOSS)])
+    first, others = jump_and_further(*losses, 1.0)
+    assert TABLE["voltage"][first.passing.row] == pytest.approx(1.29, abs=2e-3)
+    assert [loss.passing for loss in others] == [MAIN]
+
+
+@pytest.mark.parametrize("further", [[], [(0, Verdict(UNDECIDED))]])
+def test_what_is_not_known_is_undecided_and_takes_nothing_from_the_sure_one(further):
+    """At a place where nothing was held too: never silently nothing."""
+    first, others = told(LATE_LOSS, DOUBTFUL, further)
+    assert first.passing == MAIN
+    columns = further_columns(TABLE, [others, []])
+    assert columns["further_decided"][1][0, 0] == "undecided"
+    assert np.isnan(columns["further_jumps"][1][0, 0])
+    middle, half = (columns[name][1][0, 0] for name in ("further_held", "further_error"))
+    assert (middle - half, middle + half) == pytest.approx((1.3, 1.33))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rate", RATES)
+@pytest.mark.parametrize(
+    ("seed", "jumps"), [(249286942736891, (1.22767, 1.3697)), (251, (1.3641, 1.4590))]
+)
+def test_drives_of_the_campaign_that_jump_twice(seed, jumps, rate):
+    """Of each the second one alone was told."""
+    structure, drive = with_folds(np.random.default_rng(seed)).of_kind("delaminated")
+    volts = drive.volts(structure)
+    ends = tuple(end * volts for end in ends_of(with_folds(np.random.default_rng(seed))))
+    speed = rate * volts * structure.omega
+    up = couple(structure, drive, voltage=ends, rate=speed, back=False, progress=False).sel(
+        jump="up"
+    )
+    assert up.held_verdict == LOST
+    assert float(up.held_jumps) / volts == pytest.approx(jumps[0], abs=2e-4)
+    assert int(up.further_count) >= 1
+    late = [float(up.further_held.max()), float(up.further_jumps.max())]
+    assert np.nanmax(late) / volts > jumps[1] - 1e-3
