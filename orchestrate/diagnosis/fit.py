@@ -18,6 +18,7 @@ from ..response.questions import checked_structure
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
+from .curve_evidence import CurveData
 from .even_orders import EvenOrders, even_orders
 from .evidence import FITTED_ORDERS, Evidence
 from .hypotheses import FREE, REPORTED, Hypothesis
@@ -106,11 +107,12 @@ def fit(
     """
     chosen = checked_free(free)
     kind = checked_hypothesis(hypothesis)
-    data = checked_data(record)
+    structure = delaminated_guess(guess)
+    data = CurveData.from_curve(record, structure) if is_curve(record) else checked_data(record)
     job = FitJob(
         name=f"fit_{checked_structure(guess).label()}",
         data=data,
-        guess=delaminated_guess(guess),
+        guess=structure,
         free=chosen,
         sound=(0,) if kind in (DELAMINATED, "bonded") else (0, SHORT_NAMES[kind]),
         delaminated=kind == DELAMINATED,
@@ -151,6 +153,11 @@ def checked_data(record: xr.Dataset) -> RecordData:
     channels = checked_channels(record)
     channel_orders(channels)
     return RecordData.from_channels(channels)
+
+
+def is_curve(record: xr.Dataset) -> bool:
+    """Return whether a dataset is a resonance curve: over the frequency, not over time."""
+    return "frequency" in getattr(record, "dims", ()) and "time" not in record.dims
 
 
 def delaminated_guess(guess: Structure) -> Structure:
