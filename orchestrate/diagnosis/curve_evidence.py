@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Numbers = tuple[float | None, ...]
+Kind = TypeVar("Kind")
 MEASURED_CYCLES = 10  # at each frequency: they separate the orders 0.5, 1 and 1.37
 SETTLED = 0.01  # of a step between two frequencies that is left where it is measured
 SETTLE_CYCLES = (30, 200)  # fewest and most cycles before
@@ -125,12 +126,14 @@ class CurveData:
         near = np.flatnonzero((frequency > low) & (frequency < high))
         some = self.select(near[:: math.ceil(len(near) / COARSE_POINTS)])
         chosen = some if len(some.frequency) >= FEWEST_POINTS else self
-        return curve_evidence(chosen, max(SETTLE_CYCLES[0], self.settle_cycles // 2), COARSE_SAMPLES)
+        return curve_evidence(
+            chosen, max(SETTLE_CYCLES[0], self.settle_cycles // 2), COARSE_SAMPLES
+        )
 
     def select(self, points: NDArray[np.intp]) -> CurveData:
         """Return the curve with some of its points."""
 
-        def some(row: Numbers) -> Numbers:
+        def some(row: tuple[Kind, ...]) -> tuple[Kind, ...]:
             return tuple(row[i] for i in points)
 
         return replace(
@@ -152,7 +155,9 @@ def check_curve(curve: xr.Dataset) -> None:
     """
     missing = [name for name in ("amplitude", "phase", "floor", "level") if name not in curve]
     if missing or set(curve.amplitude.dims) != {"channel", "order", "frequency"}:
-        text = f"no {missing[0]}" if missing else f"amplitude over {', '.join(curve.amplitude.dims)}"
+        text = (
+            f"no {missing[0]}" if missing else f"amplitude over {', '.join(curve.amplitude.dims)}"
+        )
         raise InputError(f"resonance curve: {text}; expected one of resonance_curve or read_curve")
     names = [str(name) for name in curve.channel.values]
     if not names or not set(names) <= set(FACES):
@@ -222,12 +227,13 @@ def curve_evidence(data: CurveData, settle: int, samples_per_period: float) -> C
     floors = np.concatenate([np.zeros((1, len(level))), floor])
     orders = RecordOrders(windows, channels, every, floors, np.quantile(floors, 0.2, axis=1))
     pieces = Sampled(acceleration=tuple(box), sample_rate=rate).pieces()
-    return CurveEvidence(orders, pieces, with_phase=np.isfinite(phase), relative_motion=data.relative)
+    return CurveEvidence(
+        orders, pieces, with_phase=np.isfinite(phase), relative_motion=data.relative
+    )
 
 
 def settled_windows(channels: Channels, sine: SteppedSine) -> OrderWindows:
-    """Return the windows at the settled end of each frequency but the first, which is played twice.
-    """
+    """Return the windows at the settled end of each frequency but the first, which is played twice."""
     phase = sine.phase(channels.time)
     found = list(dwells(channels, sine, phase))[1:]
     solutions = [
@@ -284,7 +290,7 @@ class CurveEvidence(Evidence):
     def present(self) -> NDArray[np.bool_]:
         """Which rows of the residuals are measured at all, shape (4,): the others are left out."""
         higher = np.isfinite(self.measured[:, 1:]).any(axis=(0, 2))
-        return np.array([True, bool(self.with_phase.any()), *higher])
+        return np.array([True, bool(self.with_phase.any()), *higher.tolist()])
 
     def first_order(self, row: int, computed: Complexes) -> Complexes:
         """Return the measured order 1 of a sensor, with the computed phase where it has none."""

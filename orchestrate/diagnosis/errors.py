@@ -56,6 +56,8 @@ CONTACT_MISFIT = 0.3
 HIDDEN_SHARE = 0.1  # part of the squares beyond noise by which they may be larger at the truth
 # Of errors, measured; the halves are alike, so that a number of both has one factor
 CALIBRATION = {"f1": 1.3, "f2": 1.3, "log_zeta1": 2.9, "log_zeta2": 2.9, "e": 1.35}
+# The same of resonance curves: 40 points have little against which the linear model errs
+CURVE_CALIBRATION = {"common": 3.0, "split": 3.0, "log_zeta1": 5.8, "log_zeta2": 5.8, "e": 2.6}
 LEAST_SHARE = 0.4  # of the mean of both damping ratios, for derivatives of a resonance curve
 NOISE_FACTOR = 1.3  # squares over those that noise makes: less of them has no other cause
 
@@ -150,7 +152,8 @@ def estimate_with_covariances(
     small = len(sums) / max(len(sums) - count, 1)
     by_blocks = small * influence @ (sums.T @ sums) @ influence.T
     beyond = squares_beyond_noise(residuals, changes)
-    measured = np.diag([CALIBRATION.get(name, 1.0) for name in values])
+    known = CURVE_CALIBRATION if isinstance(search.evidence, CurveEvidence) else CALIBRATION
+    measured = np.diag([known.get(name, 1.0) for name in values])
     by_noise, by_blocks = (measured @ one @ measured for one in (by_noise, by_blocks))
     hidden = contact_covariance(values, beyond / residuals.size) - HIDDEN_SHARE * beyond * influence
     noise, blocks, rest = (

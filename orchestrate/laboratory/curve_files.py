@@ -60,7 +60,15 @@ NAMES = {  # what a curve's columns are, and how files call them
     "frequency": ("f", "hz", "freq", "frequenz", "frequency"),
     "level": (
         *("input", "drive", "excitation", "shaker", "table", "box", "boxacceleration"),
-        *("boxamplitude", "basis", "base", "baseacceleration", "baseamplitude", "baselevel", "level"),
+        *(
+            "boxamplitude",
+            "basis",
+            "base",
+            "baseacceleration",
+            "baseamplitude",
+            "baselevel",
+            "level",
+        ),
     ),
     **names_of_face("1"),
     **names_of_face("2"),
@@ -248,9 +256,7 @@ def phase_of(table: Columns, column: Column) -> Floats:
     return scaled_column(table, column, "deg" if degrees else "rad", ANGLES)
 
 
-def scaled_column(
-    table: Columns, column: Column, usual: str, known: Mapping[str, float]
-) -> Floats:
+def scaled_column(table: Columns, column: Column, usual: str, known: Mapping[str, float]) -> Floats:
     """Return a column in SI, NaN where there is no number; without a unit it has the usual one."""
     factor = factor_of(label_of(table, column), column.unit or usual, known)
     return factor * column.values
