@@ -289,8 +289,10 @@ class CurveEvidence(Evidence):
     @cached_property
     def present(self) -> NDArray[np.bool_]:
         """Which rows of the residuals are measured at all, shape (4,): the others are left out."""
-        higher = np.isfinite(self.measured[:, 1:]).any(axis=(0, 2))
-        return np.array([True, bool(self.with_phase.any()), *higher.tolist()])
+        found = np.ones(4, dtype=bool)
+        found[1] = self.with_phase.any()
+        found[2:] = np.isfinite(self.measured[:, 1:]).any(axis=(0, 2))
+        return found
 
     def first_order(self, row: int, computed: Complexes) -> Complexes:
         """Return the measured order 1 of a sensor, with the computed phase where it has none."""

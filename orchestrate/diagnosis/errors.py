@@ -108,7 +108,7 @@ def estimate(search: Search, values: Mapping[str, float]) -> Estimate:
 
 
 def regression(search: Search, values: Mapping[str, float]) -> LinearModel:
-    """Return the linear model of the residuals around these values, over a cloud of fitting size."""
+    """Return the linear model of the residuals around these values, over a cloud."""
     bounds = search.hypothesis.bounds(search.evidence)
     steps = np.diag([difference_step(search, name) ** 2 for name in values])
     first = LinearModel.from_cloud(search.residuals, bounds, values, 0.1 * steps)
@@ -126,7 +126,7 @@ def with_shared_damping(values: Mapping[str, float]) -> dict[str, float]:
     names = [name for name in ("log_zeta1", "log_zeta2") if name in values]
     ratios = np.exp([values[name] for name in names])
     least = LEAST_SHARE * ratios.mean() if len(names) == 2 else 0.0
-    if not len(names) == 2 or ratios.min() >= least:
+    if len(names) != 2 or ratios.min() >= least:
         return dict(values)
     shared = np.where(ratios < least, least, ratios.sum() - least)
     return {**values, **dict(zip(names, np.log(shared).tolist(), strict=True))}
