@@ -233,7 +233,7 @@ def curve_evidence(data: CurveData, settle: int, samples_per_period: float) -> C
 
 
 def settled_windows(channels: Channels, sine: SteppedSine) -> OrderWindows:
-    """Return the windows at the settled end of each frequency but the first, which is played twice."""
+    """Return the windows where each frequency has settled; the first is played twice."""
     phase = sine.phase(channels.time)
     found = list(dwells(channels, sine, phase))[1:]
     solutions = [

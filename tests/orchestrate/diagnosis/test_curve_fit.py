@@ -58,6 +58,7 @@ def test_a_bonded_curve_has_the_closed_form_s_numbers():
         assert float(answer.misfit) < 0.05 and "time" not in answer.coords
 
 
+@pytest.mark.slow
 def test_a_hardening_curve_upwards_has_its_cube():
     w, zeta, cube = TURN * 33.0, 0.02, 2e5
     hertz, state, size = np.linspace(28.0, 40.0, 25), [0.0, 0.0], []
