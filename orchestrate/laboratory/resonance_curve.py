@@ -208,27 +208,31 @@ def made_curve(
     phase, sign = lagging_phases(amplitude[:, 0], phase)
     text = "peak amplitude of orders, relative to the base" if relative else "peak amplitude"
     over = ("channel", "frequency")
-    return xr.Dataset(
-        {
-            "amplitude": variable(("channel", "order", "frequency"), amplitude, "m/s2", text),
-            "phase": variable(over, phase, "rad", "phase of order 1 against the base"),
-            "floor": variable(over, floor, "m/s2", "amplitude where nothing moves"),
-            "level": variable("frequency", level, "m/s2", "peak acceleration of the base"),
-        },
-        {
-            "channel": ("channel", [FACES[int(name[-1]) - 1] for name in faces]),
-            "order": variable("order", np.array(CURVE_ORDERS), "1", "over the excitation's"),
-            "frequency": variable("frequency", frequency, "Hz", "frequency of the excitation"),
-        },
-        {
-            **attributes,
-            "unit": ", ".join(f"{name} in {columns.units.get(name, 'm/s2')}" for name in faces),
-            "relative": str(bool(relative)).lower(),
-            "direction": direction_of(frequency, direction),
-            "phase_sign": sign,
-            "dropped": dropped_text(known, columns.first_row),
-        },
-    )
+    words = {
+        **attributes,
+        "unit": ", ".join(f"{name} in {columns.units.get(name, 'm/s2')}" for name in faces),
+        "relative": str(bool(relative)).lower(),
+        "direction": direction_of(frequency, direction),
+        "phase_sign": sign,
+        "dropped": dropped_text(known, columns.first_row),
+    }
+    variables = {
+        "amplitude": variable(("channel", "order", "frequency"), amplitude, "m/s2", text),
+        "phase": variable(over, phase, "rad", "phase of order 1 against the base"),
+        "floor": variable(over, floor, "m/s2", "amplitude where nothing moves"),
+        "level": variable("frequency", level, "m/s2", "peak acceleration of the base"),
+    }
+    return xr.Dataset(variables, curve_coordinates(faces, frequency), words)
+
+
+def curve_coordinates(faces: list[str], frequency: Floats) -> dict[str, Any]:
+    """Return the coordinates of a resonance curve: channel, order and frequency."""
+    channels = [FACES[int(name[-1]) - 1] for name in faces]
+    return {
+        "channel": ("channel", channels, {"long_name": "face that was measured"}),
+        "order": variable("order", np.array(CURVE_ORDERS), "1", "over the excitation's"),
+        "frequency": variable("frequency", frequency, "Hz", "frequency of the excitation"),
+    }
 
 
 # -- checks ---------------------------------------------------------------------------------------
