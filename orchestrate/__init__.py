@@ -17,7 +17,8 @@ What is asked
     :func:`shake` as in the laboratory, by a :class:`SweptSine` or :class:`SteppedSine`,
     :class:`Random` vibration, a :class:`Shock` or :class:`Sampled` acceleration; :func:`measure`
     what a :class:`Sensor` reads of it, :func:`record`, :func:`read_record` and
-    :func:`write_record` what was measured; :func:`frf`, :func:`psd`, :func:`track_orders`,
+    :func:`write_record` what was measured, :func:`read_curve` and :func:`resonance_curve` if that
+    is a table of amplitudes; :func:`frf`, :func:`psd`, :func:`track_orders`,
     :func:`harmonics`, :func:`spectrogram`, :func:`shock_spectrum` and :func:`probability_density`
     of such a record, or of a measured one, :func:`record_of_run` of a motor's;
     :func:`signs` of delamination in it, :func:`fit` a structure to it and :func:`detect` whether

@@ -30,10 +30,12 @@ from .laboratory.analysis.orders import track_orders as track_orders
 from .laboratory.analysis.psd import psd as psd
 from .laboratory.analysis.shock_spectrum import shock_spectrum as shock_spectrum
 from .laboratory.analysis.spectrogram import spectrogram as spectrogram
+from .laboratory.curve_files import read_curve as read_curve
 from .laboratory.random_vibration import Random as Random
 from .laboratory.record import record as record
 from .laboratory.record_files import read_record as read_record
 from .laboratory.record_files import write_record as write_record
+from .laboratory.resonance_curve import resonance_curve as resonance_curve
 from .laboratory.run_up import record_of_run as record_of_run
 from .laboratory.sampled import Sampled as Sampled
 from .laboratory.sensors import Sensor as Sensor

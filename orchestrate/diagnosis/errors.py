@@ -35,6 +35,7 @@ from numpy.typing import NDArray
 
 from ..laboratory.analysis.channels import BOX
 from ..laboratory.sampled import Sampled
+from .curve_evidence import CurveEvidence, scatter_changes
 from .evidence import Evidence
 from .fitting import Search, difference_step
 from .linear import LinearModel
@@ -55,6 +56,9 @@ CONTACT_MISFIT = 0.3
 HIDDEN_SHARE = 0.1  # part of the squares beyond noise by which they may be larger at the truth
 # Of errors, measured; the halves are alike, so that a number of both has one factor
 CALIBRATION = {"f1": 1.3, "f2": 1.3, "log_zeta1": 2.9, "log_zeta2": 2.9, "e": 1.35}
+# The same of resonance curves: 40 points have little against which the linear model errs
+CURVE_CALIBRATION = {"common": 3.0, "split": 3.0, "log_zeta1": 5.8, "log_zeta2": 5.8, "e": 2.6}
+LEAST_SHARE = 0.4  # of the mean of both damping ratios, for derivatives of a resonance curve
 NOISE_FACTOR = 1.3  # squares over those that noise makes: less of them has no other cause
 
 
@@ -87,15 +91,45 @@ def estimate(search: Search, values: Mapping[str, float]) -> Estimate:
         At the minimum that was found.
     """
     here, bounds = dict(values), search.hypothesis.bounds(search.evidence)
-    steps = np.diag([difference_step(search, name) ** 2 for name in here])
-    shape = (
-        0.3 * LinearModel.from_cloud(search.residuals, bounds, here, 0.1 * steps).cloud_covariance()
-    )
-    model = LinearModel.from_cloud(search.residuals, bounds, here, shape, seed=1)
+    model = regression(search, here)
     moved = model.damped_minima(bounds, here)[0]
     before, after = (misfit(search.residuals(one)) for one in (here, moved))
     allowed = MAX_INCREASE if search.hypothesis.is_rugged else 1.0
-    return estimate_with_covariances(search, moved if after <= allowed * before else here, model)
+    chosen = moved if after <= allowed * before else here
+    lifted = with_shared_damping(chosen) if isinstance(search.evidence, CurveEvidence) else chosen
+    if lifted == chosen:
+        return estimate_with_covariances(search, chosen, model)
+    found = estimate_with_covariances(search, chosen, regression(search, lifted))
+    # what is linear in the damping ratios themselves, as errors of the logarithms that were fitted
+    scale = np.array(
+        [math.exp(lifted[n] - chosen[n]) if n.startswith("log_") else 1.0 for n in chosen]
+    )
+    return replace(found, covariance=found.covariance * np.outer(scale, scale))
+
+
+def regression(search: Search, values: Mapping[str, float]) -> LinearModel:
+    """Return the linear model of the residuals around these values, over a cloud."""
+    bounds = search.hypothesis.bounds(search.evidence)
+    steps = np.diag([difference_step(search, name) ** 2 for name in values])
+    first = LinearModel.from_cloud(search.residuals, bounds, values, 0.1 * steps)
+    return LinearModel.from_cloud(
+        search.residuals, bounds, values, 0.3 * first.cloud_covariance(), seed=1
+    )
+
+
+def with_shared_damping(values: Mapping[str, float]) -> dict[str, float]:
+    """Return the numbers with a damping ratio that is nearly 0 raised at the other one's cost.
+
+    Only the sum of both is well known, and residuals are linear in the ratios themselves: around a
+    logarithm that has run away, differences tell nothing of what the ratio may be.
+    """
+    names = [name for name in ("log_zeta1", "log_zeta2") if name in values]
+    ratios = np.exp([values[name] for name in names])
+    least = LEAST_SHARE * ratios.mean() if len(names) == 2 else 0.0
+    if len(names) != 2 or ratios.min() >= least:
+        return dict(values)
+    shared = np.where(ratios < least, least, ratios.sum() - least)
+    return {**values, **dict(zip(names, np.log(shared).tolist(), strict=True))}
 
 
 def estimate_with_covariances(
@@ -103,19 +137,23 @@ def estimate_with_covariances(
 ) -> Estimate:
     """Return the numbers with their covariances by noise, by blocks and by discrepancy."""
     count, rows, influence = len(values), model.weighted_slopes, model.influence
-    changes = simulated_noise_changes(search, values)
+    residuals = search.residuals(values)
+    if isinstance(search.evidence, CurveEvidence):
+        changes = scatter_changes(residuals)
+    else:
+        changes = simulated_noise_changes(search, values)
     moved = np.stack([rows.T @ change.ravel() for change in changes])
     bumps = model.scatter @ rows
     by_noise = influence @ (moved.T @ moved / len(moved)) @ influence.T
     by_noise += influence @ (bumps.T @ bumps / len(bumps)) @ influence.T
-    residuals = search.residuals(values)
     scores = np.einsum("scwp,scw->wp", rows.reshape(model.slopes.shape), residuals)
     parts = np.array_split(scores, max(min(BLOCKS, len(scores) // 3), count + 2))
     sums = np.stack([part.sum(axis=0) for part in parts])
     small = len(sums) / max(len(sums) - count, 1)
     by_blocks = small * influence @ (sums.T @ sums) @ influence.T
     beyond = squares_beyond_noise(residuals, changes)
-    measured = np.diag([CALIBRATION.get(name, 1.0) for name in values])
+    known = CURVE_CALIBRATION if isinstance(search.evidence, CurveEvidence) else CALIBRATION
+    measured = np.diag([known.get(name, 1.0) for name in values])
     by_noise, by_blocks = (measured @ one @ measured for one in (by_noise, by_blocks))
     hidden = contact_covariance(values, beyond / residuals.size) - HIDDEN_SHARE * beyond * influence
     noise, blocks, rest = (

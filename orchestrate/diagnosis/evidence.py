@@ -273,12 +273,20 @@ class Evidence:
         columns = np.stack(
             [GAIN_DEVIATION * weighted, -1j * DELAY_DEVIATION * TURN * self.frequency * weighted]
         )
-        target = self.measured[row, 0] / self.error[row, 0] - weighted
+        target = self.first_order(row, computed) / self.error[row, 0] - weighted
         normal = (columns @ columns.conj().T).real
         normal += np.eye(2) * PRIOR_WEIGHT**2 * len(weighted)  # no gain or delay without a reason
         solution = np.linalg.solve(normal, (columns.conj() @ target).real)
         gain = 1.0 + float(np.clip(GAIN_DEVIATION * solution[0], -MAX_GAIN_ERROR, MAX_GAIN_ERROR))
         return gain, float(np.clip(DELAY_DEVIATION * solution[1], -MAX_DELAY, MAX_DELAY))
+
+    def first_order(self, row: int, computed: Complexes) -> Complexes:
+        """Return the measured order 1 of a sensor, to be compared with this computed one."""
+        return np.asarray(self.measured[row, 0])
+
+    def unbounded_residuals(self) -> Floats:
+        """Return the residuals of a motion without bounds."""
+        return np.full((len(self.masses), 4, len(self.used_windows)), UNBOUNDED_RESIDUAL)
 
     def residuals(self, motion: Floats) -> Floats:
         """Return a motion's orders less the measured ones, over the errors.
@@ -287,12 +295,13 @@ class Evidence:
         3; 0 where an order is not resolved.
         """
         if not np.isfinite(motion).all():
-            return np.full((len(self.masses), 4, len(self.used_windows)), UNBOUNDED_RESIDUAL)
+            return self.unbounded_residuals()
         return self.order_residuals(self.fitted_orders(motion))
 
     def order_residuals(self, computed: Complexes) -> Floats:
         """Return computed less measured orders, over the errors; shape (sensors, 4, windows)."""
-        first = (computed[:, 0] - self.measured[:, 0]) / self.error[:, 0]
+        wanted1 = np.stack([self.first_order(row, one) for row, one in enumerate(computed[:, 0])])
+        first = (computed[:, 0] - wanted1) / self.error[:, 0]
         noise = self.noise[:, None, None]  # adds to both sizes alike
         size, wanted = np.abs(computed[:, 1:]), np.abs(self.measured[:, 1:])
         higher = (np.sqrt(size**2 + noise**2) - wanted) / self.error[:, 1:]

@@ -18,6 +18,7 @@ from ..response.questions import checked_structure
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
+from .curve_evidence import CurveData
 from .even_orders import EvenOrders, even_orders
 from .evidence import FITTED_ORDERS, Evidence
 from .hypotheses import FREE, REPORTED, Hypothesis
@@ -51,13 +52,14 @@ def fit(
     hypothesis: str = DELAMINATED,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Fit a structure to a record of a swept or stepped sine.
+    """Fit a structure to a record of a swept or stepped sine, or to a resonance curve.
 
     Parameters
     ----------
     record : xarray.Dataset
         With ``box_acceleration`` and one or both of ``acceleration1`` and ``acceleration2``, as
-        :func:`orchestrate.record` or :func:`orchestrate.read_record` make it.
+        :func:`orchestrate.record` or :func:`orchestrate.read_record` make it; or a resonance curve
+        of :func:`orchestrate.resonance_curve` or :func:`orchestrate.read_curve`.
     guess : Structure
         Its masses are kept (their ratio alone acts), and all that is not free. Its frequencies may
         be 10 % off: the search begins at the record's resonance.
@@ -83,7 +85,8 @@ def fit(
     Raises
     ------
     InputError
-        Where the record is none of a swept or stepped sine, or an argument is no such name.
+        Where the record is none of a swept or stepped sine and no resonance curve, or an argument
+        is no such name.
 
     Notes
     -----
@@ -94,6 +97,11 @@ def fit(
     The standard errors add what simulated noise does and what blocks of windows show; see
     :mod:`orchestrate.diagnosis.errors`.
 
+    Of a resonance curve each frequency is a window. A stepped sine of its levels is played until
+    the motion has settled, in the curve's direction; phases and orders are compared where the curve
+    has them, over 3 % of order 1 and its ``floor``. Its noise is what the residuals scatter from
+    one frequency to the next. Order 1 of one face alone does not hold ``f1`` and ``f2``.
+
     Examples
     --------
     >>> import orchestrate
@@ -103,14 +111,25 @@ def fit(
     >>> answer = orchestrate.fit(history, beam.replace(f1=44.0), hypothesis="bonded")
     >>> round(float(answer.value.sel(parameter="f")), 1)
     46.7
+
+    Order 1 of a resonance curve, as transmissibility:
+
+    >>> import numpy as np
+    >>> hertz = np.linspace(42.0, 52.0, 21)
+    >>> ratio = abs((1 + 0.02j * hertz / 47) / (1 - (hertz / 47) ** 2 + 0.02j * hertz / 47))
+    >>> curve = orchestrate.resonance_curve(frequency=hertz, level=4.0, amplitude1=ratio, unit="1")
+    >>> answer = orchestrate.fit(curve, beam, hypothesis="bonded")
+    >>> answer.value.sel(parameter=["f", "zeta"]).values.round(3).tolist()
+    [47.0, 0.01]
     """
     chosen = checked_free(free)
     kind = checked_hypothesis(hypothesis)
-    data = checked_data(record)
+    structure = delaminated_guess(guess)
+    data = CurveData.from_curve(record, structure) if is_curve(record) else checked_data(record)
     job = FitJob(
         name=f"fit_{checked_structure(guess).label()}",
         data=data,
-        guess=delaminated_guess(guess),
+        guess=structure,
         free=chosen,
         sound=(0,) if kind in (DELAMINATED, "bonded") else (0, SHORT_NAMES[kind]),
         delaminated=kind == DELAMINATED,
@@ -153,6 +172,11 @@ def checked_data(record: xr.Dataset) -> RecordData:
     return RecordData.from_channels(channels)
 
 
+def is_curve(record: xr.Dataset) -> bool:
+    """Return whether a dataset is a resonance curve: over the frequency, not over time."""
+    return "frequency" in getattr(record, "dims", ()) and "time" not in record.dims
+
+
 def delaminated_guess(guess: Structure) -> Structure:
     """Check that both halves of the guess have a spring, and return it as delaminated.
 
@@ -192,6 +216,8 @@ class FitJob(SearchJob):
         made = xr.Dataset({**every, **results.parameters()}, coordinates).isel(hypothesis=position)
         name = self.hypotheses[position].name
         named = made.drop_vars("hypothesis").dropna("parameter", how="all", subset=["asked"])
+        if isinstance(self.data, CurveData):
+            named = named.drop_vars("time")  # of the stepped sine that is played for it
         made = named.drop_vars("asked").assign(
             correlation=results.correlation(position, list(named.parameter.values)),
         )
@@ -239,6 +265,10 @@ class Results:
         """Return a sentence that says why the halves' numbers are stated or not."""
         even = self.even
         size = f"order 2 is up to {100 * even.largest:.2g} % of order 1"
+        if not np.isfinite(self.job.evidence.measured[:, 1]).any():
+            if self.is_opening_seen():
+                return "the two faces move differently; order 2 is not in the curve"
+            return "order 2 is not in the curve: order 1 of a face alone does not hold f1 and f2"
         if self.is_opening_seen():
             return f"{size}, {even.excess:.2g} times the size from which it counts as seen"
         return f"no opening is seen ({size}): the record does not hold f1 and f2"

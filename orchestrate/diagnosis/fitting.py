@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .evidence import UNBOUNDED_RESIDUAL, Evidence
+from .evidence import Evidence
 from .hypotheses import Hypothesis
 from .linear import LinearModel
 from .misfit import SOFT_LIMIT, misfit
@@ -80,9 +80,7 @@ class Search:
         try:
             motion = self.hypothesis.displacements(values, self.evidence, self.player)
         except (FmuError, InputError):  # numbers that the FMU refuses: nothing to be found there
-            return np.full(
-                (len(self.evidence.masses), 4, len(self.evidence.used_windows)), UNBOUNDED_RESIDUAL
-            )
+            return self.evidence.unbounded_residuals()
         return self.evidence.residuals(motion)
 
     def derivatives(self, values: Mapping[str, float], bounds: Mapping[str, Any]) -> Floats:

@@ -17,6 +17,7 @@ from ..laboratory.analysis.channels import Channels
 from ..laboratory.record import record as made_record
 from ..running.job import Inputs, Job, Table
 from ..structures import Structure
+from .curve_evidence import CurveData
 from .decision_rule import SOUND_DESCRIBES
 from .errors import estimate
 from .even_orders import even_orders
@@ -81,11 +82,19 @@ class RecordData:
         time = self.begin + np.arange(len(self.channels[0])) / self.sample_rate
         return made_record(time=time, sample_rate=self.sample_rate, **named)  # type: ignore[arg-type]
 
+    def evidence(self) -> Evidence:
+        """Return the evidence of the record."""
+        return Evidence.from_orders(cached_orders(self))
+
+    def coarse_evidence(self) -> Evidence:
+        """Return the evidence near the resonance with fewer samples, for a coarse search."""
+        return Evidence.from_orders(cached_orders(self), COARSE_SAMPLES).near_resonance()
+
 
 @lru_cache(maxsize=2)
-def cached_evidence(data: RecordData) -> Evidence:
-    """Return a record's evidence, computed once per process."""
-    return Evidence.from_orders(cached_orders(data))
+def cached_evidence(data: RecordData | CurveData) -> Evidence:
+    """Return the evidence of a record or a resonance curve, computed once per process."""
+    return data.evidence()
 
 
 @lru_cache(maxsize=2)
@@ -95,13 +104,13 @@ def cached_orders(data: RecordData) -> RecordOrders:
 
 
 @lru_cache(maxsize=2)
-def cached_coarse_evidence(data: RecordData) -> Evidence:
-    """Return the evidence near the resonance with fewer samples: a third of the time per motion."""
-    return Evidence.from_orders(cached_orders(data), COARSE_SAMPLES).near_resonance()
+def cached_coarse_evidence(data: RecordData | CurveData) -> Evidence:
+    """Return the evidence for a coarse search: a third of the time per motion, or less."""
+    return data.coarse_evidence()
 
 
 @lru_cache(maxsize=2)
-def is_worth_a_search(data: RecordData) -> bool:
+def is_worth_a_search(data: RecordData | CurveData) -> bool:
     """Return whether the verdict may depend on the delaminated fit, by a short bonded fit.
 
     Elsewhere the search is short.
@@ -137,7 +146,7 @@ class SearchJob(Job):
 
     Attributes
     ----------
-    data : RecordData
+    data : RecordData or CurveData
     guess : Structure
     free : tuple of str
         What is fitted of a delaminated structure.
@@ -147,7 +156,7 @@ class SearchJob(Job):
         Whether that is searched too.
     """
 
-    data: RecordData
+    data: RecordData | CurveData
     guess: Structure
     free: tuple[str, ...]
     sound: tuple[int, ...] = tuple(range(len(SOUND)))
@@ -157,7 +166,7 @@ class SearchJob(Job):
 
     @property
     def evidence(self) -> Evidence:
-        """Evidence of the record."""
+        """Evidence of the record or the resonance curve."""
         return cached_evidence(self.data)
 
     @property

@@ -21,6 +21,8 @@ module                    idea
 :mod:`.record_uff`        universal files
 :mod:`.record_mat`        MATLAB's files, read in a process of its own
 :mod:`.record_files`      records read and written, of any kind of file
+:mod:`.resonance_curve`   a measured resonance curve: amplitudes of faces over the frequency
+:mod:`.curve_files`       resonance curves read from files
 :mod:`.analysis`          what an analyser shows of a record
 ========================  =========================================================================
 """

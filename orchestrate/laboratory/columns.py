@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..constants import GRAVITY
+from ..constants import GRAVITY, TURN
 from ..errors import InputError
 from .record import CHANNELS
 
@@ -26,6 +26,20 @@ ACCELERATIONS = {  # in m/s2
     "in/s2": INCH,
     "ft/s2": 12.0 * INCH,
 }
+SPEEDS = {"m/s": 1.0, "mm/s": 1e-3, "cm/s": 1e-2, "in/s": INCH}  # in m/s
+LENGTHS = {  # in m
+    **{"m": 1.0, "mm": 1e-3, "cm": 1e-2, "in": INCH, "mil": 1e-3 * INCH, "nm": 1e-9},
+    **dict.fromkeys(("um", "\u00b5m", "\u03bcm", "micron"), 1e-6),
+}
+FREQUENCIES = {  # in Hz
+    **{"hz": 1.0, "1/s": 1.0, "khz": 1e3, "rad/s": 1.0 / TURN},
+    **dict.fromkeys(("rpm", "1/min"), 1.0 / 60.0),
+}
+ANGLES = {  # in rad
+    **dict.fromkeys(("rad", "radian", "radians"), 1.0),
+    **dict.fromkeys(("deg", "\u00b0", "degree", "degrees"), TURN / 360.0),
+}
+RATIOS = dict.fromkeys(("1", "-", "g/g", "m/m", "mm/mm", "m/s2/m/s2", "(m/s2)/(m/s2)"), 1.0)
 TIMES = {  # in s
     **dict.fromkeys(("s", "sec", "second", "seconds"), 1.0),
     **dict.fromkeys(("ms", "msec"), 1e-3),
@@ -109,8 +123,9 @@ def plain_unit(text: str) -> str:
 
 
 def is_unit(text: str) -> bool:
-    """Return whether a text is a unit of acceleration or time."""
-    return plain_unit(text) in ACCELERATIONS or plain_unit(text) in TIMES
+    """Return whether a text is a unit of what a record or a resonance curve has in its columns."""
+    known = (ACCELERATIONS, TIMES, SPEEDS, LENGTHS, FREQUENCIES, ANGLES, RATIOS)
+    return any(plain_unit(text) in units for units in known)
 
 
 def factor_of(label: str, unit: str, known: Mapping[str, float]) -> float:
@@ -121,7 +136,8 @@ def factor_of(label: str, unit: str, known: Mapping[str, float]) -> float:
     InputError
     """
     if plain_unit(unit) not in known:
-        names = ", ".join(list(known)[:1] + [name for name in ("g", "mg", "ms") if name in known])
+        usual = ("g", "mg", "ms", "rad/s", "deg")
+        names = ", ".join(list(known)[:1] + [name for name in usual if name in known])
         text = f"unit = {unit!r}" if unit else "no unit"
         raise InputError(f"{label}: {text}; expected one such as {names}: say unit=")
     return known[plain_unit(unit)]
@@ -217,14 +233,19 @@ def chosen(
 
 def known_places(table: Columns) -> dict[str, int]:
     """Return the column index of each channel and the time by usual names; empty if no channel."""
+    known = named_places(table, NAMES)
+    return known if set(known) & set(CHANNELS) else {}
+
+
+def named_places(table: Columns, names: Mapping[str, Sequence[str]]) -> dict[str, int]:
+    """Return the column index of each of these things by the names that files give them."""
     plain = [re.sub(r"[\W_]", "", column.name.lower()) for column in table.columns]
-    known = {
+    return {
         name: plain.index(one)
-        for name, all_names in NAMES.items()
+        for name, all_names in names.items()
         for one in all_names
         if one in plain
     }
-    return known if set(known) & set(CHANNELS) else {}
 
 
 def place_of(table: Columns, wish: str | int) -> int:

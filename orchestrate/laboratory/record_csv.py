@@ -50,8 +50,14 @@ class Dialect:
         return found[:-1] if len(found) > 1 and not found[-1].strip() else found
 
 
-def read_csv(path: Path) -> Columns:
+def read_csv(path: Path, gaps: bool = False) -> Columns:
     """Read all columns of a text file.
+
+    Parameters
+    ----------
+    path : Path
+    gaps : bool
+        Whether fields may be empty: NaN then.
 
     Raises
     ------
@@ -64,6 +70,9 @@ def read_csv(path: Path) -> Columns:
         raise InputError(f"{path}: empty; expected columns of numbers")
     dialect = dialect_of(path, lines)
     columns = len(dialect.fields(lines[dialect.first]))
+    if gaps:
+        columns = max(columns, *(len(dialect.fields(line)) for line in lines[: dialect.first]), 1)
+        text = without_gaps(text, dialect, columns)
     names = headings(lines[: dialect.first], dialect, columns)
     values = parsed(path, text, dialect, [name for name, _ in names])
     made = [Column(*heading, column) for heading, column in zip(names, values.T, strict=True)]
@@ -124,6 +133,20 @@ def headings(lines: list[str], dialect: Dialect, count: int) -> list[tuple[str, 
         names = [split_heading(text)[0] for text in fitting[-2]]
         return list(zip(names, units, strict=True))
     return [split_heading(text) for text in fitting[-1]]
+
+
+def without_gaps(text: str, dialect: Dialect, columns: int) -> str:
+    """Return a text with nan in place of each empty field of its numbers."""
+    if dialect.separator == " ":
+        return text
+    lines = text.split("\n")
+    for number, line in enumerate(lines[dialect.first :], dialect.first):
+        fields = dialect.fields(line)
+        if any(field.strip() for field in fields):
+            full = [field.strip() or "nan" for field in fields]
+            full += ["nan"] * (columns - len(full))
+            lines[number] = dialect.separator.join(full)
+    return "\n".join(lines)
 
 
 def parsed(path: Path, text: str, dialect: Dialect, names: list[str]) -> NDArray[np.float64]:

@@ -21,6 +21,7 @@ FUNCTIONS = (
     *("impact_statistics", "poincare", "basin_entropy", "orbit", "branch", "border", "couple"),
     "manifold",
     *("shake", "measure", "record", "read_record", "write_record"),
+    *("resonance_curve", "read_curve"),
 )
 HEAVY = ("xarray", "scipy", "matplotlib", "fmpy", "netCDF4", "pandas", "loky", "tqdm")
 OWN = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=0.9, e=0.6)  # 79 rad/s

@@ -1,0 +1,325 @@
+"""A resonance curve as evidence: settled motions under a stepped sine, read where they settled."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..laboratory.analysis.channels import BOX, Channels
+from ..laboratory.analysis.orders import dwells
+from ..laboratory.resonance_curve import CURVE_ORDERS, FACES, FEWEST_POINTS
+from ..laboratory.sampled import Sampled
+from ..laboratory.stepped_sine import SteppedSine
+from .evidence import COARSE_RANGE, FITTED_RANGE, Evidence
+from .orders import (
+    ORDERS,
+    SAMPLES_PER_PERIOD,
+    Complexes,
+    OrderWindows,
+    RecordOrders,
+    assembled_windows,
+    least_squares_matrix,
+    referred_to_base,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from ..structures import Structure
+
+Floats = NDArray[np.float64]
+Numbers = tuple[float | None, ...]
+Kind = TypeVar("Kind")
+MEASURED_CYCLES = 10  # at each frequency: they separate the orders 0.5, 1 and 1.37
+SETTLED = 0.01  # of a step between two frequencies that is left where it is measured
+SETTLE_CYCLES = (30, 200)  # fewest and most cycles before
+USUAL_FLOOR = 0.01  # of order 1, where none is given: what a shaker makes of order 2
+COARSE_POINTS, COARSE_SAMPLES = 30, 7.0  # most points of a coarse search, samples in a period
+HALF_POWER = 0.5**0.5
+REPLICATES, SEED = 100, 20_241  # of the simulated scatter
+
+
+@dataclass(frozen=True)
+class CurveData:
+    """A resonance curve as plain tuples, in the order in which its frequencies are played.
+
+    Attributes
+    ----------
+    frequency, level : tuple of float
+        Hz, m/s2.
+    sensors : tuple of str
+        ``acceleration1``, ``acceleration2`` or both.
+    amplitude : tuple, shape (sensors, 3, n)
+        m/s2; None where an order was not measured, as below.
+    phase, floor : tuple, shape (sensors, n)
+        rad, m/s2.
+    relative : bool
+        Whether the amplitudes are those of the motion relative to the base.
+    damping : float
+        Damping ratio by which the motion settles.
+    """
+
+    frequency: tuple[float, ...]
+    level: tuple[float, ...]
+    sensors: tuple[str, ...]
+    amplitude: tuple[tuple[Numbers, ...], ...]
+    phase: tuple[Numbers, ...]
+    floor: tuple[Numbers, ...]
+    relative: bool
+    damping: float
+
+    @classmethod
+    def from_curve(cls, curve: xr.Dataset, guess: Structure) -> CurveData:
+        """Check a resonance curve and take its numbers around the resonance.
+
+        Raises
+        ------
+        InputError
+            Where a variable is missing or the points near the resonance are too few.
+        """
+        check_curve(curve)
+        falling = curve.attrs.get("direction", "up") == "down"
+        played = curve.sortby("frequency", ascending=not falling)
+        ratio = (played.amplitude.sel(order=1.0) / played.level).max("channel")
+        near = played.frequency.values / played.frequency.values[np.argmax(ratio.values)]
+        inside = played.isel(frequency=(near > FITTED_RANGE[0]) & (near < FITTED_RANGE[1]))
+        if inside.sizes["frequency"] < FEWEST_POINTS:
+            span = " to ".join(f"{end:g}" for end in FITTED_RANGE)
+            text = f"{inside.sizes['frequency']} points from {span} times the resonance's frequency"
+            raise InputError(f"resonance curve: {text}; expected {FEWEST_POINTS} or more")
+        width = half_power_damping(inside)
+        guessed = [zeta for zeta in (guess.zeta1, guess.zeta2) if zeta > 0.0]
+        return cls(
+            frequency=tuple(inside.frequency.values.tolist()),
+            level=tuple(inside.level.values.tolist()),
+            sensors=tuple(str(name) for name in inside.channel.values),
+            amplitude=tuple(
+                tuple(plain(row) for row in rows)
+                for rows in inside.amplitude.transpose("channel", "order", "frequency").values
+            ),
+            phase=tuple(plain(row) for row in inside.phase.values),
+            floor=tuple(plain(row) for row in inside.floor.values),
+            relative=inside.attrs.get("relative", "false") == "true",
+            damping=float(f"{min([width, *guessed]):.2g}"),
+        )
+
+    @property
+    def settle_cycles(self) -> int:
+        """Cycles after which a step between two frequencies is forgotten."""
+        cycles = -math.log(SETTLED) / (2.0 * math.pi * self.damping)
+        return round(min(max(cycles, SETTLE_CYCLES[0]), SETTLE_CYCLES[1]))
+
+    def evidence(self) -> CurveEvidence:
+        """Return the evidence of the whole curve."""
+        return curve_evidence(self, self.settle_cycles, SAMPLES_PER_PERIOD)
+
+    def coarse_evidence(self) -> CurveEvidence:
+        """Return the evidence of some points near the resonance, for a coarse search."""
+        whole, frequency = self.evidence(), np.array(self.frequency)
+        low, high = min(whole.peaks) * COARSE_RANGE[0], max(whole.peaks) * COARSE_RANGE[1]
+        near = np.flatnonzero((frequency > low) & (frequency < high))
+        some = self.select(near[:: math.ceil(len(near) / COARSE_POINTS)])
+        chosen = some if len(some.frequency) >= FEWEST_POINTS else self
+        return curve_evidence(
+            chosen, max(SETTLE_CYCLES[0], self.settle_cycles // 2), COARSE_SAMPLES
+        )
+
+    def select(self, points: NDArray[np.intp]) -> CurveData:
+        """Return the curve with some of its points."""
+
+        def some(row: tuple[Kind, ...]) -> tuple[Kind, ...]:
+            return tuple(row[i] for i in points)
+
+        return replace(
+            self,
+            frequency=some(self.frequency),
+            level=some(self.level),
+            amplitude=tuple(tuple(some(row) for row in rows) for rows in self.amplitude),
+            phase=tuple(some(row) for row in self.phase),
+            floor=tuple(some(row) for row in self.floor),
+        )
+
+
+def check_curve(curve: xr.Dataset) -> None:
+    """Check that a dataset has what :func:`orchestrate.resonance_curve` puts in it.
+
+    Raises
+    ------
+    InputError
+    """
+    missing = [name for name in ("amplitude", "phase", "floor", "level") if name not in curve]
+    if missing or set(curve.amplitude.dims) != {"channel", "order", "frequency"}:
+        text = (
+            f"no {missing[0]}" if missing else f"amplitude over {', '.join(curve.amplitude.dims)}"
+        )
+        raise InputError(f"resonance curve: {text}; expected one of resonance_curve or read_curve")
+    names = [str(name) for name in curve.channel.values]
+    if not names or not set(names) <= set(FACES):
+        raise InputError(f"resonance curve: channels {names}; expected some of {', '.join(FACES)}")
+    if curve.order.values.tolist() != list(CURVE_ORDERS):
+        raise InputError(f"resonance curve: orders {curve.order.values.tolist()}; expected 1, 2, 3")
+    first = curve.amplitude.sel(order=1.0)
+    if not all(np.isfinite(one.values).all() for one in (first, curve.level, curve.frequency)):
+        raise InputError("resonance curve: order 1 or its level is not finite; expected numbers")
+
+
+def plain(row: Floats) -> Numbers:
+    """Return numbers as a tuple with None in place of NaN, which is not equal to itself."""
+    return tuple(value if math.isfinite(value) else None for value in row.tolist())
+
+
+def half_power_damping(curve: xr.Dataset) -> float:
+    """Return the damping ratio by the width of the highest peak at 0.7 of its height.
+
+    The points are coarse: it is no more than a time in which motions settle.
+    """
+    ordered = curve.sortby("frequency")
+    ratio = (ordered.amplitude.sel(order=1.0) / ordered.level).max("channel").values
+    frequency, top = ordered.frequency.values, int(np.argmax(ratio))
+    below = np.flatnonzero(ratio < HALF_POWER * ratio[top])
+    low = frequency[max(below[below < top], default=0)]
+    high = frequency[min(below[below > top], default=len(frequency) - 1)]
+    return float((high - low) / (2.0 * frequency[top]))
+
+
+def curve_evidence(data: CurveData, settle: int, samples_per_period: float) -> CurveEvidence:
+    """Return the evidence of a curve under the stepped sine that it is the settled end of.
+
+    Parameters
+    ----------
+    data : CurveData
+    settle : int
+        Cycles at each frequency before what is compared.
+    samples_per_period : float
+        Of the highest frequency.
+    """
+    ordered = sorted(zip(data.frequency, data.level, strict=True))
+    sine = SteppedSine(
+        frequencies=(data.frequency[0], *data.frequency),  # twice as long at the first
+        acceleration=tuple(ordered),
+        settle_cycles=settle,
+        measured_cycles=MEASURED_CYCLES,
+    )
+    rate = samples_per_period * max(data.frequency)
+    time = np.arange(math.ceil(sine.duration * rate) + 2) / rate
+    box = np.asarray(sine(time))
+    # a curve has no samples of the faces
+    values = np.stack([box, *np.full((len(data.sensors), len(time)), np.nan)])
+    channels = Channels(time, rate, (BOX, *data.sensors), values, "resonance curve")
+    windows = settled_windows(channels, sine)
+    amplitude = np.array(data.amplitude, dtype=float)
+    phase = np.array(data.phase, dtype=float)
+    measured = amplitude.astype(complex)
+    measured[:, 0] *= np.exp(1j * np.nan_to_num(phase))
+    level = np.array(data.level)
+    every = np.full((1 + len(measured), len(ORDERS), len(level)), np.nan, dtype=complex)
+    every[1:, : len(CURVE_ORDERS)] = measured
+    every[0] = 0.0
+    every[0, 0] = level
+    floor = np.array(data.floor, dtype=float)
+    floor = np.where(np.isfinite(floor), floor, USUAL_FLOOR * amplitude[:, 0])
+    floors = np.concatenate([np.zeros((1, len(level))), floor])
+    orders = RecordOrders(windows, channels, every, floors, np.quantile(floors, 0.2, axis=1))
+    pieces = Sampled(acceleration=tuple(box), sample_rate=rate).pieces()
+    return CurveEvidence(
+        orders, pieces, with_phase=np.isfinite(phase), relative_motion=data.relative
+    )
+
+
+def settled_windows(channels: Channels, sine: SteppedSine) -> OrderWindows:
+    """Return the windows where each frequency has settled; the first is played twice."""
+    phase = sine.phase(channels.time)
+    found = list(dwells(channels, sine, phase))[1:]
+    solutions = [
+        referred_to_base(channels.box, one, least_squares_matrix(one, channels.sample_rate))
+        for one in found
+    ]
+    return assembled_windows(channels, found, solutions)
+
+
+@dataclass(frozen=True)
+class CurveEvidence(Evidence):
+    """Orders of a resonance curve, their errors, and the stepped sine as the input of motions.
+
+    Attributes
+    ----------
+    with_phase : ndarray of bool, shape (sensors, windows)
+        Where the phase of order 1 was measured.
+    relative_motion : bool
+        Whether the orders are those of the motion relative to the base.
+    """
+
+    with_phase: NDArray[np.bool_] = None  # type: ignore[assignment]
+    relative_motion: bool = False
+
+    @cached_property
+    def used_windows(self) -> NDArray[np.intp]:
+        """Numbers of the windows that are fitted: all."""
+        return np.arange(len(self.orders.windows))
+
+    @cached_property
+    def size(self) -> Floats:
+        """Amplitude of order 1 at each frequency, shape (sensors, windows), m/s2."""
+        return np.abs(self.measured[:, 0])
+
+    @cached_property
+    def error(self) -> Floats:
+        """Standard deviations (model error and floor), shape (sensors, 3, windows), m/s2."""
+        floor = np.maximum(self.orders.floor[1:], 1e-9 * self.size.max())
+        model = np.array(self.relative)[:, None] * self.size[:, None, :]
+        return np.sqrt(floor[:, None, :] ** 2 + model**2)
+
+    @cached_property
+    def base(self) -> Complexes:
+        """Orders 1, 2, 3 of the base, as far as they are in what was measured, m/s2."""
+        return 0.0 * super().base if self.relative_motion else super().base
+
+    @cached_property
+    def displacement(self) -> float:
+        """Largest amplitude of order 1 relative to the base, m, at the resonance."""
+        moved = np.abs(self.measured[:, 0] - (0.0 if self.relative_motion else self.level))
+        return float((moved / (2.0 * math.pi * self.frequency) ** 2).max())
+
+    @cached_property
+    def present(self) -> NDArray[np.bool_]:
+        """Which rows of the residuals are measured at all, shape (4,): the others are left out."""
+        found = np.ones(4, dtype=bool)
+        found[1] = self.with_phase.any()
+        found[2:] = np.isfinite(self.measured[:, 1:]).any(axis=(0, 2))
+        return found
+
+    def first_order(self, row: int, computed: Complexes) -> Complexes:
+        """Return the measured order 1 of a sensor, with the computed phase where it has none."""
+        size, known = self.measured[row, 0], self.with_phase[row]
+        return np.where(known, size, np.abs(size) * np.exp(1j * np.angle(computed)))
+
+    def order_residuals(self, computed: Complexes) -> Floats:
+        """Return computed less measured orders, over the errors: the rows that are measured."""
+        return super().order_residuals(computed)[:, self.present]
+
+    def unbounded_residuals(self) -> Floats:
+        """Return the residuals of a motion without bounds."""
+        return super().unbounded_residuals()[:, self.present]
+
+
+def scatter_changes(residuals: Floats) -> list[Floats]:
+    """Simulate the scatter of a curve's points, and return the residuals' changes by it.
+
+    A curve has no floor between its orders. Its scatter is what differs from one frequency to the
+    next, of each sensor and order: the second differences of the residuals, of which white noise of
+    variance 1 makes 6.
+
+    Parameters
+    ----------
+    residuals : ndarray, shape (sensors, rows, windows)
+    """
+    differences = np.diff(residuals, n=2, axis=-1)
+    size = np.sqrt(np.mean(differences**2, axis=-1, keepdims=True) / 6.0)
+    rng = np.random.default_rng(SEED)
+    return [size * rng.standard_normal(residuals.shape) for _ in range(REPLICATES)]

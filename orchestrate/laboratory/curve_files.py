@@ -1,0 +1,262 @@
+"""Measured resonance curves in files: columns of text, as analysers and spreadsheets write them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from .columns import (
+    ANGLES,
+    FREQUENCIES,
+    RATIOS,
+    Column,
+    Columns,
+    factor_of,
+    label_of,
+    named_places,
+    place_of,
+    plain_unit,
+)
+from .record_csv import read_csv
+from .record_files import check_file, kind_of
+from .resonance_curve import CurveColumns, acceleration_factor, made_curve
+from .signals import LEVEL, checked
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Floats = NDArray[np.float64]
+AMPLITUDES = ("amplitude", "acceleration", "acc", "a", "face", "mass", "displacement", "x")
+RATIO_NAMES = ("transmissibility", "ratio", "response", "magnitude")
+MOST_DEGREES = 7.0  # a phase without a unit that goes beyond it, 2 pi and some, is in degrees
+
+
+def names_of_face(number: str) -> dict[str, tuple[str, ...]]:
+    """Return how files name the columns of a face: letters and digits alone, small."""
+    words = AMPLITUDES + RATIO_NAMES
+    plain = words if number == "1" else ()  # a face that has no number is the first
+    first = tuple(f"{word}{number}" for word in words)
+    made = {
+        f"amplitude{number}": (*plain, *first, *(f"{word}order1" for word in first)),
+        f"phase{number}": (*(("phase",) if number == "1" else ()), f"phase{number}"),
+        f"floor{number}": (*(("floor", "noise") if number == "1" else ()), f"floor{number}"),
+    }
+    for order in "23":
+        alone = (f"order{order}", f"harmonic{order}") if number == "1" else ()
+        made[f"amplitude{number}_order{order}"] = (
+            *alone,
+            *(f"{word}order{order}" for word in (*plain, *first)),
+        )
+    return made
+
+
+NAMES = {  # what a curve's columns are, and how files call them
+    "frequency": ("f", "hz", "freq", "frequenz", "frequency"),
+    "level": (
+        *("input", "drive", "excitation", "shaker", "table", "box", "boxacceleration"),
+        *(
+            "boxamplitude",
+            "basis",
+            "base",
+            "baseacceleration",
+            "baseamplitude",
+            "baselevel",
+            "level",
+        ),
+    ),
+    **names_of_face("1"),
+    **names_of_face("2"),
+}
+EXPECTED = ", ".join(NAMES)
+
+
+def read_curve(
+    path: str | os.PathLike[str],
+    *,
+    columns: Mapping[str, str | int] | Sequence[str | int] | None = None,
+    unit: str | None = None,
+    level: float | None = None,
+    relative: bool = False,
+    direction: str | None = None,
+) -> xr.Dataset:
+    r"""Read a measured resonance curve from a file.
+
+    Parameters
+    ----------
+    path : path-like
+        A text file (``.csv``, ``.txt``, ``.tsv``, ``.asc``, ``.dat``) with a row for each
+        frequency.
+    columns : mapping or sequence, optional
+        Which column ``frequency``, ``level``, ``amplitude1``, ``phase1``, ``amplitude1_order2``,
+        ``amplitude1_order3``, ``floor1`` and the same of face 2 are in, by name or by number from
+        0; a sequence has these names in this order. By default columns with these names or others
+        that are usual.
+    unit : str, optional
+        Of the amplitudes, as for :func:`orchestrate.resonance_curve`; by default what stands in
+        the file, which must be there.
+    level : float, optional
+        Peak acceleration of the base at all frequencies, m/s2, where no column has it.
+    relative, direction
+        As for :func:`orchestrate.resonance_curve`.
+
+    Returns
+    -------
+    xarray.Dataset
+        As :func:`orchestrate.resonance_curve` makes it. The attribute ``columns`` says which column
+        was taken for what.
+
+    Raises
+    ------
+    InputError
+        Where the file is damaged or its numbers are no resonance curve; in one line with column and
+        row.
+
+    Warns
+    -----
+    UserWarning
+        Where rows without a number are dropped.
+
+    Notes
+    -----
+    Frequencies without a unit are in Hz. Phases without a unit are in degrees if one of them is
+    beyond 7, else in rad.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> path = pathlib.Path(tempfile.mkdtemp()) / "curve.csv"
+    >>> rows = [f"{hertz};{abs(1 / (1 - (hertz / 50) ** 2 + 0.02j))}" for hertz in range(40, 60)]
+    >>> _ = path.write_text("frequency [Hz];face 1 [g]\n" + "\n".join(rows))
+    >>> curve = read_curve(path, level=4.0)
+    >>> curve.amplitude.sel(order=1.0, frequency=50.0).values.round(2).tolist()
+    [490.33]
+    >>> curve.attrs["columns"]
+    'frequency "frequency", amplitude1 "face 1"'
+    """
+    path = Path(path)
+    if kind_of(path) != "csv":
+        raise InputError(f"{path}: expected columns of text (.csv, .txt, .tsv, .asc, .dat)")
+    check_file(path)
+    table = read_csv(path, gaps=True)
+    places = chosen_places(table, columns)
+    made = curve_columns(table, places, unit, level)
+    words = {"title": f"Resonance curve {path.name}", "source": path.name}
+    words["columns"] = ", ".join(
+        f'{name} "{table.columns[place].name}"' for name, place in places.items()
+    )
+    try:
+        return made_curve(made, relative, direction, words)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+
+
+def chosen_places(
+    table: Columns, columns: Mapping[str, str | int] | Sequence[str | int] | None
+) -> dict[str, int]:
+    """Return the column index of each thing that a curve has, by name.
+
+    Raises
+    ------
+    InputError
+    """
+    if columns is None:
+        places = named_places(table, NAMES)
+    else:
+        if not isinstance(columns, Mapping):
+            if isinstance(columns, str) or len(columns) > len(NAMES):
+                raise InputError(f"columns = {columns!r}: expected {EXPECTED} in that order")
+            columns = dict(zip(NAMES, columns, strict=False))
+        if unknown := sorted(set(columns) - set(NAMES)):
+            raise InputError(f"columns: {unknown[0]!r}; expected names of {EXPECTED}")
+        places = {name: place_of(table, wish) for name, wish in columns.items()}
+    lacking = [] if "frequency" in places else ["frequency"]
+    lacking += [] if {"amplitude1", "amplitude2"} & set(places) else ["amplitude1"]
+    if lacking:
+        names = ", ".join(column.name for column in table.columns[:8])
+        text = "expected columns=, which of them is which"
+        raise InputError(f"{table.path}: no {lacking[0]} among the columns {names}; {text}")
+    return places
+
+
+def curve_columns(
+    table: Columns, places: Mapping[str, int], unit: str | None, level: float | None
+) -> CurveColumns:
+    """Return the columns of a curve with their units.
+
+    Raises
+    ------
+    InputError
+    """
+    at = {name: table.columns[place] for name, place in places.items()}
+    faces = [f"amplitude{n}" for n in "12" if f"amplitude{n}" in at]
+    frequency = scaled_column(table, at["frequency"], "Hz", FREQUENCIES)
+    phases = {name: at.get(name.replace("amplitude", "phase")) for name in faces}
+    floors = {name: at.get(name.replace("amplitude", "floor")) for name in faces}
+    return CurveColumns(
+        frequency=frequency,
+        level=level_of(table, at.get("level"), unit, level, frequency),
+        amplitudes={name: orders_of(name, at) for name in faces},
+        phases={name: phase_of(table, one) for name, one in phases.items() if one},
+        floors={name: one.values for name, one in floors.items() if one},
+        units={name: unit or at[name].unit for name in faces},
+        first_row=table.first_row,
+    )
+
+
+def orders_of(name: str, at: Mapping[str, Column]) -> Floats:
+    """Return orders 1, 2, 3 of a face in the unit of the file, NaN where there is no column.
+
+    Raises
+    ------
+    InputError
+        Where they differ in their units.
+    """
+    columns = [at.get(f"{name}{more}") for more in ("", "_order2", "_order3")]
+    for one in columns[1:]:
+        if one is not None and plain_unit(one.unit) != plain_unit(at[name].unit):
+            text = f"in {one.unit or 'no unit'}; expected {at[name].unit or 'none'}, as order 1"
+            raise InputError(f'column "{one.name}": {text}')
+    missing = np.full(len(at[name].values), np.nan)
+    return np.stack([missing if one is None else one.values for one in columns])
+
+
+def level_of(
+    table: Columns, column: Column | None, unit: str | None, level: float | None, frequency: Floats
+) -> Floats | float:
+    """Return the peak acceleration of the base, m/s2: of its column or the number given.
+
+    Raises
+    ------
+    InputError
+        Where there is neither, or both.
+    """
+    if (column is None) == (level is None):
+        text = "no column of the base's level" if column is None else f'column "{column.name}"'
+        given = "" if level is None else f" and level = {level!r}"
+        expected = "expected a column, or level= in m/s2, not both"
+        raise InputError(f"{table.path}: {text}{given}; {expected}")
+    if column is None:
+        return float(checked(LEVEL, "level", level))
+    own = column.unit or (unit if unit and plain_unit(unit) not in RATIOS else "")
+    label = label_of(table, column)
+    ratio = plain_unit(own) in RATIOS  # of a level there is none
+    factor = acceleration_factor(label, "" if ratio else own, frequency, frequency)
+    return np.asarray(factor * column.values)
+
+
+def phase_of(table: Columns, column: Column) -> Floats:
+    """Return a phase in rad."""
+    degrees = np.nanmax(np.abs(column.values), initial=0.0) > MOST_DEGREES
+    return scaled_column(table, column, "deg" if degrees else "rad", ANGLES)
+
+
+def scaled_column(table: Columns, column: Column, usual: str, known: Mapping[str, float]) -> Floats:
+    """Return a column in SI, NaN where there is no number; without a unit it has the usual one."""
+    factor = factor_of(label_of(table, column), column.unit or usual, known)
+    return factor * column.values
