@@ -46,7 +46,7 @@ from typing import Any
 
 
 def read_places() -> dict[str, str]:
-    """Read from the stub beside this file where each public name lives."""
+    """Return a dict from public name to the submodule that defines it, read from the stub."""
     stub = ast.parse(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
     imports = (node for node in stub.body if isinstance(node, ast.ImportFrom))
     return {alias.name: node.module or "" for node in imports for alias in node.names}

@@ -6,7 +6,7 @@ from .supervisor import supervised
 
 
 def run() -> int:
-    """Run the command line; return its exit code, also when Ctrl-C comes while modules are read."""
+    """Run the command line in this process; return its exit code, 130 after Ctrl-C."""
     try:
         from .cli import main as carry_out
 
@@ -17,7 +17,7 @@ def run() -> int:
 
 
 def main() -> int:
-    """Run the command in a process of its own, which ends in any case; return its exit code."""
+    """Run the command line in a supervised child process; return its exit code in any case."""
     return supervised(run)
 
 

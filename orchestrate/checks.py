@@ -14,7 +14,7 @@ REQUIRES_DELAMINATED = "bonded = True: expected a delaminated structure (bonded 
 
 
 def checked_integer(name: str, value: Any, minimum: int, maximum: int = MAX_COUNT) -> int:
-    """Return an integer in a range, both ends included; NumPy's integers count, Booleans do not.
+    """Return ``value`` as an int; raise ``InputError`` unless it is whole and within the range.
 
     Raises
     ------
@@ -28,7 +28,7 @@ def checked_integer(name: str, value: Any, minimum: int, maximum: int = MAX_COUN
 
 
 def checked_word(name: str, value: Any, known: Iterable[str]) -> str:
-    """Return a word that is one of the known ones.
+    """Return ``value`` as a string; raise ``InputError`` unless it is one of the ``known`` words.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all."""
+"""Write files atomically (temporary file, then rename), lock them, read them with a size limit."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PROBE = ".writable"
 
 
 def write_whole(path: str | os.PathLike[str], write: Callable[[Path], object]) -> Path:
-    """Write a file beside its place, then put it there.
+    """Write a file atomically: ``write`` fills a temporary one beside it, which is then renamed.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def write_whole(path: str | os.PathLike[str], write: Callable[[Path], object]) -
 
 @contextmanager
 def made_once(path: Path) -> Iterator[None]:
-    """Keep other processes from making a file meanwhile; who has waited finds it there.
+    """Hold a file lock, as a context manager, so that only one process makes a file at a time.
 
     Raises
     ------
@@ -75,7 +75,7 @@ def made_once(path: Path) -> Iterator[None]:
 
 
 def read_text(path: str | os.PathLike[str], most: int) -> str:
-    """Return the text of an ordinary file; raise for devices, pipes, and files over ``most`` bytes.
+    """Return a regular file's text; raise for devices, pipes and over ``most`` bytes.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def read_text(path: str | os.PathLike[str], most: int) -> str:
 
 
 def check_name(path: str | os.PathLike[str]) -> None:
-    """Raise unless a path is UTF-8: the libraries that write results take no other."""
+    """Raise ``InputError`` unless a path can be encoded as UTF-8, which NetCDF and HDF5 require."""
     try:
         str(Path(path).absolute()).encode("utf-8")
     except UnicodeEncodeError:
@@ -109,7 +109,7 @@ def check_name(path: str | os.PathLike[str]) -> None:
 
 
 def reason(error: BaseException, folder: Path) -> str:
-    """Why a file could not be written, with the room that is left."""
+    """Format why a file could not be written: the error's text and the free bytes on the disk."""
     text = getattr(error, "strerror", None) or (str(error).splitlines() or [""])[0]
     try:
         return f"{text}, {shutil.disk_usage(folder).free} bytes free on the disk"
@@ -118,7 +118,7 @@ def reason(error: BaseException, folder: Path) -> str:
 
 
 def sweep_up(path: Path) -> None:
-    """Delete what killed processes left beside a file of earlier attempts to write it."""
+    """Delete the temporary files of ``write_whole`` for this path whose processes are gone."""
     for left in path.parent.glob(f"{glob_name(path.name)}.*.tmp"):
         number = left.name.removesuffix(".tmp").rpartition(".")[2]
         if number.isdigit() and not alive(int(number)):
@@ -126,12 +126,12 @@ def sweep_up(path: Path) -> None:
 
 
 def glob_name(name: str) -> str:
-    """Return a name in which ``glob`` takes brackets and stars as they stand."""
+    """Escape brackets, stars and question marks of a file name for use in ``glob``."""
     return "".join(f"[{letter}]" if letter in "[]*?" else letter for letter in name)
 
 
 def alive(pid: int) -> bool:
-    """Return whether a process of this machine runs; True where that cannot be asked."""
+    """Return whether a process of this machine runs, by its id; True where that cannot be asked."""
     if sys.platform == "win32":  # there the question would end it
         return True
     try:
@@ -144,7 +144,7 @@ def alive(pid: int) -> bool:
 
 
 def open_folder(folder: str | os.PathLike[str]) -> Path:
-    """Make a folder where there is none, and see that it can be written.
+    """Create a folder if missing and return it; raise unless a file can be written there.
 
     Raises
     ------

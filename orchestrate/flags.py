@@ -9,7 +9,7 @@ import numpy as np
 
 
 def flag_words(attributes: Mapping[Any, Any]) -> dict[int, str]:
-    """Return the words of a flag variable by their numbers.
+    """Return a dict from number to word, read from ``flag_values`` and ``flag_meanings`` (CF).
 
     Parameters
     ----------

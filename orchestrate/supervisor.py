@@ -1,4 +1,4 @@
-"""A command in a process of its own, and one beside it that sees how it ends.
+"""Run a command in a child process; a parent process passes on signals and reports crashes.
 
 An FMU and a library may hang, spin, abort or call ``exit``, and Python hears no signal then. So the
 command runs in a child; this process waits, hands signals on, and ends the child where it does not
@@ -33,7 +33,7 @@ _child: int | None = None  # in the child: where it says so
 
 
 def supervised(work: Callable[[], int]) -> int:
-    """Run ``work`` in a child process and wait; return what it returns, its exit code.
+    """Fork, run ``work()`` in the child, wait for it, and return its exit code; report a crash.
 
     Where there is no fork, and where there is no room for another process, it is computed here.
 
@@ -63,7 +63,7 @@ def supervised(work: Callable[[], int]) -> int:
 
 
 def carried_out(work: Callable[[], int], writer: int, parent: int) -> int:
-    """Do the work in the child, and say that it was done."""
+    """Run ``work()`` in the forked child and return its exit code; notify the parent at the end."""
     global _child
     _child = writer
     end_with(parent)
@@ -74,26 +74,26 @@ def carried_out(work: Callable[[], int], writer: int, parent: int) -> int:
 
 
 def heeded() -> None:
-    """Tell the parent that a signal was received, and that this process ends by itself."""
+    """Notify the supervising parent that this child has got its signal and is ending by itself."""
     say(HEEDED)
 
 
 def say(word: bytes) -> None:
-    """Write a word to the parent's pipe, if there is a parent."""
+    """Write a byte message to the pipe to the supervising parent process, if there is one."""
     if _child is not None:
         with contextlib.suppress(OSError):
             os.write(_child, word)
 
 
 def fill_descriptors() -> None:
-    """Open the closed ones of descriptors 0 to 2, or a database would be the error output."""
+    """Open the closed ones of the standard streams (descriptors 0 to 2) on ``/dev/null``."""
     while (number := os.open(os.devnull, os.O_RDWR)) <= 2:
         os.set_inheritable(number, True)
     os.close(number)
 
 
 def end_with(parent: int) -> None:
-    """Set this process to end when its parent ends, whatever it does then."""
+    """Make this process kill itself as soon as its parent process has ended."""
     if sys.platform == "linux":
         import ctypes
 
@@ -111,7 +111,7 @@ def end_with(parent: int) -> None:
 
 
 class Supervisor:
-    """Waits for a child.
+    """Parent's side of a supervised child process: waits, passes signals on, gives the exit code.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ class Supervisor:
         self.handed_on = self.forced = False
 
     def run(self, wake_reader: int, wake_writer: int) -> int:
-        """Wait; returns the exit code. A signal is written into a pipe, so that it wakes this."""
+        """Wait for the child, passing signals on through a pipe; return its exit code."""
         os.set_blocking(wake_writer, False)
         signal.set_wakeup_fd(wake_writer, warn_on_full_buffer=False)
         for heard, usual in (
@@ -152,16 +152,16 @@ class Supervisor:
         return self.verdict(status)
 
     def note(self, number: int, _: object) -> None:
-        """Store a signal's number, to be handed on by the loop that waits for the child."""
+        """Handle a signal: append its number and time of arrival for the waiting loop."""
         self.signals.append((number, time.monotonic()))
 
     def ended(self) -> int | None:
-        """Return the child's exit status, or None while it runs."""
+        """Return the child's raw wait status if it has ended, or None while it runs."""
         pid, status = os.waitpid(self.child, os.WNOHANG)
         return status if pid else None
 
     def act(self) -> None:
-        """Pass a signal on to a child that has not heard it; kill one that ends too late."""
+        """Send a received signal on to a child that has not heard it; kill one that is late."""
         if not self.signals:
             return
         asked, first = self.signals[0]
@@ -174,7 +174,7 @@ class Supervisor:
             self.force()
 
     def force(self) -> None:
-        """Kill the child and all that it has started, and note that it was forced."""
+        """Kill the child and all its descendant processes with SIGKILL, and set ``forced``."""
         pids = [self.child, *below(self.child)]
         for pid in pids:
             with contextlib.suppress(OSError):
@@ -182,7 +182,7 @@ class Supervisor:
         self.forced = True
 
     def verdict(self, status: int) -> int:
-        """Return the exit code; print a line if the child did not end by itself."""
+        """Return the exit code for a wait status; print why, if the child did not end by itself."""
         code = os.waitstatus_to_exitcode(status)
         if TOLD in self.words and code >= 0:
             return code
@@ -208,13 +208,13 @@ class Supervisor:
 
 
 def tell(line: str) -> None:
-    """Print a line on the error output, below a progress bar."""
+    """Print a line on standard error, on a new line below a progress bar."""
     with contextlib.suppress(OSError):
         os.write(2, f"{line}\n".encode())
 
 
 def below(pid: int) -> Iterator[int]:
-    """Yield the processes that a process has started, and those of these; on Linux only."""
+    """Yield the process ids of all descendants of a process, recursively; Linux only, else none."""
     for place in Path(f"/proc/{pid}/task").glob("*/children"):
         with contextlib.suppress(OSError):
             for child in map(int, place.read_text().split()):
@@ -223,6 +223,6 @@ def below(pid: int) -> Iterator[int]:
 
 
 def remove_unpacked(pid: int) -> None:
-    """Remove the FMUs that a process has unpacked."""
+    """Delete the temporary folders of unpacked FMUs that a process id has left behind."""
     for folder in Path(tempfile.gettempdir()).glob(f"{UNPACKED}{pid}-*"):
         shutil.rmtree(folder, ignore_errors=True)

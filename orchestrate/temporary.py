@@ -23,7 +23,7 @@ _folders: dict[int, Path] = {}  # by process: a forked child makes its own
 
 
 def process_folder() -> Path:
-    """Return this process's temporary folder, made at the first call."""
+    """Return the path of this process's temporary folder; create it at the first call."""
     pid = os.getpid()
     folder = _folders.get(pid)
     if folder is None or not folder.is_dir():
@@ -37,13 +37,13 @@ def process_folder() -> Path:
 
 
 def remove(folder: Path, pid: int) -> None:
-    """Remove a folder at the end of the process that made it, not of one forked from it."""
+    """Delete a temporary folder at exit, only in the process that made it (not in forked ones)."""
     if os.getpid() == pid:
         shutil.rmtree(folder, ignore_errors=True)
 
 
 def remove_leftovers() -> None:
-    """Remove this user's folders whose processes are gone: killed ones do not clean up."""
+    """Delete this user's temporary folders whose processes no longer run (killed ones)."""
     for folder in Path(tempfile.gettempdir()).glob(f"{PREFIX}*"):
         match = re.match(rf"{PREFIX}(\d+)-", folder.name)
         with contextlib.suppress(OSError):
@@ -52,7 +52,7 @@ def remove_leftovers() -> None:
 
 
 def is_mine(folder: Path) -> bool:
-    """Return whether a path is a folder of this user, not a link to one."""
+    """Return whether a path is a real folder (no link) that belongs to the current user."""
     return (
         folder.is_dir()
         and not folder.is_symlink()

@@ -33,7 +33,7 @@ OVER_OMEGA = "Omega/omega"
 
 @dataclass(frozen=True)
 class Units:
-    """The units of frequencies, lengths, accelerations and times; empty where none was asked for.
+    """Display units chosen for frequency, length, acceleration and time; empty: not chosen.
 
     Attributes
     ----------
@@ -81,38 +81,38 @@ class Units:
 
     @property
     def words(self) -> tuple[str, ...]:
-        """The units that were asked for."""
+        """The names of the chosen units, without the kinds for which none was chosen."""
         return tuple(filter(None, (getattr(self, field.name) for field in fields(self))))
 
     def __str__(self) -> str:
         return ", ".join(self.words)
 
     def completed(self, usual: Units) -> Units:
-        """Return these, and where none was asked for the usual ones."""
+        """Return a copy in which the kinds without a chosen unit take that of ``usual``."""
         names = [field.name for field in fields(self)]
         return Units(**{name: getattr(self, name) or getattr(usual, name) for name in names})
 
 
 def with_units(data: xr.Dataset, units: Units | str) -> xr.Dataset:
-    """Return an answer that is shown in some units; its numbers are the same, in SI."""
+    """Return a dataset marked to be displayed in the given units; its numbers stay in SI."""
     chosen = units if isinstance(units, Units) else Units.from_text(units)
     text = str(chosen.completed(units_of(data)))
     return data.assign_attrs({SHOWN_IN: text}) if text else data
 
 
 def units_of(data: xr.Dataset) -> Units:
-    """Return the units in which an answer is shown."""
+    """Return the display units stored in a dataset's attributes, as ``Units``."""
     return Units.from_text(str(data.attrs.get(SHOWN_IN, "")))
 
 
 def has_own_frequency(data: xr.Dataset) -> bool:
-    """Return whether an answer's structure is in SI: the paper's has sqrt(k1/m1) = 1 rad/s."""
+    """Return whether a dataset's structure is in SI: sqrt(k1/m1) is known and not 1 rad/s."""
     omega = omega_of(data)
     return math.isfinite(omega) and not math.isclose(omega, 1.0, rel_tol=1e-9)
 
 
 def with_readable_lengths(*answers: xr.Dataset) -> list[xr.Dataset]:
-    """Return answers of one table or picture, shown in the unit of length that suits the largest.
+    """Return datasets set to display lengths in m, mm or um, whichever suits the largest length.
 
     This is m, mm or um, so that the largest number is 1 at least. Answers stay as they are where
     a unit of length was asked for, and where their structure is not in SI.
@@ -133,7 +133,7 @@ def with_readable_lengths(*answers: xr.Dataset) -> list[xr.Dataset]:
 
 
 def largest_length(data: xr.Dataset) -> float:
-    """Return the largest length among an answer's variables, m; 0 without any."""
+    """Return the largest absolute value among a dataset's variables in m; 0 without any."""
     lengths = [
         float(abs(array).max())
         for array in data.data_vars.values()
@@ -143,9 +143,7 @@ def largest_length(data: xr.Dataset) -> float:
 
 
 def omega_of(data: xr.Dataset | Mapping[str, float]) -> float:
-    """Return sqrt(k1/m1) of an answer's structure or of its parameters, rad/s; nan where it
-    varies.
-    """
+    """Return sqrt(k1/m1), rad/s, of a dataset's attributes or a dict; nan where it is unknown."""
     known: Mapping[Any, Any] = getattr(data, "attrs", data)
     try:
         return math.sqrt(float(known["k1"]) / float(known["m1"]))
@@ -154,7 +152,7 @@ def omega_of(data: xr.Dataset | Mapping[str, float]) -> float:
 
 
 def period_of(data: xr.Dataset) -> float:
-    """Return the box's period, s, of an answer at one frequency; else nan."""
+    """Return the box's excitation period, s, of a dataset at one frequency; nan for others."""
     for holder in (data.attrs, data.coords):
         for name, factor in (("frequency", 1.0), ("eta", omega_of(data))):
             value = holder.get(name)
@@ -165,7 +163,7 @@ def period_of(data: xr.Dataset) -> float:
 
 
 def scale_of(data: xr.Dataset, unit: str) -> tuple[float, str]:
-    """Return the divisor of numbers in an SI unit as an answer is shown, and the unit shown.
+    """Return the divisor from an SI unit to the display unit of a dataset, and that unit's name.
 
     Parameters
     ----------
@@ -200,13 +198,13 @@ def scale_of(data: xr.Dataset, unit: str) -> tuple[float, str]:
 
 
 def text_of(data: xr.Dataset, value: float | xr.DataArray, unit: str, form: str = ".6g") -> str:
-    """Format a number of an SI unit as an answer is shown: ``12.5 Hz``, ``eta = 0.8``."""
+    """Format an SI value with unit, in a dataset's display units: ``12.5 Hz``, ``eta = 0.8``."""
     number, word = shown_number(data, value, unit, form)
     return f"eta = {number}" if word == "eta" else f"{number} {word}"
 
 
 def range_text(data: xr.Dataset, low: float, high: float, unit: str, form: str = ".4g") -> str:
-    """Format both ends of a range as an answer is shown: ``41 to 45 Hz``, ``eta = 0.8 to 0.9``."""
+    """Format two SI values as a range in a dataset's display units: ``41 to 45 Hz``."""
     (first, word), (last, _) = (shown_number(data, end, unit, form) for end in (low, high))
     return f"eta = {first} to {last}" if word == "eta" else f"{first} to {last} {word}"
 
@@ -214,13 +212,13 @@ def range_text(data: xr.Dataset, low: float, high: float, unit: str, form: str =
 def shown_number(
     data: xr.Dataset, value: float | xr.DataArray, unit: str, form: str = ".6g"
 ) -> tuple[str, str]:
-    """Format a number of an SI unit as an answer is shown, and return its unit apart."""
+    """Convert an SI value to a dataset's display unit; return its text and the unit's name."""
     factor, word = scale_of(data, unit)
     return format(float(value) / factor, form), word
 
 
 def as_shown(data: xr.Dataset) -> xr.Dataset:
-    """Return an answer for a table, its numbers and ``units`` attributes as it is shown.
+    """Convert a dataset's values and ``units`` attributes from SI to its display units.
 
     A frequency ratio stands beside the frequency already, which stays in rad/s then; what is named
     for its unit keeps it.

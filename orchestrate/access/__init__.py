@@ -1,4 +1,4 @@
-"""The one place that talks to FMPy.
+"""The one package that talks to FMPy: describe, export, unpack, load and step FMUs.
 
 ===================  =================================================================
 module               idea

@@ -12,7 +12,7 @@ MAX_BYTES = 1 << 30  # unpacked; the same
 
 
 def check_archive(data: bytes) -> None:
-    """Check that nothing in an archive would lie outside of its folder, or fill the disk.
+    """Raise if an FMU's zip has paths outside its folder, too many files or too many bytes.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def check_archive(data: bytes) -> None:
 
 
 def check_identifier(name: str) -> None:
-    """Check that a binary's name is a name, not a path.
+    """Raise ValueError unless an FMU's modelIdentifier has only letters, digits and ``_``.
 
     Raises
     ------

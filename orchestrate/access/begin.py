@@ -1,4 +1,4 @@
-"""Start of an oscillator's motion, and its states at equal times."""
+"""Initialise an oscillator FMU with structure, excitation and start; sample its states."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def begin(
     start: ArrayLike = REST,
     **values: float,
 ) -> None:
-    """Reset an instance of ``TwoMassImpactOscillator`` and initialise it at time 0.
+    """Reset an oscillator FMU; initialise it at time 0 by structure, excitation and start state.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def begin(
 
 
 def from_rest(structure: Structure, state: list[float]) -> list[float]:
-    """Return a state with its displacements from the position at rest, as the FMU takes it."""
+    """Convert a start state counted from the (preloaded) rest to one from unloaded springs."""
     if structure.gap_offset >= 0.0 or not any(state):
         return state
     (x1, x2, *velocities), (rest_1, rest_2) = state, structure.at_rest
@@ -63,7 +63,7 @@ def from_rest(structure: Structure, state: list[float]) -> list[float]:
 
 
 def gap_between(states: NDArray[np.float64], gap_offset: ArrayLike = 0.0) -> NDArray[np.float64]:
-    """Return the gap of states; with a clearance, 0 where it is no more than rounding.
+    """Return the gap x2 - x1 + offset of states (..., 4); rounding beside an offset is 0.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def gap_between(states: NDArray[np.float64], gap_offset: ArrayLike = 0.0) -> NDA
 
 
 def four_numbers(start: ArrayLike) -> list[float]:
-    """Return a start state as four floats."""
+    """Return a start state as a list of floats x1, x2, v1, v2; raise unless it is four."""
     try:
         state = np.asarray(start, dtype=float)
     except (TypeError, ValueError):
@@ -99,7 +99,7 @@ def four_numbers(start: ArrayLike) -> list[float]:
 
 
 def sampled(instance: Instance, time: float, target: float, count: int) -> NDArray[np.float64]:
-    """Return states at ``count`` equal parts of a time span, the last at its end.
+    """Step an FMU from ``time`` to ``target``; return ``count`` equidistant states (count, 4).
 
     Parameters
     ----------
@@ -125,10 +125,10 @@ def sampled(instance: Instance, time: float, target: float, count: int) -> NDArr
 
 
 def samples_per_step(instance: Instance) -> int:
-    """Return how many states an instance can store during one step."""
+    """Return how many states the FMU can record inside one communication step."""
     return instance.size(*SAMPLE_SERIES) // len(SAMPLE_SERIES)
 
 
 def last_samples(instance: Instance, count: int) -> NDArray[np.float64]:
-    """Return the states of the last step, shape (count, 4), valid until the next call."""
+    """Return the states recorded in the last step, shape (count, 4), valid until the next."""
     return instance.read(*SAMPLE_SERIES).reshape(len(SAMPLE_SERIES), -1)[:, :count].T

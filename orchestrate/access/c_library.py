@@ -1,4 +1,4 @@
-"""C libraries of the package beside the FMUs: compiled where missing or out of date."""
+"""The package's own C sources as shared libraries: compiled where missing or out of date."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ PACKAGE = Path(__file__).resolve().parents[1]
 
 
 def library(source: Path, folder: str | PathLike[str] | None = None) -> Path | None:
-    """Return the path of a C source's compiled library, made if missing; None if that cannot be.
+    """Return the path of a C source's shared library, compiled if missing; None if it cannot be.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def library(source: Path, folder: str | PathLike[str] | None = None) -> Path | N
 
 
 def loaded_function(source: Path) -> Any:
-    """Load the function ``run`` of a C source of the package; None where there is no library."""
+    """Load the C function ``run`` of a source's shared library; None without a library."""
     path = library(source)
     if path is None:
         return None
@@ -72,14 +72,14 @@ def loaded_function(source: Path) -> Any:
 
 
 def has_token(path: Path, token: bytes) -> bool:
-    """Return whether a library exists and was made from the source with this token."""
+    """Return whether a library file exists and contains the token (digest) of its C source."""
     return path.is_file() and token in path.read_bytes()
 
 
 def build_libraries(
     folder: str | PathLike[str] | None = None, platforms: Iterable[str] = ()
 ) -> list[Path]:
-    """Compile all C sources of the package; those that cannot be made here are left out.
+    """Compile all C sources of the package for the platforms; return the paths of those made.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def build_libraries(
 
 
 def compile_library(source: Path, platform: str, folder: Path) -> Path:
-    """Compile a C source to a build folder, whole or not at all."""
+    """Compile one C source for one platform into a folder, atomically; return the path."""
     path = folder / FORM / sources.file_name(source, platform)
     log.info("compiling %s", path)
     library = sources.export(source, platform)

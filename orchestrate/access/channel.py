@@ -1,4 +1,4 @@
-"""Fast calls on one instance, for co-simulation masters.
+"""Fast set, get, step and save/restore of one FMU instance, for co-simulation masters.
 
 Preallocated arrays, one call for many variables, one handle for each state that is kept. Only Real
 variables. Both FMI versions; statuses are checked by FMPy.
@@ -38,7 +38,7 @@ class Pointers(NamedTuple):
 
 
 class Channel:
-    """Fast access to fixed inputs and outputs of an instance, for a co-simulation master.
+    """Fast set, get, step and save/restore of an FMU instance, with fixed lists of variables.
 
     Parameters
     ----------
@@ -62,6 +62,7 @@ class Channel:
         self._gets = self._arguments(references, count, self._outputs)
 
     def _array(self, names: Sequence[str]) -> tuple[Any, int, Any]:
+        """Return ctypes arrays for named variables: value references, count, value buffer."""
         references = [self.instance.variable(name).valueReference for name in names]
         count = len(references)
         return (c_uint * count)(*references), count, (c_double * count)()
@@ -72,6 +73,7 @@ class Channel:
         return (self._fmu.component, references, count, values, *sizes)
 
     def _functions2(self) -> tuple[Callable[..., int], ...]:
+        """Return the FMI 2.0 C functions set, get, step, and get/set/free of a state."""
         dll, component = self._fmu.dll, self._fmu.component
         do_step = dll.fmi2DoStep
 
@@ -82,6 +84,7 @@ class Channel:
         return dll.fmi2SetReal, dll.fmi2GetReal, step, *states
 
     def _functions3(self) -> tuple[Callable[..., int], ...]:
+        """Return the FMI 3.0 C functions set, get, step, and get/set/free of a state."""
         dll, component = self._fmu.dll, self._fmu.component
         do_step = dll.fmi3DoStep
         flags, last = [c_bool() for _ in range(3)], c_double()
@@ -94,14 +97,14 @@ class Channel:
         return dll.fmi3SetFloat64, dll.fmi3GetFloat64, step, *states
 
     def _call(self, function: Callable[..., int], *arguments: Any) -> None:
-        """Call the FMU without FMPy's wrapper; raise its message unless the status is OK."""
+        """Call a C function of the FMU directly; raise ``FmuError`` unless its status is OK."""
         self.begin()
         status = function(*arguments)
         if status:
             raise self.failure(getattr(function, "__name__", "a call of the FMU"), status)
 
     def pointers(self) -> Pointers:
-        """Return the addresses for compiled code, of an FMI 3.0 instance that reuses its states."""
+        """Return C addresses of an FMI 3.0 instance, its functions and its saved state."""
         names = ("SetFloat64", "GetFloat64", "DoStep", "GetFMUState", "SetFMUState")
         functions = (getattr(self._fmu.dll, f"fmi3{name}") for name in names)
         addresses = tuple(cast(function, c_void_p).value or 0 for function in functions)
@@ -111,21 +114,21 @@ class Channel:
         )
 
     def begin(self) -> None:
-        """Clear the messages of earlier calls."""
+        """Clear the FMU's log messages before a new call, so that an error shows only its own."""
         self.instance._messages.clear()
 
     def failure(self, function: str, status: int) -> FmuError:
-        """Return the error with the FMU's message after a call whose status is not OK."""
+        """Return an ``FmuError`` with the FMU's log messages, function name and status."""
         return self.instance.failure(f"{function} failed with status {status}")
 
     def put(self, *values: float) -> None:
-        """Set the first inputs, as many as values are given."""
+        """Set the FMU's inputs in the order of the constructor; fewer values: the first ones."""
         count = len(values)
         self._inputs[:count] = values
         self._call(self._set, *self._puts[count])
 
     def get(self) -> list[float]:
-        """Return the values of the channel's outputs."""
+        """Return the values of all outputs of this channel; raise if one is not finite."""
         self._call(self._read, *self._gets)
         values: list[float] = self._outputs[:]
         if not isfinite(sum(values)) and not all(map(isfinite, values)):
@@ -137,7 +140,7 @@ class Channel:
         self._call(self._step, time, h)
 
     def save(self, level: int = 0) -> None:
-        """Save the present state, separately for each ``level``."""
+        """Save the FMU's whole state in memory under an integer ``level``."""
         handle = self._states.get(level)
         if handle is None:
             handle = self._states[level] = c_void_p()
@@ -146,11 +149,11 @@ class Channel:
         self._call(self._save, self._fmu.component, byref(handle))
 
     def restore(self, level: int = 0) -> None:
-        """Return to the saved state."""
+        """Set the FMU back to the state that :meth:`save` stored under this ``level``."""
         self._call(self._restore, self._fmu.component, self._states[level])
 
     def close(self) -> None:
-        """Free the saved states."""
+        """Free all FMU states that :meth:`save` holds in memory."""
         for handle in self._states.values():
             self._call(self._free, self._fmu.component, byref(handle))
         self._states.clear()

@@ -19,7 +19,7 @@ SI_UNITS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 @dataclass(frozen=True)
 class Description:
-    """Content of an FMU's ``modelDescription.xml``, as far as it is used here.
+    """Content of an FMU's ``modelDescription.xml`` as used here: names, GUID, variables.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class Description:
         return self.fmi_version.startswith("3")
 
     def variable(self, name: str) -> Any:
-        """Return FMPy's description of a variable.
+        """Return FMPy's description of the variable with a name; raise ``InputError`` if unknown.
 
         Raises
         ------
@@ -69,7 +69,7 @@ class Description:
 
 
 def describe(path: str | PathLike[str], model: str | None = None) -> Description:
-    """Read an FMU's description; raise if it is no FMU, or of another model.
+    """Return an FMU file's :class:`Description`; raise if it is no FMU, or of another model.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def describe(path: str | PathLike[str], model: str | None = None) -> Description
 
 
 def exponents(base: Any) -> dict[str, int]:
-    """Return the exponents of SI units in FMPy's base unit, those that are not 0."""
+    """Return the nonzero exponents of the SI base units (kg, m, s, ...) of FMPy's base unit."""
     powers = {name: int(getattr(base, name)) for name in SI_UNITS} if base else {}
     return {name: exponent for name, exponent in powers.items() if exponent}
 
@@ -111,7 +111,7 @@ _known: dict[str, Description] = {}  # by digest: validation takes long
 
 
 def read_description(path: Path) -> Description:
-    """Read and validate ``modelDescription.xml``, once in a process for a file's bytes."""
+    """Parse and validate an FMU's ``modelDescription.xml``; cached by the file's digest."""
     size = path.stat().st_size
     if size > MAX_BYTES:  # packed, it is smaller than unpacked
         raise ValueError(f"{size} bytes, at most {MAX_BYTES} expected")

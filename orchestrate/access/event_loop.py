@@ -1,4 +1,4 @@
-"""The loop over the pieces of an input, the times at which a motion is read, and its impacts.
+"""The loop that steps an FMU through its events under piecewise inputs: samples and impacts.
 
 ``event_loop.c`` calls the FMU's functions itself, past Python: where the FMU is native and the
 library can be had, :func:`event_loop_of` makes a loop that runs so. The calls and their order are
@@ -38,7 +38,7 @@ MAX_STEPS = 200_000  # of one call: between two of them an interrupt is heard
 
 
 class Played(NamedTuple):
-    """Result of an event loop: the motion at given times, and its impacts.
+    """Result of an event loop: outputs and contact flags at the sampling times, and all impacts.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ class Played(NamedTuple):
 
 
 class Calls(ctypes.Structure):
-    """Instance with its functions, as the compiled library takes it."""
+    """C struct for the compiled event loop: FMI function addresses and buffers of an instance."""
 
     _fields_ = [
         *((name, c_void_p) for name in ("instance", *FUNCTIONS)),
@@ -67,7 +67,7 @@ class Calls(ctypes.Structure):
 
 
 class Task(ctypes.Structure):
-    """Pieces of input and sampling times, as addresses of arrays with their sizes."""
+    """C struct for the compiled event loop: addresses, sizes of input pieces and sample times."""
 
     _fields_ = [
         *((name, c_void_p) for name in ("nodes", "derivatives", "samples")),
@@ -78,7 +78,7 @@ class Task(ctypes.Structure):
 
 
 class Progress(ctypes.Structure):
-    """Numbers of pieces, samples and impacts that the library has done."""
+    """C struct of the compiled event loop: how many pieces, samples and impacts are done."""
 
     _fields_ = [
         ("time", c_double),
@@ -89,7 +89,7 @@ class Progress(ctypes.Structure):
 
 @functools.cache
 def run_function() -> Any:
-    """Load the library's function, once per process; return None where there is no library."""
+    """Load the event loop's C function by ctypes, types set; return None without a library."""
     run = loaded_function(SOURCE)
     if run is None:
         return None
@@ -100,14 +100,14 @@ def run_function() -> Any:
 def event_loop_of(
     instance: SteppingInstance, inputs: Sequence[str] = (), outputs: Sequence[str] = ()
 ) -> EventLoop:
-    """Return the fastest loop that there is for an instance; see :class:`EventLoop`."""
+    """Return an event loop for an FMU instance: compiled C where possible, else Python."""
     native = not instance.description.needs_tool
     kind = CompiledEventLoop if native and run_function() else EventLoop
     return kind(instance, inputs, outputs)
 
 
 class EventLoop:
-    """Loop that computes a motion through all its events, its input set piece by piece.
+    """Steps an FMU through its events, setting inputs at nodes; collects samples and impacts.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ class EventLoop:
         self.events = Channel(instance, (), EVENT_OUTPUTS)
 
     def run(self, nodes: Floats, derivatives: Floats, samples: Floats) -> Played:
-        """Compute the motion over all pieces; return outputs, contact flags and impacts.
+        """Simulate under inputs given at nodes; return outputs at the samples, and impacts.
 
         A piece's input is set where it begins and runs on; a time of reading that is a node belongs
         to the piece that begins there. Each time of reading, and each impact, ends a step.
@@ -180,12 +180,12 @@ class EventLoop:
         return Played(rows, touching, Impacts.from_table(np.array(table)))
 
     def _tables(self, samples: Floats) -> tuple[Floats, NDArray[np.bool_]]:
-        """Return two uninitialised arrays: the sampled outputs, and flags of contact."""
+        """Return two empty result arrays: outputs (samples, outputs), contact flags."""
         return np.empty((len(samples), len(self.outputs))), np.empty(len(samples), dtype=bool)
 
 
 class CompiledEventLoop(EventLoop):
-    """The same loop in compiled code."""
+    """The event loop in compiled C: same arguments and same results as :class:`EventLoop`."""
 
     def __init__(
         self, instance: SteppingInstance, inputs: Sequence[str] = (), outputs: Sequence[str] = ()
@@ -203,7 +203,7 @@ class CompiledEventLoop(EventLoop):
         )
 
     def run(self, nodes: Floats, derivatives: Floats, samples: Floats) -> Played:
-        """Compute the motion over all pieces, as :meth:`EventLoop.run`."""
+        """Simulate under inputs given at nodes, in C; same results as :meth:`EventLoop.run`."""
         arrays = [np.ascontiguousarray(part, float) for part in (nodes, derivatives, samples)]
         if arrays[1].shape != (len(nodes) - 1, len(self.inputs)):
             raise ValueError(f"derivatives of shape {derivatives.shape} for {len(nodes)} nodes")
@@ -223,7 +223,7 @@ class CompiledEventLoop(EventLoop):
         return Played(rows, touching, Impacts.from_table(np.concatenate(tables)))
 
     def _failure(self, rows: Floats, progress: Progress) -> FmuError:
-        """Return the error after a call that failed."""
+        """Return the ``FmuError`` for the status at which the C loop stopped."""
         status = self._calls.status
         if status == OUTPUTS_NOT_FINITE:
             return self.instance.not_finite_error(self.outputs, rows[progress.sample - 1])
@@ -234,5 +234,5 @@ class CompiledEventLoop(EventLoop):
 
 
 def references(instance: SteppingInstance, names: Sequence[str]) -> Any:
-    """Return the value references of variables, as an array of C."""
+    """Return the FMI value references of variables, given by name, as a ctypes array."""
     return (c_uint * len(names))(*(instance.variable(name).valueReference for name in names))

@@ -21,7 +21,7 @@ NO_INPUT, NO_TIMES = np.empty((1, 0)), np.empty(0)
 
 
 class EventInstance(SteppingInstance):
-    """Instance of the FMI 3.0 form that stops at impacts.
+    """FMI 3.0 FMU instance that stops at each impact, so that all impacts can be read exactly.
 
     Parameters
     ----------
@@ -46,11 +46,11 @@ class EventInstance(SteppingInstance):
             raise InputError(f"FMU {path}: is FMI {version}; expected FMI 3.0, which has events")
 
     def impacts(self, time: float, target: float) -> Impacts:
-        """Return all impacts of (time, target], s."""
+        """Simulate from ``time`` to ``target``, s, inputs unchanged; return all impacts."""
         return self.event_loop().run(np.array([time, target]), NO_INPUT, NO_TIMES).impacts
 
     def event_loop(self, inputs: Sequence[str] = (), outputs: Sequence[str] = ()) -> EventLoop:
-        """Return the loop through events with these inputs and outputs, made once."""
+        """Return the event loop with these input and output names; made once and cached."""
         key = tuple(inputs), tuple(outputs)
         if key not in self._loops:
             self._loops[key] = event_loop_of(self, *key)

@@ -35,7 +35,7 @@ def build(
     names: Iterable[str] = MODELS,
     platforms: Iterable[str] = (),
 ) -> list[Path]:
-    """Export models in the given forms; return the paths of the FMUs.
+    """Export FMUs of the given models, forms (FMI versions) and platforms; return the files' paths.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def build(
 def export_all(
     pairs: Iterable[tuple[str, str]], folder: Path, platforms: tuple[str, ...] = ()
 ) -> list[Path]:
-    """Export models in forms; those that cannot be made here are left out, unless all are."""
+    """Export FMUs for (form, model) pairs; return the files; raise only if all fail."""
     written, reasons = [], []
     for form, name in pairs:
         try:
@@ -95,7 +95,7 @@ def export(
     platforms: tuple[str, ...] = (),
     level: int = logging.INFO,
 ) -> Path:
-    """Export one model in one form to ``folder/FORM/NAME.fmu``, whole or not at all.
+    """Export one model in one form to ``folder/FORM/NAME.fmu`` atomically; return the file's path.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def export(
 
 
 def export_once(name: str, form: str, folder: Path, level: int) -> Description:
-    """Export one model in one form, unless another process has done so meanwhile."""
+    """Export one FMU under a file lock if it is not up to date; return its description."""
     path = folder / form / f"{name}.fmu"
     with made_once(path):
         if not up_to_date(form, name, folder):
@@ -134,20 +134,20 @@ def export_once(name: str, form: str, folder: Path, level: int) -> Description:
 
 @functools.cache
 def announce(folder: Path, level: int) -> None:
-    """Log once that exporting takes long."""
+    """Log that FMUs are now exported to a folder, which takes some seconds a model."""
     text = "exporting FMUs to %s, this once: compiling takes some seconds a model"
     log.log(level, text, folder)
 
 
 @functools.cache
 def guid(form: str, name: str) -> str:
-    """Return the GUID that an FMU of the present sources has."""
+    """Return the GUID that an FMU of this form and model exported from the present sources has."""
     check(name, form)
     return sources.guid(name, form)
 
 
 def check(name: str, form: str) -> None:
-    """Check that there is such a model and such a form."""
+    """Raise ``InputError`` unless the model's name and the form (FMI version) are known ones."""
     if name not in MODELS:
         raise InputError(f"model {name}: expected one of {', '.join(MODELS)}")
     if form not in sources.ALL_FORMS:
@@ -155,7 +155,7 @@ def check(name: str, form: str) -> None:
 
 
 def up_to_date(form: str, name: str, folder: str | PathLike[str]) -> bool:
-    """Return whether a model's FMU of a form exists and was made from the present sources."""
+    """Return whether a folder has a model's FMU whose GUID is that of the present sources."""
     path = Path(folder) / form / f"{name}.fmu"
     try:
         return path.is_file() and describe(path, name).guid == guid(form, name)
@@ -173,7 +173,7 @@ def default_folder() -> Path:
 
 
 def is_clone(root: Path) -> bool:
-    """Return whether the package lies in a clone of its repository, not in an installation."""
+    """Return whether a folder is a clone of this repository, by its pyproject.toml."""
     project = root / "pyproject.toml"
     return project.is_file() and 'name = "vibroimpact"' in project.read_text(encoding="utf-8")
 
@@ -185,7 +185,7 @@ def find(
     fmu: str | PathLike[str] | None = None,
     level: int = logging.INFO,
 ) -> Description:
-    """Return a model's FMU; export it first if there is none of the present sources.
+    """Return the description of a model's FMU: a given file, an up-to-date one, or a new export.
 
     Parameters
     ----------
@@ -238,12 +238,12 @@ def find(
 
 @functools.cache
 def warn_once(line: str) -> None:
-    """Log a warning once, however many questions it concerns."""
+    """Log a warning; the same line is logged only once per process."""
     log.warning("%s", line)
 
 
 def finder(running: Mapping[str, Any]) -> Callable[[str], Description]:
-    """Return a function from model name to FMU, by the keywords of a question.
+    """Return a function from model name to FMU description, made of a question's keywords.
 
     Parameters
     ----------

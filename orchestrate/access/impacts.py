@@ -1,4 +1,4 @@
-"""The impacts of a motion, as the FMU's events give them."""
+"""The impacts of a motion as arrays: times, states, closing velocities, impulses."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ EVENT_OUTPUTS = (*STATE, "impact_velocity")
 
 @dataclass(frozen=True)
 class Impacts:
-    """The impacts of a motion, in order.
+    """The impacts of a motion in time order, as arrays: time, state, closing velocity, sticking.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class Impacts:
 
     @classmethod
     def from_table(cls, table: NDArray[np.float64]) -> Impacts:
-        """Return impacts from rows of their time, ``EVENT_OUTPUTS`` and whether they stick."""
+        """Return impacts from table rows: time, the FMU's ``EVENT_OUTPUTS``, a flag of sticking."""
         table = table.reshape(-1, len(EVENT_OUTPUTS) + 2)
         return cls(table[:, 0], table[:, 1:5], table[:, 5], table[:, 6] != 0.0)
 

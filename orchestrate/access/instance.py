@@ -1,4 +1,4 @@
-"""Co-simulation instance: set, step, read, save its state."""
+"""FMU instance for co-simulation: set, get, step, save and restore its state (FMI 2.0 and 3.0)."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Prepared = Callable[[], None]
 
 
 class Transfer(NamedTuple):
-    """One call that sets or reads some variables of one type.
+    """A prepared FMI set or get call for several variables of one type, with its value buffer.
 
     Attributes
     ----------
@@ -103,6 +103,7 @@ class Instance:
         return self.description.is_fmi3
 
     def _make2(self) -> None:
+        """Instantiate the FMU by FMI 2.0, with callbacks that collect its log messages."""
         import fmpy
         from fmpy import fmi2
 
@@ -115,10 +116,11 @@ class Instance:
         self.call("instantiate", callbacks=self._callbacks, loggingOn=True)
 
     def _make3(self) -> None:
+        """Instantiate the FMU by FMI 3.0, with a callback that collects its log messages."""
         self.call("instantiate", loggingOn=True, logMessage=self._log, **self.EVENTS)
 
     def _calls2(self) -> tuple[Prepared, list[Prepared], Prepared]:
-        """Prepare FMI 2.0's calls; return reset, those of initialisation, and step."""
+        """Prepare FMI 2.0's C calls; return those of reset, of initialisation, and of one step."""
         no, zero = c_int(0), c_double()  # no tolerance, no end
         initialize = [
             self.prepared("fmi2SetupExperiment", no, zero, self._start, no, zero),
@@ -129,7 +131,7 @@ class Instance:
         return self.prepared("fmi2Reset"), initialize, step
 
     def _calls3(self) -> tuple[Prepared, list[Prepared], Prepared]:
-        """Prepare FMI 3.0's calls; return reset, those of initialisation, and step."""
+        """Prepare FMI 3.0's C calls; return those of reset, of initialisation, and of one step."""
         no, zero = c_bool(False), c_double()
         initialize = [
             self.prepared("fmi3EnterInitializationMode", no, zero, self._start, no, zero),
@@ -151,24 +153,24 @@ class Instance:
         self.close()
 
     def close(self) -> None:
-        """Free the instance; it cannot be used afterwards."""
+        """Free the FMU instance; it cannot be used afterwards."""
         if self._open:
             self._open = False
             free = self._fmu.fmi3FreeInstance if self.is_fmi3 else self._fmu.fmi2FreeInstance
             free(self._fmu.component)
 
     def _log(self, *arguments: Any) -> None:
-        """Store a message; it is the last argument in both FMI versions."""
+        """Append the FMU's log message; it is the last argument in both FMI versions."""
         self._messages.append(arguments[-1].decode(errors="replace"))
 
     def failure(self, error: object) -> FmuError:
-        """Return an error with the FMU's messages since their clearing; ``error`` without any."""
+        """Return an ``FmuError`` with the FMU's log messages, or ``error``'s text without any."""
         quoted = r"(?s).*FmuError\(([\"'])(.*)\1\)\s*$"  # how pythonfmu hands an exception on
         texts = [re.sub(quoted, r"\2", message) for message in self._messages]
         return FmuError("; ".join(texts) or str(error))
 
     def call(self, function: str, *args: Any, **kwargs: Any) -> Any:
-        """Call a method of FMPy's FMU; raise the FMU's own message if it fails."""
+        """Call a method of FMPy's FMU object; return its result or raise the FMU's message."""
         self._messages.clear()
         try:
             return getattr(self._fmu, function)(*args, **kwargs)
@@ -176,7 +178,7 @@ class Instance:
             raise self.failure(error) from None
 
     def prepared(self, function: str, *arguments: Any) -> Prepared:
-        """Return a fast call of one of the binary's functions with fixed arguments.
+        """Return a fast callable of an FMI C function with fixed arguments; it raises on failure.
 
         FMPy and ctypes take longer to convert arguments than the FMU to answer. Here they are made
         once: C numbers, whose values may change from call to call, and arrays.
@@ -203,7 +205,7 @@ class Instance:
         return self.description.variable(name)
 
     def set(self, **values: float) -> None:
-        """Set variables by name."""
+        """Set FMU variables given as keywords (name=value)."""
         names = ("Set", *values)
         new_values = list(values.values())
         for call, array, positions in self._transfers.get(names) or self._grouped(names):
@@ -216,7 +218,7 @@ class Instance:
             call()
 
     def get(self, *names: str) -> list[Any]:
-        """Return values by name, as a list."""
+        """Return the values of FMU variables, given by name, as a list in the same order."""
         key = ("Get", *names)
         values: list[Any] = [None] * len(names)
         for call, array, positions in self._transfers.get(key) or self._grouped(key):
@@ -228,7 +230,7 @@ class Instance:
         return values
 
     def _grouped(self, names: tuple[str, ...]) -> list[Transfer]:
-        """Prepare one call per type that sets or reads variables; the first name is the verb."""
+        """Prepare an FMI call per data type for variables; the first name: ``Set``/``Get``."""
         verb, *variables = names
         positions: dict[str, list[int]] = {}
         for position, name in enumerate(variables):
@@ -243,7 +245,7 @@ class Instance:
     def _transfer(
         self, verb: str, kind: str, variables: Sequence[tuple[Any, int]], positions: list[int]
     ) -> Transfer:
-        """Prepare one call for variables of a type, each with its number of values."""
+        """Prepare one FMI set or get call for variables of one type; return it with its buffer."""
         if kind not in (*REAL_TYPES, *INTEGER_TYPES, "Boolean"):
             raise FmuError(f"{variables[0][0].name}: is {kind}; expected numbers and Booleans")
         flag = c_bool if self.is_fmi3 else c_int
@@ -261,7 +263,7 @@ class Instance:
     def _checked(
         self, call: Prepared, variables: Sequence[tuple[Any, int]], values: NDArray[np.float64]
     ) -> Prepared:
-        """Return a reading call that raises if the FMU answers with NaN or infinity."""
+        """Wrap a prepared get call so that it raises if the FMU gives NaN or infinity."""
 
         def run() -> None:
             call()
@@ -272,20 +274,20 @@ class Instance:
         return run
 
     def not_finite_error(self, names: Sequence[str], values: ArrayLike) -> FmuError:
-        """Return the error for an FMU that answers NaN or infinity."""
+        """Return an ``FmuError`` that names the first variable whose value is not finite."""
         index = int(np.flatnonzero(~np.isfinite(values))[0])
         text = f"{names[index]} = {np.ravel(values)[index]}"
         return FmuError(f"the FMU {self.description.name} answers {text}; expected a finite number")
 
     def initialize(self, start_time: float = 0.0, **values: float) -> None:
-        """Set ``values`` and initialise."""
+        """Set start values given as keywords, and take the FMU through initialisation mode."""
         self.set(**values)
         self._start.value = start_time
         for call in self._initialize:
             call()
 
     def reset(self) -> None:
-        """Return to the state after instantiation."""
+        """Reset the FMU (fmi2Reset, fmi3Reset) to its state after instantiation."""
         self._reset()
 
     def step(self, time: float, target: float) -> None:
@@ -294,7 +296,7 @@ class Instance:
         self._step()
 
     def read(self, *names: str) -> NDArray[np.float64]:
-        """Return values of Real variables, in one call of the FMU.
+        """Return all values of Real variables or arrays, concatenated, by one FMI call.
 
         Parameters
         ----------
@@ -312,11 +314,11 @@ class Instance:
         return values
 
     def size(self, *names: str) -> int:
-        """Return how many values :meth:`read` gives."""
+        """Return how many values :meth:`read` gives for these names (arrays have several)."""
         return len(self._reader(names)[1])
 
     def _reader(self, names: tuple[str, ...]) -> tuple[Transfer, NDArray[np.float64]]:
-        """Prepare a call that reads Real variables; return it and the array that it fills."""
+        """Prepare an FMI get call for Real variables; return it and the array that it fills."""
         if names not in self._readers:
             elements = [element for name in names for element in self.elements(name)]
             for variable in (
@@ -328,7 +330,7 @@ class Instance:
         return self._readers[names]
 
     def elements(self, name: str) -> list[tuple[Any, int]]:
-        """Return the variables that a name stands for, each with its number of values."""
+        """Return the FMI variables behind an (array's) name, each with its number of values."""
         variables = self.description.variables
         if f"{name}[1]" not in variables:
             variable = self.variable(name)
@@ -338,7 +340,7 @@ class Instance:
         return [(variables[f"{name}[{i + 1}]"], 1) for i in range(count)]
 
     def save_state(self) -> bytes:
-        """Return the whole state, serialised."""
+        """Return the FMU's whole state, serialised to bytes by FMI's functions."""
         get, serialize, _, _, free = self.state_calls()
         state = self.call(get)
         try:
@@ -347,7 +349,7 @@ class Instance:
             self.call(free, state)
 
     def restore_state(self, data: bytes) -> None:
-        """Return to a state that :meth:`save_state` gave."""
+        """Set the FMU to a state from the bytes that :meth:`save_state` gave."""
         _, _, deserialize, put, free = self.state_calls()
         state = self.call(deserialize, data)
         try:
@@ -356,7 +358,7 @@ class Instance:
             self.call(free, state)
 
     def state_calls(self) -> tuple[str, str, str, str, str]:
-        """Return FMPy's names of the state functions."""
+        """Return FMPy's method names to get, serialize, deserialize, set and free a state."""
         if self.is_fmi3:
             return (
                 "getFMUState",

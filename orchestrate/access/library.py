@@ -1,6 +1,4 @@
-"""Binaries of FMUs, loaded once per process: FMPy takes milliseconds to bind the functions of
-one.
-"""
+"""Binaries of FMUs, loaded once per process by FMPy and cached (binding takes milliseconds)."""
 
 from __future__ import annotations
 
@@ -16,7 +14,7 @@ _loaded: dict[tuple[str, str], Any] = {}  # by folder and binary
 
 
 def loaded(description: Description, name: str) -> Any:
-    """Return FMPy's FMU object for one more instance, not instantiated yet.
+    """Return FMPy's FMU object for a new, not yet instantiated instance; the binary is cached.
 
     Parameters
     ----------
@@ -35,7 +33,7 @@ def loaded(description: Description, name: str) -> Any:
 
 
 def load(description: Description, folder: str) -> Any:
-    """Load an FMU's binary with FMPy; return FMPy's object for its instances."""
+    """Load an FMU's binary from its unpacked folder; return FMPy's FMU object for it."""
     from fmpy import fmi2, fmi3
 
     make = fmi3.FMU3Slave if description.is_fmi3 else fmi2.FMU2Slave

@@ -1,4 +1,4 @@
-"""Names of the models."""
+"""Names of the FMU models: ``TwoMassImpactOscillator`` and ``MotorShaker``."""
 
 OSCILLATOR = "TwoMassImpactOscillator"
 SHAKER = "MotorShaker"

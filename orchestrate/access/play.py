@@ -1,4 +1,4 @@
-"""A motion under a box acceleration that is given as cubics, impact by impact.
+"""Simulate a structure under a box acceleration given as cubic pieces, through all impacts.
 
 Each cubic is set where it begins and runs on, so the motion does not depend on where it is read.
 """
@@ -20,7 +20,7 @@ PLAYED = ("x1", "x2", "v1", "v2", "x_rel", "v_rel", "contact_force")
 
 
 class Player(EventInstance):
-    """Instance of ``TwoMassImpactOscillator`` for any number of motions under given cubics.
+    """Oscillator FMU instance that simulates motions under box accelerations given as cubics.
 
     The FMU is unpacked and its binary loaded once; another motion, of another structure too, takes
     a reset of the instance.
@@ -40,7 +40,7 @@ class Player(EventInstance):
     """
 
     def start(self, structure: Structure, start: ArrayLike = REST) -> None:
-        """Begin a motion at time 0 in a box at rest.
+        """Initialise a structure's motion at time 0 from a start state, its box at rest.
 
         Parameters
         ----------
@@ -57,7 +57,7 @@ class Player(EventInstance):
         samples: NDArray[np.float64],
         outputs: Sequence[str] = PLAYED,
     ) -> Played:
-        """Compute the motion under a box acceleration given as consecutive cubics.
+        """Simulate under a box acceleration of consecutive cubics; return samples and impacts.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Steps of one instance that end at its events, and fast calls for loops over them."""
+"""FMI 3.0 instance that is stepped from event to event, with fast prepared calls for loops."""
 
 from __future__ import annotations
 
@@ -9,23 +9,23 @@ from .instance import Instance
 
 
 class SteppingInstance(Instance):
-    """Instance of the FMI 3.0 form that is stepped from event to event."""
+    """FMI 3.0 instance with event mode: a step returns early at an impact."""
 
     def advance(self, time: float, target: float) -> None:
-        """Step to ``target``, through all events."""
+        """Step the FMU from ``time`` to ``target``, s, handling every event on the way."""
         while time < target:
             event, _, _, time = self.call("doStep", time, target - time)
             if event:
                 self.handle_event()
 
     def handle_event(self) -> None:
-        """Go through event mode, as FMI 3.0 asks of an importer after an event."""
+        """Take the FMU through FMI 3.0's event mode and back to step mode after an event."""
         self.call("enterEventMode")
         self.call("updateDiscreteStates")
         self.call("enterStepMode")
 
     def stepper(self) -> Callable[[float, float], tuple[bool, float]]:
-        """Return a fast ``fmi3DoStep``; it returns whether there was an event, and its time."""
+        """Return a fast ``fmi3DoStep(time, length)`` that gives (event happened, time reached)."""
         event, last = c_bool(), c_double()
         results = byref(event), byref(c_bool()), byref(c_bool()), byref(last)
         do_step = self.prepared("fmi3DoStep", self._time, self._length, c_bool(True), *results)
@@ -38,7 +38,7 @@ class SteppingInstance(Instance):
         return step
 
     def event_handler(self) -> Callable[[], None]:
-        """Return a fast :meth:`handle_event`, without FMPy's wrapper."""
+        """Return a fast callable of :meth:`handle_event`, by C calls without FMPy's wrapper."""
         results = [*(byref(c_bool()) for _ in range(5)), byref(c_double())]
         enter, leave = self.prepared("fmi3EnterEventMode"), self.prepared("fmi3EnterStepMode")
         update = self.prepared("fmi3UpdateDiscreteStates", *results)
@@ -51,7 +51,7 @@ class SteppingInstance(Instance):
         return handle
 
     def flag(self, name: str) -> Callable[[], bool]:
-        """Return a fast reader of one Boolean variable."""
+        """Return a fast callable that reads one Boolean variable of the FMU, given by name."""
         call, values, _ = self._transfer("Get", "Boolean", [(self.variable(name), 1)], [0])
 
         def read() -> bool:

@@ -17,7 +17,7 @@ _lock = threading.RLock()
 
 
 def unpacked(description: Description) -> Path:
-    """Return the folder with an FMU's files; unpack it once per process.
+    """Return the folder with an FMU's unpacked files; unpack it there once per process.
 
     Raises
     ------
@@ -38,7 +38,7 @@ def unpacked(description: Description) -> Path:
 
 
 def described_bytes(description: Description) -> bytes:
-    """Return the FMU file's bytes; it has to be the file that was described."""
+    """Return an FMU file's bytes; raise ``InputError`` if it changed since it was described."""
     data = description.path.read_bytes()
     if hashlib.sha256(data).hexdigest() != description.digest:
         text = f"FMU {description.path}: it has changed since it was read"
@@ -47,7 +47,7 @@ def described_bytes(description: Description) -> bytes:
 
 
 def unpack(data: bytes, folder: Path) -> None:
-    """Unpack an FMU whole or not at all."""
+    """Extract the bytes of an FMU's zip to a folder, atomically (a partial folder is renamed)."""
     import fmpy
 
     partial = folder.with_suffix(".partial")

@@ -1,4 +1,4 @@
-"""WebAssembly modules of the kernels: found, or compiled where missing or out of date."""
+"""The models' kernels as WebAssembly modules for web pages: found, or compiled if out of date."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ FORM = "wasm"
 
 @dataclass(frozen=True)
 class WebKernel:
-    """Kernel of a model for a web page.
+    """Kernel of a model for a web page: WebAssembly bytes, slots and start values of its variables.
 
     Attributes
     ----------
@@ -88,13 +88,13 @@ def web_kernel(model: str, folder: str | PathLike[str] | None = None) -> WebKern
 
 
 def read_module(path: Path, guid: str) -> bytes:
-    """Return the module in a file if it is of the present sources, else empty bytes."""
+    """Return a WebAssembly file's bytes if it has the present sources' GUID, else ``b""``."""
     module = path.read_bytes() if path.is_file() else b""
     return module if sources.guid_inside(module) == guid else b""
 
 
 def build_web_kernels(folder: str | PathLike[str] | None = None) -> list[Path]:
-    """Compile the kernels of all models for web pages; they are left out where they cannot be made.
+    """Compile all models' kernels to WebAssembly files in a folder; return the paths of those made.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def build_web_kernels(folder: str | PathLike[str] | None = None) -> list[Path]:
 
 
 def kernel_digest(model: str) -> str:
-    """Return a fingerprint, 32 digits, of the kernel's sources, which decide a model's numbers.
+    """Return a digest (32 hexadecimal digits) of a model's kernel sources.
 
     Examples
     --------
@@ -128,7 +128,7 @@ def kernel_digest(model: str) -> str:
 
 
 def compile_module(model: str, folder: Path) -> Path:
-    """Compile a model's kernel to ``folder/wasm/NAME.wasm``, whole or not at all."""
+    """Compile a model's kernel to ``folder/wasm/NAME.wasm`` atomically; return the path."""
     path = folder / FORM / f"{model}.wasm"
     log.info("compiling %s", path)
     module = sources.export(MODELS[model])

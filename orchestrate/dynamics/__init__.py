@@ -1,4 +1,4 @@
-"""What a motion is: stable or not, one of how many, and where each begins.
+"""Dynamics of the structure: stability, Lyapunov exponents, attractors, basins, orbits, branches.
 
 Three ways lead to an answer. Responses that are run on in the FMU until they are settled
 (:mod:`.attractors`, :mod:`.basins`, :mod:`.parameter_map`, :mod:`.impact_statistics`). Deviations

@@ -1,4 +1,4 @@
-"""Coexisting attractors: random starts run on until they are settled, then grouped."""
+"""Coexisting attractors: run random starts until they settle, group the motions they reach."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ AROUND, BEYOND = 0.7, 3.0  # of its largest displacement, of its largest gap: th
 
 
 class Start(NamedTuple):
-    """One of the random starts at one value of the parameter.
+    """A random start: its index, the parameter's point, the size of the box it is drawn from.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ class Start(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class AttractorsJob(SeriesQuestion):
-    """Random starts along a parameter; what is not said here as in :func:`orchestrate.attractors`.
+    """Job of :func:`orchestrate.attractors`: random starts at each value of a parameter.
 
     Attributes
     ----------
@@ -99,15 +99,15 @@ class AttractorsJob(SeriesQuestion):
             )
 
     def needs(self) -> tuple[str, ...]:
-        """Return the name of the sweep whose result is needed; an empty tuple without one."""
+        """Return the name of the sweep that sets the starts' scale; an empty tuple without one."""
         return (self.follows,) if self.follows else ()
 
     def count(self) -> int:
-        """Return the number of all starts and one more, the item that gathers their attractors."""
+        """Return the number of items: all starts at all values, and one that groups them."""
         return self.starts * super().count() + 1
 
     def items(self, inputs: Inputs) -> Sequence[Start | None]:
-        """Return every start at every value, then a None at each, which gathers its attractors."""
+        """Return the items: each start at each value, then None, which stands for grouping."""
         points = self.series.points
         scales = self.scales(inputs)
         starts = [
@@ -118,7 +118,7 @@ class AttractorsJob(SeriesQuestion):
         return [*starts, None]
 
     def scales(self, inputs: Inputs) -> Sequence[float | None]:
-        """Return the half widths of the boxes of starts; None: by the response from rest."""
+        """Return, by value, the half width of the box of starts, m; None: size of the response."""
         series = self.series
         if self.follows:
             along = {series.name: list(series.values)}
@@ -138,7 +138,7 @@ class AttractorsJob(SeriesQuestion):
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Start | None], previous: Table | None
     ) -> Table:
-        """Run some starts on until they are settled; or gather the attractors of all of them."""
+        """Run starts until they settle, a row each; at the last item group them to attractors."""
         starts = [item for item in items if item is not None]
         with Instances(fmus[OSCILLATOR]) as instances:
             if not starts:
@@ -155,7 +155,7 @@ class AttractorsJob(SeriesQuestion):
     def draw_starts(
         self, instance: Instance, place: int, group: Sequence[Start]
     ) -> Iterator[NDArray[np.float64]]:
-        """Yield the states of some starts at one value."""
+        """Yield the random start states of a group of starts at one parameter value."""
         point, scale = group[0].point, group[0].scale
         seed = (self.seed, place)
         if self.scale is not None:
@@ -171,7 +171,7 @@ class AttractorsJob(SeriesQuestion):
     def gather_attractors(
         self, instances: tuple[Instance, EventInstance | None], table: Table
     ) -> Table:
-        """Match the attractors of all values, and return arrays with one entry."""
+        """Group all starts' settled motions to attractors, matched along the parameter."""
         series, order = self.series, self.order()
         shape = len(series.points), self.starts
         features = table["features"].reshape(*shape, len(FEATURES))
@@ -187,11 +187,11 @@ class AttractorsJob(SeriesQuestion):
         return {name: rows[np.newaxis] for name, rows in columns.items()}
 
     def order(self) -> NDArray[np.intp]:
-        """Return the indices that sort the values: neighbours are next to each other."""
+        """Return the indices that sort the parameter values, so that neighbours are adjacent."""
         return np.argsort(self.series.values, kind="stable")
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return the attractors of each value with their shares of starts."""
+        """Return the dataset: the attractors at each value and the shares of starts they get."""
         import xarray as xr
 
         along, shape = self.series.name, (len(self.series.values), self.starts)
@@ -218,7 +218,7 @@ class AttractorsJob(SeriesQuestion):
         return xr.Dataset(variables, coordinates, {"title": title})
 
     def ranges_found(self, there: NDArray[np.bool_]) -> dict[str, Variable]:
-        """Return between which values each attractor has been found."""
+        """Return the smallest and largest parameter value at which each attractor was found."""
         values = np.array(self.series.values)[:, np.newaxis]
         first = np.where(there, values, np.inf).min(axis=0)
         last = np.where(there, values, -np.inf).max(axis=0)
@@ -232,26 +232,26 @@ class AttractorsJob(SeriesQuestion):
 
 @dataclass
 class SettledRows:
-    """What responses have settled to, one row a response."""
+    """Collects a table of settled motions: features, a state, how decided; a row per start."""
 
     features: list[list[float]] = field(default_factory=list)
     ends: list[NDArray[np.float64]] = field(default_factory=list)
     decided: list[int] = field(default_factory=list)
 
     def add(self, motion: SettledMotion, state: NDArray[np.float64]) -> None:
-        """Add what one response has settled to, with a state of it at phase 0."""
+        """Append a row: a settled motion's features, and a state on it at phase 0."""
         self.features.append(motion.features)
         self.ends.append(state)
         self.decided.append(motion.decided)
 
     def add_absent(self) -> None:
-        """Add a row for a start that is none."""
+        """Append a row of NaN for an impossible start (its masses overlap)."""
         self.features.append([np.nan] * len(FEATURES))
         self.ends.append(np.full(4, np.nan))
         self.decided.append(ABSENT)
 
     def table(self) -> Table:
-        """Return the rows as arrays."""
+        """Return the collected rows as a dict of arrays: features, end states, how decided."""
         return {
             "features": np.array(self.features, dtype=float),
             "end": np.array(self.ends, dtype=float),
@@ -260,7 +260,7 @@ class SettledRows:
 
 
 def attractor_columns(matched: MatchedAttractors) -> Table:
-    """Return attractors along a parameter as arrays, a row a value; ABSENT where there is none."""
+    """Return matched attractors as arrays (values, attractors), NaN where one is absent."""
     shape = len(matched.motions), matched.count
     columns = {name: np.full(shape, np.nan) for name in (*OF_ATTRACTORS, "multiplier")}
     how, share = np.zeros(shape, dtype=np.int8), np.zeros(shape)
@@ -287,7 +287,7 @@ def attractor_columns(matched: MatchedAttractors) -> Table:
 def attractor_variables(
     columns: Mapping[str, Any], along: tuple[str, ...], of: str
 ) -> dict[str, Variable]:
-    """Return variables over ``attractor``; share 0 and NaN where one does not exist."""
+    """Return dataset variables of attractors (share, features, state) from arrays by name."""
     dims = (*along, "attractor")
     text = "a state on it at phase 0: x1, x2 in m, v1, v2 in m/s"
     return {
@@ -302,7 +302,7 @@ def attractor_variables(
 def random_starts(
     count: int, scale: float, seed: tuple[int, int], structure: Structure
 ) -> NDArray[np.float64]:
-    """Draw starts in a box around rest, uniformly.
+    """Draw ``count`` states, shape (count, 4), uniformly from a box around rest, gap >= 0.
 
     Parameters
     ----------
@@ -326,7 +326,7 @@ def random_starts(
 
 
 class SizeFromRest(NamedTuple):
-    """How large the response from rest is.
+    """Size of the settled response from rest: its state, largest displacement, largest gap.
 
     Attributes
     ----------
@@ -344,7 +344,7 @@ class SizeFromRest(NamedTuple):
 
 
 def size_from_rest(instance: Instance, point: Point, settings: AttractorSettings) -> SizeFromRest:
-    """Run from rest until settled; return the state there, largest displacement and largest gap."""
+    """Run from rest until settled; return a state there, largest displacement and gap, m."""
     response = run_until_settled(instance, point, REST, settings).response
     begin(instance, *point, response.end)
     span = SIZE_PERIODS * point.excitation.period
@@ -356,7 +356,7 @@ def size_from_rest(instance: Instance, point: Point, settings: AttractorSettings
 def starts_in_both_boxes(
     count: int, scale: float, size: SizeFromRest, seed: tuple[int, int], point: Point
 ) -> NDArray[np.float64]:
-    """Draw starts in two boxes in turn: around zero, and around the response from rest.
+    """Draw start states in turn from a box around rest and one around the response from rest.
 
     Parameters
     ----------
@@ -388,7 +388,7 @@ def starts_in_both_boxes(
 
 
 def attractor_settings(**given: Any) -> AttractorSettings:
-    """Check keywords of :class:`.clusters.AttractorSettings`, and return these settings."""
+    """Check keywords on settling and clustering; return them as ``AttractorSettings``."""
     least = {"transient": 0, "samples": 4, "longest": 0}  # whole numbers
     checked: dict[str, Any] = {
         name: checked_integer(name, value, least[name]) if name in least else positive(name, value)
@@ -418,7 +418,7 @@ def attractors(
     alike_irregular: float = 0.25,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Find coexisting attractors, and how many random starts lead to each.
+    """Find coexisting attractors from random starts, and the share of starts that each attracts.
 
     Parameters
     ----------
@@ -524,7 +524,7 @@ def attractors(
 
 
 def check_scale(given: ArrayLike | None) -> Numbers | None:
-    """Return half widths in m, a number or a tuple; None if not given; raise unless > 0.
+    """Return the user's half width(s) of the box of starts, m, or None; raise unless positive.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""How uncertain it is which attractor a start leads to: basin entropy and uncertainty exponent."""
+"""Basin entropy and uncertainty exponent: how unpredictable is the attractor of a start."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Floats = NDArray[np.float64]
 
 
 class BoxEntropies(NamedTuple):
-    """Entropies of boxes of starts.
+    """Entropies (of attractor shares) of the square boxes that a plane of starts is cut into.
 
     Attributes
     ----------
@@ -34,27 +34,27 @@ class BoxEntropies(NamedTuple):
 
     @property
     def mean(self) -> float:
-        """Basin entropy: the mean over all boxes."""
+        """Basin entropy: mean entropy over all boxes."""
         return float(self.entropies.mean())
 
     @property
     def on_boundary(self) -> Floats:
-        """Return the entropies of the boxes with more than one attractor."""
+        """Return the entropies of those boxes whose starts lead to several attractors."""
         return self.entropies[self.entropies > 0.0]
 
     @property
     def boundary_mean(self) -> float:
-        """Boundary basin entropy: the mean over those; NaN without any."""
+        """Boundary basin entropy: mean entropy over boxes with several attractors, or NaN."""
         return float(self.on_boundary.mean()) if self.on_boundary.size else math.nan
 
     @property
     def uncertain_fraction(self) -> float:
-        """Share of boxes with more than one attractor."""
+        """Share of boxes whose starts lead to more than one attractor."""
         return self.on_boundary.size / self.entropies.size
 
 
 def box_entropies(labels: Labels, size: int) -> BoxEntropies:
-    """Return the entropies of square boxes of ``size`` starts a side, laid side by side.
+    """Return the entropies of square boxes, ``size`` starts a side, of a plane of attractor labels.
 
     Boxes with a start that leads to no attractor (-1) are left out, and what is left at the end of
     a side that ``size`` does not divide.
@@ -69,13 +69,13 @@ def box_entropies(labels: Labels, size: int) -> BoxEntropies:
 
 
 def box_sizes(labels: Labels) -> list[int]:
-    """Return box sizes that leave enough boxes: powers of two."""
+    """Return box sizes, powers of two, for which a plane of labels has enough boxes a side."""
     longest = min(labels.shape) // LEAST_BOXES
     return [2**power for power in range(1, longest.bit_length()) if 2**power <= longest]
 
 
 def uncertainty_exponent(sizes: Floats, fractions: Floats) -> tuple[float, float]:
-    """Fit alpha of ``fraction ~ size**alpha``; return it with its error, NaN from few points."""
+    """Fit alpha of ``fraction ~ size**alpha`` in logs; return it and its error, or NaN."""
     from scipy.stats import linregress
 
     known = fractions > 0.0
@@ -161,7 +161,7 @@ def basin_entropy(basins: xr.Dataset, *, box: int = 5) -> xr.Dataset:
 
 
 def labels_of(basins: object) -> Labels:
-    """Return the attractor's number of each start, from an answer of basin; raise without one.
+    """Return a basin dataset's attractor numbers, shape (y, x); raise if it is no basin's.
 
     Raises
     ------

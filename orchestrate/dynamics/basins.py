@@ -1,4 +1,4 @@
-"""Basins of attraction: which attractor each start of a plane leads to."""
+"""Basins of attraction: to which attractor each start on a plane of states leads."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ GAPS = {"x_rel": ("x1", "x2"), "v_rel": ("v1", "v2")}
 
 
 class PlaneAxis(NamedTuple):
-    """One side of the plane: equally spaced values of a coordinate.
+    """Axis of a plane of starts: a coordinate's name and its equidistant values.
 
     Attributes
     ----------
@@ -77,12 +77,12 @@ class PlaneAxis(NamedTuple):
     number: int
 
     def values(self) -> Floats:
-        """Return the coordinate's values."""
+        """Return the axis's equidistant coordinate values, from low to high."""
         return np.linspace(self.low, self.high, self.number)
 
 
 class Plane(NamedTuple):
-    """Starts in a plane.
+    """Plane of starts: two axes, and the state that the other coordinates are taken from.
 
     Attributes
     ----------
@@ -118,7 +118,7 @@ class Plane(NamedTuple):
 def mass_values(
     given: Mapping[str, Floats], name: str, one: Floats, two: Floats
 ) -> tuple[Floats, Floats]:
-    """Return both masses' values from their difference and one's value or their mean."""
+    """Return both masses' coordinates for a given gap, from one mass's value or their mean."""
     first, second = GAPS[name]
     if first in given:
         return one, one + given[name]
@@ -129,7 +129,7 @@ def mass_values(
 
 
 class Start(NamedTuple):
-    """A start of the plane: state in m and m/s, and phase of the box in rad."""
+    """A start on the plane: point, state (m and m/s), and the box's phase (rad)."""
 
     point: Point
     state: tuple[float, ...]
@@ -138,7 +138,7 @@ class Start(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class BasinJob(Question):
-    """A plane of starts.
+    """Job of :func:`orchestrate.basin`: all starts on a plane, run until they settle.
 
     Attributes
     ----------
@@ -163,15 +163,15 @@ class BasinJob(Question):
     item: ClassVar[str] = "start"
 
     def plane(self, inputs: Inputs) -> Plane:
-        """Return the plane; another job may find it in what it starts from."""
+        """Return the plane of starts; subclasses may take it from other results."""
         return Plane(Point(self.structure, self.excitation), self.x, self.y, self.at)
 
     def count(self) -> int:
-        """Return the number of starts and one more, the item that gathers their attractors."""
+        """Return the number of items: all starts of the plane, and one that groups them."""
         return self.x.number * self.y.number + 1
 
     def items(self, inputs: Inputs) -> Sequence[Start | Point]:
-        """Return every start, then the point itself for gathering their attractors."""
+        """Return the items: every start, then the point, which stands for grouping."""
         plane = self.plane(inputs)
         states, phases = plane.starts()
         rows = zip(map(tuple, states.tolist()), phases.tolist(), strict=True)
@@ -180,7 +180,7 @@ class BasinJob(Question):
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Start | Point], previous: Table | None
     ) -> Table:
-        """Run some starts on, but those whose masses overlap; or gather the attractors of all."""
+        """Run starts until they settle (overlapping masses: absent), or group them at the end."""
         with Instances(fmus[OSCILLATOR]) as instances:
             if isinstance(items[0], Point):
                 assert previous is not None
@@ -199,7 +199,7 @@ class BasinJob(Question):
     def gather_attractors(
         self, instances: tuple[Instance, EventInstance | None], point: Point, table: Table
     ) -> Table:
-        """Match the attractors, and return arrays with one entry."""
+        """Group all starts' settled motions to attractors; return arrays with labels of starts."""
         there = table["decided"] != ABSENT
         names = "features", "end", "decided"
         starts = SettledStarts(*(table[name][there] for name in names))
@@ -211,7 +211,7 @@ class BasinJob(Question):
         return {**columns, "labels": labels}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return the attractor that each start leads to."""
+        """Return the dataset: the attractor number of each start, and the attractors."""
         import xarray as xr
 
         plane = self.plane(inputs)
@@ -234,7 +234,7 @@ class BasinJob(Question):
 
 
 def run_to_phase_zero(instance: Instance, start: Start) -> tuple[float, ...]:
-    """Run to the next phase 0 of the box; return the state there."""
+    """Simulate from a start until the box is at phase 0; return the state there."""
     left = -start.phase % (2.0 * math.pi)
     if left == 0.0:
         return start.state
@@ -245,7 +245,7 @@ def run_to_phase_zero(instance: Instance, start: Start) -> tuple[float, ...]:
 
 
 def check_side(name: str, given: Any) -> PlaneAxis:
-    """Return a side of the plane from what the user gave.
+    """Return a ``PlaneAxis`` from the user's (name, low, high, count); raise if invalid.
 
     Raises
     ------
@@ -373,7 +373,7 @@ def basin(
 
 
 class Known(NamedTuple):
-    """Attractors that a plane of starts is laid around.
+    """Attractors found beforehand, from which the default plane of starts is laid out.
 
     Attributes
     ----------
@@ -392,7 +392,7 @@ class Known(NamedTuple):
     gap: float
 
     def side(self, name: str) -> PlaneAxis:
-        """Return a side for the gap or for its velocity, twice as wide as the attractors."""
+        """Return a default axis for gap or gap velocity, twice as wide as the attractors."""
         gap = self.gap or self.point.length
         if name == "x_rel":
             return PlaneAxis(name, 0.0, round_to_two_digits(BEYOND * gap), COUNT)
@@ -403,14 +403,14 @@ class Known(NamedTuple):
         return PlaneAxis(name, -high, high, COUNT)
 
     def middle(self) -> tuple[float, ...]:
-        """Return the mean of the attractors' states at phase 0."""
+        """Return the mean of the known attractors' states at phase 0: the plane's centre."""
         return tuple(self.samples.mean(axis=0).tolist())
 
 
 def find_known_attractors(
     point: Point, settings: AttractorSettings, running: Mapping[str, Any]
 ) -> Known:
-    """Find what a few random starts lead to, to lay a plane around it."""
+    """Find attractors from a few random starts, to lay the default plane around them."""
     excitation = {"frequency": point.excitation.frequency, "amplitude": point.excitation.amplitude}
     kept = {name: value for name, value in running.items() if name in ("fmu", "build_folder")}
     asked = {name: getattr(settings, name) for name in SETTINGS}
@@ -428,12 +428,12 @@ def find_known_attractors(
 
 
 def round_to_two_digits(value: float) -> float:
-    """Round a number above zero to two digits, for the end of an axis."""
+    """Round a positive number to two significant digits, for the end of an axis."""
     return float(f"{value:.1e}")
 
 
 def check_plane(job: BasinJob) -> None:
-    """Check that there is a start, and that the masses can part at all."""
+    """Raise if the structure is bonded, or the masses overlap at every start of the plane."""
     if job.structure.bonded:
         raise InputError(REQUIRES_DELAMINATED)
     states, _ = job.plane({}).starts()

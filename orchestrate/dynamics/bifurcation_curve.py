@@ -1,4 +1,4 @@
-"""Bifurcations over two parameters: an orbit's equations with those of its bifurcation.
+"""Equations of a bifurcation followed over two parameters: orbit and bifurcation condition.
 
 Folds, period doublings and Neimark-Sacker bifurcations are where the orbit's matrix with a
 multiplier on the unit circle is singular. How nearly it is, the bordered system says (Govaerts,
@@ -43,7 +43,7 @@ HALVINGS = 24  # of the last step: its end is known to 1e-7 of it
 
 @dataclass
 class BifurcationCurve:
-    """The equations of a bifurcation over two parameters.
+    """Equations of an orbit at a bifurcation, as a curve over two parameters.
 
     Unknowns are those of the nodes, the two parameters, and what the kind adds.
 
@@ -72,7 +72,7 @@ class BifurcationCurve:
 
     @classmethod
     def from_orbit(cls, family: Family, point: OrbitPoint, kind: int) -> BifurcationCurve:
-        """Return the curve through a bifurcation that was located on a branch.
+        """Return the equations of the curve through a bifurcation found on a branch.
 
         Raises
         ------
@@ -99,37 +99,37 @@ class BifurcationCurve:
 
     @property
     def accuracy(self) -> float:
-        """Largest residual of a root, of the orbit's equations and of the bifurcation's."""
+        """Largest residual with which a root of the equations counts as solved."""
         return self.family.accuracy
 
     @property
     def first_parameter(self) -> int:
-        """Index of the first parameter among the unknowns."""
+        """Index of the first of the two parameters among the unknowns."""
         return self.family.size
 
     def multiplier(self, unknowns: Floats) -> complex:
-        """Return the multiplier on the unit circle."""
+        """Return the Floquet multiplier on the unit circle at this bifurcation."""
         if self.kind == TORUS:
             return complex(np.exp(1j * unknowns[-1]))
         return REAL_MULTIPLIERS[self.kind]
 
     def orbit(self, unknowns: Floats) -> PeriodicOrbit:
-        """Return the periodic orbit that the unknowns of a root describe."""
+        """Return the periodic orbit contained in a vector of unknowns."""
         return self.family.orbit(unknowns[: self.family.size + 2])
 
     def update_border(self, unknowns: Floats) -> None:
-        """Set the border to the vectors that the matrix all but maps to zero here."""
+        """Reset the bordering vectors to the singular vectors of the matrix at these unknowns."""
         if self.kind in SMOOTH_KINDS:
             left, _, right = np.linalg.svd(self.matrix(unknowns))
             self.columns, self.rows = in_phase(left[:, -1]), in_phase(right[-1].conj())
 
     def matrix(self, unknowns: Floats) -> NDArray[np.complex128]:
-        """Return the matrix that is singular at the bifurcation."""
+        """Return the orbit's scaled Jacobian at the multiplier: singular at the bifurcation."""
         matrix = self.orbit(unknowns).jacobian(self.multiplier(unknowns))
         return np.asarray(matrix * self.scale[: self.family.size], dtype=complex)
 
     def condition(self, unknowns: Floats) -> Floats:
-        """Return the residual of the bifurcation's own equations."""
+        """Return the residual of the bifurcation condition alone, without the orbit's equations."""
         if self.kind == GRAZING:
             return self.orbit(unknowns).nodes[self.place, CLOSING : CLOSING + 1]
         if self.kind == TOUCHING:
@@ -149,12 +149,12 @@ class BifurcationCurve:
         return np.array([defect.real, defect.imag] if self.kind == TORUS else [defect.real])
 
     def residual(self, unknowns: Floats) -> Floats:
-        """Return the residual of all equations."""
+        """Return the residual of the orbit's equations and of the bifurcation condition."""
         orbit = self.family.residual(unknowns[: self.family.size + 2])
         return np.append(orbit, self.condition(unknowns))
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
-        """Return the residual's derivative; of the bifurcation's own equations by differences."""
+        """Return the residual's Jacobian, the bifurcation condition's rows by differences."""
         orbit = self.family.jacobian(unknowns[: self.family.size + 2])
         blank = np.zeros((len(orbit), len(self.extra)))
         spans = [(-np.inf, np.inf)] * self.family.size
@@ -166,7 +166,7 @@ class BifurcationCurve:
         return np.vstack([np.hstack([orbit, blank]), np.array(own).T])
 
     def why_no_motion(self, unknowns: Floats) -> str:
-        """Say why a root is no bifurcation of a motion; empty where it is one."""
+        """Return why a root is no possible motion (a flight grazes ...); empty if it is."""
         orbit = self.orbit(unknowns)
         closing = np.where(orbit.sequence.releases, np.inf, orbit.nodes[:, CLOSING])
         if self.kind == GRAZING:
@@ -186,13 +186,13 @@ class BifurcationCurve:
 
 
 def in_phase(vector: NDArray[np.complex128]) -> NDArray[np.complex128]:
-    """Return a singular vector with a large component real and positive, as on any processor."""
+    """Rotate a complex vector so that its leading component is real and positive."""
     first = vector[leading_component(vector)]
     return np.asarray(vector * (first.conjugate() / abs(first)), dtype=complex)
 
 
 class BifurcationTracer(BranchTracer[BifurcationCurve, Root]):
-    """Traces a bifurcation over two parameters from a root, along its tangent.
+    """Traces a bifurcation over two parameters by pseudo-arclength continuation.
 
     Parameters
     ----------
@@ -208,7 +208,7 @@ class BifurcationTracer(BranchTracer[BifurcationCurve, Root]):
         super().__init__(ArclengthStepper(curve, start, first, longest), settings.max_points)
 
     def point(self, root: Root) -> Root:
-        """Return the root itself."""
+        """Return the root unchanged: on this curve, points are roots."""
         return root
 
     def limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
@@ -217,18 +217,18 @@ class BifurcationTracer(BranchTracer[BifurcationCurve, Root]):
         return curve.first_parameter, curve.family.setting.limits
 
     def go_on_from(self, point: Root) -> Root:
-        """Put the stepper to a root, and border the matrix anew."""
+        """Set the stepper to a root and renew the bordering vectors there; return the root."""
         self.stepper.root = point
         self.stepper.curve.update_border(point.unknowns)
         return point
 
     def end_before(self, step: BranchStep[Root]) -> tuple[str, Iterable[Root]]:
-        """Return why roots within a step are no motions, else ``""``; and the last that is one."""
+        """Return why motions end within a step (or ``""``), and the last root that is one."""
         reason = self.stepper.curve.why_no_motion(step.after.unknowns)
         return reason, self.last_motion(step) if reason else ()
 
     def last_motion(self, step: BranchStep[Root]) -> list[Root]:
-        """Return a step's last root that is still a motion, in a list; empty if there is none."""
+        """Bisect a step for its last root that is a possible motion; return it in a list, or []."""
         low, high = 0.0, step.length
         last: list[Root] = []
         for _ in range(HALVINGS):

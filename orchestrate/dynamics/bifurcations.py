@@ -1,4 +1,4 @@
-"""The bifurcations of periodic motions, of orbits under a harmonic box and with a motor alike."""
+"""Kinds of bifurcation of periodic motions, as numbered in results, with their names."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import IntEnum
 
 
 class BifurcationKind(IntEnum):
-    """What can happen to a periodic motion along a branch; the numbers are those in results."""
+    """Kinds of bifurcation on a branch of orbits, by their numbers in results."""
 
     FOLD = 0
     FLIP = 1
@@ -19,7 +19,7 @@ class BifurcationKind(IntEnum):
 
     @property
     def label(self) -> str:
-        """Return the name for people."""
+        """Return the kind's name in words, such as "period doubling"."""
         return KINDS[self]
 
 

@@ -1,4 +1,4 @@
-"""Where windows begin and end over two parameters: a curve for each bifurcation."""
+"""Bifurcations followed over two parameters: the job and function ``orchestrate.border``."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ KEPT = ("state", "xi", "multipliers", *NODES)  # variables of orbits that those 
 
 @dataclass(frozen=True, kw_only=True)
 class BorderJob(OneItemQuestion):
-    """A bifurcation over two parameters.
+    """Job of :func:`orchestrate.border`: one bifurcation followed over two parameters.
 
     Attributes
     ----------
@@ -69,7 +69,7 @@ class BorderJob(OneItemQuestion):
     asked: ClassVar[str] = "border"
 
     def call(self) -> str:
-        """Return the call that asks it, with the orbit at the bifurcation for the branch."""
+        """Return Python source of a ``border(...)`` call that repeats this, orbit included."""
         setting, values = self.setting, np.array(self.values)
         guess = self.start.as_argument(setting.point(values).excitation.frequency)
         start = f"start={setting.orbit_call(values, self.period, guess)}"
@@ -78,7 +78,7 @@ class BorderJob(OneItemQuestion):
         return f"border({', '.join([repr(self.structure), start, *given])})"
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
-        """Follow the bifurcation curve over both parameters; return its points as a table."""
+        """Trace the bifurcation curve over both parameters; return its points as a table."""
         curve, root = first_root(self)
         back, forth = (trace(self, curve, start) for start in (root.reversed(), root))
         roots = [*reversed(back.points[1:]), *forth.points]
@@ -98,7 +98,7 @@ class BorderJob(OneItemQuestion):
         }
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return the curve with its points of codimension two as a dataset with units."""
+        """Return the dataset of the curve and its points of codimension two."""
         import xarray as xr
 
         setting, ends = self.setting, [str(text) for text in table["ends"]]
@@ -116,7 +116,7 @@ class BorderJob(OneItemQuestion):
 
 
 def point_variables(setting: Setting, table: Table) -> dict[str, Variable]:
-    """Return the variables of the points of codimension two."""
+    """Return dataset variables of the points of codimension two: kind, position, orbit."""
     kinds = flags(POINT, table[f"{POINT}_kind"], "what happens as well", POINT_KINDS)
     text = "position along the curve's points: between two where not whole"
     data = {
@@ -140,7 +140,7 @@ def point_variables(setting: Setting, table: Table) -> dict[str, Variable]:
 
 
 def first_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
-    """Solve for the bifurcation where the curve begins; return the curve's equations and the root.
+    """Solve for the bifurcation at which the curve begins; return its equations and the root.
 
     Raises
     ------
@@ -164,7 +164,7 @@ def first_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
 
 
 def trace(job: BorderJob, curve: BifurcationCurve, start: Root) -> BranchSegment[Root]:
-    """Trace the bifurcation from a root in the direction of its tangent."""
+    """Trace the bifurcation curve from a root, along its tangent, to a limit or an end."""
     settings = ContinuationSettings(job.longest, job.most)
     return BifurcationTracer(curve, start, settings).trace(start)
 
@@ -172,7 +172,7 @@ def trace(job: BorderJob, curve: BifurcationCurve, start: Root) -> BranchSegment
 def record(
     instance: EventInstance, curve: BifurcationCurve, unknowns: Floats, residual: float
 ) -> OrbitRecord:
-    """Return the record of an orbit on the curve, run through in the FMU."""
+    """Run an orbit of the curve through the FMU; return its record with the FMU's check."""
     unknowns = unknowns[: curve.family.size + 2]
     orbit = curve.orbit(unknowns)
     check = run_in_fmu(instance, curve.family.setting, unknowns[curve.family.size :], orbit)
@@ -289,7 +289,7 @@ def border(
 
 
 def check_both_limits(names: tuple[str, ...], limits: Any) -> tuple[tuple[float, float], ...]:
-    """Check and return the limits of both parameters, a pair (low, high) each."""
+    """Return both parameters' limits as pairs (low, high) of floats; raise if invalid."""
     try:
         rows = [numbers(name, row) for name, row in zip(names, limits, strict=True)]
     except (TypeError, ValueError):
@@ -305,7 +305,7 @@ def check_both_limits(names: tuple[str, ...], limits: Any) -> tuple[tuple[float,
 def second_value(
     structure: Structure, name: str, given: tuple[tuple[str, float], ...], box_acceleration: float
 ) -> float:
-    """Return the second parameter's value where the curve begins."""
+    """Return the second parameter's start value: from excitation, structure or acceleration."""
     if name == ACCELERATION:
         return box_acceleration
     return dict(given)[name] if name in dict(given) else structure.get(name)

@@ -1,4 +1,4 @@
-"""Branches that leave another one at a bifurcation: where they begin, and in which direction."""
+"""Branch switching: where branches leave another one at a bifurcation, in which direction."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ AWAY = 1e-3  # along the new branch, in unknowns over their scale: where its gap
 
 
 def leaving_branch(kind: int, point: OrbitPoint) -> OrbitPoint:
-    """Return the begin of the branch that leaves at a bifurcation, with its direction.
+    """Return the first orbit and direction of the branch that leaves at a bifurcation's kind.
 
     Raises
     ------
@@ -38,7 +38,7 @@ def leaving_branch(kind: int, point: OrbitPoint) -> OrbitPoint:
 
 
 def double_period(point: OrbitPoint) -> OrbitPoint:
-    """Return twice the orbit, with the direction in which its second half differs from the first.
+    """Return the orbit repeated twice, with the tangent of the period-doubled branch.
 
     That is the eigenvector of the multiplier -1.
     """
@@ -58,7 +58,7 @@ def double_period(point: OrbitPoint) -> OrbitPoint:
 
 
 def add_touching(point: OrbitPoint) -> OrbitPoint:
-    """Return the orbit with the touching as an impact; its closing speed rises along the branch."""
+    """Return the orbit with the touching of a flight as an impact, and a tangent that closes on."""
     orbit = point.orbit
     _, segment, phase = nearest_miss(orbit, turning_points(orbit))
     state = orbit.states(np.array([segment]), np.array([phase]))[0]
@@ -76,7 +76,7 @@ def add_touching(point: OrbitPoint) -> OrbitPoint:
 
 
 def remove_grazing(point: OrbitPoint) -> OrbitPoint:
-    """Return the orbit without the impact that grazes; its gap stays open along the branch."""
+    """Return the orbit without its grazing impact, and a tangent that opens the gap."""
     orbit = point.orbit
     closing = np.where(orbit.sequence.releases, np.inf, orbit.nodes[:, CLOSING])
     node = int(np.abs(closing).argmin())
@@ -87,7 +87,7 @@ def remove_grazing(point: OrbitPoint) -> OrbitPoint:
 
 
 def same_motion(point: OrbitPoint, sequence: ImpactSequence, nodes: Floats) -> OrbitPoint:
-    """Return the same motion as an orbit of another sequence, at the same parameters."""
+    """Solve for the same motion as an orbit with another sequence of impacts; return it."""
     family = Family.from_nodes(point.family.setting, sequence, nodes)
     unknowns = np.append(nodes.ravel(), point.values)
     normal = unit_vector(len(unknowns), family.size)

@@ -1,4 +1,4 @@
-"""Branches of orbits along a parameter, stable and unstable, with their bifurcations."""
+"""Branches of orbits over a parameter: the job and function ``orchestrate.branch``."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ OrbitSegment = BranchSegment[OrbitPoint]
 
 @dataclass(frozen=True, kw_only=True)
 class BranchJob(OneItemQuestion):
-    """A branch.
+    """Job of :func:`orchestrate.branch`: a branch of orbits continued over one parameter.
 
     Attributes
     ----------
@@ -83,7 +83,7 @@ class BranchJob(OneItemQuestion):
     asked: ClassVar[str] = "branch"
 
     def call(self) -> str:
-        """Return the call that asks it; of a branch that leaves another one, without that one."""
+        """Return Python source of a ``branch(...)`` call that repeats this, start included."""
         setting, values = self.setting, np.array([self.value])
         guess = self.start.as_argument(setting.point(values).excitation.frequency)
         start = f"start={setting.orbit_call(values, self.period, guess)}"
@@ -101,13 +101,13 @@ class BranchJob(OneItemQuestion):
         return f"branch({', '.join(parts)})"
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
-        """Follow the branch from its first orbit; return orbits and bifurcations as a table."""
+        """Continue the branch from its first orbit; return orbits and bifurcations as a table."""
         segments = trace(self)
         with EventInstance(fmus[OSCILLATOR]) as instance:
             return table(instance, self.setting, segments)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return orbits, stability and bifurcations along the branch as a dataset."""
+        """Return the dataset of the branch: orbits, stability and bifurcations."""
         import xarray as xr
 
         setting, (name,) = self.setting, self.setting.over
@@ -122,7 +122,7 @@ class BranchJob(OneItemQuestion):
 
 
 def trace(job: BranchJob) -> list[OrbitSegment]:
-    """Trace the branch in both directions; in one, where it leaves another.
+    """Continue the branch in both directions (one if it leaves another); return its segments.
 
     Raises
     ------
@@ -143,7 +143,7 @@ def trace(job: BranchJob) -> list[OrbitSegment]:
 
 
 def table(instance: EventInstance, setting: Setting, segments: list[OrbitSegment]) -> Table:
-    """Return arrays along the branch, and those of its bifurcations, in the order along it."""
+    """Return arrays of a branch's orbits and of its bifurcations, checked by the FMU."""
     points, bifurcations = joined(segments)
     ends = [segments[0].end if len(segments) > 1 else "start", segments[-1].end]
     along = table_of([record(instance, setting, point) for point in points])
@@ -160,7 +160,7 @@ def table(instance: EventInstance, setting: Setting, segments: list[OrbitSegment
 def joined(
     segments: list[OrbitSegment],
 ) -> tuple[list[OrbitPoint], list[Bifurcation[OrbitPoint]]]:
-    """Join segments in the order along the branch; return its orbits, and its bifurcations."""
+    """Join a branch's two segments; return its orbits in order, and its bifurcations."""
     forth = segments[-1]
     if len(segments) == 1:
         return forth.points, forth.bifurcations
@@ -173,13 +173,13 @@ def joined(
 
 
 def record(instance: EventInstance, setting: Setting, point: OrbitPoint) -> OrbitRecord:
-    """Return the record of an orbit on the branch, run through in the FMU."""
+    """Run an orbit of the branch through the FMU; return its record with the FMU's check."""
     check = run_in_fmu(instance, setting, point.values, point.orbit)
     return OrbitRecord.from_root(point.family, point.root.unknowns, point.root.residual, check)
 
 
 def bifurcation_variables(setting: Setting, table: Table) -> dict[str, Variable]:
-    """Return the variables of the bifurcations."""
+    """Return dataset variables of a branch's bifurcations: kind, position, orbit."""
     (name,) = setting.over
     kinds = flags(BIFURCATION, table["bifurcation_kind"], "kind of bifurcation", KINDS)
     place = "position along the branch's points: between two where not whole"
@@ -316,7 +316,7 @@ def branch(
 
 
 def check_start(start: Any, several: bool) -> None:
-    """Check that a branch can begin with it.
+    """Raise ``InputError`` unless ``start`` is a dataset of one orbit (or ``several`` allowed).
 
     Several orbits will do where one of their bifurcations is named.
     """
@@ -348,7 +348,7 @@ def complete_excitation(
     limits: tuple[float, float],
     structure: Structure,
 ) -> tuple[tuple[str, float], ...]:
-    """Return the excitation as pairs of name and number, with the varied one where it starts.
+    """Return the excitation as (name, number) pairs, taken from ``start`` where not given.
 
     Where nothing of the structure has a length the amplitude does not matter, and ``eta`` says all.
 
@@ -384,7 +384,7 @@ def first_orbit(
     box_acceleration: float,
     running: Mapping[str, Any],
 ) -> tuple[xr.Dataset, float]:
-    """Find the orbit that a branch begins with by default; return it and the parameter there."""
+    """Find an orbit to begin a branch without ``start``; return it and the parameter's value."""
     excitation: dict[str, Any] = dict(given)
     quiet: dict[str, Any] = {
         name: value
@@ -406,7 +406,7 @@ def first_orbit(
 
 
 def check_inside(over: str, value: float, limits: tuple[float, float]) -> None:
-    """Check that a branch starts between its limits."""
+    """Raise ``InputError`` unless the parameter's start value lies between its limits."""
     if not limits[0] <= value <= limits[1]:
         raise InputError(
             f"limits = {limits!r}: {over} = {value!r} at the start; expected it inside"
@@ -414,7 +414,7 @@ def check_inside(over: str, value: float, limits: tuple[float, float]) -> None:
 
 
 def start_value(start: xr.Dataset, over: str, switch: int | None, structure: Structure) -> float:
-    """Return the parameter's value at the start."""
+    """Return the parameter's value at the start: of the orbit, or of bifurcation ``switch``."""
     if switch is not None:
         return float(start["bifurcation_value"].values[check_number(start, "switch", switch)])
     if over in start.coords:
@@ -425,7 +425,7 @@ def start_value(start: xr.Dataset, over: str, switch: int | None, structure: Str
 
 
 def check_number(start: xr.Dataset, name: str, number: int) -> int:
-    """Return a bifurcation's number, if there is one of that number."""
+    """Return a bifurcation's index, checked to exist in the dataset ``start``."""
     count = start.sizes.get(BIFURCATION, 0)
     if not count:
         raise InputError(f"{name} = {number!r}: start has no bifurcations; expected a branch")
@@ -433,7 +433,7 @@ def check_number(start: xr.Dataset, name: str, number: int) -> int:
 
 
 def first_nodes(start: xr.Dataset, name: str, number: int | None) -> tuple[FirstGuess, int]:
-    """Return the nodes to begin with, and the kind of bifurcation there (-1: it is an orbit's)."""
+    """Return the start orbit's nodes, and the kind of the chosen bifurcation (-1: none)."""
     if number is None:
         return from_result(start), -1
     at = start.isel({BIFURCATION: check_number(start, name, number)})

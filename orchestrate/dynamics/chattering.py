@@ -1,4 +1,4 @@
-"""Impacts of a chattering that come and go along a branch, as (17) ends it earlier or later."""
+"""Impacts of a chattering that are added or removed along a branch, where (17) ends it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MAX_CHANGES = 10  # impacts that come or go in one step: more are no small chang
 
 
 def add_or_remove_impacts(point: OrbitPoint) -> OrbitPoint:
-    """Return the orbit with the impacts that (17) says, added or removed one after the other.
+    """Add or remove chattering impacts one by one until (17) holds; return the orbit.
 
     Raises
     ------
@@ -30,7 +30,7 @@ def add_or_remove_impacts(point: OrbitPoint) -> OrbitPoint:
 
 
 def change_one_impact(point: OrbitPoint) -> OrbitPoint:
-    """Return the orbit with one impact more before its contact, or without those that (17) ends.
+    """Return the orbit with one more impact before its contact, or without those too many.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def change_one_impact(point: OrbitPoint) -> OrbitPoint:
 def without_impacts_after(
     kinds: list[int], nodes: Floats, sticking: int
 ) -> tuple[list[int], Floats]:
-    """Return kinds and nodes without those between an impact that sticks and its release.
+    """Remove the impacts between a sticking one and its release; return kinds and nodes.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def without_impacts_after(
 
 
 def next_impact(orbit: PeriodicOrbit, node: int) -> Floats:
-    """Return the impact that follows one after a short flight, a parabola as (17) takes it."""
+    """Return the node of the impact after a short flight, approximated as a parabola."""
     phase, position, velocity, closing = orbit.nodes[node]
     parting = orbit.form.parting(closing)
     time = 2.0 * parting / -float(orbit.form.force(position, velocity))

@@ -1,4 +1,4 @@
-"""The closed form between impacts: both masses free, or both as one, (6) with (10), (11) and (18).
+"""Closed-form motion between impacts (10): both masses free, or in contact as one.
 
 All in the paper's units: displacements over a eta^2, time as tau, the excitation by its phase.
 A state is (xi_1, xi_2, xi_1', xi_2'). Oscillators 1 and 2 are the masses, 3 is both as one. With a
@@ -21,7 +21,7 @@ MASSES = slice(0, 2)  # oscillators 1 and 2
 
 
 def oscillators(contact: NDArray[np.bool_] | bool) -> slice | NDArray[np.intp]:
-    """Return which two oscillators two masses are: 1 and 2, or twice 3 where they are one."""
+    """Return indices of the two oscillators that move: (0, 1) in flight, (2, 2) in contact."""
     if not np.any(contact):
         return MASSES
     return np.where(np.reshape(contact, (-1, 1)), 2, np.arange(2))
@@ -29,7 +29,7 @@ def oscillators(contact: NDArray[np.bool_] | bool) -> slice | NDArray[np.intp]:
 
 @dataclass(frozen=True)
 class ClosedForm:
-    """The coefficients of the motion between impacts.
+    """Coefficients of the closed-form motion between impacts, non-dimensional.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ class ClosedForm:
     def from_structure(
         cls, structure: Structure, excitation: Excitation, box_acceleration: float = 0.0
     ) -> ClosedForm:
-        """Return the numbers of a structure under an excitation.
+        """Return the coefficients for a structure, an excitation, and a constant acceleration.
 
         Parameters
         ----------
@@ -125,12 +125,12 @@ class ClosedForm:
 
     @property
     def rests_in_contact(self) -> bool:
-        """Whether a preload presses the masses together where nothing moves."""
+        """Whether a preload presses the masses together at rest."""
         return self.gap_offset != 0.0 and bool(self.offset[1] < self.offset[0])
 
     @property
     def fastest(self) -> float:
-        """The fastest oscillation in a motion, over omega."""
+        """The highest frequency in the motion, over omega: excitation or a natural frequency."""
         swinging = np.sqrt(np.maximum(self.stiffness - self.damping**2, 0.0))
         return float(max(self.eta, swinging.max()))
 
@@ -165,7 +165,7 @@ class ClosedForm:
         return slow * (1.0 + 0.5 * faster), -0.5 * slow * faster / nu
 
     def oscillator(self, i: int, time: Floats) -> Floats:
-        """Return flow matrices of oscillator ``i`` without excitation, the free part of (10).
+        """Return the free flow matrices (n, 2, 2) of oscillator ``i`` after given times.
 
         Parameters
         ----------
@@ -185,14 +185,14 @@ class ClosedForm:
         return matrices
 
     def flight(self, time: Floats) -> Floats:
-        """Return flow matrices with both masses free, shape (n, 4, 4)."""
+        """Return the flow matrices (n, 4, 4) of both free masses after given times."""
         matrices = np.zeros((len(time), 4, 4))
         matrices[:, 0::2, 0::2] = self.oscillator(0, time)
         matrices[:, 1::2, 1::2] = self.oscillator(1, time)
         return matrices
 
     def contact(self, time: Floats) -> Floats:
-        """Return flow matrices with both masses as one, shape (n, 4, 4), for states without gap."""
+        """Return the flow matrices (n, 4, 4) of both masses moving as one after given times."""
         common = self.oscillator(2, time)
         matrices = np.zeros((len(time), 4, 4))
         matrices[:, 0::2, 0::2] = common
@@ -200,7 +200,7 @@ class ClosedForm:
         return matrices
 
     def steady(self, phase: Floats, contact: NDArray[np.bool_] | bool = False) -> Floats:
-        """Return the steady response to the excitation, the harmonic part of (10).
+        """Return the steady-state response (harmonic part of (10)) at phases, shape (n, 4).
 
         Parameters
         ----------
@@ -224,7 +224,7 @@ class ClosedForm:
     def common_motion(
         self, time: Floats, phase: Floats, position: Floats, velocity: Floats
     ) -> tuple[Floats, Floats]:
-        """Return displacement and velocity in permanent contact: (10) and (11) with i = 3.
+        """Return displacement and velocity in contact after a time, from their start: (10), i = 3.
 
         Parameters
         ----------
@@ -242,21 +242,21 @@ class ClosedForm:
         return x, v - square * sine * free + (cosine - damping * sine) * rate
 
     def common_response(self, phase: Floats) -> tuple[Floats, Floats]:
-        """Return displacement and velocity of both masses as one in their steady response."""
+        """Return displacement and velocity of the steady-state response in contact, at phases."""
         cosine, sine = np.cos(phase), np.sin(phase)
         a, b = self.cosine[2], self.sine[2]
         x: Floats = a * cosine + b * sine + self.offset[2]
         return x, self.eta * (b * cosine - a * sine)
 
     def centre(self) -> Floats:
-        """Return the projection of states to the motion of the centre of mass, shape (4, 4)."""
+        """Return the (4, 4) matrix that sets both masses of a state to their centre of mass."""
         weights = np.array([[1.0, self.mu], [1.0, self.mu]]) / (1.0 + self.mu)
         return np.asarray(np.kron(np.eye(2), weights), dtype=float)
 
     def field(
         self, state: Floats, phase: Floats, contact: NDArray[np.bool_] | bool = False
     ) -> Floats:
-        """Return the derivative of states by tau: the right-hand side of (6), shape (n, 4)."""
+        """Return d(state)/d(tau), the right-hand side of (6), for states (n, 4) at phases."""
         which = oscillators(contact)
         drive = np.sin(phase)[:, None] + self.offset[0] * self.stiffness[0]
         rates = np.empty((len(phase), 4))
@@ -268,10 +268,10 @@ class ClosedForm:
         return rates
 
     def force(self, position: Floats, velocity: Floats) -> Floats:
-        """Return the contact force f (18): negative where the masses are pressed together."""
+        """Return the contact force f (18) from position and velocity; negative: pressed."""
         force = self.force_rate(position, velocity)
         return force if self.gap_offset == 0.0 else force + float(self.load[1])
 
     def force_rate(self, position: Floats, velocity: Floats) -> Floats:
-        """Return a derivative of the contact force from those of displacement and velocity."""
+        """Return the contact force's derivative from the derivatives of position and velocity."""
         return self.force_v * velocity + self.force_x * position

@@ -1,4 +1,4 @@
-"""Responses run on until they are settled, and irregular ones grouped by single linkage.
+"""Run responses until they settle, and cluster irregular ones by single linkage.
 
 What a periodic response settles to is decided by its orbit: see :mod:`.decision`.
 """
@@ -55,12 +55,12 @@ class AttractorSettings:
 
 
 def transient_periods(transient: int, settle: float, eta: float) -> int:
-    """Return the periods to drop from a start far from the response: more where they are short."""
+    """Return the periods to drop: ``transient``, or ``settle * eta`` where that is more."""
     return max(transient, round(settle * eta))
 
 
 class Settled(NamedTuple):
-    """A response that has been run on until it is known what it is.
+    """A response run until it repeats or the limit is reached, and the periods that took.
 
     Attributes
     ----------
@@ -77,7 +77,7 @@ class Settled(NamedTuple):
 def run_until_settled(
     instance: Instance, point: Point, start: ArrayLike, settings: AttractorSettings
 ) -> Settled:
-    """Run the response from a state at phase 0, in m and m/s, on until a repeated state decides.
+    """Simulate from a state at phase 0 until samples repeat or the limit; return the response.
 
     Each time it does not repeat, it is run on for as long as before. One that nearly repeats at the
     end counts as periodic if it did so before and its deviation shrinks, else it is a narrow torus.
@@ -103,7 +103,7 @@ def run_until_settled(
 
 
 def repeats_first(response: Response, settings: AttractorSettings) -> bool:
-    """Return whether a state that repeats does not nearly do so after fewer periods.
+    """Return whether the response's period is its least one, also under a looser tolerance.
 
     A deviation that dies while it turns round is smaller after some periods than after one.
     """
@@ -112,7 +112,7 @@ def repeats_first(response: Response, settings: AttractorSettings) -> bool:
 
 
 def features(response: Response, length: float) -> list[float]:
-    """Return the numbers of ``FEATURES``, none of which depends on the phase of the samples.
+    """Return a response's phase-independent features: multiplicity, impacts, gap statistics.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ def features(response: Response, length: float) -> list[float]:
 
 
 def irregular_clusters(rows: ArrayLike, settings: AttractorSettings) -> NDArray[np.intp]:
-    """Group irregular responses into attractors by single-linkage clustering of their features.
+    """Cluster irregular responses' feature rows by single linkage; return a label per row.
 
     Parameters
     ----------
@@ -156,7 +156,7 @@ def irregular_clusters(rows: ArrayLike, settings: AttractorSettings) -> NDArray[
 
 
 def single_linkage(points: Floats, radius: float) -> NDArray[np.intp]:
-    """Cluster points by single linkage: chains of steps no longer than ``radius`` connect them.
+    """Cluster points (n, d) by single linkage with a radius; return a label per point.
 
     The memory grows with the number of points, and not with its square as that of
     :func:`scipy.cluster.hierarchy.linkage`.

@@ -1,4 +1,4 @@
-"""Points of codimension two on bifurcation curves: where a second bifurcation happens as well.
+"""Locate points of codimension two on a bifurcation curve, by test functions.
 
 Names and conditions as in Kuznetsov, Elements of Applied Bifurcation Theory, chapter 9, for maps;
 for grazing as in Thota and Dankowicz, SIAM Journal on Applied Dynamical Systems 5, 672 (2006). All
@@ -40,7 +40,7 @@ FAR = 0.1  # a point at the end of a curve is not farther away from its last roo
 
 
 class PointKind(IntEnum):
-    """What can happen on a bifurcation curve; the numbers are those in results."""
+    """Kinds of codimension-two points on a bifurcation curve, by their numbers in results."""
 
     CUSP = 0
     FOLD_FLIP = 1
@@ -90,7 +90,7 @@ ANGLES = {PointKind.RESONANCE_3: 2.0 * np.pi / 3.0, PointKind.RESONANCE_4: 0.5 *
 
 @dataclass(frozen=True)
 class CodimensionTwoPoint:
-    """A point of codimension two.
+    """A codimension-two point: its kind, the root there, and its position on the curve.
 
     Attributes
     ----------
@@ -110,7 +110,7 @@ class CodimensionTwoPoint:
 
 
 class Characteristic:
-    """The polynomial D whose roots are the multipliers of an orbit.
+    """Characteristic polynomial of an orbit's monodromy matrix: its roots are the multipliers.
 
     Parameters
     ----------
@@ -137,21 +137,21 @@ class Characteristic:
         self.coefficients: Floats = coefficients / np.abs(coefficients).max()
 
     def __call__(self, multiplier: complex) -> complex:
-        """Return D, the characteristic polynomial, at a multiplier."""
+        """Return the characteristic polynomial's value at a (complex) multiplier."""
         return complex(np.polynomial.polynomial.polyval(multiplier, self.coefficients))
 
     def slope(self, multiplier: float) -> float:
-        """Return the derivative of D at a real number."""
+        """Return the characteristic polynomial's derivative at a real multiplier."""
         polynomial = np.polynomial.Polynomial(self.coefficients)
         return float(polynomial.deriv()(multiplier))
 
     def others(self, multiplier: float) -> NDArray[np.complex128]:
-        """Return the multipliers beside a real one."""
+        """Return the orbit's multipliers other than a given real one."""
         quotient, _ = np.polydiv(self.coefficients[::-1], np.array([1.0, -multiplier]))
         return np.asarray(np.roots(quotient), dtype=complex)
 
     def pair_test(self, multiplier: float) -> float:
-        """Return a product that is 0 where two of the multipliers beside one have product 1."""
+        """Return a test function that is 0 where two other multipliers have product 1."""
         others = self.others(multiplier)
         products = np.multiply.outer(others, others)[np.triu_indices(len(others), 1)]
         return float(np.prod((1.0 - products) / (1.0 + np.abs(products))).real)
@@ -183,7 +183,7 @@ def locate_points(
 def points_between(
     curve: BifurcationCurve, before: Root, after: Root, number: float
 ) -> Iterator[CodimensionTwoPoint]:
-    """Yield the points between two neighbouring roots."""
+    """Yield the codimension-two points between two neighbouring roots, by sign changes."""
     from scipy.optimize import brentq
 
     curve.update_border(before.unknowns)
@@ -222,14 +222,14 @@ def points_between(
 
 
 def characteristic(curve: BifurcationCurve, unknowns: Floats) -> Characteristic:
-    """Return the polynomial of the orbit of some unknowns."""
+    """Return the characteristic polynomial of the orbit in a curve's unknowns."""
     return Characteristic(curve.orbit(unknowns), curve.scale[: curve.family.size])
 
 
 def test(
     curve: BifurcationCurve, root: Root, kind: PointKind, known: Characteristic | None = None
 ) -> float:
-    """Return the function that changes its sign at a point of a kind.
+    """Return the test function's value at a root: it changes sign at a point of this kind.
 
     Parameters
     ----------
@@ -261,7 +261,7 @@ def test(
 
 
 def cusp_test(curve: BifurcationCurve, root: Root) -> float:
-    """Return how fast a fold moves in the plane of both parameters, with its sign.
+    """Return the test function of a cusp: the fold's speed in the parameter plane, signed.
 
     Along a fold that motion is orthogonal to what the left null vector of the orbit's matrix makes
     of the parameters' derivatives: its sign on that line changes at a cusp, where it stops.
@@ -279,7 +279,7 @@ def cusp_test(curve: BifurcationCurve, root: Root) -> float:
 
 
 def happens(curve: BifurcationCurve, root: Root, kind: PointKind) -> bool:
-    """Return whether a zero of a test function is the point of its kind.
+    """Return whether a test function's zero is truly such a point (pair on the unit circle).
 
     Two real multipliers may have the product 1 as well as a pair on the unit circle.
     """
@@ -297,7 +297,7 @@ def happens(curve: BifurcationCurve, root: Root, kind: PointKind) -> bool:
 def end_points(
     curve: BifurcationCurve, root: Root, reason: str, position: float
 ) -> Iterator[CodimensionTwoPoint]:
-    """Yield the point in which a curve ends, if it ends in one."""
+    """Yield the codimension-two point at which a curve ends for a given reason, if it does."""
     grazes = reason in ("another impact grazes", "a flight grazes")
     if curve.kind == TORUS and "resonance" in reason:
         first = root.unknowns[-1] < 0.5 * np.pi
@@ -359,7 +359,7 @@ def solve_end(
 
 
 def grazing_test(curve: BifurcationCurve, unknowns: Floats, reason: str) -> float:
-    """Return the smallest closing speed, or the smallest gap of a flight: 0 where it grazes."""
+    """Return the smallest closing speed, or a flight's smallest gap: 0 at a grazing."""
     orbit = curve.orbit(unknowns)
     if reason == "a flight grazes":
         return nearest_miss(orbit, turning_points(orbit))[0]

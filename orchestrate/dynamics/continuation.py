@@ -1,4 +1,4 @@
-"""Pseudo-arclength continuation of curves of roots, whatever the equations are.
+"""Pseudo-arclength continuation: curves of roots of n equations in n + 1 unknowns.
 
 A curve is the set of roots of n equations in n + 1 unknowns. It is followed by Keller's method
 (Numerical solution of bifurcation and nonlinear eigenvalue problems, 1977): a step along the
@@ -33,23 +33,23 @@ EASY_COSINE, EASY_ITERATIONS = 0.993, 4
 
 
 class NoConvergenceError(Exception):
-    """Newton's method found no root near where it was sent."""
+    """Newton's method has not converged to a root near its start."""
 
 
 class Curve(Protocol):
-    """n equations in n + 1 unknowns."""
+    """Protocol of n equations in n + 1 unknowns: residual, Jacobian, scales and accuracy."""
 
     scale: Floats  # sizes of the unknowns, shape (n + 1,)
 
     @property
     def accuracy(self) -> float:
-        """Largest residual of a root, in the units of the equations."""
+        """Largest residual with which a root counts as solved, in the equations' units."""
 
     def residual(self, unknowns: Floats) -> Floats:
         """Return the residual of the equations, shape (n,)."""
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
-        """Return the residual's derivative, shape (n, n + 1): exact at a root.
+        """Return the residual's Jacobian, shape (n, n + 1); exact if ``at_root``.
 
         Elsewhere it may be an estimate.
 
@@ -65,7 +65,7 @@ AnyCurve = TypeVar("AnyCurve", bound=Curve)
 
 @dataclass(frozen=True)
 class Root:
-    """A point of a curve.
+    """A solved point of a curve: unknowns, unit tangent and residual.
 
     Attributes
     ----------
@@ -84,7 +84,7 @@ class Root:
     iterations: int
 
     def reversed(self) -> Root:
-        """Return the same root with the tangent in the other direction of the curve."""
+        """Return the same root with its tangent reversed."""
         return replace(self, tangent=-self.tangent)
 
 
@@ -97,7 +97,7 @@ def newton_correct(
     max_iterations: int = 8,
     max_distance: float = 0.5,
 ) -> Root:
-    """Find the root near a guess, in the plane through the guess with a given normal.
+    """Solve by Newton's method for the root in the plane through ``guess`` with this normal.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ def newton_step(
 def polish_root(
     curve: Curve, guess: Floats, offset: Floats, normal: Floats, iterations: int
 ) -> Root:
-    """Return the root that Newton's method has come near to, with its tangent.
+    """Refine a nearly converged root with an exact Jacobian; return it with its tangent.
 
     Raises
     ------
@@ -183,7 +183,7 @@ def polish_root(
 
 
 def solve_linear(matrix: Floats, right: Floats) -> Floats:
-    """Solve linear equations; large systems as sparse ones, as most of their coefficients are zero.
+    """Solve linear equations, by dense LU; large systems by sparse LU.
 
     Raises
     ------
@@ -205,7 +205,7 @@ def solve_linear(matrix: Floats, right: Floats) -> Floats:
 
 
 def unit_tangent(matrix: Floats) -> Floats:
-    """Return the unit tangent: null vector of the Jacobian, fix_sign along the last row.
+    """Return the unit null vector of the Jacobian rows, oriented along the last row.
 
     The matrix is the Jacobian with that row below it. Where the tangent is orthogonal to the row,
     as at a fold of a parameter that was kept fixed, :func:`fix_sign` orients it.
@@ -220,7 +220,7 @@ def unit_tangent(matrix: Floats) -> Floats:
 
 
 def fix_sign(vector: Floats) -> Floats:
-    """Return a vector or its opposite, the same on every processor.
+    """Return a vector or its negative, so that its leading component is positive.
 
     Linear algebra leaves it to the processor which of both comes out.
     """
@@ -228,13 +228,13 @@ def fix_sign(vector: Floats) -> Floats:
 
 
 def leading_component(vector: NDArray[np.inexact]) -> int:
-    """Return the index of the first component that is about as large as the largest one."""
+    """Return the index of the first component nearly as large as the largest in size."""
     size = np.abs(vector)
     return int(np.argmax(size > LARGE * size.max()))
 
 
 def unit_vector(size: int, component: int) -> Floats:
-    """Return the unit vector along a component: as a normal it keeps that unknown fixed."""
+    """Return the unit vector of a size along one component."""
     vector = np.zeros(size)
     vector[component] = 1.0
     return vector
@@ -242,7 +242,7 @@ def unit_vector(size: int, component: int) -> Floats:
 
 @dataclass
 class ArclengthStepper(Generic[AnyCurve]):
-    """Steps along a curve, as long as the curve is straight.
+    """Pseudo-arclength stepper along a curve; its step follows the turning of the tangent.
 
     Attributes
     ----------
@@ -268,13 +268,13 @@ class ArclengthStepper(Generic[AnyCurve]):
     tolerance: float = 1e-8
 
     def root_after(self, length: float) -> Root:
-        """Return the root a length along the tangent from here."""
+        """Return the root at an arclength ahead: predicted on the tangent, then corrected."""
         root = self.root
         guess = root.unknowns + length * root.tangent * self.curve.scale
         return newton_correct(self.curve, guess, root.tangent, tolerance=self.tolerance)
 
     def step(self, accepts: Callable[[Root], bool] = lambda root: True) -> tuple[Root, float]:
-        """Step to the next root that is accepted; return it and the length of the step.
+        """Step to the next root that ``accepts``, shortened where needed; return it, the length.
 
         Raises
         ------
@@ -338,7 +338,7 @@ class ArclengthStepper(Generic[AnyCurve]):
     def next_limit(
         self, first: int, limits: Sequence[tuple[float, float]]
     ) -> tuple[int, float] | None:
-        """Return index and limit of the unknown that the next step takes too far; None without."""
+        """Return (unknown, limit) that the next step would cross first; None without one."""
         rates = self.root.tangent * self.curve.scale
         nearest, shortest = None, self.length
         for unknown, ends in enumerate(limits, first):
@@ -350,7 +350,7 @@ class ArclengthStepper(Generic[AnyCurve]):
         return nearest
 
     def solve_at(self, unknown: int, value: float) -> Root:
-        """Return the root near here at which an unknown has a value."""
+        """Return the nearby root at which one unknown has a given value."""
         rate = self.root.tangent[unknown] * self.curve.scale[unknown]
         length = (value - self.root.unknowns[unknown]) / rate
         guess = self.root.unknowns + length * self.root.tangent * self.curve.scale

@@ -1,4 +1,4 @@
-"""Curves grown point by point: close where they bend, and broken where they are not continuous.
+"""Grow a curve (manifold) point by point: denser where it bends, broken at discontinuities.
 
 A one-dimensional unstable manifold is what becomes of a short piece of it, from a point to its
 image, when it is mapped again and again (Hobson, Journal of Computational Physics 104, 14, 1993).
@@ -37,7 +37,7 @@ LENGTH, POINTS, CONVERGED = "length", "most points", "converges"
 
 
 class CurvePoint(NamedTuple):
-    """A point of a curve.
+    """A point of a grown curve: parameter s, state, and itinerary (its sequence of impacts).
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ class CurvePoint(NamedTuple):
 
 
 class Border(NamedTuple):
-    """Two points to rounding next to each other, between which the itinerary changes.
+    """Two points next to each other to rounding, between which the itinerary changes.
 
     Attributes
     ----------
@@ -72,13 +72,13 @@ class Border(NamedTuple):
     power: float
 
     def is_break(self, size: float) -> bool:
-        """Return whether the curve is broken here."""
+        """Return whether the curve jumps here, rather than only changing its itinerary."""
         return self.distance > STILL * size and self.power < JUMP
 
 
 @dataclass(frozen=True)
 class GrowthSettings:
-    """How a curve is grown.
+    """Settings for growing a curve: length, steps, angle, number of points.
 
     Attributes
     ----------
@@ -108,7 +108,7 @@ class GrowthSettings:
 
 @dataclass
 class GrownCurve:
-    """A curve from its first point on.
+    """A grown curve: its points, arclengths, breaks, and why it ended.
 
     Attributes
     ----------
@@ -126,18 +126,18 @@ class GrownCurve:
     end: str = ""
 
     def add(self, point: CurvePoint, distance: float) -> None:
-        """Add a point so far from the last one."""
+        """Append a point at a distance from the last one."""
         self.arclength.append((self.arclength[-1] if self.arclength else 0.0) + distance)
         self.points.append(point)
 
 
 def distance_of(one: CurvePoint, other: CurvePoint) -> float:
-    """Return the distance of two points, the same on every processor."""
+    """Return the Euclidean distance of two points' states, with equal bits on all processors."""
     return math.dist(other.state.tolist(), one.state.tolist())
 
 
 def power_of(history: list[tuple[float, float]]) -> float:
-    """Return the power with which distances fell over the last quarter of some bisections."""
+    """Return the exponent with which distances shrank in the last quarter of a bisection."""
     (far, before), (near, after) = history[-1 - len(history) // 4], history[-1]
     if not (0.0 < near < far and after > 0.0 and before > 0.0):
         return 0.0 if after > 0.0 else 1.0
@@ -145,7 +145,7 @@ def power_of(history: list[tuple[float, float]]) -> float:
 
 
 class CurveGrower:
-    """Grows a curve.
+    """Grows a curve that is the image of a parameter, with adaptive steps.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ class CurveGrower:
         self.direction: Floats | None = None  # of the last chord
 
     def grow(self, first: float = 0.0) -> GrownCurve:
-        """Grow the curve from parameter ``first`` on, point by point, to its end; return it."""
+        """Grow the curve from parameter ``first`` to its end; return all its points."""
         settings, curve = self.settings, GrownCurve()
         curve.add(self.image(first), 0.0)
         step, ahead = FIRST_STEP, None
@@ -191,7 +191,7 @@ class CurveGrower:
         return curve
 
     def angle_to(self, last: CurvePoint, point: CurvePoint) -> float:
-        """Return the angle of the chord to a point with the last one; 0 after a break."""
+        """Return the angle, rad, between the curve's direction and the chord to a point."""
         size = distance_of(last, point)
         if self.direction is None or size <= STILL * self.settings.size:
             return 0.0
@@ -199,7 +199,7 @@ class CurveGrower:
         return math.acos(max(-1.0, min(1.0, cosine)))
 
     def locate(self, low: CurvePoint, high: CurvePoint) -> Border:
-        """Locate where the itinerary first differs from that of the lower point."""
+        """Bisect between two points for where the itinerary changes; return the pair there."""
         resolution = self.settings.resolution * max(1.0, low.s)
         history = [(high.s - low.s, distance_of(low, high))]
         while high.s - low.s > resolution:
@@ -214,7 +214,7 @@ class CurveGrower:
         return Border(low, high, history[-1][1], power_of(history))
 
     def cross(self, curve: GrownCurve, border: Border) -> None:
-        """Go on beyond a border: connected, or with a break."""
+        """Continue the curve beyond a change of itinerary: connected, or with a break."""
         broken = border.is_break(self.settings.size)
         if broken:
             curve.breaks[len(curve.points)] = border
@@ -222,7 +222,7 @@ class CurveGrower:
         self.direction = None
 
     def end_of(self, curve: GrownCurve) -> str:
-        """Say why a curve ends here; empty where it goes on."""
+        """Return why the curve ends at its last point (length, points ...); empty if not."""
         settings, last = self.settings, curve.points[-1]
         if curve.arclength[-1] >= settings.length:
             return LENGTH

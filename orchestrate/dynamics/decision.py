@@ -1,4 +1,4 @@
-"""What a response settles to, decided by Newton's method where a repeated state leaves doubt.
+"""Decide to which motion a response settles, by Newton's method where repetition is doubtful.
 
 A response is run on until its state repeats. Its impacts over exactly those periods, counted from a
 phase far from any impact, are what Newton's method begins with. The orbit it finds says what the
@@ -47,7 +47,7 @@ MAX_NODES = 400  # of an orbit that Newton's method is tried on
 
 
 class MotionDecider:
-    """Decides what responses at one point settle to, and remembers what it has met.
+    """Decides to which motions responses at one point settle; remembers the orbits found.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ class MotionDecider:
     # -- responses --------------------------------------------------------------------------------
 
     def decide(self, state: ArrayLike) -> tuple[SettledMotion, Floats]:
-        """Decide what the response from a state at phase 0 settles to; return that, and a state."""
+        """Run from a state at phase 0 until its motion is known; return it and a state on it."""
         response, done = run_until_settled(self.plain, self.point, state, self.settings)
         unstable = False
         while True:
@@ -97,12 +97,12 @@ class MotionDecider:
             done += dropped + self.settings.samples
 
     def run_on(self, response: Response, dropped: int) -> Response:
-        """Return the response after some more periods."""
+        """Simulate a response on for some more periods; return the new response."""
         samples, converged = self.settings.samples, self.settings.converged
         return respond(self.plain, *self.point, response.end, dropped, samples, converged)
 
     def periodic_motion(self, response: Response) -> tuple[SettledMotion | None, bool]:
-        """Return the response's periodic motion or None, and whether an unstable orbit is near.
+        """Return a response's periodic motion (or None), and whether an unstable orbit is near.
 
         Returns
         -------
@@ -129,7 +129,7 @@ class MotionDecider:
         return None, unstable
 
     def possible_periods(self, response: Response) -> list[int]:
-        """Return after how many periods a response may repeat that does not do so at phase 0."""
+        """Return candidate periods of a response, from its repetition at another phase."""
         seen = sample_at_another_phase(
             self.plain, self.point, response, self.settings.irregular_samples
         )
@@ -140,7 +140,7 @@ class MotionDecider:
     def motion_without_orbit(
         self, response: Response, unstable: bool
     ) -> tuple[SettledMotion, Floats]:
-        """Return what is known of a response that comes to no stable orbit, and a state on it."""
+        """Return a motion for a response without stable orbit, irregular or periodic; a state."""
         n, state = response.multiplicity, np.array(response.end)
         if not n or response.repetition(self.settings.converged).multiplicity != n:  # nearly is not
             states, impacts = response.samples, response.impacts_per_period
@@ -156,7 +156,7 @@ class MotionDecider:
     # -- known motions ----------------------------------------------------------------------------
 
     def known_motion_at(self, state: ArrayLike, n: int) -> SettledMotion | None:
-        """Return the known motion that a response of period ``n`` is on; None if on none."""
+        """Return the known motion of ``n`` periods that passes at a state; None if on none."""
         for motion in self.known:
             distance = motion.nearest(state)[1]
             within = SAME if motion.decided == ORBIT else self.settings.alike
@@ -168,7 +168,7 @@ class MotionDecider:
         return None
 
     def remember(self, motion: SettledMotion) -> SettledMotion:
-        """Keep a stable orbit, or return the known one that is the same."""
+        """Store a stable orbit; return it, or the equal one already stored."""
         for known in self.known:
             if known.is_orbit_of(motion):
                 return known
@@ -176,14 +176,14 @@ class MotionDecider:
         return motion
 
     def stable_orbit_at(self, state: ArrayLike, periods: int) -> SettledMotion | None:
-        """Return the stable orbit near a state at phase 0 over some periods; None without one."""
+        """Solve for a stable orbit of some periods near a state; None without one."""
         orbit, free_phase = self.orbit_near(state, periods)
         if orbit is None or largest_multiplier(orbit) >= 1.0 - MARGIN:
             return None
         return self.remember(SettledMotion.from_orbit(self.point, orbit, free_phase))
 
     def converges_to(self, state: ArrayLike, motion: SettledMotion) -> bool:
-        """Return whether the response from a state at phase 0 settles to a stable orbit.
+        """Return whether the FMU's response from a state comes closer to a stable orbit.
 
         It does where it is in the orbit's neighbourhood, and nearer to it after some periods, as
         the multipliers say.
@@ -208,7 +208,7 @@ class MotionDecider:
     # -- orbits -----------------------------------------------------------------------------------
 
     def orbit_near(self, state: ArrayLike, periods: int) -> tuple[PeriodicOrbit | None, float]:
-        """Return the orbit near a response, None without one, and the phase of its nodes, rad.
+        """Solve for the orbit near a state; return it, or None, and the phase of its start.
 
         Returns
         -------
@@ -223,7 +223,7 @@ class MotionDecider:
         return self.solve(guess), free_phase
 
     def solve(self, guess: Guess) -> PeriodicOrbit | None:
-        """Return the orbit of a guess over its least period; None if it is no possible motion."""
+        """Solve for an orbit from a guess, over its least period; None if it is no motion."""
         if len(guess[0].kinds) > MAX_NODES:
             return None
         try:
@@ -236,7 +236,7 @@ class MotionDecider:
         return without_copies(orbit)
 
     def guess_from(self, state: Floats, periods: int) -> tuple[Guess, float]:
-        """Return the impacts of some periods as a guess, and the phase at which it begins, rad."""
+        """Record impacts of some periods in the FMU as guess of an orbit; return it, its phase."""
         instance, frequency = self.eventful, self.point.excitation.frequency
         assert instance is not None
         form, span = self.system.form(self.values), periods * self.point.excitation.period
@@ -254,7 +254,7 @@ class MotionDecider:
         return from_impacts(impacts, self.point, form, periods), frequency * begun
 
     def continue_orbit(self, motion: SettledMotion) -> SettledMotion | None:
-        """Return the stable orbit here that continues one at another value; None without one."""
+        """Solve here for the orbit of a neighbouring value; None if not stable here."""
         if motion.orbit is None or self.eventful is None:
             return None
         orbit = self.solve((motion.orbit.sequence, motion.orbit.nodes))
@@ -269,7 +269,7 @@ class MotionDecider:
         return own if own is not None and own.nearest(found.states[0])[1] < SAME else None
 
     def stays_on(self, motion: SettledMotion) -> bool:
-        """Return whether the FMU that begins on an orbit stays there."""
+        """Return whether the FMU, started on an orbit, is still on it after its period."""
         excitation = self.point.excitation
         shifted = excitation.replace(phase=motion.free_phase % TURN)
         try:
@@ -281,12 +281,12 @@ class MotionDecider:
 
 
 def largest_multiplier(orbit: PeriodicOrbit) -> float:
-    """Return the largest absolute value of an orbit's multipliers."""
+    """Return the largest absolute value of an orbit's Floquet multipliers."""
     return float(np.abs(orbit.multipliers()).max(initial=0.0))
 
 
 def without_copies(orbit: PeriodicOrbit) -> PeriodicOrbit:
-    """Return an orbit over the least number of periods after which it closes."""
+    """Return an orbit reduced to its least period, if it repeats within its period."""
     periods, least = orbit.sequence.periods, least_periods(orbit)
     if least == periods:
         return orbit
@@ -297,7 +297,7 @@ def without_copies(orbit: PeriodicOrbit) -> PeriodicOrbit:
 
 
 def phase_far_from_impacts(orbit: PeriodicOrbit) -> float:
-    """Return a phase of an orbit in the middle of its longest segment."""
+    """Return the phase, rad, in the middle of the orbit's longest time without impact."""
     if not orbit.count:
         return 0.0
     longest = int(orbit.durations.argmax())
@@ -308,7 +308,7 @@ def phase_far_from_impacts(orbit: PeriodicOrbit) -> float:
 def sample_at_another_phase(
     instance: Instance, point: Point, response: Response, samples: int
 ) -> Response:
-    """Return a response that goes on, sampled at a phase other than 0."""
+    """Continue a response in the FMU, sampled at another phase than 0; return it."""
     begin(instance, *point, response.end)
     instance.step(0.0, OTHER_PHASE / point.excitation.frequency)
     there = instance.get(*STATE)
@@ -318,7 +318,7 @@ def sample_at_another_phase(
 
 
 def count_impacts(instance: Instance, point: Point, state: ArrayLike, periods: int) -> int:
-    """Count the impacts of a response in some of its periods.
+    """Simulate some periods from a state; return the number of impacts.
 
     They are counted from a phase in the middle of a stretch without any, so that none is counted
     twice or left out.
@@ -340,7 +340,7 @@ def count_impacts(instance: Instance, point: Point, state: ArrayLike, periods: i
 
 
 def middle_of_longest_run(flags: NDArray[np.bool_]) -> int:
-    """Return the middle of the longest run of true flags on a circle; 0 where there is none."""
+    """Return the index in the middle of the longest cyclic run of True; 0 without any."""
     if flags.all() or not flags.any():
         return 0
     first = int(np.flatnonzero(~flags)[0])

@@ -1,4 +1,4 @@
-"""Orbits of one sequence over parameters: the equations whose roots they are."""
+"""Equations of periodic orbits with a fixed sequence of impacts, over varying parameters."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ RESIDUAL = 1e-10  # of the motion's size: what a root may leave of the equations
 
 @dataclass(frozen=True)
 class Setting:
-    """A structure, its excitation, and the parameters that vary.
+    """A structure and excitation with the names and limits of the parameters that vary.
 
     Attributes
     ----------
@@ -53,19 +53,19 @@ class Setting:
         excitation: tuple[tuple[str, float], ...],
         box_acceleration: float = 0.0,
     ) -> Setting:
-        """Return a setting in which nothing varies but, formally, the excitation's first number."""
+        """Return a setting for a single orbit, in which parameters do not really vary."""
         name, value = excitation[0]
         limits = ((value * SPREAD[0], value * SPREAD[1]),)
         return cls(structure, excitation, (name,), limits, box_acceleration)
 
     def point(self, values: Floats) -> Point:
-        """Return the structure under its excitation at values of the parameters."""
+        """Return structure and excitation with the varying parameters at these values."""
         given = {**dict(self.excitation), **dict(zip(self.over, map(float, values), strict=True))}
         given.pop(ACCELERATION, None)
         return point(self.structure, given)
 
     def orbit_call(self, values: Floats, period: int, guess: str) -> str:
-        """Return the call that asks for the orbit at values of the parameters."""
+        """Return Python source of the ``orbit(...)`` call at these values of the parameters."""
         point, arguments = self.point(values), dict(self.excitation)
         arguments.update(zip(self.over, map(float, values), strict=True))
         shown = {name: arguments[name] for name in EXCITATION_PARAMETERS if name in arguments}
@@ -75,12 +75,12 @@ class Setting:
         return f"orbit({', '.join([repr(point.structure), *parts, f'guess={guess}'])})"
 
     def acceleration(self, values: Floats) -> float:
-        """Return the box's constant acceleration at values of the parameters, m/s2."""
+        """Return the constant box acceleration, m/s2, at these values of the parameters."""
         given = dict(zip(self.over, map(float, values), strict=True))
         return given.get(ACCELERATION, self.box_acceleration)
 
     def form(self, values: Floats) -> ClosedForm:
-        """Return the closed form of the motion at values of the parameters.
+        """Return the closed-form coefficients at these values of the parameters.
 
         Raises
         ------
@@ -92,7 +92,7 @@ class Setting:
         return ClosedForm.from_structure(*point, self.acceleration(values))
 
     def over_first_alone(self, values: Floats) -> Setting:
-        """Return the same, with all parameters but the first one fixed at values."""
+        """Return a setting with only the first parameter varying, the others at these values."""
         fixed = dict(zip(self.over[1:], map(float, values[1:]), strict=True))
         acceleration = fixed.pop(ACCELERATION, self.box_acceleration)
         excitation = {
@@ -106,7 +106,7 @@ class Setting:
 
 
 def require_delaminated(structure: Structure) -> Structure:
-    """Return a structure, if it is delaminated; raise where its masses are glued.
+    """Return the structure unchanged; raise ``InputError`` if it is bonded.
 
     Raises
     ------
@@ -119,7 +119,7 @@ def require_delaminated(structure: Structure) -> Structure:
 
 
 def check_parameters(over: tuple[str, ...]) -> None:
-    """Check that these are parameters that can vary."""
+    """Raise ``InputError`` unless all names are parameters that can vary."""
     box = (
         name for name in EXCITATION_PARAMETERS if name != "level"
     )  # the amplitude varies instead
@@ -131,7 +131,7 @@ def check_parameters(over: tuple[str, ...]) -> None:
 
 @dataclass
 class Family:
-    """Orbits of a sequence over parameters: unknowns are those of the nodes, then the parameters.
+    """Equations of orbits with one impact sequence; unknowns: nodes, then parameters.
 
     Attributes
     ----------
@@ -147,34 +147,34 @@ class Family:
 
     @classmethod
     def from_nodes(cls, setting: Setting, sequence: ImpactSequence, nodes: Floats) -> Family:
-        """Return the family with scales from the nodes of one of its orbits."""
+        """Return the equations, scaled by the nodes of one of their orbits."""
         size = max(float(np.abs(nodes[:, 1:]).max(initial=0.0)), SMALLEST)
         spans = [high - low for low, high in setting.limits]
         return cls(setting, sequence, np.append(node_scales(size, len(nodes)), spans))
 
     @property
     def size(self) -> int:
-        """Return the number of unknowns that are the nodes' coordinates."""
+        """Return the number of unknowns that are node coordinates (four per node)."""
         return 4 * len(self.sequence.kinds)
 
     @property
     def accuracy(self) -> float:
-        """Return the largest residual of the equations with which a root is taken as solved."""
+        """Return the largest residual with which an orbit counts as solved."""
         if not self.size:
             return RESIDUAL
         return RESIDUAL * float(self.scale[POSITION]) / np.sqrt(len(self.sequence.kinds))
 
     def orbit(self, unknowns: Floats) -> PeriodicOrbit:
-        """Return the periodic orbit that some unknowns describe."""
+        """Return the periodic orbit contained in a vector of unknowns."""
         nodes, values = unknowns[: self.size], unknowns[self.size :]
         return PeriodicOrbit(self.sequence, self.setting.form(values), nodes.reshape(-1, 4))
 
     def residual(self, unknowns: Floats) -> Floats:
-        """Return the residual of the orbit's equations."""
+        """Return the residual of the orbit's equations at a vector of unknowns."""
         return self.orbit(unknowns).residual()
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
-        """Return the residual's derivative: exact by nodes, by differences by parameters."""
+        """Return the residual's Jacobian: exact by nodes, by differences by parameters."""
         columns = [
             central_difference(self.residual, unknowns, self.size + i, *limits)[:, None]
             for i, limits in enumerate(self.setting.limits)
@@ -183,7 +183,7 @@ class Family:
 
 
 def node_scales(size: float, count: int) -> Floats:
-    """Return scales of the unknowns of some nodes, in a motion of some size."""
+    """Return the scales of ``count`` nodes' unknowns (phase, position, velocities)."""
     return np.tile([1.0, size, size, size], count) * np.sqrt(max(count, 1))
 
 
@@ -195,7 +195,7 @@ def central_difference(
     high: float,
     step: float = 0.0,
 ) -> Floats:
-    """Return the derivative of a function by one unknown, by a central difference inside limits."""
+    """Return a function's derivative by one unknown, by a central difference within limits."""
     value = unknowns[which]
     step = step or RELATIVE_STEP * max(abs(value), 1e-3 * (high - low))
     ends = []

@@ -1,4 +1,4 @@
-"""Settled responses followed impact by impact, along a parameter."""
+"""Base of questions that follow responses impact by impact along a parameter."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ State = tuple[float, ...]
 
 
 class Followed(NamedTuple):
-    """What is followed: a structure under an excitation, from a state at phase 0 in m and m/s.
+    """A response to follow: structure, excitation, and its state at phase 0 (m, m/s).
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class Followed(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class OnwardQuestion(SeriesQuestion, ABC):
-    """A question to responses that go on from given states.
+    """Base of jobs along a parameter whose responses start from given or swept states.
 
     Attributes
     ----------
@@ -59,11 +59,11 @@ class OnwardQuestion(SeriesQuestion, ABC):
     follows: str = ""
 
     def needs(self) -> tuple[str, ...]:
-        """Return the name of the sweep whose result is needed; an empty tuple without one."""
+        """Return the name of the sweep that gives the starts; an empty tuple without one."""
         return (self.follows,) if self.follows else ()
 
     def items(self, inputs: Inputs) -> Sequence[Followed]:
-        """Return what is followed, for each value."""
+        """Return for each parameter value the response to follow, with its start state."""
         series = self.series
         rows = np.reshape(self.start, (-1, 4))
         if self.follows:
@@ -74,7 +74,7 @@ class OnwardQuestion(SeriesQuestion, ABC):
 
 @dataclass(frozen=True, kw_only=True)
 class FollowingQuestion(OnwardQuestion, ABC):
-    """A question to responses that are followed impact by impact.
+    """Base of jobs that evaluate the impacts of responses after a transient.
 
     Attributes
     ----------
@@ -88,7 +88,7 @@ class FollowingQuestion(OnwardQuestion, ABC):
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Followed], previous: Table | None
     ) -> Table:
-        """Follow some responses after their transients."""
+        """Simulate responses past their transients, then record impacts; return a row for each."""
         rows = []
         with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
             for item in items:
@@ -101,7 +101,7 @@ class FollowingQuestion(OnwardQuestion, ABC):
 
     @abstractmethod
     def row(self, impacts: Impacts, item: Followed) -> Sequence[float]:
-        """Return the columns of the result for one response; subclasses choose them.
+        """Return the numbers that one response's impacts give; subclasses choose them.
 
         Parameters
         ----------
@@ -113,14 +113,14 @@ class FollowingQuestion(OnwardQuestion, ABC):
 
 
 def end_states(swept: xr.Dataset, series: Series) -> NDArray[np.float64]:
-    """Return states at the ends of a sweep's responses, m and m/s; the nearest value's."""
+    """Return a sweep's end states at the series' values (nearest), in m and m/s, (n, 4)."""
     rows = swept.end_state.sel({series.name: list(series.values)}, method="nearest")
     states: NDArray[np.float64] = rows.values * series.scales()
     return states
 
 
 def start_states(given: ArrayLike | xr.Dataset | None, question: SeriesQuestion) -> State:
-    """Return the states that a user's responses start from, one after the other.
+    """Return the start states given by the user: one for all, one per value, or of a sweep.
 
     Parameters
     ----------
@@ -155,7 +155,7 @@ def start_states(given: ArrayLike | xr.Dataset | None, question: SeriesQuestion)
 
 
 def state_after(instance: Instance, item: Followed, transient: int) -> State:
-    """Return the state after a transient, at phase 0 again."""
+    """Simulate ``transient`` periods in the FMU; return the state at phase 0."""
     if not transient:
         return item.start
     begin(instance, *item.point, item.start)
@@ -164,7 +164,7 @@ def state_after(instance: Instance, item: Followed, transient: int) -> State:
 
 
 def starts_in_contact(instance: EventInstance, point: Point, start: ArrayLike) -> bool:
-    """Return whether a state at phase 0 is one of permanent contact."""
+    """Return whether a state at phase 0 is in permanent contact, by the FMU."""
     begin(instance, *point, start)
     return instance.flag("in_contact")()
 
@@ -172,6 +172,6 @@ def starts_in_contact(instance: EventInstance, point: Point, start: ArrayLike) -
 def follow_impacts(
     instance: EventInstance, point: Point, start: ArrayLike, periods: int
 ) -> Impacts:
-    """Return the non-dimensional impacts of some periods from a state at phase 0."""
+    """Simulate some periods from a state; return their impacts, non-dimensional."""
     begin(instance, *point, start)
     return nondimensional(instance.impacts(0.0, periods * point.excitation.period), point)

@@ -1,4 +1,4 @@
-"""All that is long, in one way: chunks on all cores or a cluster, resumable, whole or not at all.
+"""Long computations: jobs in chunks, on all cores or a Dask cluster, stored and resumable.
 
 ==================  =========================================================================
 module              idea

@@ -1,4 +1,4 @@
-"""Checksum of a result: over its names, units and numbers, however it is stored.
+"""Checksum of a dataset over its names, units and numbers, independent of the file format.
 
 It travels in an attribute of the file, so that any tool reads the file as before. A result whose
 checksum does not fit has been damaged, or changed by somebody after it was written.
@@ -20,7 +20,7 @@ ATTRIBUTE = "content_sha256"
 
 
 def checksum(data: xr.Dataset) -> str:
-    """Return the checksum of a dataset; the attribute that holds it does not count.
+    """Return a dataset's SHA-256 over names, attributes and values; its own attribute is left out.
 
     A dataset that was written to NetCDF and read again has the checksum that it had before.
 
@@ -57,18 +57,18 @@ def checksum(data: xr.Dataset) -> str:
 
 
 def normalized_attributes(attributes: Mapping[Any, Any]) -> dict[str, list[Any]]:
-    """Return attributes as they come back from a file, where a list of one equals its element."""
+    """Return attributes as lists of plain values, as they come back from a NetCDF file."""
     pairs = ((str(name), value) for name, value in attributes.items() if name != ATTRIBUTE)
     return {name: np.atleast_1d(np.asarray(value)).tolist() for name, value in pairs}
 
 
 def encode_json(data: Any) -> bytes:
-    """Return plain data as JSON bytes, the same for equal data."""
+    """Return plain data as JSON bytes with sorted keys, so that equal data give equal bytes."""
     return json.dumps(data, sort_keys=True).encode()
 
 
 def encode_array(values: np.ndarray) -> bytes:
-    """Return an array's bytes: little-endian, all NaN alike; texts as JSON."""
+    """Return an array's bytes for a checksum: little-endian, all NaN alike; texts as JSON."""
     if values.dtype.kind in "USO":
         return encode_json(list(map(str, np.ravel(values))))
     if values.dtype.kind == "f":

@@ -22,7 +22,7 @@ RETRIES = 3  # a chunk whose worker is lost is computed by others
 
 
 def is_worth_logging(record: logging.LogRecord) -> bool:
-    """Return whether a line of Dask's log stays: not if our own exceptions report it."""
+    """Return whether one of Dask's log records is kept; lost connections are reported by us."""
     kind = record.exc_info[0] if record.exc_info else None
     lost = kind is not None and issubclass(kind, CONNECTION_ERRORS)
     message = record.getMessage()
@@ -84,18 +84,18 @@ class Cluster:
                 )
 
     def _cores(self) -> int:
-        """Count the cores of all workers."""
+        """Return the number of cores of all Dask workers together."""
         try:
             return int(sum(self._client.ncores().values()))
         except Exception as error:  # one of many, where the connection is lost
             raise CancelledError from error
 
     def max_in_flight(self) -> int:
-        """Return two chunks for each core; workers may come and go."""
+        """Return how many chunks to submit at once: two per core of the Dask workers."""
         return 2 * max(1, self._cores())
 
     def close(self, in_haste: bool) -> None:
-        """Disconnect from the scheduler and cancel what it still computes for this process."""
+        """Shut down the Dask client; running chunks are cancelled ``in_haste``, else awaited."""
         with suppress(Exception):
             self.executor.shutdown(wait=not in_haste)
         with suppress(Exception):
@@ -103,7 +103,7 @@ class Cluster:
 
 
 async def check_scheduler(address: str) -> None:
-    """Raise unless Dask answers at an address; its own client would wait for ever."""
+    """Try to connect to a Dask scheduler's address; raise unless it answers within the timeout."""
     from dask.utils import parse_timedelta
     from distributed.comm import connect
     from distributed.security import Security
@@ -116,13 +116,13 @@ async def check_scheduler(address: str) -> None:
 
 
 class DaskExecutor(Executor):
-    """Wraps Dask's executor: a call that finds no scheduler counts as cancelled."""
+    """Wrapper of Dask's executor that raises ``CancelledError`` if the scheduler is lost."""
 
     def __init__(self, pool: Any, client: Any) -> None:
         self._pool, self._client = pool, client
 
     def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Submit a call."""
+        """Submit a call to Dask; return its future; ``CancelledError`` without scheduler."""
         try:
             future: Future[Any] = self._pool.submit(fn, *args, **kwargs)
         except Exception as error:
@@ -132,5 +132,5 @@ class DaskExecutor(Executor):
         return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Shut down Dask's executor; ``wait`` waits for running calls, else they are cancelled."""
+        """Shut down Dask's executor, after its running calls if ``wait``, else cancelling them."""
         self._pool.shutdown(wait=wait)

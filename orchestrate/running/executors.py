@@ -38,7 +38,7 @@ def compute(
     warmup_items: Sequence[Any],
     code: Mapping[str, str] | None = None,
 ) -> tuple[bytes, Table]:
-    """Compute a chunk, on other machines by FMUs sent as bytes; return its start state and table.
+    """Compute a job's chunk in a worker; return bytes of its start state, and its result table.
 
     Parameters
     ----------
@@ -78,24 +78,24 @@ def compute(
 
 
 def fmu_file(model: str, content: bytes) -> Path:
-    """Write an FMU that came as bytes to a file; return its path."""
+    """Write an FMU's bytes, sent to this worker, to a temporary file once; return its path."""
     return write_fmu_once(model, hashlib.sha256(content).hexdigest(), content)
 
 
 @functools.lru_cache(maxsize=16)
 def write_fmu_once(model: str, digest: str, content: bytes) -> Path:
-    """Write an FMU into the temporary folder of this process, once."""
+    """Write an FMU's bytes to this process's temporary folder by digest; return the path."""
     folder = process_folder() / f"sent-{digest[:32]}"
     folder.mkdir(exist_ok=True)
     return write_whole(folder / f"{model}.fmu", lambda path: path.write_bytes(content))
 
 
 class Workers(Protocol):
-    """Interface of everything that computes chunks."""
+    """Protocol of what computes chunks: this process, worker processes or a Dask cluster."""
 
     @property
     def executor(self) -> Executor:
-        """Executor that takes the calls."""
+        """The ``concurrent.futures`` executor to which chunks are submitted."""
 
     @property
     def remote(self) -> bool:
@@ -103,42 +103,42 @@ class Workers(Protocol):
 
     @property
     def losses(self) -> Mapping[type[BaseException], str]:
-        """Return the exceptions that mean lost workers, each with a text for the user."""
+        """Return a dict from exception types that mean lost workers to texts for the user."""
 
     def max_in_flight(self) -> int:
         """Return how many chunks should be submitted at once."""
 
     def close(self, in_haste: bool) -> None:
-        """Release the workers; ``in_haste`` ends them in the middle of their chunks."""
+        """Release the workers; ``in_haste`` kills them in the middle of their chunks."""
 
 
 class InlineExecutor(Executor):
-    """Runs each call in this process as soon as it is submitted."""
+    """Executor without workers: runs each call in this process as soon as it is submitted."""
 
     remote = False
     losses: ClassVar[Mapping[type[BaseException], str]] = {}
 
     @property
     def executor(self) -> Executor:
-        """Return itself."""
+        """Return itself: it is its own ``concurrent.futures`` executor."""
         return self
 
     def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Run a call now; what it raises is raised here."""
+        """Run a call at once in this process; return a finished future, or raise its exception."""
         future: Future[Any] = Future()
         future.set_result(fn(*args, **kwargs))
         return future
 
     def max_in_flight(self) -> int:
-        """Return 1: chunks are computed one at a time."""
+        """Return 1, the number of chunks to submit at once."""
         return 1
 
     def close(self, in_haste: bool) -> None:
-        """Do nothing: there are no workers to release."""
+        """Do nothing: there are no worker processes to release."""
 
 
 class Processes:
-    """Computes chunks in worker processes of this machine (loky)."""
+    """Workers that are processes of this machine, from a reusable loky pool."""
 
     remote = False
     losses: ClassVar[Mapping[type[BaseException], str]] = {
@@ -157,35 +157,35 @@ class Processes:
         )
 
     def max_in_flight(self) -> int:
-        """Return one chunk more than there are processes, so that none waits."""
+        """Return how many chunks to submit at once: one more than there are processes."""
         return self.count + 1
 
     def close(self, in_haste: bool) -> None:
-        """Keep the processes for the next question, or end them."""
+        """Kill the worker processes if ``in_haste``; else keep them for the next computation."""
         if in_haste:
             self.executor.shutdown(wait=True, cancel_futures=True)
 
 
 class SigintMaskedExecutor(Executor):
-    """Wraps an executor whose processes ignore Ctrl-C from their first instruction on."""
+    """Wrapper of a process pool whose workers ignore Ctrl-C from their first instruction on."""
 
     def __init__(self, pool: Any) -> None:
         self._pool = pool
 
     def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Submit a call; processes that are started for it inherit the blocked signal."""
+        """Submit a call to the pool with SIGINT blocked; return its future."""
         with sigint_masked():
             future: Future[Any] = self._pool.submit(fn, *args, **kwargs)
             return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Shut down the processes; ``cancel_futures`` kills them in the middle of their work."""
+        """Shut down the pool's processes; ``cancel_futures`` kills them while they work."""
         self._pool.shutdown(wait=wait, kill_workers=cancel_futures)
 
 
 @contextmanager
 def sigint_masked() -> Iterator[None]:
-    """Block SIGINT (Ctrl-C) for a moment; processes started meanwhile keep it blocked."""
+    """Block SIGINT (Ctrl-C) in a ``with`` block, so that processes started in it inherit that."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -198,7 +198,7 @@ def sigint_masked() -> Iterator[None]:
 
 
 def initialize_worker(parent: int) -> None:
-    """Set up a worker process: ignore Ctrl-C, and end when the parent process has ended."""
+    """Set up a worker process: ignore Ctrl-C, and exit when the parent process has ended."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if sys.platform == "win32":  # there a process does not learn of it
         return
@@ -213,7 +213,7 @@ def initialize_worker(parent: int) -> None:
 
 @contextmanager
 def workers_ended_on_error(workers: Workers) -> Iterator[None]:
-    """Run a block; if it raises, end the workers, and turn a lost one into ``WorkerError``."""
+    """Kill the workers if the ``with`` block raises; turn lost workers into ``WorkerError``."""
     try:
         yield
     except BaseException as error:
@@ -228,7 +228,7 @@ def workers_ended_on_error(workers: Workers) -> Iterator[None]:
 
 @contextmanager
 def running_workers(workers: Workers) -> Iterator[Workers]:
-    """Provide workers for a block of code and release them afterwards."""
+    """Provide workers for a ``with`` block; release them at its end, kill them on an error."""
     with workers_ended_on_error(workers):
         yield workers
     workers.close(False)

@@ -1,4 +1,4 @@
-"""Export of all variables of a result: CSV, MATLAB and Excel, each file whole or not at all.
+"""Write any dataset as CSV, MATLAB or Excel file; columns are the variables it happens to have.
 
 =======  =========================================================================================
 ending   what
@@ -35,7 +35,7 @@ MAX_SHEET_NAME = 31  # letters, Excel's limit
 
 
 def write(data: xr.Dataset, path: Path) -> list[Path]:
-    """Write a dataset in the format that the path's suffix names.
+    """Export a dataset as .csv, .mat or .xlsx, by the path's suffix; return the paths written.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def write(data: xr.Dataset, path: Path) -> list[Path]:
 
 
 def tables(data: xr.Dataset) -> dict[str, pd.DataFrame]:
-    """Return tables keyed by their dimensions, in the variables' order, units in headers."""
+    """Return a dataset as pandas tables, one per set of dimensions; units in the headers."""
     data = as_shown(data)
     groups: dict[tuple[str, ...], list[str]] = {}
     for name, array in data.data_vars.items():
@@ -79,7 +79,7 @@ def tables(data: xr.Dataset) -> dict[str, pd.DataFrame]:
 
 
 def make_table(data: xr.Dataset) -> pd.DataFrame:
-    """Return variables over the same dimensions as a table, one row per point."""
+    """Return a dataset whose variables share dimensions as a pandas table, a row per point."""
     import pandas as pd
 
     decoded = {name: decode_flags(array) for name, array in data.variables.items()}
@@ -94,7 +94,7 @@ def make_table(data: xr.Dataset) -> pd.DataFrame:
 
 
 def decode_flags(array: xr.Variable) -> NDArray[Any]:
-    """Return an array's values; those of flags that are not yes or no as their words."""
+    """Return a variable's values; those of CF flags are replaced by words, yes/no stay numbers."""
     meanings = str(array.attrs.get("flag_meanings", "no yes"))
     if meanings == "no yes":
         return np.asarray(array.values)
@@ -104,13 +104,13 @@ def decode_flags(array: xr.Variable) -> NDArray[Any]:
 
 
 def column_heading(name: str, data: xr.Dataset) -> str:
-    """Return a column's name with its unit: ``x1 [m]``."""
+    """Return a table column's heading, a variable's name with its unit: ``x1 [m]``."""
     units = str(data[name].attrs.get("units", "1")) if name in data.variables else "1"
     return name if units == "1" else f"{name} [{units}]"
 
 
 def write_csv(data: xr.Dataset, path: Path) -> list[Path]:
-    """Write each table of a result as a CSV file; return their paths."""
+    """Write a dataset as CSV files, one for each set of dimensions; return their paths."""
     frames = tables(data)
     written = []
     for name, frame in frames.items():
@@ -120,7 +120,7 @@ def write_csv(data: xr.Dataset, path: Path) -> list[Path]:
 
 
 def write_xlsx(data: xr.Dataset, path: Path) -> list[Path]:
-    """Write one sheet per table, and a sheet that explains them."""
+    """Write a dataset as an Excel file, a sheet per table and one ``about``; return its path."""
     import pandas as pd
 
     frames = tables(data)
@@ -141,7 +141,7 @@ def write_xlsx(data: xr.Dataset, path: Path) -> list[Path]:
 
 
 def metadata_table(data: xr.Dataset) -> pd.DataFrame:
-    """Return what names mean: variables with their units, then parameters with their values."""
+    """Return a pandas table of a dataset's variables (unit, meaning) and its attributes."""
     import pandas as pd
 
     data = as_shown(data)
@@ -154,7 +154,7 @@ def metadata_table(data: xr.Dataset) -> pd.DataFrame:
 
 
 def write_mat(data: xr.Dataset, path: Path) -> list[Path]:
-    """Write arrays by name, and structures that explain them."""
+    """Write a dataset as a MATLAB file: arrays, units, long names, dimensions; return its path."""
     from scipy.io import savemat
 
     variables = data.variables.items()
@@ -172,7 +172,7 @@ def write_mat(data: xr.Dataset, path: Path) -> list[Path]:
 
 
 def matlab_value(values: NDArray[Any]) -> NDArray[Any]:
-    """Return texts as a cell array, anything else unchanged."""
+    """Return an array of texts as objects (MATLAB's cell array), any other array unchanged."""
     return values.astype(object) if values.dtype.kind in "USO" else values
 
 

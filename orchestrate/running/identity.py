@@ -23,7 +23,7 @@ DIGITS = 16  # hexadecimal, of a digest: short to read, and equal by chance in 2
 
 
 class Fmu(Protocol):
-    """Interface of an FMU's description, as far as it is needed here."""
+    """Protocol of an FMU's description as stores need it: path, name, GUID and FMI version."""
 
     @property
     def path(self) -> Path:
@@ -46,7 +46,7 @@ Identity = dict[str, Any]
 
 
 def identity_of(job: Job, fmus: Mapping[str, Fmu], known: Mapping[str, Identity]) -> Identity:
-    """Return what identifies a job's result: question, digests of the code and of the FMUs.
+    """Return a job's identity as a dict: its parameters, digests of code and FMUs, needed results.
 
     Parameters
     ----------
@@ -67,18 +67,18 @@ def identity_of(job: Job, fmus: Mapping[str, Fmu], known: Mapping[str, Identity]
 
 
 def json_round_trip(identity: Identity) -> Identity:
-    """Return an identity as it comes back from disk."""
+    """Return an identity as it reads back from JSON, to compare with stored ones."""
     restored: Identity = json.loads(json.dumps(identity))
     return restored
 
 
 def fingerprint(identity: Identity) -> str:
-    """Return a short digest of an identity."""
+    """Return a short SHA-256 digest (hexadecimal digits) of an identity or other JSON data."""
     return hashlib.sha256(json.dumps(identity, sort_keys=True).encode()).hexdigest()[:DIGITS]
 
 
 def difference(stored: Identity, current: Identity) -> str:
-    """Describe where two identities differ; return an empty string if they do not."""
+    """Return one line on where two identities differ; an empty string if they are equal."""
     for part in sorted(set(stored) | set(current), key=lambda name: (name != "question", name)):
         line = first_difference(stored.get(part), current.get(part), "")
         if line and part == "code":
@@ -91,19 +91,19 @@ def difference(stored: Identity, current: Identity) -> str:
 
 
 def same_question(stored: Identity, current: Identity) -> bool:
-    """Return whether two identities differ at most in code and FMU."""
+    """Return whether two identities have equal job parameters, whatever their code and FMU."""
     return stored.get("question") == current.get("question")
 
 
 def changed_modules(stored: Mapping[str, str], current: Mapping[str, str]) -> str:
-    """List the source files that differ, at most three by name."""
+    """Return a text with the source files whose digests differ, at most three by name."""
     names = sorted(name for name in {*stored, *current} if stored.get(name) != current.get(name))
     shown = ", ".join(f"{name.replace('.', '/')}.py" for name in names[:3])
     return shown if len(names) <= 3 else f"{shown} and {len(names) - 3} more"
 
 
 def first_difference(a: Any, b: Any, name: str) -> str:
-    """Describe the first entry in which two parts of an identity differ."""
+    """Return one line on the first entry in which two nested values differ; empty if equal."""
     if a == b:
         return ""
     if isinstance(a, dict) and isinstance(b, dict):
@@ -118,7 +118,7 @@ def first_difference(a: Any, b: Any, name: str) -> str:
 
 
 def code_digests(module: str) -> dict[str, str]:
-    """Return digests of the modules that a module of this package depends on, itself included."""
+    """Return digests, by name, of a package's module and of all modules that it imports in turn."""
     digests: dict[str, str] = {}
     waiting = [module]
     while waiting:
@@ -136,7 +136,7 @@ def code_digests(module: str) -> dict[str, str]:
 
 
 def source_file(module: str) -> Path | None:
-    """Return the file of a module of this package; None for all others and the package itself."""
+    """Return the source file of a module's dotted name; None outside this package."""
     parts = module.split(".")
     if parts[0] != ROOT or len(parts) == 1:
         return None
@@ -149,7 +149,7 @@ def source_file(module: str) -> Path | None:
 
 @functools.cache
 def read_source(path: Path, module: str) -> tuple[str, tuple[str, ...]]:
-    """Return the digest of a source file and the names that it imports."""
+    """Return the digest of a Python file (with its C file) and the module names that it imports."""
     source = path.read_bytes().replace(b"\r\n", b"\n")
     c_source = path.with_suffix(".c")  # what the module has compiled
     content = source + (
@@ -175,7 +175,7 @@ def imported_names(tree: ast.AST, package: str) -> Iterator[str]:
 
 
 def prefixes(name: str) -> Iterator[str]:
-    """Yield ``a``, ``a.b`` and ``a.b.c`` for ``a.b.c``: importing the last imports all."""
+    """Yield a dotted name and its parents, shortest first: ``a``, ``a.b``, ``a.b.c``."""
     parts = name.split(".")
     for count in range(1, len(parts) + 1):
         yield ".".join(parts[:count])

@@ -1,4 +1,4 @@
-"""Definition of a long computation: items in chunks, and everything that decides its numbers.
+"""Base class of long computations: items in chunks, and all parameters that decide the numbers.
 
 A job is a frozen dataclass whose fields decide every number of its result. Its items are computed
 in chunks, by whoever is free; a sequential job's chunks each start from the end of the one before.
@@ -25,7 +25,7 @@ MAX_LISTED = 4  # a longer list of numbers is summarized by its ends, count and 
 
 @dataclass(frozen=True)
 class Chunk:
-    """A consecutive part of a job's items.
+    """Consecutive items of a job computed at once; ``after`` is the chunk it continues.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class Chunk:
 
 @dataclass(frozen=True)
 class Job(ABC):
-    """One result; subclasses define its items and how they are computed.
+    """Base class of one computation with a stored result; subclasses define its items and the work.
 
     Attributes
     ----------
@@ -66,24 +66,24 @@ class Job(ABC):
     item: ClassVar[str] = "item"  # what the progress bar counts
 
     def needs(self) -> tuple[str, ...]:
-        """Return the names of the jobs whose results this one starts from."""
+        """Return the names of other jobs whose results this job takes as input."""
         return ()
 
     @abstractmethod
     def count(self) -> int:
-        """Return the number of items, known before any work."""
+        """Return the number of items of the job, known before any work is done."""
 
     def independent_series(self) -> int:
-        """Return how many equal, independent series of items a sequential job has."""
+        """Return how many equally long, independent series a sequential job's items form."""
         return 1
 
     @abstractmethod
     def items(self, inputs: Inputs) -> Sequence[Any]:
-        """Return the items in their order: plain data that travels to a worker."""
+        """Return all items in order, plain data for the workers; ``inputs``: the needed results."""
 
     @abstractmethod
     def work(self, fmus: Mapping[str, Path], items: Sequence[Any], previous: Table | None) -> Table:
-        """Compute a chunk's items, in a worker, by the FMUs; return their results as a table.
+        """Compute a chunk's items by the FMUs, in a worker; return arrays, one row per item.
 
         Parameters
         ----------
@@ -100,11 +100,11 @@ class Job(ABC):
         """
 
     def progress_note(self, first: int) -> str:
-        """Return a note for the progress bar while a chunk counts no items; else ``""``."""
+        """Return a text shown beside the progress bar while a chunk runs; usually empty."""
         return ""
 
     def boundary_state(self, table: Table) -> bytes:
-        """Return the bytes of the state a chunk starts from; needed if ``warmup_items`` is set.
+        """Return a chunk's end state as bytes, to compare with the next one's guessed start.
 
         It is in the last entries of the chunk before.
         """
@@ -112,13 +112,13 @@ class Job(ABC):
 
     @abstractmethod
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return the result, from all chunks concatenated along their first axis.
+        """Return the final xarray dataset from the arrays of all chunks, concatenated.
 
         The last chunk of a job that ``gathers`` adds arrays of other names.
         """
 
     def parameters(self) -> dict[str, Any]:
-        """Return everything that decides the numbers, as plain data; long lists are summarized."""
+        """Return the job's fields as JSON data for its identity; long lists summarized."""
         return {
             field.name: plain(getattr(self, field.name))
             for field in fields(self)
@@ -131,7 +131,7 @@ class Job(ABC):
         return f"{type(self).__name__}({', '.join(parts)})"
 
     def chunks(self) -> list[Chunk]:
-        """Return the chunks, in order."""
+        """Split the items into chunks of ``chunk_size``; return them in order."""
         count, series = self.count() - self.gathers, self.independent_series()
         chunks: list[Chunk] = []
         for number in range(series):
@@ -145,12 +145,12 @@ class Job(ABC):
 
 
 def last_entries(table: Table) -> Table:
-    """Return the last entry of each array of a chunk: what the next chunk starts from."""
+    """Return the last row of each array of a chunk: the state the next chunk starts from."""
     return {name: values[-1:].copy() for name, values in table.items()}
 
 
 def plain(value: Any) -> Any:
-    """Return a value as JSON can hold it; a long list by its ends, count and digest."""
+    """Convert a value to JSON data recursively; long number lists become ends, count and digest."""
     if is_dataclass(value) and not isinstance(value, type):
         return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
     if isinstance(value, Mapping):
@@ -163,7 +163,7 @@ def plain(value: Any) -> Any:
 
 
 def summarize_list(values: Any) -> Any:
-    """Return a list for JSON: a summary if it is long and of numbers, else the list itself."""
+    """Return a list as JSON data; long ones of numbers as first, last, count, digest."""
     parts = list(values)
     if len(parts) <= MAX_LISTED or not all(
         isinstance(part, (int, float, np.number)) for part in parts
@@ -179,7 +179,7 @@ def summarize_list(values: Any) -> Any:
 
 
 def brief(value: Any) -> str:
-    """Format a parameter in one line."""
+    """Format a parameter's JSON value as text of one line; a summarized list as its range."""
     if isinstance(value, dict) and "sha256" in value:
         step = f" by {value['step']:g}" if "step" in value else ""
         return f"{value['first']:g} ... {value['last']:g}{step} ({value['count']} values)"

@@ -1,4 +1,4 @@
-"""Journal: the chunks of a job on disk while it is under way.
+"""Journal: SQLite file with the computed chunks of an unfinished job, with checksums; lock.
 
 An SQLite database, one chunk a row, one transaction a row: a process killed at any moment loses the
 chunks that were being computed, a full disk the one that was being written. Each row is sealed: its
@@ -27,31 +27,31 @@ ANEW = "remove it to start again"
 
 
 def journal_path(result: Path, anew: bool = False) -> Path:
-    """Return the path of a result's journal; another one where a finished result is recomputed."""
+    """Return the path of a result file's journal; ``anew``: of the one for computing it again."""
     return result.with_name(f"{result.name}{'.anew' * anew}.journal")
 
 
 def discard(path: Path) -> None:
-    """Delete a journal's files."""
+    """Delete the SQLite files of a journal, those that exist."""
     for ending in ENDINGS:
         Path(f"{path}{ending}").unlink(missing_ok=True)
 
 
 def pack(table: Table) -> bytes:
-    """Return a table of arrays as bytes."""
+    """Serialise a dict of arrays to bytes (NumPy's npz format)."""
     stream = io.BytesIO()
     np.savez(stream, **table)  # type: ignore[arg-type]
     return stream.getvalue()
 
 
 def unpack(data: bytes) -> Table:
-    """Return the arrays in bytes of :func:`pack`."""
+    """Return the dict of arrays from bytes that :func:`pack` made."""
     with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
         return dict(arrays)
 
 
 def checksum_of_parts(*parts: bytes) -> str:
-    """Return a checksum of several byte strings and of where each of them ends."""
+    """Return the SHA-256 of several byte strings, each preceded by its length."""
     digest = hashlib.sha256()
     for part in parts:
         digest.update(len(part).to_bytes(8, "little"))
@@ -60,7 +60,7 @@ def checksum_of_parts(*parts: bytes) -> str:
 
 
 class Journal:
-    """The chunks of one job, in an SQLite database.
+    """SQLite database of one job's computed chunks and its identity.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ class Journal:
             ) from error
 
     def _prepare(self) -> None:
-        """Create the tables if they are not there yet."""
+        """Set SQLite's pragmas and create the journal's tables if they are missing."""
         self._db.execute("PRAGMA journal_mode=WAL")
         self._db.execute("PRAGMA synchronous=NORMAL")  # a power cut may cost the last chunks
         self._db.execute("CREATE TABLE IF NOT EXISTS about (name TEXT PRIMARY KEY, text TEXT)")
@@ -102,7 +102,7 @@ class Journal:
         )
 
     def _begin(self, identity: str, begun: str) -> None:
-        """Write the identity into a new journal."""
+        """Write identity, start time and their checksum into a new journal; keep an old one's."""
         self._db.execute("BEGIN IMMEDIATE")
         if not self._db.execute("SELECT 1 FROM about LIMIT 1").fetchall():
             entries = {"identity": identity, "begun": begun}
@@ -111,7 +111,7 @@ class Journal:
         self._db.execute("COMMIT")
 
     def _read(self) -> tuple[Identity, str]:
-        """Return the stored identity, and when the journal was begun."""
+        """Return the journal's identity and start time; raise ValueError if it is damaged."""
         if self._db.execute("PRAGMA quick_check(1)").fetchall() != [("ok",)]:
             raise ValueError("damaged")
         entries = dict(self._db.execute("SELECT name, text FROM about").fetchall())
@@ -125,11 +125,11 @@ class Journal:
         return restored, begun
 
     def _row_checksum(self, index: int, data: bytes) -> str:
-        """Return the checksum of a row."""
+        """Return the checksum of a chunk's row: over identity, chunk number and data."""
         return checksum_of_parts(self._identity_text, str(index).encode(), data)
 
     def indices(self) -> set[int]:
-        """Return the undamaged chunks; delete damaged ones."""
+        """Return the numbers of the intact stored chunks; delete those with a wrong checksum."""
         indices = set()
         for index, digest, data in self._query("SELECT i, sha256, CAST(data AS BLOB) FROM chunks"):
             if isinstance(data, bytes) and self._row_checksum(index, data) == digest:
@@ -139,16 +139,16 @@ class Journal:
         return indices
 
     def drop(self, index: int, reason: str) -> None:
-        """Delete a chunk, so that it is computed again."""
+        """Delete a stored chunk, so that it is computed again; log the reason as a warning."""
         log.warning("%s: chunk %s is %s, it is computed anew", self.path, index, reason)
         self._query("DELETE FROM chunks WHERE i = ?", index)
 
     def is_empty(self) -> bool:
-        """Return whether there is no chunk at all."""
+        """Return whether the journal has no chunk stored."""
         return not self._query("SELECT 1 FROM chunks LIMIT 1")
 
     def get(self, index: int) -> Table:
-        """Return a stored chunk as a table; raise where its bytes are damaged."""
+        """Return a stored chunk as a dict of arrays; raise ``StoreError`` if it is damaged."""
         rows = self._query("SELECT sha256, CAST(data AS BLOB) FROM chunks WHERE i = ?", index)
         for digest, data in rows:
             if isinstance(data, bytes) and self._row_checksum(index, data) == digest:
@@ -156,7 +156,7 @@ class Journal:
         raise StoreError(f"{self.path}: chunk {index} is damaged; the same call goes on from it")
 
     def put(self, index: int, table: Table) -> None:
-        """Store a chunk."""
+        """Store a computed chunk (dict of arrays) under its number, with a checksum."""
         data = pack(table)
         self._query(
             "INSERT OR REPLACE INTO chunks VALUES (?, ?, ?)",
@@ -166,7 +166,7 @@ class Journal:
         )
 
     def _query(self, statement: str, *values: object) -> list[tuple]:  # type: ignore[type-arg]
-        """Run a statement; return all its rows."""
+        """Run an SQL statement; return all rows; SQLite's errors become ``StoreError``."""
         try:
             return self._db.execute(statement, values).fetchall()
         except (sqlite3.Error, OverflowError) as error:
@@ -176,24 +176,23 @@ class Journal:
             raise StoreError(f"{self.path}: {error}; {advice}") from error
 
     def close(self) -> None:
-        """Close the database."""
+        """Close the journal's database connection."""
         if hasattr(self, "_db"):
             self._db.close()
 
     def remove(self) -> None:
-        """Delete the journal, once its contents are in a result."""
+        """Close the journal and delete its files, once the finished result is written."""
         self.close()
         discard(self.path)
 
 
 def error_text(error: Exception) -> str:
-    """Return why a journal's file cannot be opened, as one line."""
+    """Return an exception's text in one line, the operating system's message if it has one."""
     return str(getattr(error, "strerror", None) or error)
 
 
 class Lock:
-    """Lock that keeps other processes off a result that is being computed; it ends with the
-    process.
+    """File lock by SQLite on a result that is being computed; it ends with the process.
 
     Parameters
     ----------
@@ -227,6 +226,6 @@ class Lock:
             ) from error
 
     def release(self) -> None:
-        """Release the lock."""
+        """Release the lock on a result: delete its file and close the database."""
         self.path.unlink(missing_ok=True)
         self._db.close()

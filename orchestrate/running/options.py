@@ -1,4 +1,4 @@
-"""Keywords that all public functions share: how a question is computed, whatever it asks."""
+"""Keywords of all public functions on how to compute: jobs, cluster, progress, store, force."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FmuFiles = str | os.PathLike[str] | Mapping[str, str | os.PathLike[str]]
 
 
 class Running(TypedDict, total=False):
-    """Keywords of every public function that computes.
+    """Types of the keywords on how to compute (jobs, cluster, progress, store), for signatures.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class Running(TypedDict, total=False):
 
 @dataclass(frozen=True)
 class RunOptions:
-    """The keywords of :class:`Running` with their defaults, checked."""
+    """Checked keywords on how to compute (jobs, cluster, progress, store), with their defaults."""
 
     jobs: int | None = None
     cluster: str | None = None
@@ -71,7 +71,7 @@ class RunOptions:
 
     @classmethod
     def from_keywords(cls, running: Mapping[str, object]) -> RunOptions:
-        """Return the options from the keywords of a public function.
+        """Return the options from keyword arguments; raise TypeError for an unknown one.
 
         Raises
         ------
@@ -89,11 +89,11 @@ class RunOptions:
 
     @property
     def processes(self) -> int:
-        """Number of worker processes at once."""
+        """Number of worker processes: ``jobs``, or all available cores."""
         return self.jobs or available_cores()
 
     def path(self, name: str) -> Path | None:
-        """Return the result's file, in ``store`` where that is a folder; None without ``store``."""
+        """Return the NetCDF path of a named result below ``store``; None without ``store``."""
         if self.store is None:
             return None
         path = Path(self.store)
@@ -101,7 +101,7 @@ class RunOptions:
 
 
 def available_cores() -> int:
-    """Count the cores that this process may use."""
+    """Return the number of processor cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

@@ -1,4 +1,4 @@
-"""Progress of a job: which chunks are done, and what may be computed next.
+"""Scheduling of one job: which chunks are done, running or guessed, and which comes next.
 
 A sequential job's chunk starts from the end of the one before. Where the job forgets its beginning
 (a response that converges), a chunk may be guessed: computed before the one before is known, from
@@ -27,7 +27,7 @@ MIN_GAP = 3  # chunks in a row not begun: from here on, guessing the middle one 
 
 @dataclass(frozen=True)
 class Task:
-    """One chunk to compute, with all that a worker needs for it.
+    """A chunk to be computed: its items, its start state or warm-up items, whether it is a guess.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Guess:
-    """A chunk that was computed from a guessed state.
+    """A chunk computed early from a guessed start state, kept until the true one is known.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ class Guess:
 
 
 class Progress:
-    """State of one job: chunks done, under way, and guessed.
+    """Scheduling state of one job: chunks done, running, or computed ahead from guessed states.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ class Progress:
         self.items: Sequence[Any] | None = None
 
     def valid_chunks(self) -> set[int]:
-        """Return the stored chunks that belong to this job; delete others."""
+        """Return the numbers of stored chunks that fit this job; delete the others."""
         valid = set()
         for index in sorted(self.store.indices()):
             problem = self.problem(index)
@@ -98,7 +98,7 @@ class Progress:
         return valid
 
     def problem(self, index: int) -> str:
-        """Return why a stored chunk cannot be one of this job's; an empty string if it can."""
+        """Return why a stored chunk does not fit this job (number, rows); empty if it does."""
         if not 0 <= index < len(self.chunks):
             return f"none of the {len(self.chunks)} of this job"
         try:
@@ -112,11 +112,11 @@ class Progress:
 
     @property
     def complete(self) -> bool:
-        """Return whether the job's result is complete."""
+        """Return whether the job's final dataset exists."""
         return self.result is not None
 
     def done(self) -> int:
-        """Count the computed items, guessed ones included."""
+        """Return the number of items computed so far, those of guessed chunks included."""
         return sum(self.size(index) for index in {*self.done_chunks, *self.guesses})
 
     def size(self, index: int) -> int:
@@ -124,7 +124,7 @@ class Progress:
         return self.chunks[index].stop - self.chunks[index].start
 
     def start(self, inputs: Mapping[str, xr.Dataset]) -> None:
-        """Make the items, once the needed results are there."""
+        """Make the job's items from the results of other jobs that it needs."""
         self.inputs = inputs
         self.items = self.job.items(inputs)
         self.finish_if_done()
@@ -132,7 +132,7 @@ class Progress:
     # -- what may be computed next ----------------------------------------------------------------
 
     def next_task(self) -> Task | None:
-        """Return what to compute now, a chunk with its start; None if nothing can be begun."""
+        """Return the next chunk to compute, sure ones before guesses; None if none can."""
         for find in (self.certain_tasks, self.continuing_tasks, self.gap_task):
             task = next(find(), None)
             if task is not None:
@@ -140,17 +140,17 @@ class Progress:
         return None
 
     def is_untouched(self, index: int) -> bool:
-        """Return whether a chunk is neither computed nor under way."""
+        """Return whether a chunk is not computed, not running and not guessed."""
         return not (index in self.done_chunks or index in self.under_way or index in self.guesses)
 
     def certain_tasks(self) -> Iterator[Task]:
-        """Yield the chunks whose start is known and that nobody computes yet."""
+        """Yield tasks for untouched chunks whose true start state is known."""
         for chunk in self.chunks:
             if self.is_certain(chunk):
                 yield Task(chunk, self.items_of(chunk), self.previous_table(chunk), (), False)
 
     def previous_table(self, chunk: Chunk) -> Table | None:
-        """Return the last entries of the chunk before; None for a chunk that starts by itself.
+        """Return the rows that a chunk continues from; None for a chunk that starts by itself.
 
         A final or gathering chunk gets all preceding tables.
         """
@@ -161,13 +161,13 @@ class Progress:
         return self.end_of(chunk.after)
 
     def end_of(self, index: int) -> Table:
-        """Return the last entries of a chunk that is certain."""
+        """Return the last row of a stored chunk as the start of the next one; cached."""
         if index not in self._ends:
             self._ends[index] = last_entries(self.store.get(index))
         return self._ends[index]
 
     def is_certain(self, chunk: Chunk) -> bool:
-        """Return whether a chunk's start is known and it is not under way."""
+        """Return whether a chunk can start now from its true state, and nobody computes it yet."""
         if not self.is_untouched(chunk.index) or chunk.after is None:
             return self.is_untouched(chunk.index)
         if self.job.gathers:
@@ -175,7 +175,7 @@ class Progress:
         return chunk.after in self.done_chunks
 
     def continuing_tasks(self) -> Iterator[Task]:
-        """Yield chunks that continue guessed ones, in place of guesses that started elsewhere.
+        """Yield tasks that continue guessed chunks, also instead of guesses with another start.
 
         A run of chunks is more likely to be right as a whole.
         """
@@ -188,12 +188,12 @@ class Progress:
                     yield Task(chunk, self.items_of(chunk), previous, (), True)
 
     def started_elsewhere(self, index: int, previous: Table) -> bool:
-        """Return whether a chunk was guessed from another state than the chunk before ends in."""
+        """Return whether a guess started from another state than the end of the chunk before."""
         guess = None if index in self.under_way else self.guesses.get(index)
         return guess is not None and guess.start != self.job.boundary_state(previous)
 
     def gap_task(self) -> Iterator[Task]:
-        """Yield a chunk in the middle of the longest run of chunks that are not begun."""
+        """Yield one task amid the longest run of untouched chunks, started by warm-up items."""
         first, last = max(self.gaps(), key=lambda gap: gap[1] - gap[0], default=(0, 0))
         if self.job.warmup_items and last - first >= MIN_GAP:
             chunk = self.chunks[(first + last) // 2]
@@ -204,7 +204,7 @@ class Progress:
             yield Task(chunk, self.items_of(chunk), None, warmup_items, True)
 
     def gaps(self) -> Iterator[tuple[int, int]]:
-        """Yield the runs of chunks that are not begun, as first and one past the last."""
+        """Yield runs of consecutive untouched chunks as pairs (first, one past the last)."""
         first = 0
         for chunk in self.chunks:
             if not self.is_untouched(chunk.index):
@@ -216,7 +216,7 @@ class Progress:
         yield first, len(self.chunks)
 
     def items_of(self, chunk: Chunk) -> Sequence[Any]:
-        """Return a chunk's items."""
+        """Return the job's items that belong to a chunk."""
         return self.item_range(chunk.start, chunk.stop)
 
     def item_range(self, first: int, last: int) -> Sequence[Any]:
@@ -225,7 +225,7 @@ class Progress:
         return self.items[first:last]
 
     def open_tasks(self) -> int:
-        """Estimate how many workers could be busy now."""
+        """Return how many workers could compute chunks of this job now, an estimate."""
         if self.complete:
             return 0
         longest_gap = max((last - first for first, last in self.gaps()), default=0)
@@ -235,7 +235,7 @@ class Progress:
     # -- what was computed ------------------------------------------------------------------------
 
     def add_result(self, task: Task, start: bytes, table: Table) -> None:
-        """Take over a computed chunk; the last one makes the result."""
+        """Store a worker's chunk or keep it as a guess; finish the job after the last."""
         index = task.chunk.index
         self.under_way.discard(index)
         if task.guess:
@@ -247,14 +247,14 @@ class Progress:
         self.finish_if_done()
 
     def store_chunk(self, index: int, table: Table) -> None:
-        """Store a chunk that is certain."""
+        """Write a chunk with a true start to the store, and remember its last row."""
         self.store.put(index, table)
         self.done_chunks.add(index)
         if self.job.sequential:
             self._ends[index] = last_entries(table)
 
     def resolve_guesses(self) -> None:
-        """Accept guesses that started where the chunk before ends; discard the others."""
+        """Store guessed chunks whose start equals the end of the chunk before; discard others."""
         for index in sorted(self.guesses):
             after = self.chunks[index].after
             if after is None or after in self.done_chunks:
@@ -265,7 +265,7 @@ class Progress:
                     self.wasted += self.size(index)
 
     def finish_if_done(self) -> None:
-        """Make the result if all chunks are done."""
+        """Build, mark with provenance and store the final dataset, if all chunks are done."""
         if self.complete or len(self.done_chunks) < len(self.chunks):
             return
         if self.wasted:
@@ -276,7 +276,7 @@ class Progress:
         self.inputs, self.items = {}, None
 
     def table(self) -> Table:
-        """Return all chunks concatenated, and what the last one of a gathering job adds."""
+        """Return the arrays of all chunks, concatenated (a gathering job: and the last's)."""
         last = len(self.chunks) - 1
         if self.job.gathers:
             return {**self.store.table(last), **self.store.get(last)}

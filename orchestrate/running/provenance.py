@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def with_provenance(
     dataset: xr.Dataset, job: Job, identity: Identity, fmus: Mapping[str, Fmu], begun: str
 ) -> xr.Dataset:
-    """Return a result with provenance attributes; those it has already stay.
+    """Return a dataset with attributes on its origin: parameters, FMU, versions, time.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def with_provenance(
 
 
 def fmu_attributes(fmus: Mapping[str, Fmu]) -> dict[str, str]:
-    """Return name, GUID and FMI version of each FMU as attributes."""
+    """Return dataset attributes with the name, GUID and FMI version of each FMU."""
     attributes: dict[str, str] = {}
     for model, fmu in fmus.items():
         ending = f"_{model}" if len(fmus) > 1 else ""
@@ -53,7 +53,7 @@ def fmu_attributes(fmus: Mapping[str, Fmu]) -> dict[str, str]:
 
 
 def flatten_parameters(parameters: Mapping[str, Any]) -> dict[str, Any]:
-    """Return parameters as attributes of a NetCDF file: numbers and texts, without nesting."""
+    """Return nested job parameters as a flat dict of numbers and texts, for NetCDF attributes."""
     attributes: dict[str, Any] = {}
     for name, value in parameters.items():
         if isinstance(value, dict) and "sha256" not in value:

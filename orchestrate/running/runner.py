@@ -1,4 +1,4 @@
-"""Runner: keeps the workers busy until every result is there.
+"""Runner: submits the chunks of jobs to workers and collects results until all are stored.
 
 Any worker may take any chunk that is ready, the earliest job's first. Small questions are answered
 in this process; where much is left after the first chunks, processes are started. Who computes
@@ -39,7 +39,7 @@ BAR_DELAY = 1.0  # s until the progress bar shows: shorter work needs none
 
 
 def answer(job: Job, running: Mapping[str, object], find: FmuFinder) -> xr.Dataset:
-    """Compute one job, or read its stored result.
+    """Compute one job in parallel chunks, or read its stored result; return the dataset.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ def answer(job: Job, running: Mapping[str, object], find: FmuFinder) -> xr.Datas
 def answer_all(
     jobs: Sequence[Job], folder: Path, options: RunOptions, find: FmuFinder
 ) -> dict[str, Path]:
-    """Compute many jobs, each result a file in a folder.
+    """Compute many jobs into NetCDF files in a folder; return their paths by job name.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def answer_all(
 
 
 class Runner:
-    """Computes jobs and their dependencies until all results are there.
+    """Compute several jobs, which may need each other's results, with common workers.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ class Runner:
         self.computed_items = 0  # items computed by this call
 
     def run(self) -> dict[str, xr.Dataset]:
-        """Compute what is not there yet; return the results by name."""
+        """Compute all results that are not stored yet; return all datasets by job name."""
         try:
             self.open()
             if not self.finished():
@@ -111,7 +111,7 @@ class Runner:
                 state.store.close()
 
     def open(self) -> None:
-        """Open the stores and read what is there already."""
+        """Open the store of each job and read which results and chunks it already has."""
         known: dict[str, Identity] = {}
         for job in self.jobs:
             fmus = {model: self.fmus[model] for model in job.models}
@@ -124,11 +124,11 @@ class Runner:
                 raise
 
     def finished(self) -> bool:
-        """Return whether every result is there."""
+        """Return whether every job has its final dataset."""
         return all(state.complete for state in self.states.values())
 
     def compute_all(self) -> None:
-        """Compute in this process while little is left, then with workers."""
+        """Compute all jobs: in this process while little is left, then with parallel workers."""
         with self.bar() as bar:
             if not self.options.cluster:
                 with running_workers(InlineExecutor()) as workers:
@@ -141,7 +141,7 @@ class Runner:
                     self.work(workers, fmus, bar, lambda: True)
 
     def start_workers(self) -> Workers:
-        """Return the workers for long computations: cluster or processes."""
+        """Return new workers: those of a Dask cluster if one is given, else local processes."""
         if self.options.cluster:
             from .cluster import Cluster  # brings asyncio, which worker processes do without
 
@@ -149,11 +149,11 @@ class Runner:
         return Processes(self.options.processes)
 
     def done(self) -> int:
-        """Count the computed items of all jobs."""
+        """Return the number of computed items of all jobs together."""
         return sum(state.done() for state in self.states.values())
 
     def little_left(self) -> bool:
-        """Return whether the rest is not worth starting processes, or cannot be shared."""
+        """Return whether the rest is too short, by time or tasks, to be worth parallel workers."""
         if self.options.processes == 1 or not self.computed_items:
             return True
         left = sum(state.job.count() for state in self.states.values()) - self.done()
@@ -161,11 +161,11 @@ class Runner:
         return seconds < MIN_PARALLEL_SECONDS or self.busy_workers() < 2
 
     def busy_workers(self) -> int:
-        """Estimate how many workers could be busy now."""
+        """Return how many workers could compute chunks now, an estimate over all jobs."""
         return sum(state.open_tasks() for state in self.states.values() if self.ready(state))
 
     def bar(self) -> Any:
-        """Return a progress bar over all items."""
+        """Return a tqdm progress bar over the items of all jobs."""
         tqdm = progress_bar(self.options.progress)
         total = sum(state.job.count() for state in self.states.values())
         single = self.jobs[0] if len(self.jobs) == 1 else None
@@ -182,11 +182,11 @@ class Runner:
         )
 
     def title(self) -> str:
-        """Return the title of the progress bar."""
+        """Return the progress bar's title: the job's name, or the number of jobs."""
         return self.jobs[0].name if len(self.jobs) == 1 else f"{len(self.jobs)} results"
 
     def describe(self, bar: Any, note: str) -> None:
-        """Show a note beside the progress bar, if the bar is visible already."""
+        """Show a note beside the progress bar's title, once the bar is visible."""
         if time.perf_counter() - self.start_time > BAR_DELAY:
             bar.delay = 0.0  # it is shown from now on, or tqdm would not end its line
             bar.set_description(f"{self.title()}, {note}" if note else self.title())
@@ -198,7 +198,7 @@ class Runner:
         bar: Any,
         go_on: Callable[[], bool],
     ) -> None:
-        """Submit chunks and collect results until all is done, or ``go_on`` returns false."""
+        """Submit chunks and collect results until all jobs are done or ``go_on()`` is false."""
         while not self.finished() and (go_on() or self.futures):
             if go_on():
                 self.hand_out(workers, fmus, bar)
@@ -213,14 +213,14 @@ class Runner:
             bar.update(self.done() - bar.n)
 
     def fmus_to_send(self, workers: Workers) -> dict[str, Path | bytes]:
-        """Return the FMUs as they are sent to workers: a path, or bytes for remote ones."""
+        """Return FMUs by model as workers get them: paths, or bytes for remote workers."""
         return {
             model: fmu.path.read_bytes() if workers.remote else fmu.path.resolve()
             for model, fmu in self.fmus.items()
         }
 
     def hand_out(self, workers: Workers, fmus: Mapping[str, Path | bytes], bar: Any) -> None:
-        """Submit chunks until the workers have enough."""
+        """Submit the next tasks of all ready jobs until the workers' queue is full."""
         for state in self.states.values():
             while len(self.futures) < workers.max_in_flight() and self.ready(state):
                 task = state.next_task()
@@ -236,7 +236,7 @@ class Runner:
                 self.futures[future] = state, task
 
     def ready(self, state: Progress) -> bool:
-        """Return whether a job's chunks can be computed; start it if what it needs is there."""
+        """Return whether a job has chunks to compute; make its items once inputs are there."""
         if state.complete:
             return False
         if state.items is None:
@@ -248,7 +248,7 @@ class Runner:
 
 
 def import_xarray() -> None:
-    """Import what a result needs and takes most of a second to import, Dask's arrays with it."""
+    """Import xarray and what datasets need early, as it takes most of a second."""
     with suppress(Exception):  # a process that ends lets nobody import; it comes again where used
         import xarray as xr
 
@@ -256,7 +256,7 @@ def import_xarray() -> None:
 
 
 def progress_bar(shown: bool) -> Any:
-    """Return tqdm's bar: a notebook's in a notebook that can show one, a terminal's elsewhere."""
+    """Return tqdm's class for progress bars, of notebooks or terminals as it fits."""
     if not shown:
         from tqdm import tqdm
 
@@ -269,7 +269,7 @@ def progress_bar(shown: bool) -> Any:
 
 
 def gather(jobs: Iterable[Job], running: Mapping[str, object], find: FmuFinder) -> list[xr.Dataset]:
-    """Compute jobs side by side with common workers; return their results in the same order."""
+    """Compute several jobs in parallel with common workers; return their datasets in order."""
     listed = list(jobs)
     results = Runner(listed, RunOptions.from_keywords(running), find).run()
     return [results[job.name] for job in listed]

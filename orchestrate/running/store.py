@@ -1,4 +1,4 @@
-"""Store: keeps the chunks of a job and its result, in memory or on disk."""
+"""Store: the computed chunks of a job and its final dataset, in memory or as NetCDF on disk."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ FINISHED: set[Path] = set()  # results that it has; both say how much an interru
 
 
 def now() -> str:
-    """Return the time as ISO 8601; SOURCE_DATE_EPOCH in the environment fixes it, for equal bytes.
+    """Return the present time, UTC, as ISO 8601 text; SOURCE_DATE_EPOCH overrides it.
 
     Raises
     ------
@@ -53,25 +53,25 @@ def now() -> str:
 
 
 class Store(ABC):
-    """Interface of the storage of one job's chunks and result."""
+    """Interface of the storage of one job's computed chunks and its final dataset."""
 
     begun: str
 
     @abstractmethod
     def result(self) -> xr.Dataset | None:
-        """Return the finished result, or None."""
+        """Return the job's finished dataset, or None before it is finished."""
 
     @abstractmethod
     def indices(self) -> set[int]:
-        """Return which chunks are stored."""
+        """Return the numbers of the chunks that are stored."""
 
     @abstractmethod
     def get(self, index: int) -> Table:
-        """Return a stored chunk as a table."""
+        """Return a stored chunk, by its number, as a dict of arrays."""
 
     @abstractmethod
     def put(self, index: int, table: Table) -> None:
-        """Store a chunk."""
+        """Store a computed chunk, a dict of arrays, under its number."""
 
     @abstractmethod
     def drop(self, index: int, reason: str) -> None:
@@ -79,20 +79,20 @@ class Store(ABC):
 
     @abstractmethod
     def finish(self, dataset: xr.Dataset) -> xr.Dataset:
-        """Write the result, delete the chunks; return the result as it is stored."""
+        """Write the final dataset and delete the chunks; return the dataset as it reads back."""
 
     @abstractmethod
     def close(self) -> None:
-        """Release all files."""
+        """Release all files and locks of the store."""
 
     def table(self, count: int) -> Table:
-        """Return all chunks concatenated along their first axis."""
+        """Return the first ``count`` chunks as one dict of arrays, joined along the first axis."""
         parts = [self.get(index) for index in range(count)]
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
 class Memory(Store):
-    """Storage in memory; nothing is left when the process ends."""
+    """Storage of one job's chunks and dataset in memory; nothing is left when the process ends."""
 
     def __init__(self) -> None:
         self.begun = now()
@@ -100,27 +100,27 @@ class Memory(Store):
         self._result: xr.Dataset | None = None
 
     def result(self) -> xr.Dataset | None:
-        """Return the finished result, or None."""
+        """Return the job's finished dataset, or None before it is finished."""
         return self._result
 
     def indices(self) -> set[int]:
-        """Return which chunks are stored."""
+        """Return the numbers of the chunks that are stored."""
         return set(self._chunks)
 
     def get(self, index: int) -> Table:
-        """Return a stored chunk as a table."""
+        """Return a stored chunk, by its number, as a dict of arrays."""
         return self._chunks[index]
 
     def put(self, index: int, table: Table) -> None:
-        """Store a chunk."""
+        """Store a computed chunk, a dict of arrays, under its number."""
         self._chunks[index] = table
 
     def drop(self, index: int, reason: str) -> None:
-        """Delete a chunk."""
+        """Delete a stored chunk by its number; the reason is not used."""
         del self._chunks[index]
 
     def finish(self, dataset: xr.Dataset) -> xr.Dataset:
-        """Keep the result, forget the chunks, and return the result."""
+        """Keep the final dataset in memory, delete the chunks; return the dataset."""
         self._chunks.clear()
         self._result = dataset
         return dataset
@@ -130,7 +130,7 @@ class Memory(Store):
 
 
 class Disk(Store):
-    """Storage on disk: a NetCDF file, and a journal beside it until that is finished.
+    """Storage of one job on disk: an SQLite journal of chunks, then a NetCDF file of the result.
 
     Parameters
     ----------
@@ -179,14 +179,14 @@ class Disk(Store):
             raise
 
     def _open(self, path: Path) -> None:
-        """Open the journal that this run continues."""
+        """Open the journal at a path, and note if it has chunks of an earlier run."""
         self._journal = self.open_journal(path)
         self.begun = self._journal.begun
         if not self._journal.is_empty():
             STARTED.add(path)
 
     def open_journal(self, path: Path) -> Journal:
-        """Return the journal of this job; create it if there is none."""
+        """Return this job's open journal; made anew if missing or (``force``) unusable."""
         journal: Journal | None = None
         try:
             journal = Journal(path, self.identity, now())
@@ -203,7 +203,7 @@ class Disk(Store):
         return journal
 
     def check(self, stored: Identity, path: Path) -> None:
-        """Check that what is on disk answers this question."""
+        """Raise if a stored identity is another calculation's, or stale and not to be kept."""
         reason = difference(stored, self.identity)
         if not reason:
             return
@@ -220,34 +220,34 @@ class Disk(Store):
         log.warning("%s: stale (%s), taken as it is", path, reason)
 
     def result(self) -> xr.Dataset | None:
-        """Return the finished result, or None."""
+        """Return the finished dataset read from the NetCDF file, or None before it is finished."""
         return self._result
 
     @property
     def journal(self) -> Journal:
-        """Journal of a job that is not finished."""
+        """The open journal of a job that is not finished."""
         assert self._journal is not None, "finished"
         return self._journal
 
     def indices(self) -> set[int]:
-        """Return which chunks are stored."""
+        """Return the numbers of the intact chunks in the journal."""
         return self.journal.indices()
 
     def get(self, index: int) -> Table:
-        """Return a stored chunk as a table."""
+        """Return a chunk from the journal, by its number, as a dict of arrays."""
         return self.journal.get(index)
 
     def put(self, index: int, table: Table) -> None:
-        """Store a chunk."""
+        """Store a computed chunk, a dict of arrays, under its number in the journal."""
         self.journal.put(index, table)
         STARTED.add(self.journal.path)
 
     def drop(self, index: int, reason: str) -> None:
-        """Delete a chunk."""
+        """Delete a chunk from the journal by its number, with a warning that names the reason."""
         self.journal.drop(index, reason)
 
     def finish(self, dataset: xr.Dataset) -> xr.Dataset:
-        """Store the result, in place of the one that was there, and delete the chunks."""
+        """Write the NetCDF file over an older one, delete the journal; return the dataset."""
         write_netcdf(dataset, self.path)
         FINISHED.add(self.path)
         STARTED.discard(self.journal.path)
@@ -258,7 +258,7 @@ class Disk(Store):
         return self._result
 
     def close(self) -> None:
-        """Close the journal and release the lock; an empty journal is deleted."""
+        """Close the journal, delete it if empty, and release the lock on the result."""
         if self._journal is not None:
             with suppress(StoreError):
                 if self._journal.is_empty():
@@ -268,13 +268,13 @@ class Disk(Store):
 
 
 def open_store(name: str, identity: Identity, options: RunOptions) -> Store:
-    """Return the storage of a job: in memory, or on disk if the options name a place."""
+    """Return a job's storage: on disk if the options name a ``store`` path, else in memory."""
     path = options.path(name)
     return Memory() if path is None else Disk(path, identity, options)
 
 
 def load(path: Path) -> xr.Dataset:
-    """Read a result from disk; its checksum is verified and left out.
+    """Return the dataset of a NetCDF file; raise ``StoreError`` if it is damaged (checksum).
 
     A result without one, of a version that wrote none or of another tool, is taken as it is.
 
@@ -303,18 +303,18 @@ def load(path: Path) -> xr.Dataset:
 
 
 def is_netcdf(path: Path) -> bool:
-    """Return whether a file begins as NetCDF does, version 4 or an older one."""
+    """Return whether a file begins with the signature of NetCDF 3 or 4."""
     with path.open("rb") as file:
         return file.read(4).startswith((b"\x89HDF", b"CDF"))
 
 
 def first_line(error: BaseException) -> str:
-    """Return the first line of an exception's text."""
+    """Return the first line of an exception's text, or its type's name without any text."""
     return (str(error).splitlines() or [type(error).__name__])[0]
 
 
 def read_identity(path: Path) -> Identity:
-    """Read the identity of a finished result.
+    """Return the identity dict stored in a finished NetCDF result's attributes.
 
     Raises
     ------
@@ -336,7 +336,7 @@ def read_identity(path: Path) -> Identity:
 
 
 def write_netcdf(dataset: xr.Dataset, path: Path) -> Path:
-    """Write a dataset with its checksum, whole or not at all."""
+    """Write a dataset as NetCDF with a checksum attribute, atomically; return the path."""
     from xarray.backends import NetCDF4DataStore
 
     dataset = dataset.assign_attrs({ATTRIBUTE: checksum(dataset)})

@@ -1,4 +1,4 @@
-"""What a user describes: a structure, its excitation, a motor with a box; SI or non-dimensional.
+"""Structure, excitation and motor drive as a user describes them, in SI or non-dimensional.
 
 ==================  ===============================================================================
 module              idea

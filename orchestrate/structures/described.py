@@ -1,4 +1,4 @@
-"""Base class of what a TOML file describes: ``from_file`` by a reader that `.files` registers."""
+"""Base class of Structure, Excitation and Drive: gives them ``from_file`` for TOML files."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ Kind = TypeVar("Kind", bound="Described")
 
 
 class Described:
-    """Base of what sections of a TOML file describe; a class's name is what it is called there."""
+    """Base of classes read from TOML; the class name in lower case is the section's name."""
 
     # read_section of the module files, which knows all the classes
     _reader: ClassVar[Callable[..., Any]]
 
     @classmethod
     def _read(cls: type[Kind], path: str | PathLike[str], structure: Any = None) -> Kind:
-        """Read it from a file, or from a set that comes with the package."""
+        """Read an object of this class from a TOML file or from a set shipped with the package."""
         described = Described._reader(path, cls.__name__.lower(), structure)
         assert isinstance(described, cls)
         return described

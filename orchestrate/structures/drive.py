@@ -15,7 +15,7 @@ from .structure import Structure
 
 @dataclass(frozen=True, kw_only=True)
 class Drive(Described):
-    """Direct-current motor with an unbalance, and the box that it shakes.
+    """Weak drive of the coupled system: DC motor with an unbalance on a sprung box, in SI.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class Drive(Described):
         length: float = 1.0,
         motor_constant: float = 1.0,
     ) -> Drive:
-        """Make a drive from its non-dimensional numbers, for a structure.
+        """Make a drive from beta, epsilon, b, Omega_b and D_b, in SI by a structure's m1 and omega.
 
         Parameters
         ----------
@@ -132,7 +132,7 @@ class Drive(Described):
         mechanical_time_constant: float | None = None,
         armature_inductance: float = 0.0,
     ) -> Drive:
-        """Make a drive from a motor's datasheet.
+        """Make a drive from a motor's datasheet: voltage, no-load speed, stall torque ...
 
         Parameters
         ----------
@@ -219,12 +219,12 @@ class Drive(Described):
         return structure.m1 / self.box_mass
 
     def b(self, structure: Structure) -> float:
-        """Return the slope of the torque line, K^2/(R_a J omega)."""
+        """Return the non-dimensional slope b of the motor's torque line, K^2/(R_a J omega)."""
         slope = self.motor_constant**2 / self.armature_resistance
         return slope / (self.rotor_inertia * structure.omega)
 
     def Omega_b(self, structure: Structure) -> float:
-        """Return the box's own frequency over omega, without the structure."""
+        """Return the empty box's natural frequency over the structure's omega."""
         omega, mass = structure.omega, self.box_mass
         guess = math.sqrt(self.box_stiffness / mass) / omega
         return exact_inverse(guess, lambda ratio: stiffness(ratio, omega, mass), self.box_stiffness)
@@ -236,7 +236,7 @@ class Drive(Described):
         return exact_inverse(guess, lambda ratio: damping(ratio, omega, mass), self.box_damping)
 
     def volts(self, structure: Structure) -> float:
-        """Return the voltage whose no-load speed is omega, V."""
+        """Return the unit of voltage, V: the one whose no-load speed is the structure's omega."""
         return self.motor_constant * structure.omega
 
     def energy(self, structure: Structure) -> float:
@@ -244,18 +244,18 @@ class Drive(Described):
         return self.box_mass * (structure.omega * self.length) ** 2
 
     def replace(self, **changes: float) -> Drive:
-        """Return a drive that differs in some of its SI values."""
+        """Return a copy of the drive with some SI values changed, given as keywords."""
         return dataclasses.replace(self, **changes)
 
     def parameters(self) -> dict[str, float]:
-        """Return the start values of ``MotorShaker``."""
+        """Return the drive's SI values by name, as start values of the ``MotorShaker`` FMU."""
         return dataclasses.asdict(self)
 
 
 def torque_line(
     rated_voltage: float, no_load_speed: float, stall_torque: float
 ) -> tuple[float, float]:
-    """Return K in N m/A and R_a in Ohm of the line through a motor's no-load and stall points."""
+    """Return motor constant K, N m/A, and resistance R_a, Ohm, from no-load and stall points."""
     checked = {
         "rated_voltage": rated_voltage,
         "no_load_speed": no_load_speed,
@@ -269,10 +269,10 @@ def torque_line(
 
 
 def stiffness(ratio: float, omega: float, mass: float) -> float:
-    """Return the stiffness of the suspension, k_b = M_t (Omega_b omega)^2."""
+    """Return the stiffness k_b, N/m, of the box's suspension: M_t (Omega_b omega)^2."""
     return mass * (ratio * omega) ** 2
 
 
 def damping(ratio: float, omega: float, mass: float) -> float:
-    """Return the damper of a damping ratio, c_b = 2 D_b omega M_t."""
+    """Return the damper c_b, N s/m, of the box's suspension: 2 D_b omega M_t."""
     return 2.0 * ratio * omega * mass

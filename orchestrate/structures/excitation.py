@@ -54,7 +54,7 @@ class Excitation(Described):
 
     @classmethod
     def nondimensional(cls, eta: float, structure: Structure, phase: float = 0.0) -> Excitation:
-        """Return the excitation of ratio ``eta`` and amplitude 1/eta^2 m: xi of (3) is x in m.
+        """Return the box motion of frequency eta*omega and amplitude 1/eta^2 m (x = xi).
 
         Examples
         --------
@@ -69,7 +69,7 @@ class Excitation(Described):
 
     @classmethod
     def from_file(cls, path: str | PathLike[str], structure: Structure | None = None) -> Excitation:
-        """Read the ``[excitation]`` of a TOML file.
+        """Read an excitation from the section ``[excitation]`` of a TOML file.
 
         Parameters
         ----------
@@ -81,7 +81,7 @@ class Excitation(Described):
 
     @property
     def period(self) -> float:
-        """Period of the box, s: (22) as it must read."""
+        """Period of the box's motion, s: 2 pi/Omega, as (22) must read."""
         return 2.0 * math.pi / self.frequency
 
     def eta(self, structure: Structure) -> float:
@@ -90,13 +90,13 @@ class Excitation(Described):
         return exact_inverse(self.frequency / omega, lambda eta: eta * omega, self.frequency)
 
     def length(self, structure: Structure) -> float:
-        """Return the unit of xi of (3), a eta^2 in m; exactly 1 where it is 1 but for rounding."""
+        """Return the unit of length of xi (3), a eta^2, m; 1 where only rounding differs."""
         eta = self.eta(structure)
         length = self.amplitude * (eta * eta)
         return 1.0 if math.isclose(length, 1.0, rel_tol=2e-15) else length
 
     def check(self, structure: Structure, least: float = 1e-12) -> None:
-        """Raise unless the response is bounded with digits to spare: no undamped resonance.
+        """Raise ``InputError`` if an oscillator would be driven at its resonance almost undamped.
 
         Parameters
         ----------
@@ -132,11 +132,11 @@ class Excitation(Described):
                 )
 
     def replace(self, **changes: float) -> Excitation:
-        """Return an excitation that differs in some of its numbers."""
+        """Return a copy of the excitation with some numbers changed, given as keywords."""
         return dataclasses.replace(self, **changes)
 
     def inputs(self) -> dict[str, float]:
-        """Return the FMU's inputs and start values."""
+        """Return the FMU's input and start values by name: box amplitude, frequency and phase."""
         return {
             "box_amplitude": self.amplitude,
             "box_frequency": self.frequency,
@@ -145,7 +145,7 @@ class Excitation(Described):
 
 
 def oscillators(structure: Structure) -> Iterator[tuple[str, float, float, dict[str, float]]]:
-    """Return name, stiffness, mass and dampers of what oscillates: each mass, and both together."""
+    """Yield name, stiffness, mass and dampers of mass 1, mass 2 and both masses as one."""
     s = structure
     if not s.bonded:
         yield "mass 1", s.k1, s.m1, {"d1": s.d1}

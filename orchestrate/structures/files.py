@@ -1,4 +1,4 @@
-"""TOML files that describe a structure, its excitation, a motor and a box; and the shipped sets.
+"""Read and write TOML files of a structure, its excitation and drive; find shipped sets.
 
 ================  ================================================================================
 section           keys
@@ -48,7 +48,7 @@ SECTIONS = ("structure", "excitation", "motor", "box")
 
 
 def resolve(source: str | PathLike[str]) -> Path:
-    """Return the file of a shipped set's name or of a path.
+    """Return the TOML file's path for a shipped set's name or a user's path; raise if missing.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def resolve(source: str | PathLike[str]) -> Path:
 
 
 def read(source: str | PathLike[str], structure: Structure | None = None) -> dict[str, Described]:
-    """Read a TOML file; return structure, excitation and drive by name, those that it has.
+    """Read a TOML file; return its structure, excitation and drive in a dict, those present.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def read(source: str | PathLike[str], structure: Structure | None = None) -> dic
 def read_section(
     source: str | PathLike[str], name: str, structure: Structure | None = None
 ) -> Described:
-    """Read one section of a file: ``"structure"``, ``"excitation"`` or ``"drive"``."""
+    """Return a TOML file's ``structure``, ``excitation`` or ``drive``; raise if missing."""
     contents = read(source, structure)
     if name not in contents:
         expected = "[motor] and [box]" if name == "drive" else f"[{name}]"
@@ -136,7 +136,7 @@ Described._reader = read_section
 
 
 def parse(path: Path) -> dict[str, Any]:
-    """Parse the tables of a TOML file."""
+    """Return a TOML file's tables as nested dicts; syntax errors raise ``InputError``."""
     if sys.version_info >= (3, 11):
         import tomllib
     else:
@@ -159,7 +159,7 @@ def write(
     excitation: Excitation | None = None,
     drive: Drive | None = None,
 ) -> Path:
-    """Write a file that :func:`read` gives back to the last bit; SI units.
+    """Write structure, excitation and drive to a TOML file in SI, exact to the last bit.
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ def write(
 
 
 def toml_table(name: str, values: Mapping[str, float | bool]) -> str:
-    """Format one section as TOML, with the meaning of each key."""
+    """Return one section as TOML text; each key has a comment with its meaning and unit."""
     described = {**STRUCTURE, **DRIVE}
     lines = [f"[{name}]"]
     for key, value in values.items():

@@ -1,4 +1,4 @@
-"""Warnings of numbers that are in range, and yet are hardly what somebody means."""
+"""Warnings about parameters that are in range but implausible, such as damping in per cent."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ LARGEST_RATIO = 0.3  # damping ratio above which a half of a beam would hardly r
 
 
 def warn_of_per_cent(ratios: Mapping[str, float]) -> None:
-    """Warn of damping ratios that look as if they were in per cent.
+    """Warn about damping ratios, by name, so large that per cent was probably meant.
 
     Parameters
     ----------

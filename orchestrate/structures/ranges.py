@@ -20,7 +20,7 @@ Described = TypeVar("Described")
 
 @dataclass(frozen=True)
 class Quantity:
-    """Number that a user gives, with its unit, default and range.
+    """A user's number as the variable table has it: name, unit, meaning, default and range.
 
     Attributes
     ----------
@@ -41,18 +41,18 @@ class Quantity:
 
     @property
     def dimension(self) -> dict[str, int]:
-        """Return the exponents of kg, m and s in the unit."""
+        """Return the exponents of kg, m and s in the quantity's unit, as a dict."""
         exponents = UNITS[self.unit]
         return {base: exponents.get(base, 0) for base in ("kg", "m", "s")}
 
     @property
     def expected(self) -> str:
-        """Return the range as words for an error message."""
+        """Return the allowed range as text for error messages, such as ``0 <= e <= 1``."""
         unit = "" if self.unit == "1" else f" {self.unit}"
         return f"{self.minimum:g} <= {self.name} <= {self.maximum:g}{unit}"
 
     def check(self, value: Any) -> float:
-        """Return ``value`` as a float; raise if it is out of range.
+        """Return ``value`` as a float; raise ``InputError`` if it is no number or out of range.
 
         Raises
         ------
@@ -73,12 +73,12 @@ class Quantity:
 
 
 def plain(value: Any) -> Any:
-    """Return the value of an array without dimensions; anything else unchanged."""
+    """Return a zero-dimensional array's value as a Python scalar; anything else unchanged."""
     return value.item() if getattr(value, "shape", None) == () else value
 
 
 def check_flag(name: str, value: Any) -> bool:
-    """Return ``value`` as True or False; raise if it is neither.
+    """Return ``value`` as True or False; raise ``InputError`` naming it if it is neither.
 
     Raises
     ------
@@ -92,7 +92,7 @@ def check_flag(name: str, value: Any) -> bool:
 
 
 def quantities_of(variables: Iterable[Any], names: Iterable[str]) -> dict[str, Quantity]:
-    """Return quantities of an FMU's variable table, by name."""
+    """Return a dict of quantities for the named variables of an FMU's variable table."""
     known = {variable.name: variable for variable in variables}
     return {
         v.name: Quantity(v.name, v.unit, v.description, v.minimum, v.maximum, v.start)
@@ -135,12 +135,12 @@ LEVEL = Quantity("level", "m/s2", "Peak acceleration a Omega^2 of the box", SMAL
 
 
 def positive_quantity(name: str, description: str) -> Quantity:
-    """Return a dimensionless quantity above zero."""
+    """Return a dimensionless quantity with this name and the range above zero."""
     return Quantity(name, "1", description, SMALLEST, LARGEST)
 
 
 def non_negative_quantity(name: str, description: str) -> Quantity:
-    """Return a dimensionless quantity that may be zero."""
+    """Return a dimensionless quantity with this name and the range from zero up."""
     return Quantity(name, "1", description, 0.0, LARGEST / 2.0)
 
 
@@ -168,7 +168,7 @@ RATIO_QUANTITIES = {
 
 
 def expected_one_of(name: str, known: Iterable[str]) -> str:
-    """Format what is expected instead of an unknown name, a similar one first."""
+    """Return error text "expected one of ..." with the known names and the closest match."""
     names = list(known)
     near = [candidate for candidate in names if candidate.lower() == name.lower()]
     near = near or difflib.get_close_matches(name, names, n=1, cutoff=0.5)
@@ -178,7 +178,7 @@ def expected_one_of(name: str, known: Iterable[str]) -> str:
 def construct_or_explain(
     arguments: Mapping[str, float], construct: Callable[[], Described]
 ) -> Described:
-    """Call ``construct``; if a number is out of range, name the arguments that led to it."""
+    """Call ``construct()``; an ``InputError`` is re-raised with the original arguments."""
     try:
         return construct()
     except InputError as error:
@@ -187,7 +187,7 @@ def construct_or_explain(
 
 
 def exact_inverse(guess: float, forward: Callable[[float], float], target: float) -> float:
-    """Return the number that ``forward`` turns into ``target`` to the last bit.
+    """Return the float near ``guess`` for which ``forward`` gives ``target`` exactly, if any.
 
     Division does not undo a multiplication exactly. Of the few numbers about ``guess`` that give
     the target, the one with the fewest digits is taken: it is the one that somebody wrote down.

@@ -70,29 +70,29 @@ Described = TypeVar("Described")
 
 @dataclass(frozen=True)
 class Section:
-    """Keys and values of a section, and where they stand in the file."""
+    """One section of a TOML file: its keys and values, with file and name for error messages."""
 
     path: Path
     name: str
     values: dict[str, Any]
 
     def error(self, key: str, text: str) -> InputError:
-        """Return an error about a key."""
+        """Return an ``InputError`` that names file, section, key and value before a text."""
         value = f" = {self.values[key]!r}" if key in self.values else ""
         return InputError(f"{self.path}: {self.name}.{key}{value}: {text}")
 
     def allow(self, *known: str) -> None:
-        """Check that there are no other keys."""
+        """Raise ``InputError`` if the section has a key other than the known ones."""
         for key in self.values:
             if key not in known:
                 raise self.error(key, f"no key of [{self.name}]; {expected_one_of(key, known)}")
 
     def present(self, keys: Collection[str]) -> list[str]:
-        """Return those of the keys that are there."""
+        """Return which of the given keys the section has, as a list."""
         return [key for key in keys if key in self.values]
 
     def uses_second_form(self, first: Collection[str], second: Collection[str]) -> bool:
-        """Return whether there are keys of the second form; keys of both are an error."""
+        """Return whether the section has keys of ``second``; raise if it mixes both groups."""
         first_keys, second_keys = self.present(first), self.present(second)
         if first_keys and second_keys:
             kinds = f"{', '.join(first)}, or {', '.join(second)}"
@@ -102,43 +102,43 @@ class Section:
         return bool(second_keys)
 
     def at_most_one(self, keys: Collection[str]) -> str | None:
-        """Return the one of the keys that is there, or None; more than one is an error."""
+        """Return which one of the keys the section has, or None; raise if it has several."""
         present = self.present(keys)
         if len(present) > 1:
             raise self.error(present[1], f"beside {present[0]}; expected one of {', '.join(keys)}")
         return present[0] if present else None
 
     def exactly_one(self, keys: Collection[str]) -> str:
-        """Return the one of the keys that is there; none is an error."""
+        """Return which one of the keys the section has; raise if it has none or several."""
         key = self.at_most_one(keys)
         if key is None:
             raise InputError(f"{self.path}: [{self.name}]: expected one of {', '.join(keys)}")
         return key
 
     def need(self, keys: Collection[str]) -> None:
-        """Check that all of the keys are there."""
+        """Raise ``InputError`` if the section lacks one of the given keys."""
         for key in keys:
             if key not in self.values:
                 raise self.error(key, f"missing; expected all of {', '.join(keys)}")
 
     def number(self, key: str) -> float:
-        """Return the number at a key, checked for its range."""
+        """Return a key's value as a float; raise ``InputError`` if it is out of its range."""
         try:
             return QUANTITIES[key].check(self.values[key])
         except InputError as error:
             raise InputError(f"{self.path}: {self.name}.{error}") from None
 
     def numbers(self, keys: Collection[str]) -> dict[str, float]:
-        """Return the numbers at those of the keys that are there."""
+        """Return a dict of checked floats for those of the given keys that the section has."""
         return {key: self.number(key) for key in self.present(keys)}
 
     def rad_s(self, key: str) -> float:
-        """Return the frequency at a key whose ending is the unit, rad/s."""
+        """Return a key's frequency in rad/s, converted from the unit that its name ends in."""
         unit = next(unit for unit in TO_RAD_S if key.endswith(f"_{unit}"))
         return TO_RAD_S[unit](self.number(key))
 
     def make(self, maker: Callable[[], Described]) -> Described:
-        """Call ``maker``; its errors name the section."""
+        """Return ``maker()``; an ``InputError`` from it is raised again with file and section."""
         try:
             return maker()
         except InputError as error:
@@ -146,7 +146,7 @@ class Section:
 
 
 def read_structure(section: Section) -> Structure:
-    """Read the structure of ``[structure]``."""
+    """Return the ``Structure`` that a section ``[structure]`` describes, SI or non-dimensional."""
     section.allow(*COMMON_KEYS, *MECHANICS, *HALVES, *RATIOS)
     values: dict[str, Any] = section.numbers(COMMON_NUMBERS)
     if "bonded" in section.values:
@@ -173,7 +173,7 @@ def read_structure(section: Section) -> Structure:
 
 
 def read_excitation(section: Section, structure: Structure | None) -> Excitation:
-    """Read the excitation of ``[excitation]``."""
+    """Return the ``Excitation`` that a section ``[excitation]`` describes."""
     section.allow(*FREQUENCIES, *AMPLITUDES, "phase")
     key = section.exactly_one(FREQUENCIES)
     amplitude_key = section.at_most_one(AMPLITUDES)
@@ -194,7 +194,7 @@ def read_excitation(section: Section, structure: Structure | None) -> Excitation
 
 
 def read_drive(motor: Section, box: Section, structure: Structure | None) -> Drive:
-    """Read the drive of ``[motor]`` and ``[box]``."""
+    """Return the ``Drive`` that the sections ``[motor]`` and ``[box]`` describe."""
     motor.allow(*SI_MOTOR, *DATASHEET_KEYS, *MOTOR_NUMBERS)
     box.allow(*SI_BOX, *BOX_NUMBERS)
     by_numbers = motor.uses_second_form((*SI_MOTOR, *DATASHEET_KEYS), MOTOR_NUMBERS)
@@ -214,7 +214,7 @@ def read_drive(motor: Section, box: Section, structure: Structure | None) -> Dri
 
 
 def check_masses(structure: Section, motor: Section) -> None:
-    """Check that a motor in SI, which feels the masses, does not move one of 1 kg unasked.
+    """Raise if a motor is in SI but the structure's mass m1 is left to its default of 1 kg.
 
     Raises
     ------
@@ -233,7 +233,7 @@ def check_masses(structure: Section, motor: Section) -> None:
 
 
 def si_drive(motor: Section, box: dict[str, float]) -> Drive:
-    """Read the drive of a motor in SI, by its constants or as its datasheet has it."""
+    """Return the ``Drive`` of a motor given in SI, by its constants or its datasheet's values."""
     values = {**motor.numbers(SI_MOTOR), **box}
     if not motor.uses_second_form(TORQUE_LINE_KEYS, DATASHEET_KEYS):
         motor.need([name for name in SI_MOTOR if name != "armature_inductance"])

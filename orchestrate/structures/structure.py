@@ -1,4 +1,4 @@
-"""A delaminated structure: two oscillators side by side, and how they knock against each other."""
+"""A delaminated structure: two oscillators side by side, and how their contact behaves."""
 
 from __future__ import annotations
 
@@ -48,31 +48,31 @@ ALTERNATIVES = {  # names that set the same value
 
 
 def stiffness(f: float, mass: float) -> float:
-    """Return the stiffness for a mass with natural frequency ``f``, Hz: k = m (2 pi f)^2."""
+    """Return the stiffness, N/m, that gives a mass the natural frequency f, Hz: m (2 pi f)^2."""
     omega = 2.0 * math.pi * f
     return mass * (omega * omega)
 
 
 def damping(ratio: float, omega: float, mass: float) -> float:
-    """Return the damper of a damping ratio, d = 2 D omega m (8)."""
+    """Return the damper, N s/m, for a damping ratio D: d = 2 D omega m (8)."""
     return 2.0 * ratio * omega * mass
 
 
 def natural_frequency(spring: float, mass: float) -> float:
-    """Return the frequency that :func:`stiffness` turns into ``spring``, Hz."""
+    """Return a mass's natural frequency, Hz, on a spring; exact inverse of :func:`stiffness`."""
     guess = math.sqrt(spring / mass) / (2.0 * math.pi)
     return exact_inverse(guess, lambda f: stiffness(f, mass), spring)
 
 
 def damping_ratio(damper: float, f: float, mass: float) -> float:
-    """Return the ratio of a damper, N s/m, to critical damping at a frequency ``f``, Hz."""
+    """Return a damper's ratio to critical damping for a mass with natural frequency f, Hz."""
     omega = 2.0 * math.pi * f
     ratio = damper / (2.0 * omega * mass)
     return exact_inverse(ratio, lambda guess: damping(guess, omega, mass), damper)
 
 
 def check_thicknesses(thicknesses: tuple[float, float]) -> tuple[float, float]:
-    """Return two thicknesses as floats; raise if they are none.
+    """Return two layer thicknesses as floats; raise ``InputError`` unless both are > 0.
 
     Raises
     ------
@@ -91,21 +91,19 @@ def check_thicknesses(thicknesses: tuple[float, float]) -> tuple[float, float]:
 
 
 def short(value: float) -> str:
-    """Format a number for a name, to the last digit."""
+    """Format a float for a file name: all its digits, without a trailing ``.0``."""
     return repr(value).removesuffix(".0")
 
 
 class Added(TypedDict, total=False):
-    """Keywords of all constructors beside ``e``, ``gamma`` and ``bonded``, see
-    :class:`Structure`.
-    """
+    """Types of the constructors' keywords that came later: clearance, e_slope and others."""
 
     clearance: float
     e_slope: float
 
 
 class Varied(TypedDict, total=False):
-    """All of ``PARAMETERS`` as keywords that take a list."""
+    """Types of ``PARAMETERS`` as keywords that take a list of values each."""
 
     m1: ArrayLike
     m2: ArrayLike
@@ -211,7 +209,7 @@ class Structure(Described):
         omega: float = 1.0,
         **added: Unpack[Added],
     ) -> Structure:
-        """Make a structure from the paper's numbers, (2) and (8).
+        """Make a structure from mu, kappa, D and omega of the paper, (2) and (8).
 
         Parameters
         ----------
@@ -269,7 +267,7 @@ class Structure(Described):
         bonded: bool = False,
         **added: Unpack[Added],
     ) -> Structure:
-        """Make a structure from natural frequency and damping ratio of each half alone.
+        """Make a structure from mass, natural frequency and damping ratio of each half alone.
 
         Parameters
         ----------
@@ -328,7 +326,7 @@ class Structure(Described):
         bonded: bool = False,
         **added: Unpack[Added],
     ) -> Structure:
-        """Split the measured mode of the undamaged beam between two layers.
+        """Make a structure by splitting the undamaged beam's mode between two layers by thickness.
 
         A layer of a beam of one material and width has its share of the thickness in the mass, and
         of the cubes of the thicknesses in the bending stiffness E b h^3/12 (Timoshenko and Gere,
@@ -402,7 +400,7 @@ class Structure(Described):
 
     @classmethod
     def from_attributes(cls, attributes: Mapping[str, Any]) -> Structure:
-        """Return the structure that an answer's attributes describe.
+        """Return the structure described by the attributes of a dataset.
 
         What was added later, and an older file has not, is at its default.
 
@@ -493,17 +491,17 @@ class Structure(Described):
 
     @property
     def alike(self) -> bool:
-        """Return whether both oscillators move alike: masses that start together stay so."""
+        """Return whether both masses have equal frequency and damping: together they stay so."""
         return self.kappa == self.mu and self.D1 == self.D2
 
     @property
     def gap_offset(self) -> float:
-        """The gap where both springs are unloaded, m: the clearance, 0 where bonded."""
+        """Gap between the masses at unloaded springs, m: the clearance, 0 where bonded."""
         return 0.0 if self.bonded else self.clearance
 
     @property
     def preload(self) -> float:
-        """Force that presses the masses together at rest, N: F = -clearance k1 k2/(k1 + k2)."""
+        """Force pressing the masses together at rest, N: -clearance k1 k2/(k1 + k2), or 0."""
         return max(0.0, -self.gap_offset) * self.k2 / (1.0 + self.kappa)
 
     @property
@@ -513,11 +511,11 @@ class Structure(Described):
 
     @property
     def has_scale(self) -> bool:
-        """Return whether twice the amplitude is another motion: by a clearance or e(v)."""
+        """Return whether the response is nonlinear in amplitude: with a clearance or e(v)."""
         return any(getattr(self, name) != 0.0 for name in OF_LENGTH)
 
     def restitution(self, closing: Values) -> Values:
-        """Return the coefficient of restitution at a closing speed, m/s: e/(1 + e_slope v).
+        """Return the restitution coefficient at closing speeds, m/s: e/(1 + e_slope v).
 
         It is the limit for slow impacts, ``e``, times the Pade approximant [0/1] of the law of Hunt
         and Crossley (Journal of Applied Mechanics 42, 1975, 440-445), whose contact force
@@ -536,15 +534,15 @@ class Structure(Described):
         return self.e / (1.0 + self.e_slope * closing)
 
     def as_bonded(self) -> Structure:
-        """Return the undamaged structure, both masses glued; it keeps its clearance unused."""
+        """Return a copy without delamination: both masses move as one (clearance kept unused)."""
         return dataclasses.replace(self, bonded=True)
 
     def as_delaminated(self) -> Structure:
-        """Return the damaged structure, whose masses can separate and impact."""
+        """Return a copy with delamination: its masses can separate and impact."""
         return dataclasses.replace(self, bonded=False)
 
     def get(self, name: str) -> float:
-        """Return a parameter by its name, any of ``PARAMETERS``.
+        """Return a parameter's value by its name, SI or non-dimensional, any of ``PARAMETERS``.
 
         Raises
         ------
@@ -562,7 +560,7 @@ class Structure(Described):
         return self.D1
 
     def replace(self, **changes: Any) -> Structure:
-        """Return a structure that differs in some parameters.
+        """Return a copy with some parameters changed, given as keywords, SI or non-dimensional.
 
         Parameters
         ----------
@@ -607,7 +605,7 @@ class Structure(Described):
         return fixed
 
     def _by_halves(self, changes: dict[str, float]) -> dict[str, float]:
-        """Return the SI values that change if frequencies and damping ratios of halves are set."""
+        """Return the SI values k and d that change if f1, f2, zeta1 or zeta2 are set."""
         new = {}
         for half, mass in (("1", self.m1), ("2", self.m2)):
             f, zeta = f"f{half}", f"zeta{half}"
@@ -620,7 +618,7 @@ class Structure(Described):
         return new
 
     def _by_ratios(self, ratios: dict[str, float]) -> dict[str, Any]:
-        """Return the SI values that change where the paper's numbers ``ratios`` are set."""
+        """Return the SI values that change if ratios of the paper (mu, kappa, D, omega) are set."""
         both = {"D1": ratios["D"], "D2": ratios["D"]} if "D" in ratios else {}
         all_ratios = {**ratios, **both}
         omega, mu = all_ratios.get("omega", self.omega), all_ratios.get("mu", self.mu)
@@ -643,17 +641,17 @@ class Structure(Described):
         return dict(vars(self))
 
     def _pair(self, letter: str) -> str:
-        """Format a parameter of both halves, for a name."""
+        """Return a parameter of both halves as text for a label: ``k1.0-2.0``."""
         first, second = (short(self.get(f"{letter}{half}")) for half in (1, 2))
         return f"{letter}{first}-{second}"
 
     def _is_by_halves(self) -> bool:
-        """Return whether the halves' frequencies and damping ratios give it to the last bit."""
+        """Return whether f1, f2, zeta1 and zeta2 reproduce the SI values to the last bit."""
         numbers = {name: self.get(name) for name in HALVES}
         return all(getattr(self, name) == value for name, value in self._by_halves(numbers).items())
 
     def label(self) -> str:
-        """Return a short name for files and titles; structures that differ have different ones."""
+        """Return a short text of the parameters for file names and titles, unique per structure."""
         default = type(self)()
         if (self.m1, self.k1) == (1.0, 1.0):
             damping_ratios = dict.fromkeys((short(self.D1), short(self.D2)))
