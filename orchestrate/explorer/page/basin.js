@@ -28,11 +28,10 @@ export function startAt(point, plane, column, row) {
  * @param {Oscillator} instance
  * @param {Point} point
  * @param {number[]} start
- * @returns {Attractor}
+ * @returns {Generator<undefined, Attractor>} it pauses, so that the instance may do other things
  */
-export function destination(instance, point, start) {
-  const found = respond(instance, point, start, SETTLING);
-  return attractorOf(found);
+export function* destination(instance, point, start) {
+  return attractorOf(yield* respond(instance, point, start, SETTLING));
 }
 
 /**

@@ -59,18 +59,22 @@ export class Inspector {
     this.stop();
     Object.assign(this, { choice, found: null, spectra: null, bonded: null, exponent: undefined });
     this.at("exponent").textContent = "…";
-    this.ask("motion", { ...choice, periods: this.periods, points: POINTS }, ([found]) => this.take(found));
-    const settled = { transient: 2000, samples: 1, tolerance: 1e-2 };
-    const asked = { point: undamaged(choice.point), start: [0, 0, 0, 0], settings: settled, periods: this.periods, points: POINTS };
+    this.ask("motion", { ...choice, periods: this.periods, points: POINTS }, ([found]) => this.take(found), true);
+  }
+
+  /** The same beam without its delamination, from rest. @param {Point} point */
+  askUndamaged(point) {
+    const settings = { transient: 2000, samples: 1, tolerance: 1e-2 };
+    const asked = { point: undamaged(point), start: [0, 0, 0, 0], settings, periods: this.periods, points: POINTS };
     this.ask("motion", asked, ([{ motion }]) => {
       this.bonded = motion;
       this.drawMotion();
     });
   }
 
-  /** @param {string} task @param {unknown} asked @param {(parts: any[]) => void} take */
-  ask(task, asked, take) {
-    const order = this.pool.ask(task, asked, take);
+  /** @param {string} task @param {unknown} asked @param {(parts: any[]) => void} take @param {boolean} [urgent] */
+  ask(task, asked, take, urgent) {
+    const order = this.pool.ask(task, asked, take, urgent);
     this.orders.push(order);
     return order;
   }
@@ -87,6 +91,7 @@ export class Inspector {
     this.found = found;
     this.section = found.response.states;
     const { point } = /** @type {Choice} */ (this.choice);
+    this.askUndamaged(point);
     this.ask("spectra", { point, start: found.response.end }, (parts) => parts.forEach((part) => this.takeSpectra(part)));
     if (this.sound.wanted) this.listen(this.pitch);
     this.drawMotion();

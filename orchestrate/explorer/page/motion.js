@@ -1,5 +1,6 @@
 /** A motion in time with its impacts, and what an accelerometer on mass 1 would read. */
 
+import { Pauses } from "./pauses.js";
 import { periodOf } from "./structure.js";
 
 /**
@@ -18,9 +19,9 @@ import { periodOf } from "./structure.js";
  * @param {number} first
  * @param {number} periods
  * @param {number} points a period
- * @returns {Motion}
+ * @returns {Generator<undefined, Motion>} it pauses, so that the instance may do other things
  */
-export function record(instance, point, first, periods, points) {
+export function* record(instance, point, first, periods, points) {
   const period = periodOf(point);
   const count = periods * points + 1;
   const time = new Float64Array(count);
@@ -29,11 +30,13 @@ export function record(instance, point, first, periods, points) {
   /** @type {number[][]} */
   const impacts = [];
   instance.set({ x_rel_max_on: 0, sample_count: 0 });
+  const pauses = new Pauses(instance);
   for (let i = 0; i < count; i++) {
     time[i] = (first + i / points) * period;
     if (i > 0) advance(instance, time[i - 1], time[i], impacts);
     states.set(instance.state(), 4 * i);
     contact[i] = instance.get("in_contact");
+    yield* pauses.after(1);
   }
   /** @param {number} part */
   const column = (part) => Float64Array.from(impacts, (impact) => impact[part]);

@@ -1,6 +1,7 @@
 /** One settled response: stroboscopic samples, impacts, the largest gap, and where it ends. */
 
 import { gapBetween, gapOffset, withoutLastDigits } from "./clearance.js";
+import { Pauses, PIECE } from "./pauses.js";
 import { lengthOf, periodOf } from "./structure.js";
 
 /**
@@ -22,12 +23,16 @@ const LEAST_GAP = 2 ** -20; // of the motion's size: smaller gaps have no size o
  * @param {Point} point
  * @param {Iterable<number>} start
  * @param {Settings} settings
- * @returns {Response}
+ * @returns {Generator<undefined, Response>} it pauses, so that the instance may do other things
  */
-export function respond(instance, point, start, { transient, samples, tolerance }) {
+export function* respond(instance, point, start, { transient, samples, tolerance }) {
   const period = periodOf(point);
   instance.begin(point, start);
-  if (transient) instance.step(0, transient * period);
+  const pauses = new Pauses(instance);
+  for (let done = 0; done < transient; done += PIECE) {
+    instance.step(0, Math.min(done + PIECE, transient) * period); // the end as it is, not rounded once more
+    yield* pauses.after(PIECE);
+  }
   const before = instance.get("impact_count");
   const contacts = instance.get("contact_count");
   const touching = instance.get("in_contact") !== 0;

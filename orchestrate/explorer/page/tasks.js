@@ -30,7 +30,7 @@ const SPAN = { periods: 64, points: 1024, highest: 20 };
 function* replay(instance, { columns, starts, indices, settings }) {
   for (let i = 0; i < indices.length; i++) {
     const start = starts.subarray(4 * i, 4 * i + 4);
-    yield answer(indices[i], respond(instance, pointOf(columns, i), start, settings));
+    yield answer(indices[i], yield* respond(instance, pointOf(columns, i), start, settings));
   }
 }
 
@@ -41,7 +41,7 @@ function* replay(instance, { columns, starts, indices, settings }) {
  */
 function* chain(instance, { columns, indices, start, settings }) {
   for (let i = 0; i < indices.length; i++) {
-    const found = respond(instance, pointOf(columns, i), start, settings);
+    const found = yield* respond(instance, pointOf(columns, i), start, settings);
     start = found.end;
     yield answer(indices[i], found);
   }
@@ -59,8 +59,8 @@ function answer(index, { gaps, peak, impacts, contact, multiplicity, start, end 
  */
 function* motion(instance, { point, start, settings, periods, points }) {
   const first = settings.transient + settings.samples;
-  const response = respond(instance, point, start, settings);
-  yield { response, motion: record(instance, point, first, periods, points) };
+  const response = yield* respond(instance, point, start, settings);
+  yield { response, motion: yield* record(instance, point, first, periods, points) };
 }
 
 /**
@@ -70,7 +70,7 @@ function* motion(instance, { point, start, settings, periods, points }) {
  */
 function* section(instance, { point, start, periods }) {
   for (let done = 0; done < periods; done += 200) {
-    const found = respond(instance, point, start, { transient: 0, samples: 200, tolerance: 1e-2 });
+    const found = yield* respond(instance, point, start, { transient: 0, samples: 200, tolerance: 1e-2 });
     start = found.end;
     yield found.states;
   }
@@ -85,7 +85,7 @@ function* spectra(instance, { point, start }) {
   instance.begin(point, start);
   const delaminated = yield* spectrumOf(instance, point, 0, SPAN);
   const glued = { ...point, structure: { ...point.structure, bonded: 1 } };
-  const settled = respond(instance, glued, REST, { transient: 2000, samples: 1, tolerance: 1e-2 });
+  const settled = yield* respond(instance, glued, REST, { transient: 2000, samples: 1, tolerance: 1e-2 });
   const bonded = yield* spectrumOf(instance, glued, 2001, SPAN);
   yield { delaminated, bonded, bondedState: settled.end };
   yield { exponent: yield* exponentOf(instance, point, start, { periods: 400, distance: 1e-7 }) };
@@ -98,7 +98,7 @@ function* spectra(instance, { point, start }) {
  */
 function* sound(instance, { point, start, periods, pitch, rate }) {
   instance.begin(point, start);
-  const { impactTime, impactEnergy } = record(instance, point, 0, periods, 1);
+  const { impactTime, impactEnergy } = yield* record(instance, point, 0, periods, 1);
   const time = impactTime.map((t) => t / periodOf(point));
   yield waveform({ time, energy: impactEnergy, turns: periods }, pitch, rate);
 }
@@ -128,7 +128,7 @@ function* drive(instance, { run, start, voltages }, shaker) {
  */
 function* basin(instance, { point, plane, cells }) {
   for (const [column, row] of cells) {
-    yield { column, row, ...destination(instance, point, startAt(point, plane, column, row)) };
+    yield { column, row, ...(yield* destination(instance, point, startAt(point, plane, column, row))) };
   }
 }
 

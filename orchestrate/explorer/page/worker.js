@@ -1,15 +1,15 @@
-/** A worker: computes tasks in short slices, the newest and the one before in turn. */
+/** A worker: computes tasks in short slices, an urgent one first, else the newest and the one before in turn. */
 
 import { Instance, Oscillator } from "./kernel.js";
 import { TASKS } from "./tasks.js";
 
-const SLICE = 15; // ms
+const SLICE = 8; // ms
 
 /** @type {Oscillator} */
 let instance;
 /** @type {Instance} */
 let shaker;
-/** @type {{id: number, run: Generator<unknown>}[]} */
+/** @type {{id: number, urgent: boolean, run: Generator<unknown>}[]} */
 const tasks = [];
 const wake = new MessageChannel();
 let awake = false;
@@ -23,7 +23,7 @@ scope.onmessage = (/** @type {MessageEvent} */ { data }) => {
     instance = new Oscillator(data.compiled.oscillator);
     shaker = new Instance(data.compiled.shaker);
   }
-  if (data.task) tasks.push({ id: data.id, run: TASKS[data.task](instance, data.asked, shaker) });
+  if (data.task) tasks.push({ id: data.id, urgent: data.urgent, run: TASKS[data.task](instance, data.asked, shaker) });
   if (data.cancel !== undefined) drop(data.cancel);
   rouse();
 };
@@ -44,7 +44,7 @@ function rouse() {
 wake.port1.onmessage = () => {
   awake = false;
   turn = 1 - turn;
-  const task = tasks[tasks.length - 1 - turn] ?? tasks[0];
+  const task = tasks.find(({ urgent }) => urgent) ?? tasks[tasks.length - 1 - turn] ?? tasks[0];
   if (!task) return;
   const message = slice(task);
   if (message.done) drop(task.id);

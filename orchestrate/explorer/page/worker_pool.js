@@ -37,12 +37,13 @@ export class WorkerPool {
    * @param {string} task
    * @param {unknown} asked
    * @param {(parts: any[]) => void} onparts
+   * @param {boolean} [urgent] whether someone waits for it: it comes before all that is not
    * @returns {Order}
    */
-  ask(task, asked, onparts) {
+  ask(task, asked, onparts, urgent = false) {
     const id = ++this.number;
     const worker = this.next();
-    worker.postMessage({ id, task, asked });
+    worker.postMessage({ id, task, asked, urgent });
     /** @type {() => void} */
     let finish = () => {};
     const done = /** @type {Promise<void>} */ (new Promise((resolve) => (finish = () => resolve())));
