@@ -144,7 +144,7 @@ def test_held_voltages_find_the_fold_of_the_branch():
     """Of a structure with a gap, from states of a ramp that are restored."""
     legs, _ = branch_of(OPEN, 30, (0.995, 1.002))
     (fold,) = legs[0].bifurcations
-    verdict = held_verdict(OPEN, Ramp(1.52, 1.62, 4e-4, settle=600.0, back=False))
+    verdict = held_verdict(OPEN, Ramp(1.52, 1.62, 4e-4, settle=600.0, back=False)).verdict
     assert fold.kind == FOLD and verdict.outcome == LOST
     assert verdict.low - 2e-5 < fold.point.place[0] < verdict.high + 2e-5
     assert verdict.high - verdict.low < 2e-4
