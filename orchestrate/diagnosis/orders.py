@@ -196,6 +196,22 @@ def record_orders(record: xr.Dataset) -> RecordOrders:
     return channel_orders(checked_channels(record))
 
 
+def readings(record: xr.Dataset) -> Channels:
+    """Return the channels of a record that sensors have read.
+
+    Raises
+    ------
+    InputError
+        Where it is a history of :func:`orchestrate.shake` with impacts: its accelerations are those
+        between them, while an accelerometer feels each of them.
+    """
+    impacts = record.sizes.get("impact", 0) if hasattr(record, "sizes") else 0
+    if impacts and not {"acceleration1", "acceleration2"} & set(record):
+        text = "expected what sensors read of it, orchestrate.measure(history, sensor)"
+        raise InputError(f"record: its accelerations leave out its {impacts} impacts; {text}")
+    return Channels.from_record(record, (BOX,))
+
+
 def checked_channels(record: xr.Dataset) -> Channels:
     """Check that a record has the base's channel and one of the structure's, and return them.
 
@@ -203,7 +219,7 @@ def checked_channels(record: xr.Dataset) -> Channels:
     ------
     InputError
     """
-    channels = Channels.from_record(record, (BOX,))
+    channels = readings(record)
     if len(channels.names) < 2:
         text = "expected acceleration1, acceleration2 or both beside box_acceleration"
         raise InputError(f"record: no acceleration of the structure; {text}")

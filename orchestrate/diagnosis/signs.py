@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 
 from ..checks import checked_integer
 from ..errors import InputError
-from ..laboratory.analysis.channels import BOX, Channels, attributes, checked_number
+from ..laboratory.analysis.channels import Channels, attributes, checked_number
 from ..response.labels import flags, variable
 from ..structures import Structure
 from .drive_signs import drive_signs, is_drive_run
 from .indicators import INDICATORS
+from .orders import readings
 from .response_signs import (
     MAX_EDGE,
     ResponseSigns,
@@ -108,7 +109,7 @@ def signs(
         return signs_of_drive_run(record, others)
     length = checked_number("periods", periods, 2.0, 1e4)
     count = checked_integer("seeds", seeds, 1, 1000)
-    every = [Channels.from_record(one, (BOX,)) for one in (record, *others)]
+    every = [readings(one) for one in (record, *others)]
     names = checked_responses(every)
     edge = None if high_band is None else checked_band(high_band, every[0].sample_rate)
     level = None if noise is None else checked_number("noise", noise, 0.0, math.inf, "m/s2", True)
