@@ -216,6 +216,7 @@ def print_verdict(path: Path, verdict: xr.Dataset) -> None:
     said = verdict_of(verdict)
     print(f"{path}: {said.word} {said.sentence}")
     columns = ("record_columns", "columns")
-    for name, words in (("reason", "decided by"), ("settle", "to settle it"), columns):
+    simulated = ("simulated", "simulated records")
+    for name, words in (("reason", "decided by"), simulated, ("settle", "to settle it"), columns):
         if verdict.attrs.get(name):
             print(f"  {words}: {verdict.attrs[name]}")

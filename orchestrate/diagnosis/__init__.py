@@ -23,6 +23,9 @@ module                  idea
 :mod:`.bursts`          whether something strikes: bursts at high frequencies once a period
 :mod:`.search_job`      all searches of a record as a job, in parallel
 :mod:`.fit`             the numbers of a structure from a record
+:mod:`.simulation`      simulated records of a fit, with noise and what real contacts miss
+:mod:`.refit`           fits to simulated records, linear around a few minima
+:mod:`.bootstrap`       odds of both kinds of structures by simulated records
 :mod:`.decision_rule`   the rule by which fits and signs become a verdict
 :mod:`.detect`          the verdict on a record
 :mod:`.detect_all`      verdicts on many records, in parallel

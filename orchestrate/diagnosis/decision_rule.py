@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,8 @@ DELAMINATED_DESCRIBES = 3.0  # of the delaminated one: real contacts are not the
 DESCRIBES_FACES_APART = 4.0  # the same where two faces are seen to move apart
 CERTAIN = 0.9  # share of the resampled records in which the ratio has to hold
 RESAMPLED, BLOCKS, SEED = 1000, 20, 7
+CLOSE = 1.25  # a factor: a quantity so near to its border may lie on the other side of it
+UNSURE = (0.02, 0.98)  # shares of resampled records between which the ratio is not sure
 
 
 @dataclass(frozen=True)
@@ -94,6 +96,25 @@ class Findings:
     def odds(self) -> float:
         """Odds of delaminated against sound, by the share of resampled records."""
         return (self.share * RESAMPLED + 0.5) / ((1.0 - self.share) * RESAMPLED + 0.5)
+
+    @property
+    def is_close(self) -> bool:
+        """Whether the word hangs on a number near its border, or on a part of the record."""
+        if self.seen and UNSURE[0] < self.share < UNSURE[1]:
+            return True
+        names = ("excess", "apart", "bursts", "sound_misfit", "delaminated_misfit")
+        return any(
+            self.moved(name, factor).verdict() != self.verdict()
+            for name in names
+            for factor in (CLOSE, 1.0 / CLOSE)
+        )
+
+    def moved(self, name: str, factor: float) -> Findings:
+        """Return the findings with one number multiplied; the whole record shares its ratio."""
+        made = replace(self, **{name: getattr(self, name) * factor})
+        if made.ratio == self.ratio and made.deciding_ratio == self.deciding_ratio:
+            return made
+        return replace(made, share=float(made.ratio >= made.deciding_ratio))
 
     def verdict(self) -> str:
         """Apply the rule and return one of the four verdicts."""

@@ -2,32 +2,39 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..access import finder
-from ..response.labels import variable
+from ..access import Player, finder
+from ..response.labels import Variable, flags, variable
 from ..response.questions import checked_structure
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
+from .bootstrap import Bootstrap, bootstrap
 from .bursts import burst_excess
 from .decision_rule import Findings, deciding_ratio, resampled_share
 from .even_orders import smallest_openings
-from .fit import Results, checked_data, checked_free, delaminated_guess
+from .evidence import Evidence
+from .fit import Results, checked_data, checked_free, delaminated_guess, text_coordinate
 from .hypotheses import FREE
-from .search_job import SearchJob, cached_orders
+from .search_job import SearchJob, cached_coarse_evidence, cached_orders
+from .simulation import SIMULATED, Fitted
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     import xarray as xr
+    from numpy.typing import NDArray
     from typing_extensions import Unpack
 
     from ..running.options import Running
 
+TRUTHS = ("sound", "delaminated")  # of simulated records
+ODDS_FROM = {0: "blocks of the record", 1: "simulated records"}
 ASSUMED = (
     "the masses of both halves have the ratio of the guess",
     "each half has one mode in the range of the sweep",
@@ -65,17 +72,23 @@ def detect(
     -------
     xarray.Dataset
         ``verdict``: ``"delaminated"``, ``"no opening seen"``, ``"not described"`` or
-        ``"undecided"``; ``odds``, ``ratio`` (misfit of the best sound hypothesis over that of the
-        delaminated one), ``faces_apart`` (difference of two sensors over the threshold from which
-        it counts; 0 with one), ``bursts`` (power at high frequencies once a period, over the
-        threshold from which impacts count as heard; NaN below some 11 samples in the shortest
+        ``"undecided"``; ``odds`` of delaminated against sound, with ``odds_error``, the standard
+        error of their logarithm, ``odds_decided``, 1 where records of both fits were simulated and
+        0 where blocks of the record were resampled, ``bootstrap_ratio`` over ``truth`` and
+        ``simulated`` (the ratio of misfits in these records; NaN where there are none) and
+        ``bootstrap_tail`` over ``truth``, the shares of sound records with a ratio as large as the
+        measured one and of delaminated ones with one as small; ``ratio`` (misfit of the best sound
+        hypothesis over that of the delaminated one), ``faces_apart`` (difference of two sensors
+        over the threshold from which it counts; 0 with one), ``bursts`` (power at high frequencies
+        once a period, over the threshold from which impacts count as heard; NaN below some 11
+        samples in the shortest
         period), ``smallest_opening`` of faces at a sensor that would be seen at every frequency,
         in m; the range in which the structure moves enough (``level_low``, ``level_high`` in m/s2,
         ``frequency_low``, ``frequency_high`` in Hz); ``order2`` and its
         ``order2_threshold`` over ``window``. Over ``hypothesis``: ``misfit``, ``evaluations``,
         ``minima``, ``value`` and ``standard_error`` of its parameters, ``misfit_at`` and the
         ``fitted`` orders over ``window``, beside what is ``measured``. Attributes ``reason``,
-        ``settle``, ``seen_up_to`` and ``assumed``.
+        ``settle``, ``simulated``, ``seen_up_to`` and ``assumed``.
 
     Raises
     ------
@@ -91,6 +104,9 @@ def detect(
     times is enough where two faces are seen to move apart, as those of no sound structure do. Where
     bursts once a period at high frequencies tell of impacts, and nothing else opens, the word is
     "undecided".
+    Where a number is near its border, records of the best sound and of the best delaminated fit are
+    simulated and both are fitted to each: the odds are the ratio of the densities of the ratio of
+    misfits, under both, at the measured one. Elsewhere they are the shares of resampled records.
     There is no verdict "intact": a structure that is pressed together moves as a bonded one below
     the level that opens it. See :doc:`/diagnosis`.
 
@@ -117,16 +133,28 @@ def detect(
 class DetectJob(SearchJob):
     """Fit all hypotheses to a record and decide which verdict they give."""
 
+    def finish(self, previous: Table, player: Player) -> Table:
+        """Refine and compare the fits; where it is close, to simulated records too."""
+        table = super().finish(previous, player)
+        results = Results.from_table(self, table)
+        ratios, inputs = np.full((2, SIMULATED), np.nan), bootstrap_inputs(results)
+        searched = bool(np.isfinite(inputs[-1].covariance).all())  # where the word hangs on it
+        if searched and findings_from_results(results).is_close:
+            made = bootstrap(*inputs, player)
+            ratios = np.stack([made.sound, made.delaminated])
+        return {**table, "end_bootstrap": ratios[np.newaxis]}
+
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Return the verdict, the quantities that it is based on, and all fits as a dataset."""
         import xarray as xr
 
         results = Results.from_table(self, table)
         findings, even = findings_from_results(results), results.even
+        simulated = Bootstrap.from_row(findings.ratio, table["end_bootstrap"][0])
         every, coordinates = results.comparison()
         scalars = {
             "verdict": ((), findings.verdict(), {"long_name": "verdict"}),
-            "odds": variable((), findings.odds, "1", "odds of delaminated against sound"),
+            **odds_variables(findings, simulated, table["end_bootstrap"][0]),
             "ratio": variable((), findings.ratio, "1", "misfit of sound over that of delaminated"),
             "faces_apart": variable(
                 (), findings.apart, "1", "difference of two sensors over its threshold"
@@ -146,14 +174,49 @@ class DetectJob(SearchJob):
         }
         numbers = results.parameters()
         del numbers["asked"]
+        coordinates["truth"] = text_coordinate("truth", TRUTHS, "what was simulated")
         return xr.Dataset({**scalars, **every, **numbers}, coordinates).assign_attrs(
             analysis="detect",
             title=f"Verdict: {findings.verdict()}",
             reason=findings.reason(),
             settle=findings.next_measurement(),
+            simulated=simulated.sentence() if simulated else "",
             seen_up_to=findings.seen_up_to(),
             assumed="; ".join(ASSUMED),
         )
+
+
+def odds_variables(
+    findings: Findings, simulated: Bootstrap | None, ratios: NDArray[np.float64]
+) -> dict[str, Variable]:
+    """Return the odds, what they were found by, and the ratios in simulated records."""
+    odds, error, alike = findings.odds, math.nan, np.full(2, math.nan)
+    if simulated is not None:
+        odds, error = simulated.odds_with_error()
+        alike = np.array(simulated.alike) / SIMULATED
+    shares = "share of simulated records on the measured one's other side: sound, delaminated"
+    words = "ratio of misfits in simulated records"
+    return {
+        "odds": variable((), odds, "1", "odds of delaminated against sound"),
+        "odds_error": variable((), error, "1", "standard error of their logarithm"),
+        "odds_decided": flags((), simulated is not None, "what the odds were found by", ODDS_FROM),
+        "bootstrap_tail": variable("truth", alike, "1", shares),
+        "bootstrap_ratio": variable(("truth", "simulated"), ratios, "1", words),
+    }
+
+
+def bootstrap_inputs(results: Results) -> tuple[Evidence, Evidence, list[Fitted], Fitted]:
+    """Return evidence, all sound fits and the better delaminated one, for their simulation."""
+    job, evidence, made = results.job, results.job.evidence, []
+    for position, hypothesis in enumerate(job.hypotheses):
+        names = list(hypothesis.bounds(evidence))
+        values = results.values[position][: len(names)].tolist()
+        covariance = results.covariance[position][: len(names), : len(names)]
+        named = dict(zip(names, values, strict=True))
+        made.append(Fitted(hypothesis, named, float(results.misfit[position]), covariance))
+    count = len(job.sound)
+    other = min(made[count:], key=lambda one: one.misfit)
+    return evidence, cached_coarse_evidence(job.data), made[:count], other
 
 
 def findings_from_results(results: Results) -> Findings:

@@ -111,7 +111,10 @@ def decision(answer: xr.Dataset) -> Section:
     reason, settle = (str(answer.attrs.get(name, "")) for name in ("reason", "settle"))
     points = [f"What decided: {full(reason)}"] if reason else []
     odds = number(answer, "odds")
-    if math.isfinite(odds) and odds > 0.0:
+    simulated = str(answer.attrs.get("simulated", ""))
+    if simulated:
+        points.append(f"{full(simulated)} Both models were fitted to each of them.")
+    elif math.isfinite(odds) and odds > 0.0:
         points.append(
             f"Odds of the delaminated against the best sound structure: {ratio_of(odds)}, by how "
             "often the ratio of misfits holds in records put together of blocks of this one."

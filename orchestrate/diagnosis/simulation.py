@@ -1,0 +1,141 @@
+"""Simulated records of a fit: its motion with noise, and with what real contacts miss."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..access import Player
+from ..laboratory.analysis.channels import BOX
+from .errors import noise_of_samples, with_base_noise
+from .evidence import Evidence
+from .hypotheses import Hypothesis
+from .orders import Complexes
+
+Floats = NDArray[np.float64]
+Values = Mapping[str, float]
+SIMULATED = 200  # records of each hypothesis
+BASE_REPLICATES = 20  # motions under more noise of the base; each serves several records
+# Parts of the record over which what a fit misses changes: by this number what two masses miss of
+# rattling clamps is taken for a delamination as often as it should be
+PARTS = 2
+SEED = 30_113
+DIGITS = 7  # of numbers at which motions are computed: the same on every processor
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A hypothesis at its minimum.
+
+    Attributes
+    ----------
+    hypothesis : Hypothesis
+    values : dict of str to float
+    misfit : float
+    covariance : ndarray, shape (numbers, numbers)
+        Of the values; NaN where it is not known.
+    """
+
+    hypothesis: Hypothesis
+    values: dict[str, float]
+    misfit: float
+    covariance: Floats
+
+
+def rounded(value: float) -> float:
+    """Round a number to a few digits: the last bits of a search differ between processors."""
+    return float(f"{value:.{DIGITS}g}")
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """Records of one hypothesis, as changes of their residuals from those of the measured one.
+
+    Attributes
+    ----------
+    fitted : Fitted
+        From which they are simulated.
+    motion : ndarray, shape (1 or 2, samples)
+        Of its numbers, m.
+    changes : ndarray, shape (records, residuals)
+        Computed less measured orders over their errors, beyond those of the measured record.
+    """
+
+    fitted: Fitted
+    motion: Floats
+    changes: Floats
+
+    @classmethod
+    def from_fit(
+        cls, evidence: Evidence, fitted: Fitted, player: Player | None, seed: int
+    ) -> Simulation:
+        """Simulate records of a fit."""
+        rng = np.random.default_rng([SEED, seed])
+        values = {name: rounded(value) for name, value in fitted.values.items()}
+        motion = fitted.hypothesis.displacements(values, evidence, player)
+        computed = evidence.fitted_orders(motion)
+        missed = evidence.order_residuals(computed)
+        by_base = base_noise_changes(evidence, (fitted.hypothesis, values, player), computed, rng)
+        picked = rng.integers(0, len(by_base), SIMULATED)
+        signs = rng.choice([-1.0, 1.0], (SIMULATED, 1, 1, 1))
+        noise = signs * by_base[picked] + sensor_noise_changes(evidence, computed, rng)
+        beyond = share_beyond_noise(missed, noise)
+        smooth = smooth_functions(missed.shape[-1], rng)[:, np.newaxis, np.newaxis]
+        changes = -missed - noise + beyond * smooth * missed
+        return cls(fitted, motion, changes.reshape(SIMULATED, -1))
+
+
+def base_noise_changes(
+    evidence: Evidence,
+    fit: tuple[Hypothesis, Values, Player | None],
+    computed: Complexes,
+    rng: np.random.Generator,
+) -> Floats:
+    """Return how residuals change where the base moves with more noise of its floor's size."""
+    hypothesis, values, player = fit
+    size = noise_of_samples(evidence.orders)[BOX]
+    here = evidence.order_residuals(computed)
+    found = []
+    for _ in range(BASE_REPLICATES):
+        noisy = with_base_noise(evidence, size * rng.standard_normal(evidence.samples))
+        motion = hypothesis.displacements(values, noisy, player)
+        found.append(evidence.order_residuals(evidence.fitted_orders(motion)) - here)
+    return np.stack(found)
+
+
+def sensor_noise_changes(
+    evidence: Evidence, computed: Complexes, rng: np.random.Generator
+) -> Floats:
+    """Return how residuals change by noise of the sensors, of their floor's size.
+
+    Windows overlap by a half: neighbours share half of their noise.
+    """
+    shape = (SIMULATED, *computed.shape[:2], computed.shape[2] + 1)
+    white = rng.standard_normal(shape) + 1j * rng.standard_normal(shape)
+    error, level = evidence.error, evidence.noise[:, np.newaxis, np.newaxis]
+    noise = 0.5 * level * (white[..., :-1] + white[..., 1:])
+    size = np.abs(computed[:, 1:])
+    higher = np.abs(computed[:, 1:] + noise[:, :, 1:]) - np.sqrt(size**2 + level**2)
+    first = noise[:, :, 0] / error[:, 0]
+    both = [first.real[:, :, np.newaxis], first.imag[:, :, np.newaxis]]
+    changes = np.concatenate([*both, higher / error[:, 1:]], axis=2)
+    return np.asarray(np.nan_to_num(changes))
+
+
+def share_beyond_noise(missed: Floats, noise: Floats) -> float:
+    """Return the size of what a fit misses beyond noise, as a part of what it misses."""
+    squares, by_noise = float(np.mean(missed**2)), float(np.mean(noise**2))
+    return math.sqrt(max(1.0 - by_noise / max(squares, 1e-300), 0.0))
+
+
+def smooth_functions(windows: int, rng: np.random.Generator) -> Floats:
+    """Return normal random functions of the windows, of variance 1, shape (records, windows)."""
+    knots = min(PARTS, windows) + 1
+    place = np.linspace(0.0, knots - 1.0, windows)[:, np.newaxis]
+    hats = np.maximum(1.0 - np.abs(place - np.arange(knots)), 0.0)
+    hats /= np.sqrt(np.sum(hats**2, axis=1, keepdims=True))
+    return np.asarray(rng.standard_normal((SIMULATED, knots)) @ hats.T)

@@ -1,0 +1,51 @@
+"""Odds by simulated records: their estimator, and where they are asked for."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from orchestrate.diagnosis.bootstrap import Bootstrap
+from orchestrate.diagnosis.simulation import smooth_functions
+
+from .test_verdicts import OPENED
+
+
+def normal(observed, count=200):
+    """Logarithms that are normal: sound ones around 0, delaminated ones around 0.5."""
+    rng = np.random.default_rng(1)
+    sound, delaminated = (np.exp(rng.normal(at, 0.2, count)) for at in (0.0, 0.5))
+    return Bootstrap(observed, sound, delaminated)
+
+
+@pytest.mark.parametrize("at", [0.1, 0.25, 0.4])
+def test_odds_are_the_ratio_of_both_densities_within_their_error(at):
+    odds, error = normal(math.exp(at)).odds_with_error()
+    exact = ((at - 0.0) ** 2 - (at - 0.5) ** 2) / (2.0 * 0.2**2)
+    assert 0.05 < error < 0.8
+    assert abs(math.log(odds) - exact) < 3.0 * error + 0.3
+
+
+def test_the_sentence_counts_the_records_on_the_other_side():
+    made = normal(math.exp(0.25))
+    above, below = made.alike
+    assert above == np.sum(made.sound >= made.observed) and below > 0
+    assert f"sound model {above} looked as delaminated as this one" in made.sentence()
+    assert "sound model none looked" in normal(50.0).sentence()
+
+
+def test_few_simulations_exclude_nothing():
+    odds, _ = normal(math.exp(3.0)).odds_with_error()
+    assert odds < 300.0
+
+
+def test_what_a_fit_misses_keeps_its_size():
+    made = smooth_functions(150, np.random.default_rng(2))
+    np.testing.assert_allclose(np.mean(made**2, axis=0), 1.0, atol=0.4)
+
+
+def test_only_a_word_that_hangs_on_a_border_is_close():
+    assert not OPENED.is_close
+    for changes in ({"share": 0.6}, {"sound_misfit": 1.3}, {"excess": 1.1}):
+        assert replace(OPENED, **changes).is_close, changes
