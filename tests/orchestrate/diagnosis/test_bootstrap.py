@@ -6,9 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import orchestrate
+from orchestrate.diagnosis import search_job
 from orchestrate.diagnosis.bootstrap import Bootstrap
+from orchestrate.diagnosis.decision_rule import Findings
 from orchestrate.diagnosis.simulation import smooth_functions
 
+from .records import BEAM, guess, record
 from .test_verdicts import OPENED
 
 
@@ -49,3 +53,28 @@ def test_only_a_word_that_hangs_on_a_border_is_close():
     assert not OPENED.is_close
     for changes in ({"share": 0.6}, {"sound_misfit": 1.3}, {"excess": 1.1}):
         assert replace(OPENED, **changes).is_close, changes
+
+
+@pytest.mark.slow
+def test_simulated_records_of_both_kinds_are_told_apart(monkeypatch):
+    """A delaminated record that is taken for close has a ratio of its own kind's."""
+    answer = close_answer(BEAM, monkeypatch)
+    sound, delaminated = np.log(answer.bootstrap_ratio).median("simulated").values
+    assert sound < delaminated and float(answer.odds) > 3.0
+
+
+@pytest.mark.slow
+def test_odds_of_a_bonded_structure_tell_nothing(monkeypatch):
+    """Halves that are alike move as one: the delaminated fit is the bonded one."""
+    answer = close_answer(BEAM.as_bonded(), monkeypatch)
+    sound, delaminated = np.log(answer.bootstrap_ratio).median("simulated").values
+    assert delaminated == pytest.approx(sound, abs=0.01) and 0.3 < float(answer.odds) < 3.0
+
+
+def close_answer(structure, monkeypatch):
+    """A verdict whose odds come from simulated records, whatever it hangs on."""
+    monkeypatch.setattr(Findings, "is_close", property(lambda self: True))
+    monkeypatch.setattr(search_job, "may_be_delaminated", lambda *args: True)
+    answer = orchestrate.detect(record(structure, noise=0.02), guess(), jobs=1, progress=False)
+    assert int(answer.odds_decided) == 1 and answer.attrs["simulated"]
+    return answer

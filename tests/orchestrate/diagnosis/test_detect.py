@@ -13,7 +13,7 @@ from tools.benches.excitation import Swept
 from tools.benches.lumped import Faces, Halves
 from tools.benches.sensors import Sensor
 
-from .records import BEAM, guess, record
+from .records import BEAM, RATE, SWEEP, guess, record
 
 LIMIT = {"jobs": 1, "progress": False}
 
@@ -87,6 +87,17 @@ def test_random_vibration_is_refused_in_one_line():
     made = orchestrate.record(box_acceleration=noise[0], acceleration1=noise[1], sample_rate=600.0)
     with pytest.raises(orchestrate.InputError, match="expected a swept or stepped sine"):
         orchestrate.detect(made, guess())
+
+
+def test_a_history_without_its_impacts_spikes_is_refused():
+    """Its accelerations are those between impacts: a fit to them was wrong by a tenth, silently."""
+    history = orchestrate.shake(BEAM, SWEEP, sample_rate=RATE, progress=False)
+    assert history.sizes["impact"] > 100
+    for ask in (orchestrate.detect, orchestrate.fit):
+        with pytest.raises(orchestrate.InputError, match="orchestrate.measure"):
+            ask(history, guess())
+    with pytest.raises(orchestrate.InputError, match="leave out its"):
+        orchestrate.signs(history)
 
 
 def test_a_structure_that_friction_locks_is_not_seen_to_open():
