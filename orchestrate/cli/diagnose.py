@@ -86,14 +86,17 @@ def run(arguments: argparse.Namespace) -> None:
     others = [read(arguments, path) for path in arguments.other]
     if others and len(arguments.records) > 1:
         raise InputError("--other: of one beam; expected one record with it")
-    records = {path: read(arguments, path) for path in dict.fromkeys(arguments.records)}
+    records, refused = read_all(arguments)
     names = {path: name_of(path, guess, arguments) for path in records}
-    verdicts = verdicts_of(arguments, records, names, guess)
+    verdicts = verdicts_of(arguments, records, names, guess) if records else {}
     units = record_units(arguments)
     for path, verdict in verdicts.items():
         print_verdict(path, with_units(verdict, units))
         signs = signs_of(records[path], others, guess)
         write(arguments, names[path], {"": verdict, "_signs": signs}, formats, plots)
+    if refused:
+        count = len(records) + len(refused)
+        raise InputError(f"{len(refused)} of {count} records refused: {'; '.join(refused)}")
 
 
 def name_of(path: Path, guess: Structure, arguments: argparse.Namespace) -> str:
@@ -119,6 +122,32 @@ def guess_of(arguments: argparse.Namespace) -> Structure:
         text = "expected a TOML file with a guess of the beam, within some 10 %"
         raise InputError(f"--structure: nothing given; {text}")
     return structure_of(arguments)
+
+
+def read_all(arguments: argparse.Namespace) -> tuple[dict[Path, xr.Dataset], list[str]]:
+    """Read all records; return them by their files, and a line on each one that is refused.
+
+    Raises
+    ------
+    InputError
+        Where there is one record alone, and it is refused.
+    """
+    from ..diagnosis.fit import checked_data
+
+    records: dict[Path, xr.Dataset] = {}
+    refused: list[str] = []
+    paths = list(dict.fromkeys(arguments.records))
+    for path in paths:
+        try:
+            record = read(arguments, path)
+            checked_data(record)
+            records[path] = record
+        except InputError as error:
+            line = str(error)
+            refused.append(line if line.startswith(str(path)) else f"{path}: {line}")
+    if refused and len(paths) == 1:
+        raise InputError(refused[0])
+    return records, refused
 
 
 def read(arguments: argparse.Namespace, path: Path) -> xr.Dataset:

@@ -170,6 +170,16 @@ def test_a_record_that_is_no_sweep_is_refused_by_its_name(ask, sine, tmp_path):
     assert "expected" in line
 
 
+def test_a_refused_record_does_not_keep_the_others_from_their_verdicts(run, sine, capsys):
+    folder, _, _ = run
+    options = ["--structure", str(folder / "beam.toml"), "--output", str(folder), "--jobs", "1"]
+    code = main(["diagnose", str(sine), str(folder / "whole.csv"), *options])
+    out, err = capsys.readouterr()
+    assert code == 2 and "whole.csv: No opening seen." in out
+    (line,) = [line for line in err.splitlines() if line.startswith("error")]
+    assert line.startswith(f"error: 1 of 2 records refused: {sine}: ")
+
+
 # -- stored results --------------------------------------------------------------------------------
 
 
