@@ -14,6 +14,7 @@ import pytest
 from fmu_src.export import forms
 from tools import importers
 
+from ..sparing import ordinary
 from .conftest import VERSIONS
 from .test_memory_checks import VALGRIND, needs_valgrind
 
@@ -51,15 +52,17 @@ def seeds(version):
     return (HERE / "corpus" / f"{version}.txt").read_text().split()
 
 
-def test_calls_drawn_at_random_are_survived(importer_of_model):
+@pytest.mark.parametrize("count", ordinary([100, 300]))
+def test_calls_drawn_at_random_are_survived(importer_of_model, count):
     """And each that is refused has a message."""
-    done = importer_of_model.run("random", 7, 300)
-    assert int(re.search(r"CHECKS (\d+) FAILURES 0", done.stdout).group(1)) > 2000
+    done = importer_of_model.run("random", 7, count)
+    assert int(re.search(r"CHECKS (\d+) FAILURES 0", done.stdout).group(1)) > 7 * count
 
 
-def test_what_the_fuzzer_found_is_survived(importer_of_model):
+@pytest.mark.parametrize("every", ordinary([3, 1]))
+def test_what_the_fuzzer_found_is_survived(importer_of_model, every):
     """Its kept inputs, in the FMU's own binary."""
-    lines = seeds(importer_of_model.version)
+    lines = seeds(importer_of_model.version)[::every]
     done = importer_of_model.run("replay", text="\n".join(lines))
     assert f"PLAYED {len(lines)}\n" in done.stdout and " FAILURES 0" in done.stdout
 
