@@ -50,7 +50,8 @@ FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know bes
     | {"response", "dynamics", "laboratory", "diagnosis", "weak_drive", "figures", "reports"},
     "explorer": BELOW_ANSWERS,
     "cli": BELOW_ANSWERS
-    | {"__init__", "laboratory", "weak_drive", "figures", "reports", "paper", "explorer"}
+    | {"__init__", "laboratory", "weak_drive", "diagnosis", "figures", "reports", "paper"}
+    | {"explorer"}
     | {"supervisor", "temporary"},
     "__main__": {"cli", "supervisor"},
 }
