@@ -48,6 +48,20 @@ def test_what_is_wrong(answer, known, wrong):
     assert bool(complaint(answer, known, "up")) is wrong
 
 
+def test_of_two_jumps_each_has_to_be_told():
+    """The one that is not told is a finding; one that no branch knows is held by itself."""
+    first = Answer("lost", 1.2276, 1.2277, True)
+    both = first._replace(further=(LOST,))
+    two = Truth(FOLD, 1.50005, 1.50005, (1.22765,))
+    assert not complaint(both, two, "up") and not verdicts.unknown_ones(both, two, "up")
+    assert "in truth at 1.22765" in complaint(LOST, two, "up")
+    assert "in truth at 1.50005" in complaint(first, two, "up")
+    open_one = first._replace(further=(Answer("undecided", 1.5, 1.5001, True),))
+    assert not complaint(open_one, two, "up")
+    assert verdicts.unknown_ones(both, Truth(FOLD, 1.22765, 1.22765), "up") == [LOST]
+    assert complaint(NOTHING._replace(further=(LOST,)), Truth(NONE), "up")
+
+
 def test_the_jump_of_a_ramp_down_is_late_downward():
     assert not complaint(SEEN, Truth(FOLD, 1.53, 1.53), "down")
     assert complaint(SEEN, Truth(FOLD, 1.5, 1.5), "down")
