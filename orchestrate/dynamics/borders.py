@@ -68,7 +68,7 @@ class BorderJob(OneItemQuestion):
     most: int
     asked: ClassVar[str] = "border"
 
-    def call(self) -> str:
+    def call_text(self) -> str:
         """Return Python source of a ``border(...)`` call that repeats this, orbit included."""
         setting, values = self.setting, np.array(self.values)
         guess = self.start.as_argument(setting.point(values).excitation.frequency)

@@ -82,7 +82,7 @@ class BranchJob(OneItemQuestion):
     most: int
     asked: ClassVar[str] = "branch"
 
-    def call(self) -> str:
+    def call_text(self) -> str:
         """Return Python source of a ``branch(...)`` call that repeats this, start included."""
         setting, values = self.setting, np.array([self.value])
         guess = self.start.as_argument(setting.point(values).excitation.frequency)

@@ -181,7 +181,7 @@ class ManifoldJob(OneItemQuestion):
         """Return the value of the setting's parameter, in an array of one."""
         return np.array([self.excitation[0][1]])
 
-    def call(self) -> str:
+    def call_text(self) -> str:
         """Return the Python call that asks this question, for the answer's history."""
         setting, values = self.setting, self.values
         guess = self.start.as_argument(setting.point(values).excitation.frequency)

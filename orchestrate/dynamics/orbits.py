@@ -103,7 +103,7 @@ class OrbitJob(OneItemQuestion):
     tries: int
     asked: ClassVar[str] = "orbit"
 
-    def call(self) -> str:
+    def call_text(self) -> str:
         """Return the Python call that asks this question, for the answer's history."""
         frequency = self.setting.point(np.array([self.excitation[0][1]])).excitation.frequency
         arguments = {**dict(self.excitation), "period": self.period}

@@ -377,7 +377,7 @@ class Question(Job, ABC):
     structure: Structure
     asked: ClassVar[str] = ""  # name of the function
 
-    def call(self) -> str:
+    def call_text(self) -> str:
         """Return the call of the public function as text."""
         arguments: dict[str, Any] = {}
         for name, value in self.parameters().items():

@@ -125,7 +125,7 @@ class Job(ABC):
             if field.name != "name"
         }
 
-    def call(self) -> str:
+    def call_text(self) -> str:
         """Return class name and parameters in one line; of a long list, its ends and count."""
         parts = [f"{name}={brief(value)}" for name, value in self.parameters().items()]
         return f"{type(self).__name__}({', '.join(parts)})"

@@ -28,7 +28,7 @@ def with_provenance(
     begun : str
         When the job was begun.
     """
-    call = job.call()
+    call = job.call_text()
     attributes: dict[str, Any] = {
         **flatten_parameters(job.parameters()),
         **fmu_attributes(fmus),

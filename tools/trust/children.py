@@ -26,7 +26,7 @@ PATIENCE = 60.0  # s
 
 
 @dataclass(frozen=True)
-class Ended:
+class FinishedCommand:
     """Result of a command that has ended.
 
     Attributes
@@ -79,7 +79,7 @@ class Child:
         self.pid = os.fork()
         if self.pid == 0:
             live(arguments, self.files, folder, prepare, environment or {})
-        self.ended: Ended | None = None
+        self.ended: FinishedCommand | None = None
 
     def running(self) -> bool:
         """Return whether the command still runs."""
@@ -95,7 +95,7 @@ class Child:
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(self.pid, number)
 
-    def wait(self, patience: float = PATIENCE) -> Ended:
+    def wait(self, patience: float = PATIENCE) -> FinishedCommand:
         """Wait for the end and return it; kill the child after ``patience`` s."""
         stop = time.monotonic() + patience
         while self.running():
@@ -113,7 +113,7 @@ class Child:
         out, err = (path.read_text("utf-8", "replace") for path in self.files)
         for path in self.files:
             path.unlink()
-        self.ended = Ended(code, out, err, time.monotonic() - self.begun)
+        self.ended = FinishedCommand(code, out, err, time.monotonic() - self.begun)
 
 
 def live(

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from . import archives, documents, forged_results
 from .campaign import Campaign, Outcome
-from .children import Child, Ended, import_all, in_little_memory
+from .children import Child, FinishedCommand, import_all, in_little_memory
 from .forged_results import Window, window
 
 SLOW = 30.0  # s
@@ -78,7 +78,7 @@ def good_results(folder: Path) -> tuple[Path, Path]:
 
 def opened(
     folder: Path, good: Path, branch: Path, chance: random.Random, seen: Window
-) -> tuple[Ended, str]:
+) -> tuple[FinishedCommand, str]:
     """Forge a result, make a page of it and open that; return the end, and what is wrong."""
     from orchestrate.running.store import load
 
@@ -133,7 +133,7 @@ def prepare(
     return f"NetCDF for {reader}", command
 
 
-def hand(arguments: list[str], folder: Path) -> tuple[Ended, list[str]]:
+def hand(arguments: list[str], folder: Path) -> tuple[FinishedCommand, list[str]]:
     """Run the command; return how it ended, and the files it wrote outside its folder."""
     temporary = folder / "temporary"
     before = {path for path in outside(folder) if path.exists()}
@@ -152,7 +152,7 @@ def outside(folder: Path) -> list[Path]:
     return [place / "escaped" for place in dict.fromkeys(places)]
 
 
-def verdict(ended: Ended, strays: list[str]) -> str:
+def verdict(ended: FinishedCommand, strays: list[str]) -> str:
     """Return what is wrong with how a command ended; empty where nothing is."""
     if strays:
         return f"left {', '.join(strays)}"

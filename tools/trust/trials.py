@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from .campaign import Campaign, Outcome
-from .children import Child, Ended, import_all
+from .children import Child, FinishedCommand, import_all
 
 PLAIN = ("--plot", "none", "--jobs", "1")
 ALONG = ("--eta", "1.1:1.16:0.002")
@@ -113,7 +113,7 @@ class Trial:
         """Wait for a random moment of the command."""
         time.sleep(self.chance.uniform(0.0, self.seconds))
 
-    def struck(self, number: int) -> Ended:
+    def struck(self, number: int) -> FinishedCommand:
         """Send a signal at a random moment; return how the command ends."""
         child = self.start()
         self.wait_a_moment()
@@ -136,7 +136,7 @@ class Trial:
 KINDS = (".nc", ".png", ".pdf", ".html")  # of files that a command leaves
 
 
-def format_end(ended: Ended) -> str:
+def format_end(ended: FinishedCommand) -> str:
     """Format how a command ended, as one line."""
     return f"exit code {ended.code}: {' / '.join(ended.lines)[:300]}"
 
@@ -146,7 +146,7 @@ def results(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in sorted(folder.glob("*.nc"))}
 
 
-def in_a_line(ended: Ended) -> str:
+def in_a_line(ended: FinishedCommand) -> str:
     """Return what is wrong with how a command gave up; empty where it did not, or in one line."""
     if ended.code == 0 and "Traceback" not in ended.err:
         return ""
