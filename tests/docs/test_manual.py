@@ -69,8 +69,9 @@ def test_drawings_are_those_of_their_script(name, tmp_path):
     save_small(made.PICTURES[name](), tmp_path / f"{name}.png")
     with Image.open(tmp_path / f"{name}.png") as own, Image.open(DOCS / f"{name}.png") as kept:
         assert own.size == kept.size
-        small = [picture.convert("L").reduce(8) for picture in (own, kept)]  # not each edge
-        assert ImageChops.difference(*small).getextrema()[1] < 32
+        # not each edge, nor each letter, which Matplotlib 3.10 sets some pixels off those of 3.11
+        small = [picture.convert("L").reduce(32) for picture in (own, kept)]
+        assert ImageChops.difference(*small).getextrema()[1] < 20
 
 
 def test_three_users_have_a_picture_each_on_the_first_page():
