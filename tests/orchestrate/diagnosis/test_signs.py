@@ -145,8 +145,11 @@ def test_other_levels_and_directions_are_compared():
 def test_random_vibration_has_no_orders_but_other_signs(exported):
     beam = orchestrate.Structure.from_file("beam").replace(D=0.05)
     noise = orchestrate.Random(psd=[(5.0, 0.05), (30.0, 0.05)], duration=40.0, seed=3)
+    sensor = orchestrate.Sensor(bandwidth=200.0, sample_rate=500.0)
     felt = {
-        name: orchestrate.shake(one, noise, sample_rate=500.0, progress=False)
+        name: orchestrate.measure(
+            orchestrate.shake(one, noise, sample_rate=500.0, progress=False), sensor
+        )
         for name, one in (("delaminated", beam), ("bonded", beam.as_bonded()))
     }
     parted = signs(felt["delaminated"], structure=beam, noise=1e-3)
