@@ -199,7 +199,7 @@ class CoupleJob(CoupledRun):
                 found.append((place, Verdict(NOT_ASKED)))  # the course has met what is seen here
                 continue
             middle = float(Omega[ends].mean())
-            held = test.classify(
+            held = test.for_further_jumps().classify(
                 *self.by_steps(table, self.earlier(table, passing, up), up), middle, up
             )
             told = without_known(outcomes(held), known, volts)
@@ -696,9 +696,9 @@ def couple(
 
     A further jump beside the passing of the resonance is looked for where the held voltages cross
     it, and where the torque that the vibration takes shows it in the record
-    (:mod:`orchestrate.weak_drive.further_jumps`); voltages are held there too. A change of that
-    torque by less than 4e-3, as a speed over omega, or by less than eight times its scatter, is
-    none.
+    (:mod:`orchestrate.weak_drive.further_jumps`); voltages are held there too. It is one where the
+    speeds of two motions at one voltage differ by more than 8e-3 omega. A change of that torque by
+    less than 4e-3, as a speed over omega, or by less than eight times its scatter, is none.
 
     Whatever the clearance, a passage of the resonance is one past the speed that divides the
     motions of the bonded structure, by the averaged theory, moved with the resonance where that of

@@ -3,8 +3,8 @@
 Beside the passing of the resonance the speed may jump once more, by less. On a stable branch below
 the resonance the torque that the vibration takes grows with the speed. It is the slip less what
 turns the rotor faster. Where it falls on the way up, or rises on the way down, a motion may be
-lost there; so where the speed changes much faster than the voltage. What falls by less than two
-motions differ in speed, or by no more than the scatter of an irregular motion, says nothing.
+lost there; so where the speed changes much faster than the voltage. What falls by less than half of
+the smallest further jump, or by no more than the scatter of an irregular motion, says nothing.
 
 Non-dimensional, as :mod:`.jumps`.
 """
@@ -30,7 +30,8 @@ from .jumps import (
     running_mean,
 )
 
-LEAST = 4e-3  # change of the torque, as a speed over omega, below which there is no jump
+SMALLEST = 8e-3  # change of the speed over omega from which on there is a further jump
+LEAST = 0.5 * SMALLEST  # change of the torque, as a speed over omega, from which on one is sought
 LASTING = 10  # widths of the mean before and after, over which an irregular motion's torque falls
 APART = 4  # widths of the mean between two places; for fewer no scatter is known
 
@@ -85,15 +86,15 @@ def find_further(
         if fall > max(LEAST, noise) and lasts:
             rows = np.flatnonzero(torque[high : low + 1] < 0.5 * (torque[high] + torque[low]))
             half = float(before + rows[0])
-            look = JUMP if looks == {JUMP} else DOUBTFUL
+            look = JUMP if looks == {JUMP} and fall > SMALLEST else DOUBTFUL
             found.append(Passing(math.ceil(half), before, after, look, half))
     for before, after in stretches(fast, 0, len(fast)):
         last = min(after + 2 * width, len(leg.time) - 1)
         excess = sign * (leg.Omega[last] - leg.Omega[before]) - np.ptp(leg.eta0[before : last + 1])
         is_jump = look_of(leg, means, b, sign, (before, after), limits) == JUMP
         if is_jump and excess > LEAST and is_elsewhere(before, last):
-            half = 0.5 * (before + after)
-            found.append(Passing(math.ceil(half), before, last, JUMP, half))
+            half, look = 0.5 * (before + after), JUMP if excess > SMALLEST else DOUBTFUL
+            found.append(Passing(math.ceil(half), before, last, look, half))
     return sorted(found)
 
 

@@ -17,13 +17,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from copy import copy
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from ..running.job import Chunk, Table
+from .further_jumps import SMALLEST
 from .jumps import Passing
 from .run import Run
 from .schedule import Constant, Schedule
@@ -130,11 +132,15 @@ class HoldSettings:
         is less than 0.866 ``two_motions``: between two folds that are close, speeds at one voltage
         differ by 2/sqrt(3) of what the speed jumps by at either, or less. So no steps find a jump
         that others rule out.
+    further_motions, further_jump : float
+        The same two for jumps beside the largest one: a record shows none that is smaller at every
+        usual rate, so that whether it is told would depend on the rate.
     largest_scatter : float
         Change of the speed between neighbours, over omega, that is never put down to the scatter of
         irregular motions: speeds that are known no better rule out no jump.
     again : int
-        How often the voltage of an irregular motion is held again before its end counts as a loss.
+        How often the voltage of an irregular motion is held again before its end counts as a loss,
+        and how often a voltage is reached again from one.
     by_chance : float
         Range of voltages, over K omega, in which an irregular motion may end meanwhile: where it
         does in a wider one, it ends by chance, and nothing is decided.
@@ -155,6 +161,8 @@ class HoldSettings:
     distinct: float = 2e-3
     two_motions: float = 5e-3
     smallest_jump: float = 4e-3
+    further_motions: float = SMALLEST
+    further_jump: float = 0.8 * SMALLEST
     largest_scatter: float = 8e-3
     again: int = 3
     by_chance: float = 2e-4
@@ -196,6 +204,13 @@ class HeldVoltageTest:
         self.omega, self.volts, self.longest = omega, volts, longest
         self.settings = settings or HoldSettings()
         self.checkpoints: dict[int, Table] = {}
+
+    def for_further_jumps(self) -> HeldVoltageTest:
+        """Return this test, its checkpoints shared, for jumps beside the passing's."""
+        test, settings = copy(self), self.settings
+        least = {"two_motions": settings.further_motions, "smallest_jump": settings.further_jump}
+        test.settings = replace(settings, **least)
+        return test
 
     def add_checkpoints(self, table: Table, every: int, steps: int) -> None:
         """Store the states of a table, one after each ``every`` steps."""
@@ -311,9 +326,10 @@ class HeldVoltageTest:
         places = [i for i, point in enumerate(points) if point.voltage == verdicts[0].low]
         if verdicts[0].outcome != LOST or not places:
             return verdicts
+        test = self.for_further_jumps()
         for part in (points[: places[0] + 1], points[places[0] + 1 :]):
-            if any(self.may_be_a_loss(low, high, sign) for low, high in pairwise(part)):
-                found = self.changes(part, sign)
+            if any(test.may_be_a_loss(low, high, sign) for low, high in pairwise(part)):
+                found = test.changes(part, sign)
                 verdicts += [verdict for verdict in found if verdict.outcome != FOLLOWS]
         return verdicts
 
@@ -384,8 +400,7 @@ class HeldVoltageTest:
                     points[i + 1] = again  # a longer step of the voltage had thrown it across
                     continue
                 what = self.there_and_back(low, high)
-                points[i] = self.later(low) if what == LOST else low
-                if points[i] is not low:
+                if what == LOST and self.replaced(points, i):
                     ended = low.voltage if math.isnan(ended) else ended
                     if abs(low.voltage - ended) <= self.settings.by_chance * self.volts:
                         continue  # it was lost before, as close as a bracket can tell
@@ -396,8 +411,9 @@ class HeldVoltageTest:
                 (point for point in self.inside(low, high) if point.speed == point.speed), None
             )
             if middle is None:
-                lost = self.there_and_back(low, high) == LOST and self.later(low) is low
-                return Verdict(LOST if lost else UNDECIDED, low.voltage, high.voltage)
+                lost = self.there_and_back(low, high) == LOST
+                lasts = lost and not self.replaced(points, i)
+                return Verdict(LOST if lasts else UNDECIDED, low.voltage, high.voltage)
             points.insert(i + 1, middle)
         return Verdict(UNDECIDED, low.voltage, high.voltage)
 
@@ -415,7 +431,7 @@ class HeldVoltageTest:
         """Go back to the lower voltage: a motion was lost where the speed does not come back."""
         back = self.step_from(high, low.voltage)
         if abs(back.speed - low.speed) > self.settings.two_motions + noise(back, low):
-            return LOST
+            return LOST if self.later(back) is back else UNDECIDED
         comes_back = math.isfinite(back.speed) and not self.differ(back, low)
         return FOLLOWS if comes_back else UNDECIDED
 
@@ -424,12 +440,37 @@ class HeldVoltageTest:
 
         An irregular one may have been lost before its voltage ended; others have settled.
         """
-        later, left = point, self.settings.again if point.error > self.settings.tolerance else 0
+        later, left = point, self.settings.again if point.error > 0.0 else 0
         for _ in range(left):
             later = self.step_from(later, point.voltage)
             if self.differ(later, point):
                 return later
         return point
+
+    def replaced(self, points: list[Settled], i: int) -> bool:
+        """Replace a point by the motion that a slow course is in there; return whether it is other.
+
+        The point's motion may end meanwhile, if it is irregular. And an irregular motion before may
+        have fallen into it by chance, where it exists in a narrow range of voltages: where it ends
+        then says nothing of the motion that a ramp follows. So it is reached anew from there.
+        """
+        first = next((j for j in range(i - 1, -1, -1) if self.is_irregular(points[j])), None)
+        before = points[first or 0]
+        for _ in range(0 if first is None else self.settings.again):
+            before = self.step_from(before, before.voltage)
+            path = [before]
+            for point in points[first + 1 : i + 1]:
+                path.append(self.step_from(path[-1], point.voltage))
+            if self.differ(path[-1], points[i]):
+                points[first + 1 : i + 1] = [one for one in path[1:] if math.isfinite(one.speed)]
+                return True
+        later = self.later(points[i])
+        is_other, points[i] = later is not points[i], later
+        return is_other
+
+    def is_irregular(self, point: Settled) -> bool:
+        """Return whether a point's speed scatters by more than a settled one may."""
+        return point.error > self.settings.tolerance
 
     def is_within(self, low: Settled, high: Settled, width: float) -> bool:
         """Return whether two voltages are closer than a width, over K omega."""

@@ -287,7 +287,7 @@ def bracket_problem(system: System, answer: Answer, way: str, rate: float) -> st
     before, there, beyond, back = held_speeds(
         system, first_of(system, way), (far, stays, past, stays), rate=rate
     )
-    if abs(beyond - before) < CHANGE:
+    if abs(beyond - before) < SAME:
         return f"lost at {stays:.5f}, but past it, held, the speed is that of {far:.5f}"
     if abs(back - there) < SAME and abs(back - before) < SAME:
         return f"lost at {stays:.5f}, but the speed comes back there"

@@ -1,4 +1,7 @@
-"""A page made of a sweep, and one browser of each kind for all tests of it."""
+"""A page made of a sweep, and one browser of each kind for all tests of it.
+
+The browsers close after this package: an animated page left open takes time from all other tests.
+"""
 
 import shutil
 
@@ -26,7 +29,7 @@ def page(swept, tmp_path_factory):
     return explore(swept, output=tmp_path_factory.mktemp("explorer") / "explorer.html")
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def chromium(tmp_path_factory):
     pytest.importorskip("selenium", reason="selenium drives the browser")
     programs = shutil.which("chromium"), shutil.which("chromedriver")
@@ -37,7 +40,7 @@ def chromium(tmp_path_factory):
     browser.quit()
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def firefox(tmp_path_factory):
     pytest.importorskip("websocket", reason="websocket-client talks to Firefox")
     program = shutil.which("firefox-esr") or shutil.which("firefox")
@@ -49,7 +52,7 @@ def firefox(tmp_path_factory):
     browser.quit()
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def webkit(tmp_path_factory):
     pytest.importorskip("selenium", reason="selenium drives the browser")
     if None in programs():
@@ -59,7 +62,7 @@ def webkit(tmp_path_factory):
     browser.quit()
 
 
-@pytest.fixture(scope="session", params=["chromium", pytest.param("firefox", marks=SLOW)])
+@pytest.fixture(scope="package", params=["chromium", pytest.param("firefox", marks=SLOW)])
 def window(request):
     """Each browser, the second in the slow tests."""
     return request.getfixturevalue(request.param)

@@ -184,6 +184,48 @@ def test_an_irregular_motion_that_ends_by_chance_is_undecided(early, what):
         assert verdict.low - 1e-9 <= 1.52 - early <= verdict.high + 1e-9
 
 
+class Window(Scripted):
+    """An irregular motion that follows the voltage; up to 1.52 it may fall into a regular one.
+
+    ``always``: it does whenever the voltage rises from 1.51 or less, else the first time only. A
+    ramp that happened to fall into it was said to lose its motion at 1.52.
+    """
+
+    def __init__(self, always):
+        super().__init__()
+        self.always, self.falls_left = always, True
+
+    def step_from(self, point, voltage):
+        falls = point.error and point.voltage < 1.512 < voltage < 1.52 and self.falls_left
+        stays = not point.error and 1.505 < voltage < 1.52
+        self.falls_left = self.always or not (falls or not self.falls_left)
+        speed = self.at(voltage, -0.02 if falls or stays else 0.0)
+        return speed._replace(error=0.0 if falls or stays else 3e-4, origin=point.voltage)
+
+
+@pytest.mark.parametrize(("always", "what"), [(True, LOST), (False, FOLLOWS)])
+def test_a_motion_that_was_fallen_into_by_chance_is_not_the_ramps(always, what):
+    window = Window(always)
+    points = window.stairs(window.at(1.5)._replace(error=3e-4), 1.56)
+    verdict = window.between(points, 1.0)
+    assert verdict.outcome == what
+    if always:
+        assert verdict.low - 1e-9 <= 1.52 <= verdict.high + 1e-9
+
+
+def test_a_motion_beyond_that_ends_by_chance_is_undecided():
+    """The irregular motion that came back with another speed goes over into the first one."""
+
+    class Beyond(Scripted):
+        def step_from(self, point, voltage):
+            again = voltage == point.voltage
+            return self.at(voltage, 0.0 if again else 0.02)._replace(error=3e-4)
+
+    beyond = Beyond()
+    low, high = beyond.at(1.5), beyond.at(1.5001, higher=0.02)
+    assert beyond.there_and_back(low, high) == UNDECIDED
+
+
 @pytest.mark.parametrize(("higher", "what"), [(0.0, FOLLOWS), (0.012, UNDECIDED)])
 def test_scatter_hides_no_jump(higher, what):
     """Speeds of irregular motions, known to 0.006: a change by 0.012 was put down to that."""
