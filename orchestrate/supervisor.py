@@ -208,9 +208,9 @@ class Supervisor:
 
 
 def tell(line: str) -> None:
-    """Print a line on standard error, on a new line below a progress bar."""
+    """Print a line on standard error, below the line of a progress bar that may stand there."""
     with contextlib.suppress(OSError):
-        os.write(2, f"{line}\n".encode())
+        os.write(2, f"\n{line}\n".encode())
 
 
 def below(pid: int) -> Iterator[int]:

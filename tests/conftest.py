@@ -1,8 +1,15 @@
-"""What all tests share: the FMUs, exported when the first test needs them."""
+"""What all tests share: the FMUs, exported when the first test needs them, and no clock.
+
+Property tests take the same examples on every machine, however slow: campaigns look for others.
+"""
 
 import pytest
+from hypothesis import settings
 
 from .exports import BUILD, refresh
+
+settings.register_profile("the same everywhere", deadline=None, derandomize=True, database=None)
+settings.load_profile("the same everywhere")
 
 
 @pytest.fixture(scope="session")
