@@ -20,14 +20,14 @@ LONG = {
     "passage",
     "report",
 }  # read only
+SHOWN = {words: page for page in reversed(PAGES) for words in map(tuple, commands(page))}
 EVERY = [
     pytest.param(
-        *(page, words),
+        words,
         id=f"{page.stem}-{' '.join(words)[:60]}",
         marks=[pytest.mark.slow] * (words[:1] == ("drive-branch",)),  # half a minute
     )
-    for page in PAGES
-    for words in dict.fromkeys(map(tuple, commands(page)))
+    for words, page in SHOWN.items()
 ]
 
 
@@ -39,7 +39,16 @@ def write_files(folder):
 
 
 @pytest.mark.parametrize(
-    "page", [page for page in PAGES if python_blocks(page)], ids=lambda page: page.stem
+    "page",
+    [
+        pytest.param(
+            page,
+            id=page.stem,
+            marks=[pytest.mark.slow] * (page.stem == "bifurcations"),  # 20 s
+        )
+        for page in PAGES
+        if python_blocks(page)
+    ],
 )
 def test_python_runs(page, folder, small):
     write_files(folder)
@@ -48,8 +57,8 @@ def test_python_runs(page, folder, small):
         exec(compile(text, f"{page.name}, block {number}", "exec"), names)
 
 
-@pytest.mark.parametrize(("page", "words"), EVERY)
-def test_commands_run(page, words, folder, small, capsys):
+@pytest.mark.parametrize("words", EVERY)
+def test_commands_run(words, folder, small, capsys):
     if not words or words[0] in LONG or words[-1] in ("--help", "--version"):
         try:
             cli.make_parser().parse_args(cli.join_negative_values(words))

@@ -1,8 +1,13 @@
 """Every test that asks for ``fmu`` runs on each form of the model that is exported."""
 
+from collections import Counter
+from pathlib import Path
+
 import pytest
 
 from .driver import FMUS
+
+FORMS = list(FMUS)
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -11,7 +16,30 @@ def forms(exported):
     return exported
 
 
-@pytest.fixture(params=FMUS, scope="session")
+@pytest.fixture(params=FORMS, scope="session")
 def fmu(request):
     """Path of an exported FMU."""
     return FMUS[request.param]
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """Leave to ``-m slow`` all but the first case of a test on every form, and others on one form.
+
+    All forms give the same bits (tests/native/test_bit_identity.py), so each case is proved by one
+    of them; which one goes round.
+    """
+    cases = Counter()
+    for item in items:
+        names = getattr(item, "callspec", None)
+        if (
+            names is None
+            or "fmu" not in names.params
+            or Path(__file__).parent not in item.path.parents
+        ):
+            continue
+        form = names.params["fmu"]
+        number = cases[item.path, item.originalname, form]
+        cases[item.path, item.originalname, form] += 1
+        if number and number % len(FORMS) != FORMS.index(form):
+            item.add_marker(pytest.mark.slow)

@@ -82,6 +82,7 @@ def test_without_ziglang_the_own_compiler_makes_fmus_for_its_platform(
         assert "FAILURES 0" in own.run("hostile").stdout
 
 
+@pytest.mark.slow  # compiles for 4 s
 def test_a_compiler_that_changes_bits_does_not_make_the_pythonfmu_kernel(
     hide, monkeypatch, tmp_path, caplog
 ):
@@ -100,6 +101,7 @@ def test_a_compiler_that_changes_bits_does_not_make_the_pythonfmu_kernel(
         assert not [name for name in archive.namelist() if "kernel-" in name]
 
 
+@pytest.mark.slow  # compiles for 5 s
 def test_without_a_compiler_of_its_own_the_machine_makes_the_same_bytes(
     fmus, hide, tmp_path, caplog
 ):
@@ -111,6 +113,7 @@ def test_without_a_compiler_of_its_own_the_machine_makes_the_same_bytes(
     assert not caplog.messages
 
 
+@pytest.mark.slow  # compiles for 4 s
 def test_without_pythonfmu_the_native_forms_are_made(fmus, hide, monkeypatch, tmp_path):
     """What is missing is named, with the extra that has it."""
     hide()

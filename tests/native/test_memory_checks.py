@@ -55,7 +55,7 @@ def test_no_leak_and_no_error_under_valgrind_at_length(importer):
     clean(importer.run("million", 1_000_000, "under valgrind", under=VALGRIND, timeout=1800))
 
 
-@pytest.fixture(params=["fmi2", "fmi3"])
+@pytest.fixture(params=ordinary(["fmi3", "fmi2"]))
 def checked(request, fmus, kernel_objects, tmp_path_factory, sanitizer):
     """Importer and rebuilt binary with a sanitizer in both."""
     version = request.param

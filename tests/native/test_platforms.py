@@ -16,6 +16,7 @@ from fmu_src.export.platforms import ALL, chosen, this_machine, universal_binary
 from fmu_src.export.source_code import kernel_source
 from tools import importers
 
+from ..sparing import ordinary
 from .slave import COMMON, harmonic
 
 MULTIPLY_ADD = b"""
@@ -114,7 +115,7 @@ def test_a_dylib_bears_the_name_it_is_given(platform):
 
 
 @pytest.mark.parametrize("name", ALL)
-@pytest.mark.parametrize("folder", forms.MODELS.values())
+@pytest.mark.parametrize("folder", ordinary(forms.MODELS.values()))
 def test_no_platform_fuses_a_multiply_add_in_the_kernel(folder, name, tmp_path):
     """Neither ARM's nor Intel's: the assembly that the binaries are made of."""
     code = assembly(kernel_source(folder), name, tmp_path)

@@ -86,6 +86,7 @@ def test_fast_options_change_no_bit(fmus, flags, tmp_path, reference):
     assert rows(fmu, tmp_path / "run") == reference
 
 
+@pytest.mark.slow  # compiles for 5 s; gcc's are compared always
 @pytest.mark.parametrize("flags", ordinary([("-O3", "-march=x86_64_v3"), ("-O2",)]))
 def test_clang_makes_the_same_bits(fmus, flags, tmp_path, reference):
     """The one of ziglang."""

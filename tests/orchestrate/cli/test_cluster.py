@@ -85,6 +85,7 @@ def test_a_lost_worker_loses_nothing(commands, cluster, tmp_path, monkeypatch):
     assert commands.results() == here and len(here) == 3
 
 
+@pytest.mark.slow  # 6 s
 def test_a_scheduler_that_ends_is_told_in_one_line(commands, cluster):
     address, (scheduler, *_) = cluster
     process = commands.start(*RUN, "--cluster", address)

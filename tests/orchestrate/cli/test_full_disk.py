@@ -45,6 +45,7 @@ def goes_on(commands, ask, tmp_path):
     assert [n for n in commands.files() if not n.endswith((".nc", ".png"))] == []
 
 
+@pytest.mark.slow  # 6 s
 def test_full_while_chunks_arrive(commands, resize, ask, tmp_path):
     done = commands.run(*RUN)
     done.complaint(commands.output, code=1)

@@ -8,6 +8,8 @@ import pytest
 from orchestrate.explorer.bundle import bundle
 from orchestrate.explorer.page import modules
 
+from ...sparing import ordinary
+
 PROBE = """
 import { Oscillator } from "./kernel.js";
 import { load } from "./payload.js";
@@ -57,7 +59,7 @@ def probed(opened):
 
 
 @pytest.mark.parametrize("task", TASKS)
-@pytest.mark.parametrize("eta", [0.1, 0.3, 2.9])
+@pytest.mark.parametrize("eta", ordinary([0.1, 0.3, 2.9]))
 def test_little_is_done_between_two_pauses(probed, task, eta):
     asked, least = TASKS[task]
     work = probed.run(LONGEST, task, asked, eta, {})

@@ -16,6 +16,7 @@ from orchestrate.running.journal import Journal, checksum_of_parts, journal_path
 from orchestrate.running.runner import answer
 from orchestrate.running.store import load, write_netcdf
 from tests.faults import FILE_DAMAGE, ROW_DAMAGE, a_shorter_row, arrays, rows, too_many_rows
+from tests.sparing import ordinary
 
 from .sums import Squares
 
@@ -54,7 +55,7 @@ def right_or_told(path: Path, damaged: Path, find) -> str:
 
 
 @pytest.mark.parametrize("damage", [*FILE_DAMAGE, *ROW_DAMAGE])
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", ordinary(range(4)))
 def test_a_damaged_journal(interrupted, find, damage, seed):
     journal = journal_path(interrupted)
     {**FILE_DAMAGE, **ROW_DAMAGE}[damage](journal, random.Random(seed))
