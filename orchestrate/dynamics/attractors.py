@@ -1,4 +1,4 @@
-"""Coexisting attractors: run random starts until they settle, group the motions they reach."""
+"""Find coexisting attractors from random starts: the job and ``orchestrate.attractors``."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from ..running.runner import answer
 from ..structures import Structure
 from .clusters import ABOUT, FEATURES, AttractorSettings, run_until_settled
 from .decision import MotionDecider
-from .global_continuation import Instances, MatchedAttractors, SettledStarts, continue_attractors
+from .global_continuation import InstancePair, MatchedAttractors, SettledStarts, continue_attractors
 from .settled_motion import ABSENT, DECIDED, SettledMotion
 
 if TYPE_CHECKING:
@@ -140,7 +140,7 @@ class AttractorsJob(SeriesQuestion):
     ) -> Table:
         """Run starts until they settle, a row each; at the last item group them to attractors."""
         starts = [item for item in items if item is not None]
-        with Instances(fmus[OSCILLATOR]) as instances:
+        with InstancePair(fmus[OSCILLATOR]) as instances:
             if not starts:
                 assert previous is not None
                 return self.gather_attractors(instances, previous)
@@ -508,7 +508,7 @@ def attractors(
         name=f"attractors_{structure.label()}",
         starts=checked_integer("starts", starts, 1),
         seed=checked_integer("seed", seed, 0, 2**32 - 1),
-        scale=check_scale(scale),
+        scale=checked_half_widths(scale),
         width=positive("width", width),
         settings=attractor_settings(
             transient=transient,
@@ -523,7 +523,7 @@ def attractors(
     return answer(job, running, finder(running))
 
 
-def check_scale(given: ArrayLike | None) -> Numbers | None:
+def checked_half_widths(given: ArrayLike | None) -> Numbers | None:
     """Return the user's half width(s) of the box of starts, m, or None; raise unless positive.
 
     Raises

@@ -22,7 +22,7 @@ Floats = NDArray[np.float64]
 
 
 class BoxEntropies(NamedTuple):
-    """Entropies (of attractor shares) of the square boxes that a plane of starts is cut into.
+    """Gibbs entropies of attractor shares in the square boxes that a plane is cut into.
 
     Attributes
     ----------

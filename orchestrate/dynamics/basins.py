@@ -1,4 +1,4 @@
-"""Basins of attraction: to which attractor each start on a plane of states leads."""
+"""Basins of attraction on a plane of starts: the job and function ``orchestrate.basin``."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from .attractors import (
 )
 from .clusters import AttractorSettings
 from .decision import MotionDecider
-from .global_continuation import Instances, SettledStarts, continue_attractors
+from .global_continuation import InstancePair, SettledStarts, continue_attractors
 from .settled_motion import ABSENT
 
 if TYPE_CHECKING:
@@ -181,7 +181,7 @@ class BasinJob(Question):
         self, fmus: Mapping[str, Path], items: Sequence[Start | Point], previous: Table | None
     ) -> Table:
         """Run starts until they settle (overlapping masses: absent), or group them at the end."""
-        with Instances(fmus[OSCILLATOR]) as instances:
+        with InstancePair(fmus[OSCILLATOR]) as instances:
             if isinstance(items[0], Point):
                 assert previous is not None
                 return self.gather_attractors(instances, items[0], previous)
@@ -244,7 +244,7 @@ def run_to_phase_zero(instance: Instance, start: Start) -> tuple[float, ...]:
     return tuple(instance.get(*STATE))
 
 
-def check_side(name: str, given: Any) -> PlaneAxis:
+def checked_axis(name: str, given: Any) -> PlaneAxis:
     """Return a ``PlaneAxis`` from the user's (name, low, high, count); raise if invalid.
 
     Raises
@@ -347,14 +347,14 @@ def basin(
         alike=alike,
         alike_irregular=alike_irregular,
     )
-    known: Known | None = None
+    known: KnownAttractors | None = None
     if x is None or y is None:
         known = find_known_attractors(point, settings, running)
         if x is None and y is None and at is None:
-            at = known.middle()
+            at = known.mean_state()
     sides = (
-        known.side("x_rel") if x is None and known else check_side("x", x),
-        known.side("v_rel") if y is None and known else check_side("y", y),
+        known.default_axis("x_rel") if x is None and known else checked_axis("x", x),
+        known.default_axis("v_rel") if y is None and known else checked_axis("y", y),
     )
     if sides[0].name == sides[1].name:
         raise InputError(f"x and y: {sides[0].name} twice; expected two coordinates")
@@ -372,7 +372,7 @@ def basin(
     return answer(job, running, finder(running))
 
 
-class Known(NamedTuple):
+class KnownAttractors(NamedTuple):
     """Attractors found beforehand, from which the default plane of starts is laid out.
 
     Attributes
@@ -391,7 +391,7 @@ class Known(NamedTuple):
     samples: Floats
     gap: float
 
-    def side(self, name: str) -> PlaneAxis:
+    def default_axis(self, name: str) -> PlaneAxis:
         """Return a default axis for gap or gap velocity, twice as wide as the attractors."""
         gap = self.gap or self.point.length
         if name == "x_rel":
@@ -402,14 +402,14 @@ class Known(NamedTuple):
         )
         return PlaneAxis(name, -high, high, COUNT)
 
-    def middle(self) -> tuple[float, ...]:
+    def mean_state(self) -> tuple[float, ...]:
         """Return the mean of the known attractors' states at phase 0: the plane's centre."""
         return tuple(self.samples.mean(axis=0).tolist())
 
 
 def find_known_attractors(
     point: Point, settings: AttractorSettings, running: Mapping[str, Any]
-) -> Known:
+) -> KnownAttractors:
     """Find attractors from a few random starts, to lay the default plane around them."""
     excitation = {"frequency": point.excitation.frequency, "amplitude": point.excitation.amplitude}
     kept = {name: value for name, value in running.items() if name in ("fmu", "build_folder")}
@@ -424,7 +424,7 @@ def find_known_attractors(
             periods = int(n) or settings.irregular_samples
             samples.append(sample(instance, point.excitation.period, 0, periods)[0].copy())
     gap = float(known.xi_rel_max.max()) * point.length
-    return Known(point, states, np.concatenate(samples), gap)
+    return KnownAttractors(point, states, np.concatenate(samples), gap)
 
 
 def round_to_two_digits(value: float) -> float:

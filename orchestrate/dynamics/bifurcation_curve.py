@@ -25,9 +25,9 @@ from .periodic_orbit import CLOSING, PeriodicOrbit
 from .tracer import BranchStep, BranchTracer, ContinuationSettings
 from .turning_points import (
     GAP,
-    derivatives,
     nearest_miss,
     pressing_force,
+    quantity_derivatives,
     turning_points,
     weakest_force,
 )
@@ -134,7 +134,7 @@ class BifurcationCurve:
             return self.orbit(unknowns).nodes[self.place, CLOSING : CLOSING + 1]
         if self.kind == TOUCHING:
             which = np.array([self.place]), np.array([GAP])
-            rate, _, gap = derivatives(self.orbit(unknowns), *which, unknowns[-1:])
+            rate, _, gap = quantity_derivatives(self.orbit(unknowns), *which, unknowns[-1:])
             return np.append(gap, rate)
         if self.kind == EARLIER_RELEASE:
             force, rate, _ = pressing_force(

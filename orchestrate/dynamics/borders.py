@@ -26,8 +26,8 @@ from .codimension_two import POINT_KINDS, locate_points
 from .continuation import NoConvergenceError, Root, newton_correct, unit_vector
 from .families import ACCELERATION, Family, Setting, check_parameters, require_delaminated
 from .orbit_point import OrbitPoint
-from .orbit_records import OrbitRecord, coordinates, table_of, variables
-from .orbit_search import run_in_fmu, solve_orbit
+from .orbit_records import OrbitRecord, orbit_coordinates, orbit_table, orbit_variables
+from .orbit_search import check_orbit_in_fmu, solve_orbit
 from .orbits import FirstGuess, OneItemQuestion, excitation_arguments, finite_number
 from .tracer import BranchSegment, ContinuationSettings
 
@@ -89,10 +89,10 @@ class BorderJob(OneItemQuestion):
         angles = [root.unknowns[-1] if self.kind == TORUS else np.nan for root in roots]
         ends = np.array([back.end, forth.end])
         return {
-            **table_of(rows),
+            **orbit_table(rows),
             "angle": np.array(angles),
             "ends": ends,
-            **{f"{POINT}_{name}": part for name, part in (table_of(at) if at else {}).items()},
+            **{f"{POINT}_{name}": part for name, part in (orbit_table(at) if at else {}).items()},
             f"{POINT}_kind": np.array([each.kind for each in points], dtype=int),
             f"{POINT}_place": np.array([each.position for each in points], dtype=float),
         }
@@ -104,11 +104,11 @@ class BorderJob(OneItemQuestion):
         setting, ends = self.setting, [str(text) for text in table["ends"]]
         located = {key: part for key, part in table.items() if key.startswith(POINT)}
         table = {key: part for key, part in table.items() if key not in located}
-        names = coordinates(setting, table, "point")
+        names = orbit_coordinates(setting, table, "point")
         title = f"{KINDS[self.kind]} over {' and '.join(setting.over)}: {self.structure.label()}"
         attributes = {"title": title, "kind": KINDS[self.kind], "over": list(setting.over)}
         attributes.update(first_end=ends[0], last_end=ends[1])
-        data = {**variables(setting, table, "point"), **names}
+        data = {**orbit_variables(setting, table, "point"), **names}
         text = "angle of the multipliers on the unit circle"
         data["angle"] = variable("point", table["angle"], "rad", text)
         data |= point_variables(setting, located)
@@ -127,9 +127,9 @@ def point_variables(setting: Setting, table: Table) -> dict[str, Variable]:
         empty = {name: variable(POINT, np.zeros(0), "1", name) for name in setting.over}
         return {**data, **{f"{POINT}_{name}": each for name, each in empty.items()}}
     rows = {key.removeprefix(f"{POINT}_"): part for key, part in table.items()}
-    parameters = coordinates(setting, rows, POINT)
+    parameters = orbit_coordinates(setting, rows, POINT)
     data |= {f"{POINT}_{name}": parameters[name] for name in setting.over}
-    for key, (dims, values, attributes) in variables(setting, rows, POINT).items():
+    for key, (dims, values, attributes) in orbit_variables(setting, rows, POINT).items():
         if key in KEPT:
             each = (dims,) if isinstance(dims, str) else dims
             own = tuple(f"{POINT}_node" if dim == "node" else dim for dim in each)
@@ -175,7 +175,7 @@ def record(
     """Run an orbit of the curve through the FMU; return its record with the FMU's check."""
     unknowns = unknowns[: curve.family.size + 2]
     orbit = curve.orbit(unknowns)
-    check = run_in_fmu(instance, curve.family.setting, unknowns[curve.family.size :], orbit)
+    check = check_orbit_in_fmu(instance, curve.family.setting, unknowns[curve.family.size :], orbit)
     return OrbitRecord.from_root(curve.family, unknowns, residual, check)
 
 

@@ -25,8 +25,8 @@ from .branch_switching import leaving_branch
 from .continuation import NoConvergenceError
 from .families import ACCELERATION, Setting, check_parameters, require_delaminated
 from .orbit_point import OrbitPoint
-from .orbit_records import OrbitRecord, coordinates, table_of, variables
-from .orbit_search import run_in_fmu, solve_orbit
+from .orbit_records import OrbitRecord, orbit_coordinates, orbit_table, orbit_variables
+from .orbit_search import check_orbit_in_fmu, solve_orbit
 from .orbit_tracer import OrbitTracer
 from .orbits import (
     NODE,
@@ -34,7 +34,7 @@ from .orbits import (
     OneItemQuestion,
     excitation_arguments,
     finite_number,
-    from_result,
+    guess_from_result,
     orbit,
 )
 from .tracer import Bifurcation, BranchSegment, ContinuationSettings
@@ -112,13 +112,16 @@ class BranchJob(OneItemQuestion):
 
         setting, (name,) = self.setting, self.setting.over
         along = {key: table[key] for key in table if not key.startswith(BIFURCATION)}
-        data = {**variables(setting, along, "point"), **coordinates(setting, along, "point")}
+        data = {
+            **orbit_variables(setting, along, "point"),
+            **orbit_coordinates(setting, along, "point"),
+        }
         ends = [str(text) for text in table["bifurcation_ends"]]
         periods = along["zero"].shape[1]
         title = f"Branch of orbits of {periods} periods along {name}: {self.structure.label()}"
         attributes = {"title": title, "over": name, "first_end": ends[0], "last_end": ends[1]}
         dataset = xr.Dataset({**data, **bifurcation_variables(setting, table)}, attrs=attributes)
-        return dataset.set_coords(list(coordinates(setting, along, "point")))
+        return dataset.set_coords(list(orbit_coordinates(setting, along, "point")))
 
 
 def trace(job: BranchJob) -> list[OrbitSegment]:
@@ -146,11 +149,11 @@ def table(instance: EventInstance, setting: Setting, segments: list[OrbitSegment
     """Return arrays of a branch's orbits and of its bifurcations, checked by the FMU."""
     points, bifurcations = joined(segments)
     ends = [segments[0].end if len(segments) > 1 else "start", segments[-1].end]
-    along = table_of([record(instance, setting, point) for point in points])
+    along = orbit_table([record(instance, setting, point) for point in points])
     at = [record(instance, setting, each.point) for each in bifurcations]
     return {
         **along,
-        **{f"{BIFURCATION}_{name}": rows for name, rows in (table_of(at) if at else {}).items()},
+        **{f"{BIFURCATION}_{name}": rows for name, rows in (orbit_table(at) if at else {}).items()},
         "bifurcation_kind": np.array([each.kind for each in bifurcations], dtype=int),
         "bifurcation_place": np.array([each.position for each in bifurcations]),
         "bifurcation_ends": np.array(ends),
@@ -174,7 +177,7 @@ def joined(
 
 def record(instance: EventInstance, setting: Setting, point: OrbitPoint) -> OrbitRecord:
     """Run an orbit of the branch through the FMU; return its record with the FMU's check."""
-    check = run_in_fmu(instance, setting, point.values, point.orbit)
+    check = check_orbit_in_fmu(instance, setting, point.values, point.orbit)
     return OrbitRecord.from_root(point.family, point.root.unknowns, point.root.residual, check)
 
 
@@ -195,9 +198,9 @@ def bifurcation_variables(setting: Setting, table: Table) -> dict[str, Variable]
         for key, values in table.items()
         if key.startswith(BIFURCATION)
     }
-    parameters = coordinates(setting, rows, BIFURCATION)
+    parameters = orbit_coordinates(setting, rows, BIFURCATION)
     data["bifurcation_value"] = parameters[name]
-    for key, (dims, values, attributes) in variables(setting, rows, BIFURCATION).items():
+    for key, (dims, values, attributes) in orbit_variables(setting, rows, BIFURCATION).items():
         if key in KEPT:
             each = (dims,) if isinstance(dims, str) else dims
             own = tuple(f"{BIFURCATION}_node" if dim == "node" else dim for dim in each)
@@ -435,7 +438,7 @@ def check_number(start: xr.Dataset, name: str, number: int) -> int:
 def first_nodes(start: xr.Dataset, name: str, number: int | None) -> tuple[FirstGuess, int]:
     """Return the start orbit's nodes, and the kind of the chosen bifurcation (-1: none)."""
     if number is None:
-        return from_result(start), -1
+        return guess_from_result(start), -1
     at = start.isel({BIFURCATION: check_number(start, name, number)})
     nodes = {name: at[f"{BIFURCATION}_{name}"].values for name in NODES}
-    return from_result(nodes), int(at["bifurcation_kind"])
+    return guess_from_result(nodes), int(at["bifurcation_kind"])

@@ -216,7 +216,7 @@ def points_between(
             residual = abs(test(curve, root, kind))
         except NoConvergenceError:
             continue
-        if residual < LOCATED and happens(curve, root, kind):
+        if residual < LOCATED and is_point_of_kind(curve, root, kind):
             unknowns = root.unknowns[: curve.family.size + 2]
             yield CodimensionTwoPoint(kind, unknowns, number + position / length, residual)
 
@@ -278,7 +278,7 @@ def cusp_test(curve: BifurcationCurve, root: Root) -> float:
     return float(along @ np.array([-normal[1], normal[0]]) / np.linalg.norm(normal))
 
 
-def happens(curve: BifurcationCurve, root: Root, kind: PointKind) -> bool:
+def is_point_of_kind(curve: BifurcationCurve, root: Root, kind: PointKind) -> bool:
     """Return whether a test function's zero is truly such a point (pair on the unit circle).
 
     Two real multipliers may have the product 1 as well as a pair on the unit circle.

@@ -15,7 +15,7 @@ from ..access import OSCILLATOR, REST, STATE, EventInstance, Impacts, Instance, 
 from ..errors import InputError
 from ..response.questions import Point, SeriesQuestion, states
 from ..running.job import Inputs, Table
-from .variational import nondimensional
+from .variational import nondimensional_impacts
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -174,4 +174,4 @@ def follow_impacts(
 ) -> Impacts:
     """Simulate some periods from a state; return their impacts, non-dimensional."""
     begin(instance, *point, start)
-    return nondimensional(instance.impacts(0.0, periods * point.excitation.period), point)
+    return nondimensional_impacts(instance.impacts(0.0, periods * point.excitation.period), point)

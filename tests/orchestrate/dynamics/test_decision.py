@@ -21,7 +21,7 @@ from orchestrate.dynamics.settled_motion import (
     ORBIT,
     REPEATED,
     UNDECIDED,
-    KnownStates,
+    ScaledStates,
     same_nodes,
 )
 from orchestrate.response.questions import Point
@@ -164,7 +164,7 @@ def test_orbits_are_one_whatever_period_they_begin_with():
 
 def test_distances_compare_gaps_with_the_gap():
     """A gap may be a hundredth of the displacements."""
-    known = KnownStates.from_states(np.array([[1.0, 1.01, 0.0, 0.0]]), 1.0, 0.01)
+    known = ScaledStates.from_states(np.array([[1.0, 1.01, 0.0, 0.0]]), 1.0, 0.01)
     assert known.nearest([1.0, 1.011, 0.0, 0.0]) == (0, pytest.approx(0.1))
     assert known.nearest([1.001, 1.011, 0.0, 0.0]) == (0, pytest.approx(1e-3, rel=0.02))
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from orchestrate.access import OSCILLATOR, EventInstance, Instance, find
 from orchestrate.dynamics.continuation import NoConvergenceError
 from orchestrate.dynamics.families import Setting
-from orchestrate.dynamics.guesses import from_state
+from orchestrate.dynamics.guesses import guess_from_state
 from orchestrate.dynamics.orbit_search import least_periods, solve_orbit, why_no_motion
 from orchestrate.dynamics.turning_points import stroboscopic_states
 from orchestrate.response.multiplicity import (
@@ -290,7 +290,7 @@ def newton(instance, point, state, periods):
     setting = Setting(point.structure, numbers, ("frequency",), limits)
     values = np.array([excitation.frequency])
     try:
-        guess = from_state(instance, point, setting.form(values), np.array(state), periods)
+        guess = guess_from_state(instance, point, setting.form(values), np.array(state), periods)
         family, root = solve_orbit(setting, guess, values)
     except NoConvergenceError:
         return None
