@@ -14,8 +14,15 @@ from numpy.typing import ArrayLike, NDArray
 from ..access import OSCILLATOR, REST, EventInstance, Instance, begin, finder, sampled
 from ..checks import REQUIRES_DELAMINATED, checked_integer
 from ..errors import InputError
-from ..response.labels import Variable, flags, si_state, variable
-from ..response.questions import Numbers, Point, SeriesQuestion, numbers, positive, series_arguments
+from ..response.labels import Variable, flags, si_state_coordinate, variable
+from ..response.questions import (
+    Numbers,
+    Point,
+    SeriesQuestion,
+    checked_numbers,
+    checked_positive,
+    series_arguments,
+)
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
@@ -209,7 +216,7 @@ class AttractorsJob(SeriesQuestion):
         }
         coordinates = {
             **self.series.coordinates(),
-            **si_state(),
+            **si_state_coordinate(),
             "attractor": variable("attractor", np.arange(there.shape[1]), "1", ATTRACTOR),
             "start": variable("start", np.arange(self.starts), "1", "number of the start"),
             "feature": variable("feature", np.array(FEATURES), "1", "feature"),
@@ -391,7 +398,9 @@ def attractor_settings(**given: Any) -> AttractorSettings:
     """Check keywords on settling and clustering; return them as ``AttractorSettings``."""
     least = {"transient": 0, "samples": 4, "longest": 0}  # whole numbers
     checked: dict[str, Any] = {
-        name: checked_integer(name, value, least[name]) if name in least else positive(name, value)
+        name: checked_integer(name, value, least[name])
+        if name in least
+        else checked_positive(name, value)
         for name, value in given.items()
     }
     return AttractorSettings(**checked)
@@ -509,7 +518,7 @@ def attractors(
         starts=checked_integer("starts", starts, 1),
         seed=checked_integer("seed", seed, 0, 2**32 - 1),
         scale=checked_half_widths(scale),
-        width=positive("width", width),
+        width=checked_positive("width", width),
         settings=attractor_settings(
             transient=transient,
             settle=settle,
@@ -531,7 +540,7 @@ def checked_half_widths(given: ArrayLike | None) -> Numbers | None:
     InputError
         Where one is not.
     """
-    scale = numbers("scale", given)
+    scale = checked_numbers("scale", given)
     each = scale if isinstance(scale, tuple) else () if scale is None else (scale,)
     wrong = [value for value in each if value <= 0.0]
     if wrong:

@@ -14,9 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 from ..access import OSCILLATOR, REST, STATE, EventInstance, Instance, begin, finder, gap_between
 from ..checks import REQUIRES_DELAMINATED, checked_integer
 from ..errors import InputError
-from ..response.labels import si_state, variable
-from ..response.questions import Point, Question, one_point, state
-from ..response.respond import sample
+from ..response.labels import si_state_coordinate, variable
+from ..response.questions import Point, Question, checked_point, checked_state
+from ..response.respond import stroboscopic_samples
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Excitation, Structure
@@ -226,7 +226,7 @@ class BasinJob(Question):
         coordinates = {
             **{side.name: variable(side.name, side.values(), *AXES[side.name]) for side in sides},
             "attractor": variable("attractor", np.arange(count), "1", ATTRACTOR),
-            **si_state(),
+            **si_state_coordinate(),
             "eta": variable((), plane.point.excitation.eta(plane.point.structure), "1", "eta (2)"),
         }
         title = f"Basins of attraction: {plane.point.structure.label()}"
@@ -337,7 +337,7 @@ def basin(
     >>> found.attractor_of.dims, found.multiplicity.values.tolist()
     (('v_rel', 'x_rel'), [1.0, 2.0])
     """
-    point = one_point(structure, eta, frequency, amplitude)
+    point = checked_point(structure, eta, frequency, amplitude)
     settings = attractor_settings(
         transient=transient,
         settle=settle,
@@ -364,7 +364,7 @@ def basin(
         excitation=point.excitation.replace(phase=phase),
         x=sides[0],
         y=sides[1],
-        at=state("at", at, structure),
+        at=checked_state("at", at, structure),
         known=known.states if known else (),
         settings=settings,
     )
@@ -422,7 +422,9 @@ def find_known_attractors(
         for state, n in zip(states, known.multiplicity.values, strict=True):
             begin(instance, *point, state)
             periods = int(n) or settings.irregular_samples
-            samples.append(sample(instance, point.excitation.period, 0, periods)[0].copy())
+            samples.append(
+                stroboscopic_samples(instance, point.excitation.period, 0, periods)[0].copy()
+            )
     gap = float(known.xi_rel_max.max()) * point.length
     return KnownAttractors(point, states, np.concatenate(samples), gap)
 

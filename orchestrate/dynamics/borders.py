@@ -14,7 +14,7 @@ from ..access import OSCILLATOR, EventInstance, finder
 from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import Variable, flags, variable
-from ..response.questions import checked_structure, numbers
+from ..response.questions import checked_numbers, checked_structure
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
@@ -291,7 +291,7 @@ def border(
 def check_both_limits(names: tuple[str, ...], limits: Any) -> tuple[tuple[float, float], ...]:
     """Return both parameters' limits as pairs (low, high) of floats; raise if invalid."""
     try:
-        rows = [numbers(name, row) for name, row in zip(names, limits, strict=True)]
+        rows = [checked_numbers(name, row) for name, row in zip(names, limits, strict=True)]
     except (TypeError, ValueError):
         rows = []
     good = [row for row in rows if isinstance(row, tuple) and len(row) == 2 and row[0] < row[1]]

@@ -15,7 +15,7 @@ from ..access import OSCILLATOR, EventInstance, finder
 from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import Variable, flags, variable
-from ..response.questions import checked_structure, numbers
+from ..response.questions import checked_numbers, checked_structure
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
@@ -338,7 +338,7 @@ def check_start(start: Any, several: bool) -> None:
 
 def check_limits(over: str, limits: ArrayLike) -> tuple[float, float]:
     """Return the limits (low, high) as floats; raise unless they are two numbers in order."""
-    pair = numbers(over, limits)
+    pair = checked_numbers(over, limits)
     if not isinstance(pair, tuple) or len(pair) != 2 or not pair[0] < pair[1]:
         raise InputError(f"limits = {limits!r}: expected two numbers, the lower one first")
     return pair[0], pair[1]

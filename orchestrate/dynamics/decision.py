@@ -18,7 +18,7 @@ from ..access import STATE, EventInstance, Instance, begin
 from ..constants import TURN
 from ..errors import FmuError, InputError
 from ..response.questions import Point
-from ..response.respond import Response, respond, sample
+from ..response.respond import Response, respond, stroboscopic_samples
 from .clusters import AttractorSettings, run_until_settled
 from .continuation import NoConvergenceError
 from .families import Setting
@@ -315,7 +315,7 @@ def sample_at_another_phase(
     instance.step(0.0, OTHER_PHASE / point.excitation.frequency)
     there = instance.get(*STATE)
     begin(instance, point.structure, point.excitation.replace(phase=OTHER_PHASE), there)
-    states, gap = sample(instance, point.excitation.period, 0, samples)
+    states, gap = stroboscopic_samples(instance, point.excitation.period, 0, samples)
     return replace(response, samples=states, x_rel_max=gap)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..checks import REQUIRES_DELAMINATED
 from ..errors import InputError
-from ..response.questions import EXCITATION_PARAMETERS, Point, point
+from ..response.questions import EXCITATION_PARAMETERS, Point, make_point
 from ..structures import PARAMETERS, Structure
 from ..structures.ranges import expected_one_of
 from .closed_form import ClosedForm, Floats
@@ -62,7 +62,7 @@ class Setting:
         """Return structure and excitation with the varying parameters at these values."""
         given = {**dict(self.excitation), **dict(zip(self.over, map(float, values), strict=True))}
         given.pop(ACCELERATION, None)
-        return point(self.structure, given)
+        return make_point(self.structure, given)
 
     def orbit_call(self, values: Floats, period: int, guess: str) -> str:
         """Return Python source of the ``orbit(...)`` call at these values of the parameters."""

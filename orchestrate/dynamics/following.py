@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..access import OSCILLATOR, REST, STATE, EventInstance, Impacts, Instance, begin
 from ..errors import InputError
-from ..response.questions import Point, SeriesQuestion, states
+from ..response.questions import Point, SeriesQuestion, checked_states
 from ..running.job import Inputs, Table
 from .variational import nondimensional_impacts
 
@@ -145,7 +145,7 @@ def start_states(given: ArrayLike | xr.Dataset | None, question: SeriesQuestion)
                 f"direction over the same values of {series.name}"
             )
         return tuple(end_states(swept, series).ravel().tolist())
-    rows = states("start", given, question.structure)
+    rows = checked_states("start", given, question.structure)
     if len(rows) not in (1, len(series.values)):
         raise InputError(
             f"start: {len(rows)} states; expected one, or one for each of {len(series.values)} "

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ..access import EventInstance, Instance, begin
 from ..access.description import describe
 from ..response.questions import Point
-from ..response.respond import sample
+from ..response.respond import stroboscopic_samples
 from .clusters import AttractorSettings, irregular_clusters
 from .decision import MotionDecider
 from .settled_motion import IRREGULAR, ORBIT, Floats, SettledMotion
@@ -116,7 +116,7 @@ class AttractorsAtValue:
             known = decider.stable_orbit_at(state, n)
         if known is None:
             begin(decider.plain, *decider.point, state)
-            states, _ = sample(decider.plain, decider.point.excitation.period, 0, n)
+            states, _ = stroboscopic_samples(decider.plain, decider.point.excitation.period, 0, n)
             gap = float(row[2]) * decider.point.length
             known = SettledMotion(decider.point, decided, states.copy(), n, float(row[1]), gap)
             decider.known.append(known)

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from ..access import Impacts, finder
 from ..checks import checked_integer
-from ..response.labels import columns
+from ..response.labels import column_variables
 from ..response.questions import series_arguments
 from ..running.job import Inputs, Table
 from ..running.runner import answer
@@ -60,7 +60,7 @@ class ImpactStatisticsJob(FollowingQuestion):
         import xarray as xr
 
         along = self.series.name
-        variables = columns(along, FIELDS, table["rows"].T)
+        variables = column_variables(along, FIELDS, table["rows"].T)
         title = f"Responses along {along}, impact by impact: {self.structure.label()}"
         return xr.Dataset(variables, self.series.coordinates(), {"title": title})
 

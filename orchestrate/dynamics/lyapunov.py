@@ -20,7 +20,7 @@ from ..access import Impacts, finder
 from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import Variable, flags, variable
-from ..response.questions import Point, positive, series_arguments
+from ..response.questions import Point, checked_positive, series_arguments
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
@@ -349,7 +349,7 @@ def lyapunov(
         spectrum=bool(spectrum),
         blocks=checked_integer("blocks", blocks, 1),
         batches=checked_integer("batches", batches, 3),
-        sigmas=positive("sigmas", sigmas),
-        wander=positive("wander", wander),
+        sigmas=checked_positive("sigmas", sigmas),
+        wander=checked_positive("wander", wander),
     )
     return answer(job, running, finder(running))

@@ -62,7 +62,7 @@ def compound_matrices(matrices: Floats, order: int) -> Floats:
 
     Examples
     --------
-    >>> compound(np.array([np.diag([2.0, 3.0, 5.0])]), 2)[0].diagonal().round(12).tolist()
+    >>> compound_matrices(np.array([np.diag([2.0, 3.0, 5.0])]), 2)[0].diagonal().round(12).tolist()
     [6.0, 10.0, 15.0]
     """
     if order == 1:

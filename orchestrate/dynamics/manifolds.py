@@ -14,8 +14,8 @@ from numpy.typing import ArrayLike
 from ..access import OSCILLATOR, Instance, begin, finder
 from ..checks import checked_integer
 from ..errors import InputError
-from ..response.labels import flags, nondimensional_state, variable
-from ..response.questions import checked_structure, positive
+from ..response.labels import flags, nondimensional_state_coordinate, variable
+from ..response.questions import checked_positive, checked_structure
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
@@ -279,7 +279,7 @@ class ManifoldJob(OneItemQuestion):
             {**curve_variables(table, point), **break_variables(table)},
             {
                 "side": variable("side", np.array(SIDES), "1", "on which the gap grows, or falls"),
-                **nondimensional_state(),
+                **nondimensional_state_coordinate(),
             },
             {"title": title, **dict(self.excitation)},
         )
@@ -461,10 +461,10 @@ def manifold(
         box_acceleration=finite_number(ACCELERATION, box_acceleration),
         start=guess_from_result(start),
         period=start.sizes["sample"],
-        length=positive("length", length),
-        spacing=positive("spacing", spacing),
-        angle=positive("angle", angle),
-        distance=positive("distance", distance),
+        length=checked_positive("length", length),
+        spacing=checked_positive("spacing", spacing),
+        angle=checked_positive("angle", angle),
+        distance=checked_positive("distance", distance),
         most=checked_integer("most", most, 2),
     )
     job.saddle()  # what is none is said before any work

@@ -9,7 +9,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..response.labels import Variable, flags, nondimensional_state, parameter, variable, yes_or_no
+from ..response.labels import (
+    Variable,
+    flags,
+    nondimensional_state_coordinate,
+    parameter_variable,
+    variable,
+    yes_or_no,
+)
 from ..response.questions import Point
 from ..running.job import Table
 from .closed_form import Floats
@@ -125,7 +132,7 @@ def orbit_coordinates(setting: Setting, table: Table, row: str) -> dict[str, Var
     along.update(
         {n: table["values"][:, i] for i, n in enumerate(setting.over) if n != ACCELERATION}
     )
-    parameters = {name: parameter(name, row, values) for name, values in along.items()}
+    parameters = {name: parameter_variable(name, row, values) for name, values in along.items()}
     if ACCELERATION in setting.over:
         parameters[ACCELERATION] = variable(
             row,
@@ -136,7 +143,7 @@ def orbit_coordinates(setting: Setting, table: Table, row: str) -> dict[str, Var
     periods = np.arange(table["zero"].shape[1])
     return {
         **parameters,
-        **nondimensional_state(),
+        **nondimensional_state_coordinate(),
         "part": variable("part", PARTS, "1", "of a complex number"),
         "sample": variable("sample", periods, "1", "excitation period of the orbit"),
     }

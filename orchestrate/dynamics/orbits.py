@@ -16,8 +16,7 @@ from ..access import OSCILLATOR, EventInstance, finder
 from ..checks import checked_integer
 from ..constants import TURN
 from ..errors import InputError
-from ..response.questions import Question, numbers, one_point
-from ..response.questions import state as checked_state
+from ..response.questions import Question, checked_numbers, checked_point, checked_state
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
@@ -202,7 +201,9 @@ def checked_guess(
         return guess_from_result(given)
     if "impact_time" not in given:
         raise InputError(f"guess: without impact_time; {expected}")
-    times = np.sort(np.asarray(numbers("impact_time", given["impact_time"]), dtype=float).ravel())
+    times = np.sort(
+        np.asarray(checked_numbers("impact_time", given["impact_time"]), dtype=float).ravel()
+    )
     phases = frequency * times
     if not (phases[0] >= 0.0 and phases[-1] - phases[0] < 2.0 * np.pi * period):
         raise InputError(f"impact_time = {times.tolist()}: expected times within {period} periods")
@@ -303,7 +304,7 @@ def orbit(
     >>> found.multipliers.sel(part="real").values.round(4)
     array([-3.3595, -0.5903, -0.5903, -0.1421])
     """
-    given = one_point(structure, eta, frequency, amplitude)
+    given = checked_point(structure, eta, frequency, amplitude)
     require_delaminated(structure)
     given.excitation.check(structure)
     count = checked_integer("period", period, 1, MAX_PERIODS)
@@ -329,7 +330,7 @@ def finite_number(name: str, given: ArrayLike) -> float:
     InputError
         Where it is none.
     """
-    value = numbers(name, given)
+    value = checked_numbers(name, given)
     if not isinstance(value, float):
         raise InputError(f"{name} = {given!r}: expected one number")
     return value

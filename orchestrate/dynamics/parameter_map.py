@@ -19,19 +19,19 @@ from numpy.typing import ArrayLike
 from ..access import OSCILLATOR, REST, EventInstance, Impacts, Instance, finder
 from ..checks import checked_integer
 from ..errors import InputError
-from ..response.labels import Variable, flags, parameter, variable
+from ..response.labels import Variable, flags, parameter_variable, variable
 from ..response.multiplicity import DECIDED, REPEATED, UNDECIDED, Decision
 from ..response.questions import (
     EXCITATION_PARAMETERS,
     Numbers,
     Point,
     Question,
-    check_form,
+    check_excitation_form,
+    checked_numbers,
+    checked_positive,
+    checked_state,
     checked_structure,
-    numbers,
-    point,
-    positive,
-    state,
+    make_point,
 )
 from ..response.respond import Response, respond
 from ..response.sweep import HOW_DECIDED
@@ -183,7 +183,7 @@ class MapJob(Question):
         decided = variables["multiplicity_decided"][1]
         variables["multiplicity_decided"] = flags(names, decided, HOW_DECIDED, DECIDED)
         coordinates = {
-            axis.name: parameter(axis.name, axis.name, axis.values) for axis in self.axes
+            axis.name: parameter_variable(axis.name, axis.name, axis.values) for axis in self.axes
         }
         title = f"Map over {' and '.join(names)}: {self.structure.label()}"
         return xr.Dataset(variables, coordinates, {"title": title})
@@ -199,7 +199,7 @@ def map_points(structure: Structure, given: tuple[tuple[str, Numbers], ...]) -> 
         Where there are not two lists, the excitation is incomplete, or a number is out of range.
     """
     values = dict(given)
-    check_form(values.keys() & EXCITATION_PARAMETERS.keys())
+    check_excitation_form(values.keys() & EXCITATION_PARAMETERS.keys())
     lists = {name: value for name, value in given if isinstance(value, tuple)}
     if len(lists) != 2:
         names = ", ".join(lists) or "none"
@@ -208,7 +208,7 @@ def map_points(structure: Structure, given: tuple[tuple[str, Numbers], ...]) -> 
         if len(set(column)) < len(column):
             raise InputError(f"{name}: a value twice; expected each once")
     rows = (dict(zip(lists, row, strict=True)) for row in itertools.product(*lists.values()))
-    return tuple(point(structure, {**values, **row}) for row in rows)
+    return tuple(make_point(structure, {**values, **row}) for row in rows)
 
 
 def map(
@@ -295,17 +295,17 @@ def map(
             )
     box = {"eta": eta, "frequency": frequency, "amplitude": amplitude, "level": level}
     asked: dict[str, Any] = {**box, **others}
-    arguments = {name: numbers(name, asked[name]) for name in asked if name not in running}
+    arguments = {name: checked_numbers(name, asked[name]) for name in asked if name not in running}
     job = MapJob(
         structure=checked_structure(structure),
         name=f"map_{structure.label()}",
         given=tuple((name, value) for name, value in arguments.items() if value is not None),
         transient=checked_integer("transient", transient, 0),
-        settle=positive("settle", settle),
+        settle=checked_positive("settle", settle),
         samples=checked_integer("samples", samples, 4),
-        tolerance=positive("tolerance", tolerance),
+        tolerance=checked_positive("tolerance", tolerance),
         longest=checked_integer("longest", longest, 0),
-        start=state("start", start, structure),
+        start=checked_state("start", start, structure),
         exponent=check_flag("exponent", exponent),
         periods=checked_integer("periods", periods, 1),
     )

@@ -16,7 +16,7 @@ from ..checks import checked_integer, checked_word
 from ..constants import TURN
 from ..errors import InputError
 from ..response.labels import variable, yes_or_no
-from ..response.questions import Point, Question, numbers, one_point, state
+from ..response.questions import Point, Question, checked_numbers, checked_point, checked_state
 from ..response.simulate import IN_TIME
 from ..running.job import Inputs, Table
 from ..running.runner import answer
@@ -215,8 +215,8 @@ def poincare(
     >>> section.sizes["point"], float(abs(section.v_rel).max() < 1e-12)
     (3, 1.0)
     """
-    chosen, excitation = one_point(structure, eta, frequency, amplitude)
-    angle = numbers("phase", phase)
+    chosen, excitation = checked_point(structure, eta, frequency, amplitude)
+    angle = checked_numbers("phase", phase)
     if not isinstance(angle, float):
         raise InputError(f"phase = {phase!r}: expected a number, rad")
     job = PoincareJob(
@@ -227,6 +227,6 @@ def poincare(
         phase=math.fmod(angle, TURN) % TURN,
         transient=checked_integer("transient", transient, 0),
         periods=checked_integer("periods", periods, 1),
-        start=state("start", start, structure),
+        start=checked_state("start", start, structure),
     )
     return answer(job, running, finder(running))

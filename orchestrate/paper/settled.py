@@ -16,8 +16,8 @@ import numpy as np
 from ..access import OSCILLATOR, Instance
 from ..dynamics.clusters import AttractorSettings, features, run_until_settled
 from ..dynamics.following import Followed, OnwardQuestion
-from ..response.labels import columns, nondimensional_state, variable, yes_or_no
-from ..response.respond import impacts_in
+from ..response.labels import column_variables, nondimensional_state_coordinate, variable, yes_or_no
+from ..response.respond import count_impacts
 from ..running.job import Inputs, Table
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ class SettledJob(OnwardQuestion):
                 )
                 n, impacts, gap = features(response, item.point.length)[:3]
                 if n:  # over the response's own period
-                    impacts = impacts_in(instance, item.point, response.end, int(n)) / n
+                    impacts = count_impacts(instance, item.point, response.end, int(n)) / n
                 rows.append([n, impacts, gap, periods])
                 ends.append(response.end / item.point.scale)
                 contacts.append(response.permanent_contact)
@@ -66,11 +66,11 @@ class SettledJob(OnwardQuestion):
         import xarray as xr
 
         along = self.series.name
-        variables = columns(along, FIELDS, table["rows"].T)
+        variables = column_variables(along, FIELDS, table["rows"].T)
         contact = "whether permanent contact occurs"
         variables["permanent_contact"] = yes_or_no(along, table["contact"], contact)
         text = "state at phase 0 at the end"
         variables["end_state"] = variable((along, "coordinate"), table["end"], "1", text)
-        coordinates = {**self.series.coordinates(), **nondimensional_state()}
+        coordinates = {**self.series.coordinates(), **nondimensional_state_coordinate()}
         title = f"Settled responses along {along}: {self.structure.label()}"
         return xr.Dataset(variables, coordinates, {"title": title})

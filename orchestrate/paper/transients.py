@@ -15,7 +15,7 @@ import numpy as np
 
 from ..access import OSCILLATOR, Instance
 from ..dynamics.following import Followed, OnwardQuestion
-from ..response.labels import columns
+from ..response.labels import column_variables
 from ..response.respond import respond
 from ..running.job import Inputs, Table
 
@@ -64,7 +64,7 @@ class LaterJob(OnwardQuestion):
         """Return the later responses' features over the parameter."""
         import xarray as xr
 
-        variables = columns(self.series.name, NUMBERS, table["rows"].T)
+        variables = column_variables(self.series.name, NUMBERS, table["rows"].T)
         title = f"{self.transient} periods after the sweep: {self.structure.label()}"
         return xr.Dataset(variables, self.series.coordinates(), {"title": title})
 

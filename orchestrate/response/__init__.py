@@ -1,4 +1,4 @@
-"""How a shaken structure responds: its motion in time, along a parameter, as spectra.
+"""Responses of a shaken structure: motion in time, sweeps, resonance curves, spectra, threshold.
 
 ==========================  ==================================================================
 module                      idea

@@ -18,7 +18,7 @@ from orchestrate import InputError, Structure
 from orchestrate.access import OSCILLATOR, Instance, begin
 from orchestrate.dynamics import manifolds
 from orchestrate.dynamics.curve_growth import CurveGrower, CurvePoint, GrowthSettings
-from orchestrate.response.questions import point
+from orchestrate.response.questions import make_point
 
 from .single_impact import GAP, RATE, SingleImpact
 
@@ -187,7 +187,7 @@ def test_images_of_its_points_lie_on_it():
         data = curve()
         part = data.sel(side="-")
         numbers = np.flatnonzero((part.iterate.values > 1.0) & (part.iterate.values < 4.0))[::9]
-        box = point(PAPER, {"eta": 3.0})
+        box = make_point(PAPER, {"eta": 3.0})
         for i in numbers:
             begin(instance, *box, part.state.values[i])
             instance.step(0.0, 2.0 * box.excitation.period)
