@@ -58,7 +58,7 @@ class Start(NamedTuple):
 
     Attributes
     ----------
-    place : int
+    value_index : int
         Of the value among all.
     point : Point
     scale : float, optional
@@ -67,7 +67,7 @@ class Start(NamedTuple):
         Of the start.
     """
 
-    place: int
+    value_index: int
     point: Point
     scale: float | None
     number: int
@@ -118,8 +118,8 @@ class AttractorsJob(SeriesQuestion):
         points = self.series.points
         scales = self.scales(inputs)
         starts = [
-            Start(place, point, scales[place], number)
-            for place, point in enumerate(points)
+            Start(value_index, point, scales[value_index], number)
+            for value_index, point in enumerate(points)
             for number in range(self.starts)
         ]
         return [*starts, None]
@@ -152,19 +152,19 @@ class AttractorsJob(SeriesQuestion):
                 assert previous is not None
                 return self.gather_attractors(instances, previous)
             rows = SettledRows()
-            for place, some in itertools.groupby(starts, lambda item: item.place):
+            for value_index, some in itertools.groupby(starts, lambda item: item.value_index):
                 group = list(some)
                 decider = MotionDecider(*instances, group[0].point, self.settings)
-                for state in self.draw_starts(decider.plain, place, group):
+                for state in self.draw_starts(decider.plain, value_index, group):
                     rows.add(*decider.decide(state))
             return rows.table()
 
     def draw_starts(
-        self, instance: Instance, place: int, group: Sequence[Start]
+        self, instance: Instance, value_index: int, group: Sequence[Start]
     ) -> Iterator[NDArray[np.float64]]:
         """Yield the random start states of a group of starts at one parameter value."""
         point, scale = group[0].point, group[0].scale
-        seed = (self.seed, place)
+        seed = (self.seed, value_index)
         if self.scale is not None:
             assert scale is not None
             states = random_starts(self.starts, scale, seed, point.structure)
@@ -208,7 +208,7 @@ class AttractorsJob(SeriesQuestion):
         variables = {
             "number": variable(along, there.sum(axis=1), "1", "attractors found"),
             **attractor_variables({name: table[name][0] for name in COLUMNS}, (along,), "starts"),
-            **self.ranges_found(there),
+            **self.existence_ranges(there),
             "attractor_of": variable((along, "start"), table["labels"][0], "1", text),
             "features": variable(
                 (along, "start", "feature"), rows, "1", f"what responses have settled to{ABOUT}"
@@ -224,8 +224,8 @@ class AttractorsJob(SeriesQuestion):
         title = f"Coexisting attractors along {along}: {self.structure.label()}"
         return xr.Dataset(variables, coordinates, {"title": title})
 
-    def ranges_found(self, there: NDArray[np.bool_]) -> dict[str, Variable]:
-        """Return the smallest and largest parameter value at which each attractor was found."""
+    def existence_ranges(self, there: NDArray[np.bool_]) -> dict[str, Variable]:
+        """Return the lowest and highest parameter value at which each attractor exists."""
         values = np.array(self.series.values)[:, np.newaxis]
         first = np.where(there, values, np.inf).min(axis=0)
         last = np.where(there, values, -np.inf).max(axis=0)
@@ -532,7 +532,7 @@ def attractors(
     return answer(job, running, finder(running))
 
 
-def checked_half_widths(given: ArrayLike | None) -> Numbers | None:
+def checked_half_widths(argument: ArrayLike | None) -> Numbers | None:
     """Return the user's half width(s) of the box of starts, m, or None; raise unless positive.
 
     Raises
@@ -540,7 +540,7 @@ def checked_half_widths(given: ArrayLike | None) -> Numbers | None:
     InputError
         Where one is not.
     """
-    scale = checked_numbers("scale", given)
+    scale = checked_numbers("scale", argument)
     each = scale if isinstance(scale, tuple) else () if scale is None else (scale,)
     wrong = [value for value in each if value <= 0.0]
     if wrong:

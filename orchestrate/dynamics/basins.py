@@ -116,15 +116,15 @@ class Plane(NamedTuple):
 
 
 def mass_values(
-    given: Mapping[str, Floats], name: str, one: Floats, two: Floats
+    coordinates: Mapping[str, Floats], name: str, value1: Floats, value2: Floats
 ) -> tuple[Floats, Floats]:
     """Return both masses' coordinates for a given gap, from one mass's value or their mean."""
     first, second = GAPS[name]
-    if first in given:
-        return one, one + given[name]
-    if second in given:
-        return two - given[name], two
-    middle, half = 0.5 * (one + two), 0.5 * given[name]
+    if first in coordinates:
+        return value1, value1 + coordinates[name]
+    if second in coordinates:
+        return value2 - coordinates[name], value2
+    middle, half = 0.5 * (value1 + value2), 0.5 * coordinates[name]
     return middle - half, middle + half
 
 
@@ -244,7 +244,7 @@ def run_to_phase_zero(instance: Instance, start: Start) -> tuple[float, ...]:
     return tuple(instance.get(*STATE))
 
 
-def checked_axis(name: str, given: Any) -> PlaneAxis:
+def checked_axis(name: str, argument: Any) -> PlaneAxis:
     """Return a ``PlaneAxis`` from the user's (name, low, high, count); raise if invalid.
 
     Raises
@@ -254,14 +254,14 @@ def checked_axis(name: str, given: Any) -> PlaneAxis:
     """
     expected = f"expected (name, low, high, count) with a name of {', '.join(AXES)}"
     try:
-        axis, low, high, count = given
+        axis, low, high, count = argument
         low, high = float(low), float(high)
     except (TypeError, ValueError):
-        raise InputError(f"{name} = {given!r}: {expected}") from None
+        raise InputError(f"{name} = {argument!r}: {expected}") from None
     if axis not in AXES:
-        raise InputError(f"{name} = {given!r}: no coordinate {axis!r}; {expected}")
+        raise InputError(f"{name} = {argument!r}: no coordinate {axis!r}; {expected}")
     if not (math.isfinite(low) and math.isfinite(high) and low < high):
-        raise InputError(f"{name} = {given!r}: expected finite low < high")
+        raise InputError(f"{name} = {argument!r}: expected finite low < high")
     return PlaneAxis(axis, low, high, checked_integer(f"{name}: count", count, 2, 100_000))
 
 

@@ -20,14 +20,21 @@ from ..running.runner import answer
 from ..structures import Structure
 from .bifurcation_curve import BifurcationCurve, BifurcationTracer
 from .bifurcations import KINDS, TORUS
-from .branches import NODES, check_inside, check_start, complete_excitation, first_nodes
+from .branches import NODES, check_inside, check_start, complete_excitation, start_nodes
 from .closed_form import Floats
 from .codimension_two import POINT_KINDS, locate_points
 from .continuation import NoConvergenceError, Root, newton_correct, unit_vector
 from .families import ACCELERATION, Family, Setting, check_parameters, require_delaminated
 from .orbit_point import OrbitPoint
-from .orbit_records import OrbitRecord, orbit_coordinates, orbit_table, orbit_variables
-from .orbit_search import check_orbit_in_fmu, solve_orbit
+from .orbit_records import (
+    OrbitRecord,
+    orbit_coordinates,
+    orbit_table,
+    orbit_variables,
+    prefixed_variables,
+    record_with_check,
+)
+from .orbit_search import solve_orbit
 from .orbits import FirstGuess, OneItemQuestion, excitation_arguments, finite_number
 from .tracer import BranchSegment, ContinuationSettings
 
@@ -73,19 +80,19 @@ class BorderJob(OneItemQuestion):
         setting, values = self.setting, np.array(self.values)
         guess = self.start.as_argument(setting.point(values).excitation.frequency)
         start = f"start={setting.orbit_call(values, self.period, guess)}"
-        given = [f"bifurcation={KINDS[self.kind]!r}", f"over={setting.over!r}"]
-        given += [f"limits={setting.limits!r}", f"longest={self.longest!r}", f"most={self.most}"]
-        return f"border({', '.join([repr(self.structure), start, *given])})"
+        keywords = [f"bifurcation={KINDS[self.kind]!r}", f"over={setting.over!r}"]
+        keywords += [f"limits={setting.limits!r}", f"longest={self.longest!r}", f"most={self.most}"]
+        return f"border({', '.join([repr(self.structure), start, *keywords])})"
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Trace the bifurcation curve over both parameters; return its points as a table."""
         curve, root = first_root(self)
-        back, forth = (trace(self, curve, start) for start in (root.reversed(), root))
+        back, forth = (trace_curve(self, curve, start) for start in (root.reversed(), root))
         roots = [*reversed(back.points[1:]), *forth.points]
         points = locate_points(curve, roots, (back.end, forth.end))
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            rows = [record(instance, curve, root.unknowns, root.residual) for root in roots]
-            at = [record(instance, curve, each.unknowns, each.residual) for each in points]
+            rows = [record_at(instance, curve, root.unknowns, root.residual) for root in roots]
+            at = [record_at(instance, curve, each.unknowns, each.residual) for each in points]
         angles = [root.unknowns[-1] if self.kind == TORUS else np.nan for root in roots]
         ends = np.array([back.end, forth.end])
         return {
@@ -129,11 +136,7 @@ def point_variables(setting: Setting, table: Table) -> dict[str, Variable]:
     rows = {key.removeprefix(f"{POINT}_"): part for key, part in table.items()}
     parameters = orbit_coordinates(setting, rows, POINT)
     data |= {f"{POINT}_{name}": parameters[name] for name in setting.over}
-    for key, (dims, values, attributes) in orbit_variables(setting, rows, POINT).items():
-        if key in KEPT:
-            each = (dims,) if isinstance(dims, str) else dims
-            own = tuple(f"{POINT}_node" if dim == "node" else dim for dim in each)
-            data[f"{POINT}_{key}"] = own, values, attributes
+    data |= prefixed_variables(setting, rows, POINT, KEPT)
     text = "what is left of both conditions, of the multipliers' polynomial over its largest part"
     data[f"{POINT}_residual"] = variable(POINT, rows["residual"], "1", text)
     return data
@@ -150,7 +153,7 @@ def first_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
     setting, nodes = job.setting, np.array(job.start.nodes).reshape(-1, 4)
     sequence, values = job.start.sequence(job.period), np.array(job.values)
     try:
-        alone = setting.over_first_alone(values)
+        alone = setting.with_first_varying(values)
         point = OrbitPoint(*solve_orbit(alone, (sequence, nodes), values[:1]))
         family = Family.from_nodes(setting, sequence, point.orbit.nodes)
         curve = BifurcationCurve.from_orbit(family, point, job.kind)
@@ -163,20 +166,18 @@ def first_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
         raise InputError(f"start: no bifurcation found there ({reason}); {expected}") from None
 
 
-def trace(job: BorderJob, curve: BifurcationCurve, start: Root) -> BranchSegment[Root]:
+def trace_curve(job: BorderJob, curve: BifurcationCurve, start: Root) -> BranchSegment[Root]:
     """Trace the bifurcation curve from a root, along its tangent, to a limit or an end."""
     settings = ContinuationSettings(job.longest, job.most)
     return BifurcationTracer(curve, start, settings).trace(start)
 
 
-def record(
+def record_at(
     instance: EventInstance, curve: BifurcationCurve, unknowns: Floats, residual: float
 ) -> OrbitRecord:
-    """Run an orbit of the curve through the FMU; return its record with the FMU's check."""
-    unknowns = unknowns[: curve.family.size + 2]
-    orbit = curve.orbit(unknowns)
-    check = check_orbit_in_fmu(instance, curve.family.setting, unknowns[curve.family.size :], orbit)
-    return OrbitRecord.from_root(curve.family, unknowns, residual, check)
+    """Return the record of the orbit at a curve's unknowns, checked by a run in the FMU."""
+    without_extra = unknowns[: curve.family.size + 2]
+    return record_with_check(instance, curve.family, without_extra, residual)
 
 
 def border(
@@ -258,7 +259,7 @@ def border(
             f"{start.attrs.get('over')!r}"
         )
     pairs = check_both_limits(names, limits)
-    nodes, kind = first_nodes(start, "bifurcation", bifurcation)
+    nodes, kind = start_nodes(start, "bifurcation", bifurcation)
     value = float(start["bifurcation_value"].values[bifurcation])
     given = complete_excitation(
         start.isel(point=0),
@@ -303,9 +304,12 @@ def check_both_limits(names: tuple[str, ...], limits: Any) -> tuple[tuple[float,
 
 
 def second_value(
-    structure: Structure, name: str, given: tuple[tuple[str, float], ...], box_acceleration: float
+    structure: Structure,
+    name: str,
+    arguments: tuple[tuple[str, float], ...],
+    box_acceleration: float,
 ) -> float:
     """Return the second parameter's start value: from excitation, structure or acceleration."""
     if name == ACCELERATION:
         return box_acceleration
-    return dict(given)[name] if name in dict(given) else structure.get(name)
+    return dict(arguments)[name] if name in dict(arguments) else structure.get(name)

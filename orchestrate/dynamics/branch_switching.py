@@ -1,4 +1,4 @@
-"""Branch switching: where branches leave another one at a bifurcation, in which direction."""
+"""Branch switching: first orbit and tangent of the branch that leaves another at a bifurcation."""
 
 from __future__ import annotations
 

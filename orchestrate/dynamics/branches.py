@@ -25,8 +25,15 @@ from .branch_switching import leaving_branch
 from .continuation import NoConvergenceError
 from .families import ACCELERATION, Setting, check_parameters, require_delaminated
 from .orbit_point import OrbitPoint
-from .orbit_records import OrbitRecord, orbit_coordinates, orbit_table, orbit_variables
-from .orbit_search import check_orbit_in_fmu, solve_orbit
+from .orbit_records import (
+    OrbitRecord,
+    orbit_coordinates,
+    orbit_table,
+    orbit_variables,
+    prefixed_variables,
+    record_with_check,
+)
+from .orbit_search import solve_orbit
 from .orbit_tracer import OrbitTracer
 from .orbits import (
     NODE,
@@ -102,9 +109,9 @@ class BranchJob(OneItemQuestion):
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Continue the branch from its first orbit; return orbits and bifurcations as a table."""
-        segments = trace(self)
+        segments = trace_branch(self)
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            return table(instance, self.setting, segments)
+            return branch_table(instance, segments)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Return the dataset of the branch: orbits, stability and bifurcations."""
@@ -124,7 +131,7 @@ class BranchJob(OneItemQuestion):
         return dataset.set_coords(list(orbit_coordinates(setting, along, "point")))
 
 
-def trace(job: BranchJob) -> list[OrbitSegment]:
+def trace_branch(job: BranchJob) -> list[OrbitSegment]:
     """Continue the branch in both directions (one if it leaves another); return its segments.
 
     Raises
@@ -145,12 +152,12 @@ def trace(job: BranchJob) -> list[OrbitSegment]:
     return [OrbitTracer(point, settings).trace(point) for point in starts]
 
 
-def table(instance: EventInstance, setting: Setting, segments: list[OrbitSegment]) -> Table:
+def branch_table(instance: EventInstance, segments: list[OrbitSegment]) -> Table:
     """Return arrays of a branch's orbits and of its bifurcations, checked by the FMU."""
-    points, bifurcations = joined(segments)
+    points, bifurcations = join_segments(segments)
     ends = [segments[0].end if len(segments) > 1 else "start", segments[-1].end]
-    along = orbit_table([record(instance, setting, point) for point in points])
-    at = [record(instance, setting, each.point) for each in bifurcations]
+    along = orbit_table([record_of_point(instance, point) for point in points])
+    at = [record_of_point(instance, each.point) for each in bifurcations]
     return {
         **along,
         **{f"{BIFURCATION}_{name}": rows for name, rows in (orbit_table(at) if at else {}).items()},
@@ -160,7 +167,12 @@ def table(instance: EventInstance, setting: Setting, segments: list[OrbitSegment
     }
 
 
-def joined(
+def record_of_point(instance: EventInstance, point: OrbitPoint) -> OrbitRecord:
+    """Return the record of a branch point's orbit, checked by a run in the FMU."""
+    return record_with_check(instance, point.family, point.root.unknowns, point.root.residual)
+
+
+def join_segments(
     segments: list[OrbitSegment],
 ) -> tuple[list[OrbitPoint], list[Bifurcation[OrbitPoint]]]:
     """Join a branch's two segments; return its orbits in order, and its bifurcations."""
@@ -173,12 +185,6 @@ def joined(
         *(replace(each, position=middle + each.position) for each in forth.bifurcations),
     ]
     return [*reversed(back.points[1:]), *forth.points], bifurcations
-
-
-def record(instance: EventInstance, setting: Setting, point: OrbitPoint) -> OrbitRecord:
-    """Run an orbit of the branch through the FMU; return its record with the FMU's check."""
-    check = check_orbit_in_fmu(instance, setting, point.values, point.orbit)
-    return OrbitRecord.from_root(point.family, point.root.unknowns, point.root.residual, check)
 
 
 def bifurcation_variables(setting: Setting, table: Table) -> dict[str, Variable]:
@@ -200,12 +206,7 @@ def bifurcation_variables(setting: Setting, table: Table) -> dict[str, Variable]
     }
     parameters = orbit_coordinates(setting, rows, BIFURCATION)
     data["bifurcation_value"] = parameters[name]
-    for key, (dims, values, attributes) in orbit_variables(setting, rows, BIFURCATION).items():
-        if key in KEPT:
-            each = (dims,) if isinstance(dims, str) else dims
-            own = tuple(f"{BIFURCATION}_node" if dim == "node" else dim for dim in each)
-            data[f"{BIFURCATION}_{key}"] = own, values, attributes
-    return data
+    return data | prefixed_variables(setting, rows, BIFURCATION, KEPT)
 
 
 def branch(
@@ -297,7 +298,7 @@ def branch(
     else:
         value = start_value(start, over, switch, structure)
     check_inside(over, value, low_high)
-    nodes, kind = first_nodes(start, "switch", switch)
+    nodes, kind = start_nodes(start, "switch", switch)
     fixed = tuple((name, number) for name, number in given if name != over)
     setting = Setting(
         structure, fixed, (over,), (low_high,), finite_number(ACCELERATION, box_acceleration)
@@ -347,7 +348,7 @@ def check_limits(over: str, limits: ArrayLike) -> tuple[float, float]:
 def complete_excitation(
     start: xr.Dataset | None,
     varied: tuple[str, ...],
-    given: tuple[tuple[str, float], ...],
+    arguments: tuple[tuple[str, float], ...],
     limits: tuple[float, float],
     structure: Structure,
 ) -> tuple[tuple[str, float], ...]:
@@ -360,8 +361,8 @@ def complete_excitation(
     InputError
         Where ``eta`` varies, which takes the amplitude along, from another amplitude.
     """
-    over, names = varied[0], [name for name, _ in given]
-    if start is not None and not given:
+    over, names = varied[0], [name for name, _ in arguments]
+    if start is not None and not arguments:
         wanted = ("frequency", "amplitude") if over in ("frequency", "amplitude") else ("eta",)
         levels = structure.has_scale or not {*OF_LENGTH, "amplitude"}.isdisjoint(varied)
         eta, amplitude = (float(start[name].values.flat[0]) for name in ("eta", "amplitude"))
@@ -374,21 +375,21 @@ def complete_excitation(
             wanted = ("frequency", "amplitude")
         return tuple((name, float(start[name].values.flat[0])) for name in wanted)
     if over in ("eta", "frequency", "amplitude") and over not in names:
-        return (*given, (over, limits[0]))
-    return given
+        return (*arguments, (over, limits[0]))
+    return arguments
 
 
 def first_orbit(
     structure: Structure,
     over: str,
     limits: tuple[float, float],
-    given: tuple[tuple[str, float], ...],
+    arguments: tuple[tuple[str, float], ...],
     period: int,
     box_acceleration: float,
     running: Mapping[str, Any],
 ) -> tuple[xr.Dataset, float]:
     """Find an orbit to begin a branch without ``start``; return it and the parameter's value."""
-    excitation: dict[str, Any] = dict(given)
+    excitation: dict[str, Any] = dict(arguments)
     quiet: dict[str, Any] = {
         name: value
         for name, value in running.items()
@@ -435,7 +436,7 @@ def check_number(start: xr.Dataset, name: str, number: int) -> int:
     return checked_integer(name, number, 0, count - 1)
 
 
-def first_nodes(start: xr.Dataset, name: str, number: int | None) -> tuple[FirstGuess, int]:
+def start_nodes(start: xr.Dataset, name: str, number: int | None) -> tuple[FirstGuess, int]:
     """Return the start orbit's nodes, and the kind of the chosen bifurcation (-1: none)."""
     if number is None:
         return guess_from_result(start), -1

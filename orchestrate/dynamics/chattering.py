@@ -1,4 +1,4 @@
-"""Impacts of a chattering that are added or removed along a branch, where (17) ends it."""
+"""Add or remove chattering impacts of an orbit, so that the sticking condition (17) holds."""
 
 from __future__ import annotations
 

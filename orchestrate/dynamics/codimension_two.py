@@ -200,11 +200,13 @@ def points_between(
     for kind in ON_CURVE.get(curve.kind, ()):
 
         def value(position: float, kind: PointKind = kind) -> float:
-            return test(curve, stepper.root_after(position) if position else before, kind)
+            return test_function_value(
+                curve, stepper.root_after(position) if position else before, kind
+            )
 
         try:
             ends = [
-                test(curve, root, kind, polynomial)
+                test_function_value(curve, root, kind, polynomial)
                 for root, polynomial in zip((before, after), known, strict=True)
             ]
             if not (np.isfinite(ends).all() and ends[0] * ends[1] < 0.0):
@@ -213,7 +215,7 @@ def points_between(
                 continue
             position = float(brentq(value, 0.0, length, **TOLERANCE))
             root = stepper.root_after(position)
-            residual = abs(test(curve, root, kind))
+            residual = abs(test_function_value(curve, root, kind))
         except NoConvergenceError:
             continue
         if residual < LOCATED and is_point_of_kind(curve, root, kind):
@@ -226,10 +228,10 @@ def characteristic(curve: BifurcationCurve, unknowns: Floats) -> Characteristic:
     return Characteristic(curve.orbit(unknowns), curve.scale[: curve.family.size])
 
 
-def test(
+def test_function_value(
     curve: BifurcationCurve, root: Root, kind: PointKind, known: Characteristic | None = None
 ) -> float:
-    """Return the test function's value at a root: it changes sign at a point of this kind.
+    """Return a kind's test function at a root of the curve: it changes sign at such a point.
 
     Parameters
     ----------

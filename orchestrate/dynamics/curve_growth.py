@@ -131,9 +131,9 @@ class GrownCurve:
         self.points.append(point)
 
 
-def distance_between(one: CurvePoint, other: CurvePoint) -> float:
+def distance_between(first: CurvePoint, second: CurvePoint) -> float:
     """Return the Euclidean distance of two points' states, with equal bits on all processors."""
-    return math.dist(other.state.tolist(), one.state.tolist())
+    return math.dist(second.state.tolist(), first.state.tolist())
 
 
 def shrinking_power(history: list[tuple[float, float]]) -> float:

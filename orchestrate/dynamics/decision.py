@@ -74,8 +74,8 @@ class MotionDecider:
     ) -> None:
         self.plain, self.eventful, self.point, self.settings = plain, eventful, point, settings
         excitation = point.excitation
-        given = (("frequency", excitation.frequency), ("amplitude", excitation.amplitude))
-        self.system = Setting.fixed(point.structure, given)
+        arguments = (("frequency", excitation.frequency), ("amplitude", excitation.amplitude))
+        self.system = Setting.fixed(point.structure, arguments)
         self.values = np.array([excitation.frequency])
         self.known: list[SettledMotion] = []
 
@@ -260,14 +260,16 @@ class MotionDecider:
         orbit = self.solve((motion.orbit.sequence, motion.orbit.nodes))
         if orbit is None or largest_multiplier(orbit) >= 1.0 - MARGIN:
             return None
-        found = SettledMotion.from_orbit(self.point, orbit, phase_far_from_impacts(orbit))
-        if not self.stays_on(found):
+        continued = SettledMotion.from_orbit(self.point, orbit, phase_far_from_impacts(orbit))
+        if not self.stays_on(continued):
             return None
         own = self.stable_orbit_at(
-            found.states[0], found.multiplicity
+            continued.states[0], continued.multiplicity
         )  # with the impacts of the FMU
         return (
-            own if own is not None and own.nearest(found.states[0])[1] < ON_KNOWN_MOTION else None
+            own
+            if own is not None and own.nearest(continued.states[0])[1] < ON_KNOWN_MOTION
+            else None
         )
 
     def stays_on(self, motion: SettledMotion) -> bool:

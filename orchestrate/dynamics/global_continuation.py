@@ -137,11 +137,11 @@ class AttractorsAtValue:
         few periods are no reason for one more.
         """
         if motion.decided == IRREGULAR:
-            alike = [k for k, one in enumerate(self.motions) if one.decided == IRREGULAR]
+            alike = [k for k, known in enumerate(self.motions) if known.decided == IRREGULAR]
             if alike:
                 return min(alike, key=lambda k: abs(np.log(self.motions[k].gap / motion.gap)))
-        for k, one in enumerate(self.motions):
-            if one is motion:
+        for k, known in enumerate(self.motions):
+            if known is motion:
                 return k
         self.motions.append(motion)
         return len(self.motions) - 1
@@ -157,14 +157,14 @@ class AttractorsAtValue:
         return self.find_or_add(reached), BY_SIMULATION
 
 
-def may_be_different_branches(one: SettledMotion, other: SettledMotion) -> bool:
+def may_be_different_branches(motion: SettledMotion, other: SettledMotion) -> bool:
     """Return whether motions at neighbouring values differ enough to be of different branches."""
-    if (one.multiplicity, one.impacts_per_period) != (
+    if (motion.multiplicity, motion.impacts_per_period) != (
         other.multiplicity,
         other.impacts_per_period,
     ):
         return True
-    state = other.point.from_faces(one.point.faces(one.states[0]))
+    state = other.point.from_faces(motion.point.faces(motion.states[0]))
     return other.nearest(state)[1] > NEIGHBOUR_DISTANCE
 
 
@@ -212,8 +212,8 @@ def continue_attractors(
         States on attractors that are known at the first value, at phase 0.
     """
     values = [AttractorsAtValue(MotionDecider(*instances, point, settings)) for point in points]
-    for value, some in zip(values, starts, strict=True):
-        value.collect_from_starts(some, settings)
+    for value, starts_there in zip(values, starts, strict=True):
+        value.collect_from_starts(starts_there, settings)
     for seed in seeds:
         values[0].find_or_add(values[0].decider.decide(seed)[0])
     links = continue_to_neighbours(values)
@@ -288,6 +288,6 @@ def match_neighbours(
             candidates.append((1 if how == BY_NEWTON else 2, a, b))
     taken: list[tuple[int, int]] = []
     for _, a, b in sorted(candidates):
-        if all(a != one and b != other for one, other in taken):
+        if all(a != taken_a and b != taken_b for taken_a, taken_b in taken):
             taken.append((a, b))
     return taken

@@ -84,13 +84,18 @@ def guess_from_phases(form: ClosedForm, sequence: ImpactSequence, phases: Floats
     nodes[:, PHASE] = phases
     orbit = PeriodicOrbit(sequence, form, nodes)
     others = np.arange(4 * len(phases)) % 4 != PHASE
-    found = np.linalg.lstsq(orbit.jacobian().real[:, others], -orbit.residual(), rcond=None)[0]
-    nodes[:, PHASE + 1 :] = found.reshape(-1, CLOSING)
+    solution = np.linalg.lstsq(orbit.jacobian().real[:, others], -orbit.residual(), rcond=None)[0]
+    nodes[:, PHASE + 1 :] = solution.reshape(-1, CLOSING)
     return sequence, nodes
 
 
 def close_returns(
-    instance: EventInstance, point: Point, form: ClosedForm, periods: int, transient: int, most: int
+    instance: EventInstance,
+    point: Point,
+    form: ClosedForm,
+    periods: int,
+    transient: int,
+    max_periods: int,
 ) -> Iterator[tuple[Floats, float]]:
     """Yield stroboscopic states that nearly repeat after some periods, the closest return first.
 
@@ -101,7 +106,7 @@ def close_returns(
         What responds.
     periods : int
         After which they come back.
-    transient, most : int
+    transient, max_periods : int
         Periods dropped, and searched.
 
     Yields
@@ -114,7 +119,7 @@ def close_returns(
     period = point.excitation.period
     begin_at_state(instance, point, form, np.zeros(4))
     instance.advance(0.0, transient * period)
-    states = simulate_stroboscopic_states(instance, point, transient, most)
+    states = simulate_stroboscopic_states(instance, point, transient, max_periods)
     scale = np.maximum(np.abs(states).max(axis=0), 1e-300)
     distance = (np.abs(states[periods:] - states[:-periods]) / scale).max(axis=1)
     for i in np.argsort(distance, kind="stable"):

@@ -17,7 +17,7 @@ from ..response.questions import series_arguments
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .following import Followed, FollowingQuestion, start_states
+from .following import FollowedResponse, FollowingQuestion, start_states
 from .lyapunov import Exponent, exact_exponent_without_impacts, largest_exponent
 from .variational import contact_durations_after, period_in_tau
 
@@ -50,7 +50,7 @@ class ImpactStatisticsJob(FollowingQuestion):
     asked: ClassVar[str] = "impact_statistics"
     chunk_size: ClassVar[int] = 40
 
-    def row(self, impacts: Impacts, item: Followed) -> Sequence[float]:
+    def row(self, impacts: Impacts, item: FollowedResponse) -> Sequence[float]:
         """Return the statistics of one response's impacts, in the order of ``FIELDS``."""
         numbers = response_statistics(impacts, item, self.periods)
         return [numbers[name] for name in FIELDS]
@@ -65,7 +65,7 @@ class ImpactStatisticsJob(FollowingQuestion):
         return xr.Dataset(variables, self.series.coordinates(), {"title": title})
 
 
-def response_statistics(impacts: Impacts, item: Followed, periods: int) -> dict[str, float]:
+def response_statistics(impacts: Impacts, item: FollowedResponse, periods: int) -> dict[str, float]:
     """Return the impact statistics and Lyapunov exponent of one response, by ``FIELDS`` names.
 
     Parameters
@@ -103,7 +103,7 @@ def impact_counts(impacts: Impacts, span: float, periods: int) -> dict[str, floa
     }
 
 
-def contact_time(impacts: Impacts, item: Followed, end: float) -> float:
+def contact_time(impacts: Impacts, item: FollowedResponse, end: float) -> float:
     """Return how long the masses are in permanent contact until ``end``, in units of tau.
 
     From each impact that begins it to the release (19), or to the end; and from the beginning where

@@ -175,9 +175,9 @@ def perturbed_start(point: Point, start: State, seed: NDArray[np.int64] | Sequen
         masses do not overlap.
     """
     x1, _, v1, v2 = start
-    gap, moved, fast, slow = 0.01 * np.random.default_rng(seed).uniform(-1.0, 1.0, 4)
+    gap_change, shift, fast, slow = 0.01 * np.random.default_rng(seed).uniform(-1.0, 1.0, 4)
     offset = point.structure.gap_offset
-    apart = float(gap_between(np.array(start), offset)) * (1.0 + gap)
-    x1 = x1 * (1.0 + moved)
-    x2 = x1 + apart - offset
+    new_gap = float(gap_between(np.array(start), offset)) * (1.0 + gap_change)
+    x1 = x1 * (1.0 + shift)
+    x2 = x1 + new_gap - offset
     return float(x1), float(x2), float(v1 * (1.0 + fast)), float(v2 * (1.0 + slow))

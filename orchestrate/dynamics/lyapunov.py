@@ -24,7 +24,7 @@ from ..response.questions import Point, checked_positive, series_arguments
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .following import Followed, FollowingQuestion, start_states
+from .following import FollowedResponse, FollowingQuestion, start_states
 from .lyapunov_growth import block_growth, growth_by_batch_means
 from .lyapunov_spectrum import (
     STATES,
@@ -169,7 +169,7 @@ class LyapunovJob(FollowingQuestion):
     asked: ClassVar[str] = "lyapunov"
     chunk_size: ClassVar[int] = 5
 
-    def row(self, impacts: Impacts, item: Followed) -> Sequence[float]:
+    def row(self, impacts: Impacts, item: FollowedResponse) -> Sequence[float]:
         """Return one response's exponent, error and impact rate, and the spectrum if asked for."""
         rate = len(impacts.time) / self.periods
         if not self.spectrum:
@@ -180,21 +180,21 @@ class LyapunovJob(FollowingQuestion):
             largest = np.array(self.exponent(impacts, item))
         return [*largest, rate, *all_of_them]
 
-    def all_exponents(self, impacts: Impacts, item: Followed) -> NDArray[np.float64]:
+    def all_exponents(self, impacts: Impacts, item: FollowedResponse) -> NDArray[np.float64]:
         """Return four exponents, then their errors; NaN if equal masses never separate."""
         structure = item.point.structure
         if len(impacts.time):
             self.require_enough_impacts(impacts, item)
-            found = lyapunov_spectrum(
+            spectrum = lyapunov_spectrum(
                 impacts, self.end_tau(item), item.point, self.blocks, self.batches
             )
         elif structure.bonded:
-            found = spectrum_without_impacts(structure)
+            spectrum = spectrum_without_impacts(structure)
         else:
             return np.full(2 * STATES, math.nan)
-        return np.concatenate(found)
+        return np.concatenate(spectrum)
 
-    def exponent(self, impacts: Impacts, item: Followed) -> Exponent:
+    def exponent(self, impacts: Impacts, item: FollowedResponse) -> Exponent:
         """Return the largest exponent and its error for one response.
 
         Raises
@@ -208,11 +208,11 @@ class LyapunovJob(FollowingQuestion):
         self.require_enough_impacts(impacts, item)
         return largest_exponent(impacts, self.end_tau(item), item.point, self.blocks, self.batches)
 
-    def end_tau(self, item: Followed) -> float:
+    def end_tau(self, item: FollowedResponse) -> float:
         """Return the time tau at which the periods followed end."""
         return self.periods * period_in_tau(item.point.excitation.eta(item.point.structure))
 
-    def require_enough_impacts(self, impacts: Impacts, item: Followed) -> None:
+    def require_enough_impacts(self, impacts: Impacts, item: FollowedResponse) -> None:
         """Raise ``InputError`` if a response has too few impacts to estimate an error."""
         count, needed = len(impacts.time), min_impacts(self.batches)
         if count < needed:

@@ -32,11 +32,12 @@ from .curve_growth import (
     GrownCurve,
     GrowthSettings,
 )
-from .families import ACCELERATION, Setting, require_delaminated
+from .families import ACCELERATION, require_delaminated
+from .orbit_records import pad_rows
 from .orbit_search import solve_orbit
 from .orbits import (
     FirstGuess,
-    OneItemQuestion,
+    SingleOrbitQuestion,
     excitation_arguments,
     finite_number,
     guess_from_result,
@@ -150,18 +151,15 @@ def unstable_direction(orbit: PeriodicOrbit) -> Floats:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ManifoldJob(OneItemQuestion):
+class ManifoldJob(SingleOrbitQuestion):
     """Job of :func:`orchestrate.manifold`: the unstable manifold of one saddle, both sides.
 
     Attributes
     ----------
-    excitation : tuple of (str, float)
     start : FirstGuess
         Nodes of the saddle.
     """
 
-    excitation: tuple[tuple[str, float], ...]
-    box_acceleration: float
     start: FirstGuess
     period: int
     length: float
@@ -170,16 +168,6 @@ class ManifoldJob(OneItemQuestion):
     distance: float
     most: int
     asked: ClassVar[str] = "manifold"
-
-    @property
-    def setting(self) -> Setting:
-        """Return structure, excitation and box acceleration as setting of the orbit's equations."""
-        return Setting.fixed(self.structure, self.excitation, self.box_acceleration)
-
-    @property
-    def values(self) -> Floats:
-        """Return the value of the setting's only parameter, as an array of length 1."""
-        return np.array([self.excitation[0][1]])
 
     def call_text(self) -> str:
         """Return Python source of a ``manifold(...)`` call that repeats this, saddle included."""
@@ -288,10 +276,6 @@ class ManifoldJob(OneItemQuestion):
 def curves_table(curves: Sequence[GrownCurve], saddle: Saddle) -> Table:
     """Return both sides' points, breaks and ends as arrays, padded with NaN to equal length."""
     sides = [curve_rows(curve) for curve in curves]
-    most = max(len(rows) for rows in sides)
-    padded = np.full((len(sides), most, 6), np.nan)
-    for rows, side in zip(padded, sides, strict=True):
-        rows[: len(side)] = side
     breaks = [
         [side, change.low.s, curve.arclength[number], change.distance, change.power]
         + [float(b - a) for a, b in zip(change.low.itinerary, change.high.itinerary, strict=True)]
@@ -300,7 +284,7 @@ def curves_table(curves: Sequence[GrownCurve], saddle: Saddle) -> Table:
     ]
     words = {word: number for number, word in ENDS.items()}
     return {
-        "rows": padded,
+        "rows": pad_rows(sides, np.nan),
         "ends": np.array([words[curve.end] for curve in curves]),
         "breaks": np.array(breaks, dtype=float).reshape(-1, 7),
         "multiplier": np.array([saddle.multiplier]),
@@ -443,17 +427,17 @@ def manifold(
     (-3.3595, 2)
     """
     require_delaminated(checked_structure(structure))
-    given = excitation_arguments(eta, frequency, amplitude)
+    arguments = excitation_arguments(eta, frequency, amplitude)
     if start is None:
-        quiet: dict[str, Any] = {
+        run_options: dict[str, Any] = {
             name: value
             for name, value in running.items()
             if name in ("fmu", "build_folder", "progress")
         }
-        asked: dict[str, Any] = {**dict(given), **quiet, "period": period}
-        start = orbit(structure, box_acceleration=box_acceleration, **asked)
+        keywords: dict[str, Any] = {**dict(arguments), **run_options, "period": period}
+        start = orbit(structure, box_acceleration=box_acceleration, **keywords)
     check_start(start, several=False)
-    excitation = complete_excitation(start, ("e",), given, (0.0, 0.0), structure)
+    excitation = complete_excitation(start, ("e",), arguments, (0.0, 0.0), structure)
     job = ManifoldJob(
         name=f"manifold_{structure.label()}",
         structure=structure,

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence as Rows
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..access import EventInstance
 from ..response.labels import (
     Variable,
     flags,
@@ -21,7 +22,7 @@ from ..response.questions import Point
 from ..running.job import Table
 from .closed_form import Floats
 from .families import ACCELERATION, Family, Setting
-from .orbit_search import FmuCheck
+from .orbit_search import FmuCheck, check_orbit_in_fmu
 from .periodic_orbit import CLOSING, ON_CIRCLE, PHASE, POSITION, RELEASE, VELOCITY
 from .turning_points import (
     Amplitudes,
@@ -92,7 +93,16 @@ class OrbitRecord:
         )
 
 
-def pad_rows(rows: Rows[Floats], fill: float) -> Floats:
+def record_with_check(
+    instance: EventInstance, family: Family, unknowns: Floats, residual: float
+) -> OrbitRecord:
+    """Run the FMU through the orbit of a root; return its record with the FMU's check."""
+    orbit, values = family.orbit(unknowns), unknowns[family.size :]
+    check = check_orbit_in_fmu(instance, family.setting, values, orbit)
+    return OrbitRecord.from_root(family, unknowns, residual, check)
+
+
+def pad_rows(rows: Sequence[Floats], fill: float) -> Floats:
     """Stack arrays of different lengths into one, the shorter ones filled up with ``fill``."""
     most = max(len(row) for row in rows)
     table = np.full((len(rows), most, *rows[0].shape[1:]), fill)
@@ -101,7 +111,7 @@ def pad_rows(rows: Rows[Floats], fill: float) -> Floats:
     return table
 
 
-def orbit_table(records: Rows[OrbitRecord]) -> Table:
+def orbit_table(records: Sequence[OrbitRecord]) -> Table:
     """Return the records of orbits as a dict of arrays, one row per orbit."""
     return {
         "values": np.array([r.values for r in records]),
@@ -166,7 +176,20 @@ def orbit_variables(setting: Setting, table: Table, row: str) -> dict[str, Varia
     }
 
 
-def state_variables(table: Table, points: Rows[Point], row: str) -> dict[str, Variable]:
+def prefixed_variables(
+    setting: Setting, table: Table, prefix: str, names: Sequence[str]
+) -> dict[str, Variable]:
+    """Return the named orbit variables with names, rows and nodes prefixed, as at bifurcations."""
+    data: dict[str, Variable] = {}
+    for name, (dims, values, attributes) in orbit_variables(setting, table, prefix).items():
+        if name in names:
+            each = (dims,) if isinstance(dims, str) else dims
+            own = tuple(f"{prefix}_node" if dim == "node" else dim for dim in each)
+            data[f"{prefix}_{name}"] = own, values, attributes
+    return data
+
+
+def state_variables(table: Table, points: Sequence[Point], row: str) -> dict[str, Variable]:
     """Return dataset variables of the orbits' stroboscopic states at phase 0, SI and xi."""
     zero, along = table["zero"], (row, "sample", "coordinate")
     text = "states at phase 0: x1, x2 in m, v1, v2 in m/s"

@@ -1,4 +1,4 @@
-"""Solve for periodic orbits by Newton's method, check they are possible, run them in the FMU."""
+"""Solve for periodic orbits by Newton's method from guesses, and run them in the FMU as a check."""
 
 from __future__ import annotations
 

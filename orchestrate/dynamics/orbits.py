@@ -84,17 +84,35 @@ class OneItemQuestion(Question, ABC):
 
 
 @dataclass(frozen=True, kw_only=True)
-class OrbitJob(OneItemQuestion):
-    """Job of :func:`orchestrate.orbit`: one periodic orbit, checked by the FMU.
+class SingleOrbitQuestion(OneItemQuestion, ABC):
+    """Base of jobs about one orbit at a fixed excitation.
 
     Attributes
     ----------
     excitation : tuple of (str, float)
         As the user gave it.
+    box_acceleration : float
+        Constant acceleration of the box beside the harmonic one, m/s2.
     """
 
     excitation: tuple[tuple[str, float], ...]
     box_acceleration: float
+
+    @property
+    def setting(self) -> Setting:
+        """Return structure, excitation and box acceleration as setting of the orbit's equations."""
+        return Setting.fixed(self.structure, self.excitation, self.box_acceleration)
+
+    @property
+    def values(self) -> Floats:
+        """Return the value of the setting's only parameter, as an array of length 1."""
+        return np.array([self.excitation[0][1]])
+
+
+@dataclass(frozen=True, kw_only=True)
+class OrbitJob(SingleOrbitQuestion):
+    """Job of :func:`orchestrate.orbit`: one periodic orbit, checked by the FMU."""
+
     period: int
     guess: FirstGuess | None
     transient: int
@@ -104,7 +122,7 @@ class OrbitJob(OneItemQuestion):
 
     def call_text(self) -> str:
         """Return Python source of an ``orbit(...)`` call that repeats this, guess included."""
-        frequency = self.setting.point(np.array([self.excitation[0][1]])).excitation.frequency
+        frequency = self.setting.point(self.values).excitation.frequency
         arguments = {**dict(self.excitation), "period": self.period}
         if self.box_acceleration:
             arguments[ACCELERATION] = self.box_acceleration
@@ -114,11 +132,6 @@ class OrbitJob(OneItemQuestion):
         else:
             parts.append(f"guess={self.guess.as_argument(frequency)}")
         return f"orbit({', '.join(parts)})"
-
-    @property
-    def setting(self) -> Setting:
-        """Return structure, excitation and box acceleration as setting of the orbit's equations."""
-        return Setting.fixed(self.structure, self.excitation, self.box_acceleration)
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Solve for the orbit by Newton's method; return its record as a table of one row."""
@@ -148,7 +161,7 @@ def find_orbit(instance: EventInstance, job: OrbitJob) -> OrbitRecord:
         Where none is found.
     """
     setting = job.setting
-    values = np.array([job.excitation[0][1]])
+    values = job.values
     try:
         tried = orbit_guesses(instance, job, setting, values)
         family, root = first_possible_orbit(setting, tried, values, stable=job.guess is None)
@@ -183,7 +196,7 @@ def orbit_guesses(
 
 
 def checked_guess(
-    given: Any, structure: Structure, frequency: float, period: int
+    guess: Any, structure: Structure, frequency: float, period: int
 ) -> FirstGuess | None:
     """Return the user's guess as plain numbers, None if not given; raise if its form is unknown.
 
@@ -193,16 +206,16 @@ def checked_guess(
         Where it is none of them.
     """
     expected = "expected a state, impact times, or a result of orbit or branch"
-    if given is None:
+    if guess is None:
         return None
-    if not isinstance(given, Mapping):
-        return FirstGuess(state=checked_state("guess", given, structure))
-    if "node_kind" in given:
-        return guess_from_result(given)
-    if "impact_time" not in given:
+    if not isinstance(guess, Mapping):
+        return FirstGuess(state=checked_state("guess", guess, structure))
+    if "node_kind" in guess:
+        return guess_from_result(guess)
+    if "impact_time" not in guess:
         raise InputError(f"guess: without impact_time; {expected}")
     times = np.sort(
-        np.asarray(checked_numbers("impact_time", given["impact_time"]), dtype=float).ravel()
+        np.asarray(checked_numbers("impact_time", guess["impact_time"]), dtype=float).ravel()
     )
     phases = frequency * times
     if not (phases[0] >= 0.0 and phases[-1] - phases[0] < 2.0 * np.pi * period):
@@ -211,7 +224,7 @@ def checked_guess(
     return FirstGuess(kinds=(IMPACT,) * len(rows), nodes=rows)
 
 
-def guess_from_result(given: Mapping[Any, Any]) -> FirstGuess:
+def guess_from_result(result: Mapping[Any, Any]) -> FirstGuess:
     """Return the guess that repeats an orbit from a dataset of ``orbit`` or ``branch``.
 
     Raises
@@ -219,11 +232,11 @@ def guess_from_result(given: Mapping[Any, Any]) -> FirstGuess:
     InputError
         Where it holds several.
     """
-    kinds = np.asarray(given["node_kind"])
+    kinds = np.asarray(result["node_kind"])
     if kinds.ndim != 1:
         raise InputError("guess: several orbits; expected one, such as branch.isel(point=0)")
     there = kinds >= 0
-    columns = [np.asarray(given[name])[there] for name in NODE]
+    columns = [np.asarray(result[name])[there] for name in NODE]
     rows = tuple(tuple(map(float, row)) for row in np.stack(columns, axis=1))
     return FirstGuess(kinds=tuple(map(int, kinds[there])), nodes=rows)
 
@@ -232,8 +245,8 @@ def excitation_arguments(
     eta: ArrayLike | None, frequency: ArrayLike | None, amplitude: ArrayLike | None
 ) -> tuple[tuple[str, float], ...]:
     """Return the excitation arguments that are given, as (name, float) pairs."""
-    given = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
-    return tuple((name, float(np.asarray(v))) for name, v in given.items() if v is not None)
+    arguments = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
+    return tuple((name, float(np.asarray(v))) for name, v in arguments.items() if v is not None)
 
 
 def orbit(
@@ -304,9 +317,9 @@ def orbit(
     >>> found.multipliers.sel(part="real").values.round(4)
     array([-3.3595, -0.5903, -0.5903, -0.1421])
     """
-    given = checked_point(structure, eta, frequency, amplitude)
+    point = checked_point(structure, eta, frequency, amplitude)
     require_delaminated(structure)
-    given.excitation.check(structure)
+    point.excitation.check(structure)
     count = checked_integer("period", period, 1, MAX_PERIODS)
     job = OrbitJob(
         name=f"orbit_{structure.label()}_{count}T",
@@ -314,7 +327,7 @@ def orbit(
         excitation=excitation_arguments(eta, frequency, amplitude),
         box_acceleration=finite_number("box_acceleration", box_acceleration),
         period=count,
-        guess=checked_guess(guess, structure, given.excitation.frequency, count),
+        guess=checked_guess(guess, structure, point.excitation.frequency, count),
         transient=checked_integer("transient", transient, 0),
         search=checked_integer("search", search, count + 1),
         tries=checked_integer("tries", tries, 1),
@@ -322,7 +335,7 @@ def orbit(
     return answer(job, running, finder(running))
 
 
-def finite_number(name: str, given: ArrayLike) -> float:
+def finite_number(name: str, argument: ArrayLike) -> float:
     """Return one finite number as float; raise ``InputError`` if it is a list or no number.
 
     Raises
@@ -330,7 +343,7 @@ def finite_number(name: str, given: ArrayLike) -> float:
     InputError
         Where it is none.
     """
-    value = checked_numbers(name, given)
+    value = checked_numbers(name, argument)
     if not isinstance(value, float):
-        raise InputError(f"{name} = {given!r}: expected one number")
+        raise InputError(f"{name} = {argument!r}: expected one number")
     return value

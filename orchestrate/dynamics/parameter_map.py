@@ -190,7 +190,9 @@ class MapJob(Question):
 
 
 @lru_cache(maxsize=4)
-def map_points(structure: Structure, given: tuple[tuple[str, Numbers], ...]) -> tuple[Point, ...]:
+def map_points(
+    structure: Structure, arguments: tuple[tuple[str, Numbers], ...]
+) -> tuple[Point, ...]:
     """Return structure and excitation of each grid point, row by row; raise if not two lists.
 
     Raises
@@ -198,9 +200,9 @@ def map_points(structure: Structure, given: tuple[tuple[str, Numbers], ...]) -> 
     InputError
         Where there are not two lists, the excitation is incomplete, or a number is out of range.
     """
-    values = dict(given)
+    values = dict(arguments)
     check_excitation_form(values.keys() & EXCITATION_PARAMETERS.keys())
-    lists = {name: value for name, value in given if isinstance(value, tuple)}
+    lists = {name: value for name, value in arguments if isinstance(value, tuple)}
     if len(lists) != 2:
         names = ", ".join(lists) or "none"
         raise InputError(f"lists of values: {names}; expected two of the parameters as lists")

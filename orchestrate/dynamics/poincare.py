@@ -16,12 +16,18 @@ from ..checks import checked_integer, checked_word
 from ..constants import TURN
 from ..errors import InputError
 from ..response.labels import variable, yes_or_no
-from ..response.questions import Point, Question, checked_numbers, checked_point, checked_state
+from ..response.questions import (
+    OneMotionQuestion,
+    Point,
+    checked_numbers,
+    checked_point,
+    checked_state,
+)
 from ..response.simulate import IN_TIME
 from ..running.job import Inputs, Table
 from ..running.runner import answer
-from ..structures import Excitation, Structure
-from .following import Followed, state_after
+from ..structures import Structure
+from .following import FollowedResponse, state_after
 from .variational import contact_durations_after, nondimensional_impacts
 
 if TYPE_CHECKING:
@@ -40,12 +46,11 @@ Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
-class PoincareJob(Question):
+class PoincareJob(OneMotionQuestion):
     """Job of :func:`orchestrate.poincare`: the Poincaré section of one motion.
 
     Attributes
     ----------
-    excitation : Excitation
     at : str
         Of ``SECTIONS``.
     phase : float
@@ -56,7 +61,6 @@ class PoincareJob(Question):
         x1, x2 in m, v1, v2 in m/s at phase 0.
     """
 
-    excitation: Excitation
     at: str = "phase"
     phase: float = 0.0
     transient: int = 500
@@ -64,21 +68,13 @@ class PoincareJob(Question):
     start: tuple[float, ...] = REST
     asked: ClassVar[str] = "poincare"
 
-    def count(self) -> int:
-        """Return 1: there is one motion."""
-        return 1
-
-    def items(self, inputs: Inputs) -> Sequence[Point]:
-        """Return the items: a list with the structure and its excitation."""
-        return [Point(self.structure, self.excitation)]
-
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
     ) -> Table:
         """Simulate the motion after its transient; return states and times of the section."""
         point, period = items[0], self.excitation.period
         with Instance(fmus[OSCILLATOR]) as plain:
-            start = state_after(plain, Followed(point, self.start), self.transient)
+            start = state_after(plain, FollowedResponse(point, self.start), self.transient)
             if self.at == "phase":
                 times = self.phase / self.excitation.frequency + period * np.arange(
                     float(self.periods)

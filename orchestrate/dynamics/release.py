@@ -38,7 +38,7 @@ def contact_durations(
         return np.zeros(0)
 
     def force(time: Floats, *begin: Floats) -> Floats:
-        """Return the contact force (18) some time after permanent contact has begun."""
+        """Return the contact force (18) a time after permanent contact has begun."""
         return form.force(*form.common_motion(time, *begin))
 
     periods = form.fastest * float(spans.max()) / (2.0 * math.pi)

@@ -161,18 +161,18 @@ class ScaledStates:
         return period, float(distances[period])
 
 
-def same_nodes(one: PeriodicOrbit, other: PeriodicOrbit) -> bool:
+def same_nodes(first: PeriodicOrbit, second: PeriodicOrbit) -> bool:
     """Return whether two orbits have the same nodes, up to a shift by whole periods."""
-    kinds, others = np.array(one.sequence.kinds), np.array(other.sequence.kinds)
-    if len(kinds) != len(others):
+    kinds, second_kinds = np.array(first.sequence.kinds), np.array(second.sequence.kinds)
+    if len(kinds) != len(second_kinds):
         return False
     if not len(kinds):
         return True
-    size = float(np.abs([one.nodes[:, 1:], other.nodes[:, 1:]]).max()) or 1.0
+    size = float(np.abs([first.nodes[:, 1:], second.nodes[:, 1:]]).max()) or 1.0
     for shift in range(len(kinds)):
-        if (np.roll(others, -shift) != kinds).any():
+        if (np.roll(second_kinds, -shift) != kinds).any():
             continue
-        away = np.roll(other.nodes, -shift, axis=0) - one.nodes
+        away = np.roll(second.nodes, -shift, axis=0) - first.nodes
         away[:, PHASE] -= TURN * np.round(away[:, PHASE] / TURN)
         away[:, 1:] /= size
         if np.abs(away).max() < SAME_NODES:

@@ -1,4 +1,4 @@
-"""Trace branches by continuation: steps, test functions, bifurcations by Brent, reasons to end.
+"""Continuation loop that traces a branch: steps, bifurcations located by test functions, end.
 
 Every branch is traced by the same loop (:meth:`BranchTracer.trace`), whatever its equations are:
 periodic orbits (:mod:`.orbit_tracer`), bifurcations over two parameters (:mod:`.borders`), motions

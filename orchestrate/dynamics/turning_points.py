@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,8 +46,8 @@ def sample_grid(orbit: PeriodicOrbit) -> tuple[NDArray[np.int_], Floats]:
         SAMPLES_PER_PERIOD * np.abs(orbit.durations) * orbit.form.fastest / TURN
     ).astype(int)
     segment = np.repeat(np.arange(len(counts)), counts)
-    place = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
-    part = (place + 0.5) / counts[segment]
+    number_in_segment = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
+    part = (number_in_segment + 0.5) / counts[segment]
     if not orbit.count:  # a segment that closes: once around, and to the first sample again
         segment, part = np.append(segment, 0), np.append(part, part[0] + 1.0)
     return segment, orbit.begins[segment] + part * (orbit.ends - orbit.begins)[segment]
@@ -63,12 +64,39 @@ def turning_points(orbit: PeriodicOrbit) -> TurningPoints:
     low, high, segment = phase[which], phase[which + 1], segment[which]
     first, last = rates[which, quantity], rates[which + 1, quantity]
     phases = low + (high - low) * first / (first - last)
-    for _ in range(REFINEMENTS):
-        rate, curvature, _ = quantity_derivatives(orbit, segment, quantity, phases)
-        step = np.divide(rate, curvature, out=np.zeros_like(rate), where=curvature != 0.0)
-        phases = np.clip(phases - orbit.form.eta * step, low, high)
+
+    def rate_and_slope(phase: Floats) -> tuple[Floats, Floats]:
+        return quantity_derivatives(orbit, segment, quantity, phase)[:2]
+
+    phases = refine_zeros(rate_and_slope, phases, (low, high), orbit.form.eta)
     _, curvature, value = quantity_derivatives(orbit, segment, quantity, phases)
     return TurningPoints(segment, quantity, phases, value, curvature)
+
+
+def refine_zeros(
+    rate_and_slope: Callable[[Floats], tuple[Floats, Floats]],
+    phases: Floats,
+    brackets: tuple[Floats, Floats],
+    eta: float,
+) -> Floats:
+    """Refine phases, rad, of zeros of rates by Newton's method within their brackets.
+
+    Parameters
+    ----------
+    rate_and_slope : callable
+        From phases to values and derivatives by tau.
+    phases : ndarray, shape (n,)
+        First estimates.
+    brackets : (ndarray, ndarray)
+        Lowest and highest phase of each.
+    eta : float
+        Phase per unit of tau.
+    """
+    for _ in range(REFINEMENTS):
+        rate, slope = rate_and_slope(phases)
+        step = np.divide(rate, slope, out=np.zeros_like(rate), where=slope != 0.0)
+        phases = np.clip(phases - eta * step, *brackets)
+    return phases
 
 
 def quantity_derivatives(
@@ -149,11 +177,11 @@ def weakest_force(orbit: PeriodicOrbit) -> tuple[float, int, float]:
     if not turned.any():
         return np.inf, -1, 0.0
     low, high, segment = phase[:-1][turned], phase[1:][turned], segment[1:][turned]
-    phases = 0.5 * (low + high)
-    for _ in range(REFINEMENTS):
-        _, rate, curvature = pressing_force(orbit, segment, phases)
-        step = np.divide(rate, curvature, out=np.zeros_like(rate), where=curvature != 0.0)
-        phases = np.clip(phases - orbit.form.eta * step, low, high)
+
+    def rate_and_slope(phase: Floats) -> tuple[Floats, Floats]:
+        return pressing_force(orbit, segment, phase)[1:]
+
+    phases = refine_zeros(rate_and_slope, 0.5 * (low + high), (low, high), orbit.form.eta)
     forces = pressing_force(orbit, segment, phases)[0]
     lowest = forces.argmin()
     return float(forces[lowest]), int(segment[lowest]), float(phases[lowest])

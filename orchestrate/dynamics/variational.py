@@ -121,7 +121,7 @@ def monodromy(impacts: Impacts, point: Point, periods: int = 1) -> Floats:
 
 
 def nondimensional_impacts(impacts: Impacts, point: Point) -> Impacts:
-    """Return impacts (SI) in the paper's units: tau, states from the faces, speeds."""
+    """Convert impacts from SI to the paper's units, displacements to those of the faces."""
     return Impacts(
         point.structure.omega * impacts.time,
         point.faces(impacts.state),

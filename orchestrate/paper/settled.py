@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from ..access import OSCILLATOR, Instance
-from ..dynamics.clusters import AttractorSettings, features, run_until_settled
-from ..dynamics.following import Followed, OnwardQuestion
+from ..dynamics.clusters import AttractorSettings, response_features, run_until_settled
+from ..dynamics.following import FollowedResponse, OnwardQuestion
 from ..response.labels import column_variables, nondimensional_state_coordinate, variable, yes_or_no
 from ..response.respond import count_impacts
 from ..running.job import Inputs, Table
@@ -44,7 +44,7 @@ class SettledJob(OnwardQuestion):
     chunk_size: ClassVar[int] = 20
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Followed], previous: Table | None
+        self, fmus: Mapping[str, Path], items: Sequence[FollowedResponse], previous: Table | None
     ) -> Table:
         """Compute some responses."""
         rows, ends, contacts = [], [], []
@@ -53,7 +53,7 @@ class SettledJob(OnwardQuestion):
                 response, periods = run_until_settled(
                     instance, item.point, item.start, self.settings
                 )
-                n, impacts, gap = features(response, item.point.length)[:3]
+                n, impacts, gap = response_features(response, item.point.length)[:3]
                 if n:  # over the response's own period
                     impacts = count_impacts(instance, item.point, response.end, int(n)) / n
                 rows.append([n, impacts, gap, periods])

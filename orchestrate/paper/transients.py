@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from ..access import OSCILLATOR, Instance
-from ..dynamics.following import Followed, OnwardQuestion
+from ..dynamics.following import FollowedResponse, OnwardQuestion
 from ..response.labels import column_variables
 from ..response.respond import respond
 from ..running.job import Inputs, Table
@@ -47,7 +47,7 @@ class LaterJob(OnwardQuestion):
     chunk_size: ClassVar[int] = 20
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Followed], previous: Table | None
+        self, fmus: Mapping[str, Path], items: Sequence[FollowedResponse], previous: Table | None
     ) -> Table:
         """Compute some responses."""
         rows = []

@@ -1,4 +1,4 @@
-"""Equations of motion (6): accelerations of both masses from states, free or in contact as one.
+"""Accelerations of both masses from their states by the equations of motion (6).
 
 Springs, dampers and the other mass make a mass's absolute acceleration. That relative to the box is
 the same minus the box's acceleration, which adds ``a Omega^2 sin(phase)``.

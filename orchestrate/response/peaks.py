@@ -1,4 +1,4 @@
-"""Largest displacements and accelerations between samples, by cubic (Hermite) interpolation.
+"""Largest displacements and accelerations of responses, interpolated between samples (Hermite).
 
 Between two samples without an impact, displacement and velocity, acceleration and its rate are
 known at both ends by the equations of motion: the extremum between them is one of a cubic. An

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, ClassVar, NamedTuple
@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..access import REST, gap_between
 from ..checks import MAX_COUNT
 from ..errors import InputError
-from ..running.job import Job, brief
+from ..running.job import Inputs, Job, brief
 from ..structures import PARAMETERS, Excitation, Structure
 from ..structures.ranges import EXCITATION, LEVEL, RATIO_QUANTITIES, expected_one_of
 from .labels import Variable, parameter_variable, variable
@@ -396,6 +396,26 @@ class Question(Job, ABC):
             if arguments[name] not in (None, "")
         ]
         return f"{self.asked}({', '.join(texts)})"
+
+
+@dataclass(frozen=True, kw_only=True)
+class OneMotionQuestion(Question, ABC):
+    """Base of jobs that simulate one motion, under one excitation.
+
+    Attributes
+    ----------
+    excitation : Excitation
+    """
+
+    excitation: Excitation
+
+    def count(self) -> int:
+        """Return 1: there is one motion."""
+        return 1
+
+    def items(self, inputs: Inputs) -> Sequence[Point]:
+        """Return the items: a list with the structure under its excitation."""
+        return [Point(self.structure, self.excitation)]
 
 
 @dataclass(frozen=True, kw_only=True)

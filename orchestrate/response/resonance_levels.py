@@ -119,9 +119,9 @@ class ResonanceLevelsJob(Question):
             )
             for name in RAGGED
         ]
-        found = xr.merge([joined, *ragged], combine_attrs="drop_conflicts")
-        found.attrs["title"] = f"Resonance curves over the level: {self.structure.label()}"
-        return found
+        result = xr.merge([joined, *ragged], combine_attrs="drop_conflicts")
+        result.attrs["title"] = f"Resonance curves over the level: {self.structure.label()}"
+        return result
 
     def rows_of_level(self, index: int, curve: xr.Dataset, name: str) -> xr.Dataset:
         """Return the peaks or jumps of one level's curves, with a variable of the level."""
@@ -206,9 +206,9 @@ def varies_with_level(values: xr.DataArray) -> bool:
     return "structure" in values.dims
 
 
-def checked_distinct_numbers(name: str, given: Any) -> tuple[float, ...]:
+def checked_distinct_numbers(name: str, argument: Any) -> tuple[float, ...]:
     """Return one or more numbers as a tuple; raise ``InputError`` if one is repeated."""
-    values = checked_numbers(name, given)
+    values = checked_numbers(name, argument)
     listed = values if isinstance(values, tuple) else (values,)
     if values is None or len(set(listed)) < len(listed):
         raise InputError(f"{name}: expected numbers, each once")

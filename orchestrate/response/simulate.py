@@ -14,10 +14,10 @@ from ..access import NO_INPUT, OSCILLATOR, REST, EventInstance, Impacts, begin, 
 from ..checks import checked_integer
 from ..running.job import Inputs, Table
 from ..running.runner import answer
-from ..structures import Excitation, Structure
+from ..structures import Structure
 from .equations import absolute_accelerations
 from .labels import Variable, variable, yes_or_no
-from .questions import Point, Question, checked_point, checked_state
+from .questions import OneMotionQuestion, Point, checked_point, checked_state
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -44,23 +44,14 @@ IN_TIME = {  # units, long name
 
 
 @dataclass(frozen=True, kw_only=True)
-class SimulateJob(Question):
+class SimulateJob(OneMotionQuestion):
     """Job of :func:`orchestrate.simulate`: one motion in time."""
 
-    excitation: Excitation
     periods: int = 20
     transient: int = 0
     points: int = 200
     start: tuple[float, ...] = REST
     asked: ClassVar[str] = "simulate"
-
-    def count(self) -> int:
-        """Return 1: there is one motion."""
-        return 1
-
-    def items(self, inputs: Inputs) -> Sequence[Point]:
-        """Return the items: a list with the structure and its excitation."""
-        return [Point(self.structure, self.excitation)]
 
     def grid(self) -> NDArray[np.float64]:
         """Return the equally spaced times, s, at which the motion is sampled."""

@@ -1,4 +1,4 @@
-"""Amplitude spectra of the masses' absolute accelerations, with impulses: job and function.
+"""Amplitude spectra of the masses' absolute accelerations: ``orchestrate.spectra``.
 
 An impulse is no part of sampled accelerations, whatever the rate. It is in the displacement, which
 is continuous and has a kink there: the spectrum of the acceleration as a distribution is the square

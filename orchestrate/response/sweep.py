@@ -1,4 +1,4 @@
-"""Sweep (orbit diagram): its job and its result's variables, which are a CSV's columns too."""
+"""Sweeps (orbit diagrams), ``orchestrate.sweep``: the job and the columns of its result and CSV."""
 
 from __future__ import annotations
 
@@ -157,7 +157,7 @@ class SweepJob(SeriesQuestion):
         return ordered if self.direction == "both" else ordered[0]
 
     def variables(self, table: Table) -> dict[str, Variable]:
-        """Return the result's variables (the CSV columns) from the table of responses."""
+        """Return the result's variables, which become the CSV columns, from response rows."""
         along: Dims = (self.series.name,)
         if self.direction == "both":
             along = ("direction", self.series.name)

@@ -53,16 +53,16 @@ def threshold_amplitudes(structure: Structure, frequency: Floats) -> Floats:
     if structure.bonded:
         return np.full_like(eta, np.inf)
     # what the accelerations of both masses alone differ by, for a common motion e^{i eta tau}
-    differs = (square[0] - square[1]) + 1j * eta * (twice[0] - twice[1])
+    difference = (square[0] - square[1]) + 1j * eta * (twice[0] - twice[1])
     one, two, both = ((square[i] - eta**2) + 1j * eta * twice[i] for i in range(3))
     if structure.gap_offset < 0.0:
-        held, response = -structure.gap_offset * square[1] / square[2], differs * eta**2 / both
+        limit, response = -structure.gap_offset * square[1] / square[2], difference * eta**2 / both
     else:
-        held, response = structure.gap_offset, differs * eta**2 / (one * two)
-    if held == 0.0:
+        limit, response = structure.gap_offset, difference * eta**2 / (one * two)
+    if limit == 0.0:
         return np.zeros_like(eta)
     with np.errstate(divide="ignore"):
-        amplitudes: Floats = held / np.abs(response)
+        amplitudes: Floats = limit / np.abs(response)
     return amplitudes
 
 
@@ -79,11 +79,11 @@ def threshold_variables(structure: Structure, along: str, frequency: Floats) -> 
             f"peak acceleration of the box {where}",
         ),
     }
-    made = {name: variable(along, *about) for name, about in levels.items()}
-    made |= lowest_variables(structure, np.asarray(frequency, dtype=float), amplitudes)
+    variables = {name: variable(along, *attributes) for name, attributes in levels.items()}
+    variables |= lowest_variables(structure, np.asarray(frequency, dtype=float), amplitudes)
     return {
-        name: (dims, values, {**about, "event": event})
-        for name, (dims, values, about) in made.items()
+        name: (dims, values, {**attributes, "event": event})
+        for name, (dims, values, attributes) in variables.items()
     }
 
 
@@ -94,12 +94,12 @@ def lowest_variables(
     low, high = float(frequency.min()), float(frequency.max())
     if not (low < high and np.isfinite(amplitudes).all() and (amplitudes > 0.0).all()):
         return {}
-    place, level = lowest_threshold(structure, low, high)
+    frequency_at_lowest, level = lowest_threshold(structure, low, high)
     where = f"at which the structure first {threshold_event(structure)}"
     return {
         "lowest_threshold": variable((), level, "m/s2", f"lowest peak acceleration {where}"),
         "lowest_threshold_frequency": variable(
-            (), place, "rad/s", f"frequency of the lowest peak acceleration {where}"
+            (), frequency_at_lowest, "rad/s", f"frequency of the lowest peak acceleration {where}"
         ),
     }
 
@@ -138,13 +138,13 @@ def lowest_threshold(structure: Structure, low: float, high: float) -> tuple[flo
     best = (float(values.min()), float(grid[values.argmin()]))
     inside = np.flatnonzero((values[1:-1] <= values[:-2]) & (values[1:-1] <= values[2:])) + 1
     for middle, before, after in zip(grid[inside], grid[inside - 1], grid[inside + 1], strict=True):
-        found = minimize_scalar(  # by the distance, whose rounding is that of a narrow valley
+        minimum = minimize_scalar(  # by the distance, whose rounding is that of a narrow valley
             lambda distance, middle=middle: level(middle + distance),
             bounds=(before - middle, after - middle),
             method="bounded",
             options={"xatol": ACCURACY * middle},
         )
-        best = min(best, (float(found.fun), float(middle + found.x)))
+        best = min(best, (float(minimum.fun), float(middle + minimum.x)))
     return best[1], best[0]
 
 
@@ -208,14 +208,16 @@ def contact_threshold(
 
     if checked_structure(structure).bonded:
         raise InputError(REQUIRES_DELAMINATED)
-    asked = {
+    checked = {
         "eta": checked_numbers("eta", eta),
         "frequency": checked_numbers("frequency", frequency),
     }
-    given = {name: values for name, values in asked.items() if values is not None}
-    if len(given) != 1:
-        raise InputError(f"{' and '.join(given) or 'nothing'} given; expected eta= or frequency=")
-    ((name, values),) = given.items()
+    arguments = {name: values for name, values in checked.items() if values is not None}
+    if len(arguments) != 1:
+        raise InputError(
+            f"{' and '.join(arguments) or 'nothing'} given; expected eta= or frequency="
+        )
+    ((name, values),) = arguments.items()
     column = np.atleast_1d(np.asarray(values, dtype=float))
     speeds = column * structure.omega if name == "eta" else column
     other = {"eta": speeds / structure.omega, "frequency": speeds, name: column}

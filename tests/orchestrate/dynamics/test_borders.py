@@ -114,8 +114,8 @@ def test_one_direction_does_not_depend_on_the_other(monkeypatch):
     at, limits = number("Neimark-Sacker"), [(3.0, 4.0), (0.65, 0.75)]
     job = border(PAPER, start=window(), bifurcation=at, limits=limits)
     curve, start = borders.first_root(job)
-    alone = borders.trace(job, curve, start)
-    borders.trace(job, curve, start.reversed())
-    after_the_other = borders.trace(job, curve, start)
+    alone = borders.trace_curve(job, curve, start)
+    borders.trace_curve(job, curve, start.reversed())
+    after_the_other = borders.trace_curve(job, curve, start)
     for first, second in zip(alone.points, after_the_other.points, strict=True):
         assert first.unknowns.tobytes() == second.unknowns.tobytes()

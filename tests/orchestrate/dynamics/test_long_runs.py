@@ -65,7 +65,7 @@ def test_what_a_run_is_told_by_its_parts(monkeypatch, means, outcome, value, fol
     def parts_of(instance, point, start, periods, parts):
         return [Exponent(next(left) + next(noise), 1e-3) for _ in range(parts)], start
 
-    monkeypatch.setattr(long_runs, "follow_parts", parts_of)
+    monkeypatch.setattr(long_runs, "exponents_of_parts", parts_of)
     found = run_until_steady(None, POINT, REST, 1000, 10, 3)
     assert found.outcome == outcome and found.periods == 1000 * followed
     assert found.exponent.value == pytest.approx(value, abs=2e-3)

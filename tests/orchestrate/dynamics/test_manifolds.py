@@ -199,7 +199,7 @@ def test_images_of_its_points_lie_on_it():
 
 def job_fields():
     start = orchestrate.orbit(PAPER, eta=3.0, **QUIET)
-    found = manifolds.from_result(start)
+    found = manifolds.guess_from_result(start)
     numbers = {"length": 2.0, "spacing": 0.005, "angle": 0.2, "distance": 1e-5, "most": 100}
     names = {"name": "manifold", "structure": PAPER, "excitation": (("eta", 3.0),)}
     return {**names, "box_acceleration": 0.0, "start": found, "period": 1, **numbers}
