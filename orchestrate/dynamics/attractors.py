@@ -53,8 +53,8 @@ SIZE_PERIODS, SAMPLES_PER_PERIOD = 8, 64  # of the response from rest, to measur
 AROUND, BEYOND = 0.7, 3.0  # of its largest displacement, of its largest gap: the second box
 
 
-class Start(NamedTuple):
-    """A random start: its index, the parameter's point, the size of the box it is drawn from.
+class RandomStart(NamedTuple):
+    """A random start to run: parameter value, its index, the size of the box to draw it from.
 
     Attributes
     ----------
@@ -113,19 +113,19 @@ class AttractorsJob(SeriesQuestion):
         """Return the number of items: all starts at all values, and one that groups them."""
         return self.starts * super().count() + 1
 
-    def items(self, inputs: Inputs) -> Sequence[Start | None]:
+    def items(self, inputs: Inputs) -> Sequence[RandomStart | None]:
         """Return the items: each start at each value, then None, which stands for grouping."""
         points = self.series.points
-        scales = self.scales(inputs)
+        scales = self.half_widths(inputs)
         starts = [
-            Start(value_index, point, scales[value_index], number)
+            RandomStart(value_index, point, scales[value_index], number)
             for value_index, point in enumerate(points)
             for number in range(self.starts)
         ]
         return [*starts, None]
 
-    def scales(self, inputs: Inputs) -> Sequence[float | None]:
-        """Return, by value, the half width of the box of starts, m; None: size of the response."""
+    def half_widths(self, inputs: Inputs) -> Sequence[float | None]:
+        """Return the half width, m, of the box of starts at each value; None: from the response."""
         series = self.series
         if self.follows:
             along = {series.name: list(series.values)}
@@ -143,7 +143,7 @@ class AttractorsJob(SeriesQuestion):
         return "attractors carried to neighbours" if first == self.count() - 1 else ""
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Start | None], previous: Table | None
+        self, fmus: Mapping[str, Path], items: Sequence[RandomStart | None], previous: Table | None
     ) -> Table:
         """Run starts until they settle, a row each; at the last item group them to attractors."""
         starts = [item for item in items if item is not None]
@@ -160,7 +160,7 @@ class AttractorsJob(SeriesQuestion):
             return rows.table()
 
     def draw_starts(
-        self, instance: Instance, value_index: int, group: Sequence[Start]
+        self, instance: Instance, value_index: int, group: Sequence[RandomStart]
     ) -> Iterator[NDArray[np.float64]]:
         """Yield the random start states of a group of starts at one parameter value."""
         point, scale = group[0].point, group[0].scale
@@ -178,7 +178,7 @@ class AttractorsJob(SeriesQuestion):
     def gather_attractors(
         self, instances: tuple[Instance, EventInstance | None], table: Table
     ) -> Table:
-        """Group all starts' settled motions to attractors, matched along the parameter."""
+        """Group all starts' settled motions into attractors, matched along the parameter."""
         series, order = self.series, self.order()
         shape = len(series.points), self.starts
         features = table["features"].reshape(*shape, len(FEATURES))

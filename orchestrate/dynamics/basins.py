@@ -111,14 +111,16 @@ class Plane(NamedTuple):
         columns |= {name: values for name, values in given.items() if name in STATE}
         for name, (one, two) in GAPS.items():
             if name in given:
-                columns[one], columns[two] = mass_values(given, name, columns[one], columns[two])
+                columns[one], columns[two] = masses_from_gap(
+                    given, name, columns[one], columns[two]
+                )
         return np.column_stack([columns[name] for name in STATE]), phase
 
 
-def mass_values(
+def masses_from_gap(
     coordinates: Mapping[str, Floats], name: str, value1: Floats, value2: Floats
 ) -> tuple[Floats, Floats]:
-    """Return both masses' coordinates for a given gap, from one mass's value or their mean."""
+    """Return both masses' coordinates from a gap, keeping one mass's value or their mean."""
     first, second = GAPS[name]
     if first in coordinates:
         return value1, value1 + coordinates[name]
@@ -128,7 +130,7 @@ def mass_values(
     return middle - half, middle + half
 
 
-class Start(NamedTuple):
+class PlaneStart(NamedTuple):
     """A start on the plane: point, state (m and m/s), and the box's phase (rad)."""
 
     point: Point
@@ -170,15 +172,15 @@ class BasinJob(Question):
         """Return the number of items: all starts of the plane, and one that groups them."""
         return self.x.number * self.y.number + 1
 
-    def items(self, inputs: Inputs) -> Sequence[Start | Point]:
+    def items(self, inputs: Inputs) -> Sequence[PlaneStart | Point]:
         """Return the items: every start, then the point, which stands for grouping."""
         plane = self.plane(inputs)
         states, phases = plane.starts()
         rows = zip(map(tuple, states.tolist()), phases.tolist(), strict=True)
-        return [*(Start(plane.point, *row) for row in rows), plane.point]
+        return [*(PlaneStart(plane.point, *row) for row in rows), plane.point]
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Start | Point], previous: Table | None
+        self, fmus: Mapping[str, Path], items: Sequence[PlaneStart | Point], previous: Table | None
     ) -> Table:
         """Run starts until they settle (overlapping masses: absent), or group them at the end."""
         with InstancePair(fmus[OSCILLATOR]) as instances:
@@ -187,7 +189,7 @@ class BasinJob(Question):
                 return self.gather_attractors(instances, items[0], previous)
             rows, decider = SettledRows(), None
             for item in items:
-                assert isinstance(item, Start)
+                assert isinstance(item, PlaneStart)
                 decider = decider or MotionDecider(*instances, item.point, self.settings)
                 offset = item.point.structure.gap_offset
                 if gap_between(np.array(item.state), offset) < 0.0:
@@ -199,7 +201,7 @@ class BasinJob(Question):
     def gather_attractors(
         self, instances: tuple[Instance, EventInstance | None], point: Point, table: Table
     ) -> Table:
-        """Group all starts' settled motions to attractors; return arrays with labels of starts."""
+        """Group all starts' settled motions into attractors; return arrays with starts' labels."""
         there = table["decided"] != ABSENT
         names = "features", "end", "decided"
         starts = SettledStarts(*(table[name][there] for name in names))
@@ -233,7 +235,7 @@ class BasinJob(Question):
         return xr.Dataset(variables, coordinates, {"title": title})
 
 
-def run_to_phase_zero(instance: Instance, start: Start) -> tuple[float, ...]:
+def run_to_phase_zero(instance: Instance, start: PlaneStart) -> tuple[float, ...]:
     """Simulate from a start until the box is at phase 0; return the state there."""
     left = -start.phase % (2.0 * math.pi)
     if left == 0.0:

@@ -20,7 +20,13 @@ from ..running.runner import answer
 from ..structures import Structure
 from .bifurcation_curve import BifurcationCurve, BifurcationTracer
 from .bifurcations import KINDS, TORUS
-from .branches import NODES, check_inside, check_start, complete_excitation, start_nodes
+from .branches import (
+    NODES,
+    complete_excitation,
+    require_inside_limits,
+    require_orbit_dataset,
+    start_nodes,
+)
 from .closed_form import Floats
 from .codimension_two import POINT_KINDS, locate_points
 from .continuation import NoConvergenceError, Root, newton_correct, unit_vector
@@ -86,7 +92,7 @@ class BorderJob(OneItemQuestion):
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Trace the bifurcation curve over both parameters; return its points as a table."""
-        curve, root = first_root(self)
+        curve, root = start_root(self)
         back, forth = (trace_curve(self, curve, start) for start in (root.reversed(), root))
         roots = [*reversed(back.points[1:]), *forth.points]
         points = locate_points(curve, roots, (back.end, forth.end))
@@ -118,11 +124,11 @@ class BorderJob(OneItemQuestion):
         data = {**orbit_variables(setting, table, "point"), **names}
         text = "angle of the multipliers on the unit circle"
         data["angle"] = variable("point", table["angle"], "rad", text)
-        data |= point_variables(setting, located)
+        data |= codimension_two_variables(setting, located)
         return xr.Dataset(data, attrs=attributes).set_coords(list(names))
 
 
-def point_variables(setting: Setting, table: Table) -> dict[str, Variable]:
+def codimension_two_variables(setting: Setting, table: Table) -> dict[str, Variable]:
     """Return dataset variables of the points of codimension two: kind, position, orbit."""
     kinds = flags(POINT, table[f"{POINT}_kind"], "what happens as well", POINT_KINDS)
     text = "position along the curve's points: between two where not whole"
@@ -142,7 +148,7 @@ def point_variables(setting: Setting, table: Table) -> dict[str, Variable]:
     return data
 
 
-def first_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
+def start_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
     """Solve for the bifurcation at which the curve begins; return its equations and the root.
 
     Raises
@@ -250,7 +256,7 @@ def border(
     ('Neimark-Sacker', array([0.69, 0.71]))
     """
     require_delaminated(checked_structure(structure))
-    check_start(start, several=True)
+    require_orbit_dataset(start, several=True)
     names = tuple(over)
     check_parameters(names)
     if len(names) != 2 or names[0] != start.attrs.get("over"):
@@ -258,7 +264,7 @@ def border(
             f"over = {names!r}: expected two names, the first one that of start, "
             f"{start.attrs.get('over')!r}"
         )
-    pairs = check_both_limits(names, limits)
+    pairs = checked_limit_pairs(names, limits)
     nodes, kind = start_nodes(start, "bifurcation", bifurcation)
     value = float(start["bifurcation_value"].values[bifurcation])
     given = complete_excitation(
@@ -268,9 +274,9 @@ def border(
         pairs[0],
         structure,
     )
-    second = second_value(structure, names[1], given, box_acceleration)
+    second = second_start_value(structure, names[1], given, box_acceleration)
     for name, number, pair in zip(names, (value, second), pairs, strict=True):
-        check_inside(name, number, pair)
+        require_inside_limits(name, number, pair)
     fixed = tuple((name, number) for name, number in given if name not in names)
     setting = Setting(structure, fixed, names, pairs, finite_number(ACCELERATION, box_acceleration))
     for i in range(2):  # what is out of range is said before any work
@@ -289,8 +295,8 @@ def border(
     return answer(job, running, finder(running))
 
 
-def check_both_limits(names: tuple[str, ...], limits: Any) -> tuple[tuple[float, float], ...]:
-    """Return both parameters' limits as pairs (low, high) of floats; raise if invalid."""
+def checked_limit_pairs(names: tuple[str, ...], limits: Any) -> tuple[tuple[float, float], ...]:
+    """Return both parameters' limits as (low, high) of floats; raise if invalid."""
     try:
         rows = [checked_numbers(name, row) for name, row in zip(names, limits, strict=True)]
     except (TypeError, ValueError):
@@ -303,13 +309,13 @@ def check_both_limits(names: tuple[str, ...], limits: Any) -> tuple[tuple[float,
     return tuple((row[0], row[1]) for row in good)
 
 
-def second_value(
+def second_start_value(
     structure: Structure,
     name: str,
     arguments: tuple[tuple[str, float], ...],
     box_acceleration: float,
 ) -> float:
-    """Return the second parameter's start value: from excitation, structure or acceleration."""
+    """Return the second parameter's start value: of excitation, structure or acceleration."""
     if name == ACCELERATION:
         return box_acceleration
     return dict(arguments)[name] if name in dict(arguments) else structure.get(name)

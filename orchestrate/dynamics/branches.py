@@ -153,7 +153,7 @@ def trace_branch(job: BranchJob) -> list[OrbitSegment]:
 
 
 def branch_table(instance: EventInstance, segments: list[OrbitSegment]) -> Table:
-    """Return arrays of a branch's orbits and of its bifurcations, checked by the FMU."""
+    """Return arrays of a branch's orbits and of its bifurcations, each checked by the FMU."""
     points, bifurcations = join_segments(segments)
     ends = [segments[0].end if len(segments) > 1 else "start", segments[-1].end]
     along = orbit_table([record_of_point(instance, point) for point in points])
@@ -286,18 +286,18 @@ def branch(
     check_parameters((over,))
     require_delaminated(checked_structure(structure))
     if start is not None:
-        check_start(start, several=switch is not None)
-    low_high = check_limits(over, limits)
+        require_orbit_dataset(start, several=switch is not None)
+    low_high = checked_limits(over, limits)
     given = complete_excitation(
         start, (over,), excitation_arguments(eta, frequency, amplitude), low_high, structure
     )
     if start is None:
-        start, value = first_orbit(
+        start, value = find_first_orbit(
             structure, over, low_high, given, period, box_acceleration, running
         )
     else:
         value = start_value(start, over, switch, structure)
-    check_inside(over, value, low_high)
+    require_inside_limits(over, value, low_high)
     nodes, kind = start_nodes(start, "switch", switch)
     fixed = tuple((name, number) for name, number in given if name != over)
     setting = Setting(
@@ -319,7 +319,7 @@ def branch(
     return answer(job, running, finder(running))
 
 
-def check_start(start: Any, several: bool) -> None:
+def require_orbit_dataset(start: Any, several: bool) -> None:
     """Raise ``InputError`` unless ``start`` is a dataset of one orbit (or ``several`` allowed).
 
     Several orbits will do where one of their bifurcations is named.
@@ -337,7 +337,7 @@ def check_start(start: Any, several: bool) -> None:
         )
 
 
-def check_limits(over: str, limits: ArrayLike) -> tuple[float, float]:
+def checked_limits(over: str, limits: ArrayLike) -> tuple[float, float]:
     """Return the limits (low, high) as floats; raise unless they are two numbers in order."""
     pair = checked_numbers(over, limits)
     if not isinstance(pair, tuple) or len(pair) != 2 or not pair[0] < pair[1]:
@@ -379,7 +379,7 @@ def complete_excitation(
     return arguments
 
 
-def first_orbit(
+def find_first_orbit(
     structure: Structure,
     over: str,
     limits: tuple[float, float],
@@ -402,14 +402,14 @@ def first_orbit(
         own = structure.get(over)
         value = own if limits[0] <= own <= limits[1] else limits[0]
         structure = structure.replace(**{over: value})
-    check_inside(over, value, limits)
+    require_inside_limits(over, value, limits)
     start = orbit(
         structure, period=period, box_acceleration=box_acceleration, **excitation, **quiet
     )
     return start, value
 
 
-def check_inside(over: str, value: float, limits: tuple[float, float]) -> None:
+def require_inside_limits(over: str, value: float, limits: tuple[float, float]) -> None:
     """Raise ``InputError`` unless the parameter's start value lies between its limits."""
     if not limits[0] <= value <= limits[1]:
         raise InputError(
@@ -420,7 +420,9 @@ def check_inside(over: str, value: float, limits: tuple[float, float]) -> None:
 def start_value(start: xr.Dataset, over: str, switch: int | None, structure: Structure) -> float:
     """Return the parameter's value at the start: of the orbit, or of bifurcation ``switch``."""
     if switch is not None:
-        return float(start["bifurcation_value"].values[check_number(start, "switch", switch)])
+        return float(
+            start["bifurcation_value"].values[checked_bifurcation_index(start, "switch", switch)]
+        )
     if over in start.coords:
         return float(start[over])
     if over == ACCELERATION:
@@ -428,8 +430,8 @@ def start_value(start: xr.Dataset, over: str, switch: int | None, structure: Str
     return structure.get(over)
 
 
-def check_number(start: xr.Dataset, name: str, number: int) -> int:
-    """Return a bifurcation's index, checked to exist in the dataset ``start``."""
+def checked_bifurcation_index(start: xr.Dataset, name: str, number: int) -> int:
+    """Return a bifurcation's index; raise unless the start's dataset has it."""
     count = start.sizes.get(BIFURCATION, 0)
     if not count:
         raise InputError(f"{name} = {number!r}: start has no bifurcations; expected a branch")
@@ -440,6 +442,6 @@ def start_nodes(start: xr.Dataset, name: str, number: int | None) -> tuple[First
     """Return the start orbit's nodes, and the kind of the chosen bifurcation (-1: none)."""
     if number is None:
         return guess_from_result(start), -1
-    at = start.isel({BIFURCATION: check_number(start, name, number)})
+    at = start.isel({BIFURCATION: checked_bifurcation_index(start, name, number)})
     nodes = {name: at[f"{BIFURCATION}_{name}"].values for name in NODES}
     return guess_from_result(nodes), int(at["bifurcation_kind"])

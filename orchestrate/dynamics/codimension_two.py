@@ -109,8 +109,8 @@ class CodimensionTwoPoint:
     residual: float
 
 
-class Characteristic:
-    """Characteristic polynomial of an orbit's monodromy matrix: its roots are the multipliers.
+class CharacteristicPolynomial:
+    """Characteristic polynomial of an orbit's monodromy matrix: roots are multipliers.
 
     Parameters
     ----------
@@ -194,7 +194,7 @@ def points_between(
     length = float(chord @ before.tangent)
     stepper = ArclengthStepper(curve, before, length, length)
     try:
-        known = [characteristic(curve, root.unknowns) for root in (before, after)]
+        known = [characteristic_polynomial(curve, root.unknowns) for root in (before, after)]
     except NoConvergenceError:
         return
     for kind in ON_CURVE.get(curve.kind, ()):
@@ -223,13 +223,18 @@ def points_between(
             yield CodimensionTwoPoint(kind, unknowns, number + position / length, residual)
 
 
-def characteristic(curve: BifurcationCurve, unknowns: Floats) -> Characteristic:
+def characteristic_polynomial(
+    curve: BifurcationCurve, unknowns: Floats
+) -> CharacteristicPolynomial:
     """Return the characteristic polynomial of the orbit in a curve's unknowns."""
-    return Characteristic(curve.orbit(unknowns), curve.scale[: curve.family.size])
+    return CharacteristicPolynomial(curve.orbit(unknowns), curve.scale[: curve.family.size])
 
 
 def test_function_value(
-    curve: BifurcationCurve, root: Root, kind: PointKind, known: Characteristic | None = None
+    curve: BifurcationCurve,
+    root: Root,
+    kind: PointKind,
+    known: CharacteristicPolynomial | None = None,
 ) -> float:
     """Return a kind's test function at a root of the curve: it changes sign at such a point.
 
@@ -250,7 +255,7 @@ def test_function_value(
         return float(root.unknowns[-1] - ANGLES[kind])
     if kind == PointKind.CUSP:
         return cusp_test(curve, root)
-    polynomial = known or characteristic(curve, root.unknowns)
+    polynomial = known or characteristic_polynomial(curve, root.unknowns)
     if kind == PointKind.RESONANCE_1:
         return polynomial.slope(1.0)
     if kind == PointKind.RESONANCE_2:
@@ -288,7 +293,7 @@ def is_point_of_kind(curve: BifurcationCurve, root: Root, kind: PointKind) -> bo
     if kind not in (PointKind.FOLD_TORUS, PointKind.FLIP_TORUS) or curve.kind == TORUS:
         return True
     real = 1.0 if kind == PointKind.FOLD_TORUS else -1.0
-    others = characteristic(curve, root.unknowns).others(real)
+    others = characteristic_polynomial(curve, root.unknowns).others(real)
     pair = others[others.imag > 0.0]
     return bool((np.abs(np.abs(pair) - 1.0) < ON_CIRCLE).any())
 
@@ -330,7 +335,7 @@ def solve_end(
 
     def conditions(unknowns: Floats) -> Floats:
         if resonance:
-            polynomial = characteristic(curve, unknowns)
+            polynomial = characteristic_polynomial(curve, unknowns)
             at = 1.0 if kind == PointKind.RESONANCE_1 else -1.0
             return np.array([polynomial(at).real, polynomial.slope(at)])
         return np.append(curve.condition(unknowns), grazing_test(curve, unknowns, reason))

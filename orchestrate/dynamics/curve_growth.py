@@ -145,7 +145,7 @@ def shrinking_power(history: list[tuple[float, float]]) -> float:
 
 
 class CurveGrower:
-    """Grows a curve from a function s -> point, with steps adapted to distance and bend.
+    """Grows a curve point by point, with steps adapted to the distance and bend of its points.
 
     Parameters
     ----------

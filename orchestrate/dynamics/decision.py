@@ -147,7 +147,7 @@ class MotionDecider:
             motion = SettledMotion(self.point, IRREGULAR, states, 0, impacts, response.x_rel_max)
             return motion, state
         states = response.samples[-n:].copy()
-        impacts = count_impacts(self.plain, self.point, response.end, n) / n
+        impacts = count_impacts_from_pause(self.plain, self.point, response.end, n) / n
         decided = UNDECIDED if unstable else REPEATED
         motion = SettledMotion(self.point, decided, states, n, impacts, response.x_rel_max)
         self.known.append(motion)
@@ -254,7 +254,7 @@ class MotionDecider:
         return guess_from_impacts(impacts, self.point, form, periods), frequency * begun
 
     def continue_orbit(self, motion: SettledMotion) -> SettledMotion | None:
-        """Solve here for the orbit of a neighbouring value; None if not stable here."""
+        """Continue an orbit of a neighbouring value to this one; None if not stable here."""
         if motion.orbit is None or self.eventful is None:
             return None
         orbit = self.solve((motion.orbit.sequence, motion.orbit.nodes))
@@ -321,8 +321,10 @@ def sample_at_another_phase(
     return replace(response, samples=states, x_rel_max=gap)
 
 
-def count_impacts(instance: Instance, point: Point, state: ArrayLike, periods: int) -> int:
-    """Simulate some periods from a state; return the number of impacts.
+def count_impacts_from_pause(
+    instance: Instance, point: Point, state: ArrayLike, periods: int
+) -> int:
+    """Count the impacts of some periods, begun in a pause between impacts.
 
     They are counted from a phase in the middle of a stretch without any, so that none is counted
     twice or left out.

@@ -43,7 +43,7 @@ class FollowedResponse(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class OnwardQuestion(SeriesQuestion, ABC):
+class StartStatesQuestion(SeriesQuestion, ABC):
     """Base of jobs along a parameter whose responses start from given or swept states.
 
     Attributes
@@ -75,7 +75,7 @@ class OnwardQuestion(SeriesQuestion, ABC):
 
 
 @dataclass(frozen=True, kw_only=True)
-class FollowingQuestion(OnwardQuestion, ABC):
+class ImpactsQuestion(StartStatesQuestion, ABC):
     """Base of jobs that evaluate the impacts of responses after a transient.
 
     Attributes
@@ -94,7 +94,7 @@ class FollowingQuestion(OnwardQuestion, ABC):
         rows = []
         with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
             for item in items:
-                start = state_after(plain, item, self.transient)
+                start = state_after_transient(plain, item, self.transient)
                 first = starts_in_contact(eventful, item.point, start)
                 impacts = follow_impacts(eventful, item.point, start, self.periods)
                 last = eventful.flag("in_contact")()
@@ -156,7 +156,7 @@ def start_states(start: ArrayLike | xr.Dataset | None, question: SeriesQuestion)
     return tuple(rows.ravel().tolist())
 
 
-def state_after(instance: Instance, item: FollowedResponse, transient: int) -> State:
+def state_after_transient(instance: Instance, item: FollowedResponse, transient: int) -> State:
     """Simulate ``transient`` periods in the FMU; return the state at phase 0."""
     if not transient:
         return item.start

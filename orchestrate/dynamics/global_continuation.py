@@ -147,7 +147,7 @@ class AttractorsAtValue:
         return len(self.motions) - 1
 
     def continue_from_neighbour(self, motion: SettledMotion) -> tuple[int, int]:
-        """Continue a neighbouring value's attractor here; return its index, by FMU or Newton."""
+        """Continue a neighbour's attractor here; return its index here, and how."""
         state = self.decider.point.from_faces(motion.point.faces(motion.states[0]))
         reached, _ = self.decider.decide(state)
         if motion.orbit is not None and may_be_different_branches(motion, reached):

@@ -17,7 +17,7 @@ from ..response.questions import series_arguments
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .following import FollowedResponse, FollowingQuestion, start_states
+from .following import FollowedResponse, ImpactsQuestion, start_states
 from .lyapunov import Exponent, exact_exponent_without_impacts, largest_exponent
 from .variational import contact_durations_after, period_in_tau
 
@@ -44,7 +44,7 @@ FIELDS = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class ImpactStatisticsJob(FollowingQuestion):
+class ImpactStatisticsJob(ImpactsQuestion):
     """Job of :func:`orchestrate.impact_statistics`: impact statistics along a parameter."""
 
     asked: ClassVar[str] = "impact_statistics"

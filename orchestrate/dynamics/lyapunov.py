@@ -24,7 +24,7 @@ from ..response.questions import Point, checked_positive, series_arguments
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .following import FollowedResponse, FollowingQuestion, start_states
+from .following import FollowedResponse, ImpactsQuestion, start_states
 from .lyapunov_growth import block_growth, growth_by_batch_means
 from .lyapunov_spectrum import (
     STATES,
@@ -147,7 +147,7 @@ def classify_exponents(
 
 
 @dataclass(frozen=True, kw_only=True)
-class LyapunovJob(FollowingQuestion):
+class LyapunovJob(ImpactsQuestion):
     """Job of :func:`orchestrate.lyapunov`: largest Lyapunov exponents along a parameter.
 
     Attributes

@@ -19,7 +19,7 @@ from ..response.questions import checked_positive, checked_structure
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .branches import check_start, complete_excitation
+from .branches import complete_excitation, require_orbit_dataset
 from .closed_form import Floats
 from .continuation import NoConvergenceError, fix_sign
 from .curve_growth import (
@@ -219,7 +219,7 @@ class ManifoldJob(SingleOrbitQuestion):
     def point_function(
         self, instance: Instance, saddle: Saddle, sign: float
     ) -> Callable[[float], CurvePoint]:
-        """Return a function from curve parameter s to a point, by iterating the map in the FMU."""
+        """Return a function s -> point of one side, which iterates the stroboscopic map."""
         point = self.setting.point(self.values)
         time = saddle.periods_per_return * point.excitation.period
         push = self.box_acceleration
@@ -436,7 +436,7 @@ def manifold(
         }
         keywords: dict[str, Any] = {**dict(arguments), **run_options, "period": period}
         start = orbit(structure, box_acceleration=box_acceleration, **keywords)
-    check_start(start, several=False)
+    require_orbit_dataset(start, several=False)
     excitation = complete_excitation(start, ("e",), arguments, (0.0, 0.0), structure)
     job = ManifoldJob(
         name=f"manifold_{structure.label()}",

@@ -40,7 +40,7 @@ from ..running.options import Running, RunOptions
 from ..running.runner import answer
 from ..structures import PARAMETERS, Structure
 from ..structures.ranges import check_flag, expected_one_of
-from ..structures.structure import Varied
+from ..structures.structure import ValueListKeywords
 from .clusters import transient_periods
 from .following import follow_impacts
 from .lyapunov import exact_exponent_without_impacts, largest_exponent
@@ -63,11 +63,11 @@ EXPONENT = {
 }
 
 
-class MapKeywords(Running, Varied, total=False):
+class MapKeywords(Running, ValueListKeywords, total=False):
     """Keywords of :func:`map` beside its own: structure parameters and running options."""
 
 
-class Axis(NamedTuple):
+class MapAxis(NamedTuple):
     """One axis of the map: a parameter's name and its values."""
 
     name: str
@@ -105,9 +105,9 @@ class MapJob(Question):
         return map_points(self.structure, self.given)
 
     @property
-    def axes(self) -> tuple[Axis, ...]:
+    def axes(self) -> tuple[MapAxis, ...]:
         """Return the map's two axes, those parameters whose value is a list."""
-        return tuple(Axis(name, value) for name, value in self.given if isinstance(value, tuple))
+        return tuple(MapAxis(name, value) for name, value in self.given if isinstance(value, tuple))
 
     def parameters(self) -> dict[str, Any]:
         """Return the job's parameters for its identity, map parameters under their own names."""

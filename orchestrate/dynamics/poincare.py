@@ -27,7 +27,7 @@ from ..response.simulate import IN_TIME
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .following import FollowedResponse, state_after
+from .following import FollowedResponse, state_after_transient
 from .variational import contact_durations_after, nondimensional_impacts
 
 if TYPE_CHECKING:
@@ -74,7 +74,9 @@ class PoincareJob(OneMotionQuestion):
         """Simulate the motion after its transient; return states and times of the section."""
         point, period = items[0], self.excitation.period
         with Instance(fmus[OSCILLATOR]) as plain:
-            start = state_after(plain, FollowedResponse(point, self.start), self.transient)
+            start = state_after_transient(
+                plain, FollowedResponse(point, self.start), self.transient
+            )
             if self.at == "phase":
                 times = self.phase / self.excitation.frequency + period * np.arange(
                     float(self.periods)

@@ -73,7 +73,7 @@ def contact_durations_after(impacts: Impacts, ends: Floats, point: Point) -> Flo
 
 
 def impact_matrices(impacts: Impacts, end: float, point: Point) -> Floats:
-    """Return the matrix from just before each impact to just before the next, (n, 4, 4).
+    """Return matrices that map a deviation from each impact to the next, just before both.
 
     Parameters
     ----------

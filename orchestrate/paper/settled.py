@@ -15,7 +15,7 @@ import numpy as np
 
 from ..access import OSCILLATOR, Instance
 from ..dynamics.clusters import AttractorSettings, response_features, run_until_settled
-from ..dynamics.following import FollowedResponse, OnwardQuestion
+from ..dynamics.following import FollowedResponse, StartStatesQuestion
 from ..response.labels import column_variables, nondimensional_state_coordinate, variable, yes_or_no
 from ..response.respond import count_impacts
 from ..running.job import Inputs, Table
@@ -32,7 +32,7 @@ FIELDS = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class SettledJob(OnwardQuestion):
+class SettledJob(StartStatesQuestion):
     """What a sweep's responses settle to.
 
     Attributes

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from ..access import OSCILLATOR, Instance
-from ..dynamics.following import FollowedResponse, OnwardQuestion
+from ..dynamics.following import FollowedResponse, StartStatesQuestion
 from ..response.labels import column_variables
 from ..response.respond import respond
 from ..running.job import Inputs, Table
@@ -30,7 +30,7 @@ NUMBERS = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class LaterJob(OnwardQuestion):
+class LaterJob(StartStatesQuestion):
     """A sweep's responses, some periods later.
 
     Attributes

@@ -16,8 +16,8 @@ FLIGHT, SEQUENCE, CONTACT = 0, 1, 2  # the three states of Figure 5
 KINDS = {FLIGHT: "separate motion", SEQUENCE: "sequence of impacts", CONTACT: "permanent contact"}
 
 
-class Curve(NamedTuple):
-    """A sampled motion with its jumps: times, states, kind of motion; two points at an impact.
+class SampledCurve(NamedTuple):
+    """A sampled motion with its jumps: times, states, kind; two points at an impact.
 
     Attributes
     ----------
@@ -41,7 +41,7 @@ def simulate_curve(
     transient: int,
     periods: int,
     points: int,
-) -> Curve:
+) -> SampledCurve:
     """Simulate a motion after a transient; return samples and both sides of its impacts.
 
     Parameters
@@ -78,7 +78,7 @@ def simulate_curve(
 
 def merge_by_time(
     grid: NDArray[np.float64], states: NDArray[np.float64], impacts: Impacts, point: Point
-) -> Curve:
+) -> SampledCurve:
     """Merge samples and the states just before and after impacts into one curve, by time."""
     count = len(impacts.time)
     time = np.concatenate([grid, impacts.time, impacts.time])
@@ -88,7 +88,7 @@ def merge_by_time(
     state, time = np.concatenate(pieces)[order], time[order]
     kind = classify_points(time, state, impacts, point.structure.gap_offset)
     omega = point.structure.omega
-    return Curve(omega * time - omega * grid[0], state / point.scale, kind)
+    return SampledCurve(omega * time - omega * grid[0], state / point.scale, kind)
 
 
 def classify_points(

@@ -14,8 +14,8 @@ from .respond import Response, follow_responses
 
 
 @dataclass(frozen=True)
-class Peak:
-    """The relative resonance of a response: frequency ratio eta of its largest gap, and state.
+class RelativeResonance:
+    """The relative resonance of a response: frequency ratio eta of its largest gap, state.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ def follow_to_peak(
     transient: int = 500,
     samples: int = 80,
     tolerance: float = 1e-2,
-) -> Peak:
+) -> RelativeResonance:
     """Increase eta until the largest gap of a 1-impact response passes its peak; return that.
 
     Parameters
@@ -69,13 +69,13 @@ def follow_to_peak(
     """
     etas = np.round(eta + step * np.arange(1, round(reach / step)), 9)
     points = make_series(structure, tuple(etas.tolist()), None, None).points
-    peak, largest = Peak(eta, tuple(np.asarray(start, dtype=float).tolist())), 0.0
+    peak, largest = RelativeResonance(eta, tuple(np.asarray(start, dtype=float).tolist())), 0.0
     responses = follow_responses(instance, points, start, transient, samples, tolerance)
     for current_eta, response in zip(etas, responses, strict=True):
         if response.x_rel_max < (1.0 - fall) * largest:
             break
         if response.x_rel_max > largest and is_one_impact_orbit(response, multiplicity):
-            peak, largest = Peak(float(current_eta), response.end), response.x_rel_max
+            peak, largest = RelativeResonance(float(current_eta), response.end), response.x_rel_max
     return peak
 
 

@@ -113,7 +113,7 @@ def test_one_direction_does_not_depend_on_the_other(monkeypatch):
     monkeypatch.setattr(borders, "answer", lambda job, *rest: job)
     at, limits = number("Neimark-Sacker"), [(3.0, 4.0), (0.65, 0.75)]
     job = border(PAPER, start=window(), bifurcation=at, limits=limits)
-    curve, start = borders.first_root(job)
+    curve, start = borders.start_root(job)
     alone = borders.trace_curve(job, curve, start)
     borders.trace_curve(job, curve, start.reversed())
     after_the_other = borders.trace_curve(job, curve, start)

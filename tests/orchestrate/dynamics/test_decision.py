@@ -14,7 +14,11 @@ from orchestrate import orbit
 from orchestrate.access import OSCILLATOR, REST, EventInstance, Instance, find
 from orchestrate.dynamics.attractors import attractors
 from orchestrate.dynamics.clusters import AttractorSettings
-from orchestrate.dynamics.decision import MotionDecider, count_impacts, middle_of_longest_run
+from orchestrate.dynamics.decision import (
+    MotionDecider,
+    count_impacts_from_pause,
+    middle_of_longest_run,
+)
 from orchestrate.dynamics.orbit_search import least_periods
 from orchestrate.dynamics.settled_motion import (
     IRREGULAR,
@@ -105,7 +109,7 @@ def test_impacts_are_whole_numbers_from_whatever_period_one_counts():
     assert motion.multiplicity in (2, 11)
     with Instance(find(OSCILLATOR).path) as instance:
         counts = {
-            count_impacts(instance, motion.point, state, motion.multiplicity)
+            count_impacts_from_pause(instance, motion.point, state, motion.multiplicity)
             for state in motion.states
         }
     assert counts == {round(motion.impacts_per_period * motion.multiplicity)}

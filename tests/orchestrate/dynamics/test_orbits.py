@@ -275,6 +275,8 @@ def test_an_impact_that_grazes_by_rounding_decides_nothing(monkeypatch, part, sa
     """Where a flight just grazes, the FMU has an impact there or none by the last bits."""
     check = orbits.check_orbit_in_fmu
     monkeypatch.setattr(
-        orbits, "check_orbit_in_fmu", lambda instance, *rest: check(OneImpactMore(instance, part), *rest)
+        orbits,
+        "check_orbit_in_fmu",
+        lambda instance, *rest: check(OneImpactMore(instance, part), *rest),
     )
     assert bool(orbit(PAPER, eta=1.5).fmu_same_impacts) == same
