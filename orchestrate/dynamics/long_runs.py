@@ -64,8 +64,8 @@ def parts_agree(values: ArrayLike, errors: ArrayLike, floor: float, batches: int
     Returns
     -------
     bool
-    By an F test of the scatter of the parts against their errors, at the level
-    ``FALSE_ALARM_CHANCE``.
+        By an F test of the scatter of the parts against their errors, at the level
+        ``FALSE_ALARM_CHANCE``.
 
     Examples
     --------
