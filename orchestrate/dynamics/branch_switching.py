@@ -58,7 +58,7 @@ def double_period(point: OrbitPoint) -> OrbitPoint:
 
 
 def with_touching_impact(point: OrbitPoint) -> OrbitPoint:
-    """Return the orbit with the touching of a flight as an impact, and a tangent that closes on."""
+    """Return an orbit with its touching point added as an impact, and the branch's tangent."""
     orbit = point.orbit
     _, segment, phase = nearest_miss(orbit, turning_points(orbit))
     state = orbit.states(np.array([segment]), np.array([phase]))[0]
@@ -76,7 +76,7 @@ def with_touching_impact(point: OrbitPoint) -> OrbitPoint:
 
 
 def without_grazing_impact(point: OrbitPoint) -> OrbitPoint:
-    """Return the orbit without its grazing impact, and a tangent that opens the gap."""
+    """Return an orbit without its grazing impact, and the tangent of the branch there."""
     orbit = point.orbit
     closing = np.where(orbit.sequence.releases, np.inf, orbit.nodes[:, CLOSING])
     node = int(np.abs(closing).argmin())

@@ -200,6 +200,7 @@ def points_between(
     for kind in ON_CURVE.get(curve.kind, ()):
 
         def value(position: float, kind: PointKind = kind) -> float:
+            """Return the kind's test function at an arclength after ``before``."""
             return test_function_value(
                 curve, stepper.root_after(position) if position else before, kind
             )
@@ -334,6 +335,7 @@ def solve_end(
     curve.update_border(root.unknowns)
 
     def conditions(unknowns: Floats) -> Floats:
+        """Return the residual of the two conditions that hold at the curve's end."""
         if resonance:
             polynomial = characteristic_polynomial(curve, unknowns)
             at = 1.0 if kind == PointKind.RESONANCE_1 else -1.0

@@ -92,7 +92,7 @@ def response_statistics(impacts: Impacts, item: FollowedResponse, periods: int) 
 
 
 def impact_counts(impacts: Impacts, span: float, periods: int) -> dict[str, float]:
-    """Return impacts and contacts per period, and the fewest and most impacts in one period."""
+    """Return impacts and contacts per period, fewest and most impacts in a period, by name."""
     which = np.minimum((impacts.time / span).astype(int), periods - 1)
     each = np.bincount(which, minlength=periods)
     return {

@@ -83,7 +83,7 @@ class OrbitPoint:
 
     @property
     def wrong_contact(self) -> bool:
-        """Return whether impacts and contacts violate the sticking condition (17).
+        """Return whether an impact sticks, or not, against the sticking condition (17).
 
         Where (17) is all but met either will do: an orbit that has just got or lost an impact
         meets it to rounding, and rounding must not say how it goes on.

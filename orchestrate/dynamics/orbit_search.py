@@ -72,7 +72,7 @@ def solve_orbit(
 
 
 def why_no_motion(orbit: PeriodicOrbit) -> str:
-    """Return why a solved orbit is no possible motion (masses overlap ...); empty if it is."""
+    """Return why a solved orbit is no possible motion (masses overlap ...); empty if it is one."""
     if (orbit.durations <= 0.0).any():
         return "its impacts are out of order"
     closing = orbit.nodes[~orbit.sequence.releases, CLOSING] if orbit.count else np.ones(1)

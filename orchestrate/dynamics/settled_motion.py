@@ -99,6 +99,7 @@ class SettledMotion:
 
     @cached_property
     def _scaled_states(self) -> ScaledStates:
+        """Return the states at phase 0, scaled for comparison with others."""
         return ScaledStates.from_states(self.states, self.point.excitation.frequency, self.gap)
 
     @cached_property

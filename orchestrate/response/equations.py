@@ -55,9 +55,11 @@ class MotionCoefficients(NamedTuple):
         """
 
         def columns(rates: Floats) -> Floats:
+            """Return coefficients with axes appended to broadcast over ``touching``."""
             return rates.reshape(*rates.shape, *(1,) * (touching.ndim - 1))
 
         def chosen(rates: Floats) -> Floats:
+            """Return each mass's coefficients, those of both as one where they touch."""
             each = columns(rates)
             return np.where(touching, each[2:], each[:2])
 

@@ -181,7 +181,7 @@ def make_series(
 def varied_values(
     over: str | None, values: Numbers | None, excitation: Mapping[str, Numbers]
 ) -> dict[str, Any]:
-    """Return ``{over: values}`` of the parameter that varies; empty without ``over``."""
+    """Return the parameter named ``over`` with its values, as a dict; empty without ``over``."""
     if over is None:
         if values is not None:
             raise InputError(

@@ -202,7 +202,7 @@ def resonance_levels(
 
 
 def varies_with_level(values: xr.DataArray) -> bool:
-    """Return whether a variable differs between levels: it has the dimension structure."""
+    """Return whether a variable differs between levels, by its dimension ``structure``."""
     return "structure" in values.dims
 
 
