@@ -1,4 +1,4 @@
-"""Coexisting attractors: run random starts until they settle, group the motions they reach."""
+"""Find coexisting attractors from random starts: the job and ``orchestrate.attractors``."""
 
 from __future__ import annotations
 
@@ -14,14 +14,21 @@ from numpy.typing import ArrayLike, NDArray
 from ..access import OSCILLATOR, REST, EventInstance, Instance, begin, finder, sampled
 from ..checks import REQUIRES_DELAMINATED, checked_integer
 from ..errors import InputError
-from ..response.labels import Variable, flags, si_state, variable
-from ..response.questions import Numbers, Point, SeriesQuestion, numbers, positive, series_arguments
+from ..response.labels import Variable, flags, si_state_coordinate, variable
+from ..response.questions import (
+    Numbers,
+    Point,
+    SeriesQuestion,
+    checked_numbers,
+    checked_positive,
+    series_arguments,
+)
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
 from .clusters import ABOUT, FEATURES, AttractorSettings, run_until_settled
 from .decision import MotionDecider
-from .global_continuation import Instances, MatchedAttractors, SettledStarts, continue_attractors
+from .global_continuation import InstancePair, MatchedAttractors, SettledStarts, continue_attractors
 from .settled_motion import ABSENT, DECIDED, SettledMotion
 
 if TYPE_CHECKING:
@@ -46,12 +53,12 @@ SIZE_PERIODS, SAMPLES_PER_PERIOD = 8, 64  # of the response from rest, to measur
 AROUND, BEYOND = 0.7, 3.0  # of its largest displacement, of its largest gap: the second box
 
 
-class Start(NamedTuple):
-    """A random start: its index, the parameter's point, the size of the box it is drawn from.
+class RandomStart(NamedTuple):
+    """A random start to run: parameter value, its index, the size of the box to draw it from.
 
     Attributes
     ----------
-    place : int
+    value_index : int
         Of the value among all.
     point : Point
     scale : float, optional
@@ -60,7 +67,7 @@ class Start(NamedTuple):
         Of the start.
     """
 
-    place: int
+    value_index: int
     point: Point
     scale: float | None
     number: int
@@ -106,19 +113,19 @@ class AttractorsJob(SeriesQuestion):
         """Return the number of items: all starts at all values, and one that groups them."""
         return self.starts * super().count() + 1
 
-    def items(self, inputs: Inputs) -> Sequence[Start | None]:
+    def items(self, inputs: Inputs) -> Sequence[RandomStart | None]:
         """Return the items: each start at each value, then None, which stands for grouping."""
         points = self.series.points
-        scales = self.scales(inputs)
+        scales = self.half_widths(inputs)
         starts = [
-            Start(place, point, scales[place], number)
-            for place, point in enumerate(points)
+            RandomStart(value_index, point, scales[value_index], number)
+            for value_index, point in enumerate(points)
             for number in range(self.starts)
         ]
         return [*starts, None]
 
-    def scales(self, inputs: Inputs) -> Sequence[float | None]:
-        """Return, by value, the half width of the box of starts, m; None: size of the response."""
+    def half_widths(self, inputs: Inputs) -> Sequence[float | None]:
+        """Return the half width, m, of the box of starts at each value; None: from the response."""
         series = self.series
         if self.follows:
             along = {series.name: list(series.values)}
@@ -136,28 +143,28 @@ class AttractorsJob(SeriesQuestion):
         return "attractors carried to neighbours" if first == self.count() - 1 else ""
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Start | None], previous: Table | None
+        self, fmus: Mapping[str, Path], items: Sequence[RandomStart | None], previous: Table | None
     ) -> Table:
         """Run starts until they settle, a row each; at the last item group them to attractors."""
         starts = [item for item in items if item is not None]
-        with Instances(fmus[OSCILLATOR]) as instances:
+        with InstancePair(fmus[OSCILLATOR]) as instances:
             if not starts:
                 assert previous is not None
                 return self.gather_attractors(instances, previous)
             rows = SettledRows()
-            for place, some in itertools.groupby(starts, lambda item: item.place):
+            for value_index, some in itertools.groupby(starts, lambda item: item.value_index):
                 group = list(some)
                 decider = MotionDecider(*instances, group[0].point, self.settings)
-                for state in self.draw_starts(decider.plain, place, group):
+                for state in self.draw_starts(decider.plain, value_index, group):
                     rows.add(*decider.decide(state))
             return rows.table()
 
     def draw_starts(
-        self, instance: Instance, place: int, group: Sequence[Start]
+        self, instance: Instance, value_index: int, group: Sequence[RandomStart]
     ) -> Iterator[NDArray[np.float64]]:
         """Yield the random start states of a group of starts at one parameter value."""
         point, scale = group[0].point, group[0].scale
-        seed = (self.seed, place)
+        seed = (self.seed, value_index)
         if self.scale is not None:
             assert scale is not None
             states = random_starts(self.starts, scale, seed, point.structure)
@@ -171,7 +178,7 @@ class AttractorsJob(SeriesQuestion):
     def gather_attractors(
         self, instances: tuple[Instance, EventInstance | None], table: Table
     ) -> Table:
-        """Group all starts' settled motions to attractors, matched along the parameter."""
+        """Group all starts' settled motions into attractors, matched along the parameter."""
         series, order = self.series, self.order()
         shape = len(series.points), self.starts
         features = table["features"].reshape(*shape, len(FEATURES))
@@ -201,7 +208,7 @@ class AttractorsJob(SeriesQuestion):
         variables = {
             "number": variable(along, there.sum(axis=1), "1", "attractors found"),
             **attractor_variables({name: table[name][0] for name in COLUMNS}, (along,), "starts"),
-            **self.ranges_found(there),
+            **self.existence_ranges(there),
             "attractor_of": variable((along, "start"), table["labels"][0], "1", text),
             "features": variable(
                 (along, "start", "feature"), rows, "1", f"what responses have settled to{ABOUT}"
@@ -209,7 +216,7 @@ class AttractorsJob(SeriesQuestion):
         }
         coordinates = {
             **self.series.coordinates(),
-            **si_state(),
+            **si_state_coordinate(),
             "attractor": variable("attractor", np.arange(there.shape[1]), "1", ATTRACTOR),
             "start": variable("start", np.arange(self.starts), "1", "number of the start"),
             "feature": variable("feature", np.array(FEATURES), "1", "feature"),
@@ -217,8 +224,8 @@ class AttractorsJob(SeriesQuestion):
         title = f"Coexisting attractors along {along}: {self.structure.label()}"
         return xr.Dataset(variables, coordinates, {"title": title})
 
-    def ranges_found(self, there: NDArray[np.bool_]) -> dict[str, Variable]:
-        """Return the smallest and largest parameter value at which each attractor was found."""
+    def existence_ranges(self, there: NDArray[np.bool_]) -> dict[str, Variable]:
+        """Return the lowest and highest parameter value at which each attractor exists."""
         values = np.array(self.series.values)[:, np.newaxis]
         first = np.where(there, values, np.inf).min(axis=0)
         last = np.where(there, values, -np.inf).max(axis=0)
@@ -391,7 +398,9 @@ def attractor_settings(**given: Any) -> AttractorSettings:
     """Check keywords on settling and clustering; return them as ``AttractorSettings``."""
     least = {"transient": 0, "samples": 4, "longest": 0}  # whole numbers
     checked: dict[str, Any] = {
-        name: checked_integer(name, value, least[name]) if name in least else positive(name, value)
+        name: checked_integer(name, value, least[name])
+        if name in least
+        else checked_positive(name, value)
         for name, value in given.items()
     }
     return AttractorSettings(**checked)
@@ -508,8 +517,8 @@ def attractors(
         name=f"attractors_{structure.label()}",
         starts=checked_integer("starts", starts, 1),
         seed=checked_integer("seed", seed, 0, 2**32 - 1),
-        scale=check_scale(scale),
-        width=positive("width", width),
+        scale=checked_half_widths(scale),
+        width=checked_positive("width", width),
         settings=attractor_settings(
             transient=transient,
             settle=settle,
@@ -523,7 +532,7 @@ def attractors(
     return answer(job, running, finder(running))
 
 
-def check_scale(given: ArrayLike | None) -> Numbers | None:
+def checked_half_widths(argument: ArrayLike | None) -> Numbers | None:
     """Return the user's half width(s) of the box of starts, m, or None; raise unless positive.
 
     Raises
@@ -531,7 +540,7 @@ def check_scale(given: ArrayLike | None) -> Numbers | None:
     InputError
         Where one is not.
     """
-    scale = numbers("scale", given)
+    scale = checked_numbers("scale", argument)
     each = scale if isinstance(scale, tuple) else () if scale is None else (scale,)
     wrong = [value for value in each if value <= 0.0]
     if wrong:

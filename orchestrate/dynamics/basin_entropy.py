@@ -22,7 +22,7 @@ Floats = NDArray[np.float64]
 
 
 class BoxEntropies(NamedTuple):
-    """Entropies (of attractor shares) of the square boxes that a plane of starts is cut into.
+    """Gibbs entropies of attractor shares in the square boxes that a plane is cut into.
 
     Attributes
     ----------
@@ -128,7 +128,7 @@ def basin_entropy(basins: xr.Dataset, *, box: int = 5) -> xr.Dataset:
     import xarray as xr
 
     size = checked_integer("box", box, 2)
-    labels = labels_of(basins)
+    labels = attractor_labels(basins)
     if min(labels.shape) < LEAST_BOXES * size:
         raise InputError(
             f"box = {size}: of a plane of {labels.shape[1]} x {labels.shape[0]} starts; expected "
@@ -160,7 +160,7 @@ def basin_entropy(basins: xr.Dataset, *, box: int = 5) -> xr.Dataset:
     )
 
 
-def labels_of(basins: object) -> Labels:
+def attractor_labels(basins: object) -> Labels:
     """Return a basin dataset's attractor numbers, shape (y, x); raise if it is no basin's.
 
     Raises

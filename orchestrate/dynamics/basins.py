@@ -1,4 +1,4 @@
-"""Basins of attraction: to which attractor each start on a plane of states leads."""
+"""Basins of attraction on a plane of starts: the job and function ``orchestrate.basin``."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 from ..access import OSCILLATOR, REST, STATE, EventInstance, Instance, begin, finder, gap_between
 from ..checks import REQUIRES_DELAMINATED, checked_integer
 from ..errors import InputError
-from ..response.labels import si_state, variable
-from ..response.questions import Point, Question, one_point, state
-from ..response.respond import sample
+from ..response.labels import si_state_coordinate, variable
+from ..response.questions import Point, Question, checked_point, checked_state
+from ..response.respond import stroboscopic_samples
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Excitation, Structure
@@ -31,7 +31,7 @@ from .attractors import (
 )
 from .clusters import AttractorSettings
 from .decision import MotionDecider
-from .global_continuation import Instances, SettledStarts, continue_attractors
+from .global_continuation import InstancePair, SettledStarts, continue_attractors
 from .settled_motion import ABSENT
 
 if TYPE_CHECKING:
@@ -111,24 +111,26 @@ class Plane(NamedTuple):
         columns |= {name: values for name, values in given.items() if name in STATE}
         for name, (one, two) in GAPS.items():
             if name in given:
-                columns[one], columns[two] = mass_values(given, name, columns[one], columns[two])
+                columns[one], columns[two] = masses_from_gap(
+                    given, name, columns[one], columns[two]
+                )
         return np.column_stack([columns[name] for name in STATE]), phase
 
 
-def mass_values(
-    given: Mapping[str, Floats], name: str, one: Floats, two: Floats
+def masses_from_gap(
+    coordinates: Mapping[str, Floats], name: str, value1: Floats, value2: Floats
 ) -> tuple[Floats, Floats]:
-    """Return both masses' coordinates for a given gap, from one mass's value or their mean."""
+    """Return both masses' coordinates from a gap, keeping one mass's value or their mean."""
     first, second = GAPS[name]
-    if first in given:
-        return one, one + given[name]
-    if second in given:
-        return two - given[name], two
-    middle, half = 0.5 * (one + two), 0.5 * given[name]
+    if first in coordinates:
+        return value1, value1 + coordinates[name]
+    if second in coordinates:
+        return value2 - coordinates[name], value2
+    middle, half = 0.5 * (value1 + value2), 0.5 * coordinates[name]
     return middle - half, middle + half
 
 
-class Start(NamedTuple):
+class PlaneStart(NamedTuple):
     """A start on the plane: point, state (m and m/s), and the box's phase (rad)."""
 
     point: Point
@@ -170,24 +172,24 @@ class BasinJob(Question):
         """Return the number of items: all starts of the plane, and one that groups them."""
         return self.x.number * self.y.number + 1
 
-    def items(self, inputs: Inputs) -> Sequence[Start | Point]:
+    def items(self, inputs: Inputs) -> Sequence[PlaneStart | Point]:
         """Return the items: every start, then the point, which stands for grouping."""
         plane = self.plane(inputs)
         states, phases = plane.starts()
         rows = zip(map(tuple, states.tolist()), phases.tolist(), strict=True)
-        return [*(Start(plane.point, *row) for row in rows), plane.point]
+        return [*(PlaneStart(plane.point, *row) for row in rows), plane.point]
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Start | Point], previous: Table | None
+        self, fmus: Mapping[str, Path], items: Sequence[PlaneStart | Point], previous: Table | None
     ) -> Table:
         """Run starts until they settle (overlapping masses: absent), or group them at the end."""
-        with Instances(fmus[OSCILLATOR]) as instances:
+        with InstancePair(fmus[OSCILLATOR]) as instances:
             if isinstance(items[0], Point):
                 assert previous is not None
                 return self.gather_attractors(instances, items[0], previous)
             rows, decider = SettledRows(), None
             for item in items:
-                assert isinstance(item, Start)
+                assert isinstance(item, PlaneStart)
                 decider = decider or MotionDecider(*instances, item.point, self.settings)
                 offset = item.point.structure.gap_offset
                 if gap_between(np.array(item.state), offset) < 0.0:
@@ -199,7 +201,7 @@ class BasinJob(Question):
     def gather_attractors(
         self, instances: tuple[Instance, EventInstance | None], point: Point, table: Table
     ) -> Table:
-        """Group all starts' settled motions to attractors; return arrays with labels of starts."""
+        """Group all starts' settled motions into attractors; return arrays with starts' labels."""
         there = table["decided"] != ABSENT
         names = "features", "end", "decided"
         starts = SettledStarts(*(table[name][there] for name in names))
@@ -226,14 +228,14 @@ class BasinJob(Question):
         coordinates = {
             **{side.name: variable(side.name, side.values(), *AXES[side.name]) for side in sides},
             "attractor": variable("attractor", np.arange(count), "1", ATTRACTOR),
-            **si_state(),
+            **si_state_coordinate(),
             "eta": variable((), plane.point.excitation.eta(plane.point.structure), "1", "eta (2)"),
         }
         title = f"Basins of attraction: {plane.point.structure.label()}"
         return xr.Dataset(variables, coordinates, {"title": title})
 
 
-def run_to_phase_zero(instance: Instance, start: Start) -> tuple[float, ...]:
+def run_to_phase_zero(instance: Instance, start: PlaneStart) -> tuple[float, ...]:
     """Simulate from a start until the box is at phase 0; return the state there."""
     left = -start.phase % (2.0 * math.pi)
     if left == 0.0:
@@ -244,7 +246,7 @@ def run_to_phase_zero(instance: Instance, start: Start) -> tuple[float, ...]:
     return tuple(instance.get(*STATE))
 
 
-def check_side(name: str, given: Any) -> PlaneAxis:
+def checked_axis(name: str, argument: Any) -> PlaneAxis:
     """Return a ``PlaneAxis`` from the user's (name, low, high, count); raise if invalid.
 
     Raises
@@ -254,14 +256,14 @@ def check_side(name: str, given: Any) -> PlaneAxis:
     """
     expected = f"expected (name, low, high, count) with a name of {', '.join(AXES)}"
     try:
-        axis, low, high, count = given
+        axis, low, high, count = argument
         low, high = float(low), float(high)
     except (TypeError, ValueError):
-        raise InputError(f"{name} = {given!r}: {expected}") from None
+        raise InputError(f"{name} = {argument!r}: {expected}") from None
     if axis not in AXES:
-        raise InputError(f"{name} = {given!r}: no coordinate {axis!r}; {expected}")
+        raise InputError(f"{name} = {argument!r}: no coordinate {axis!r}; {expected}")
     if not (math.isfinite(low) and math.isfinite(high) and low < high):
-        raise InputError(f"{name} = {given!r}: expected finite low < high")
+        raise InputError(f"{name} = {argument!r}: expected finite low < high")
     return PlaneAxis(axis, low, high, checked_integer(f"{name}: count", count, 2, 100_000))
 
 
@@ -337,7 +339,7 @@ def basin(
     >>> found.attractor_of.dims, found.multiplicity.values.tolist()
     (('v_rel', 'x_rel'), [1.0, 2.0])
     """
-    point = one_point(structure, eta, frequency, amplitude)
+    point = checked_point(structure, eta, frequency, amplitude)
     settings = attractor_settings(
         transient=transient,
         settle=settle,
@@ -347,14 +349,14 @@ def basin(
         alike=alike,
         alike_irregular=alike_irregular,
     )
-    known: Known | None = None
+    known: KnownAttractors | None = None
     if x is None or y is None:
         known = find_known_attractors(point, settings, running)
         if x is None and y is None and at is None:
-            at = known.middle()
+            at = known.mean_state()
     sides = (
-        known.side("x_rel") if x is None and known else check_side("x", x),
-        known.side("v_rel") if y is None and known else check_side("y", y),
+        known.default_axis("x_rel") if x is None and known else checked_axis("x", x),
+        known.default_axis("v_rel") if y is None and known else checked_axis("y", y),
     )
     if sides[0].name == sides[1].name:
         raise InputError(f"x and y: {sides[0].name} twice; expected two coordinates")
@@ -364,7 +366,7 @@ def basin(
         excitation=point.excitation.replace(phase=phase),
         x=sides[0],
         y=sides[1],
-        at=state("at", at, structure),
+        at=checked_state("at", at, structure),
         known=known.states if known else (),
         settings=settings,
     )
@@ -372,7 +374,7 @@ def basin(
     return answer(job, running, finder(running))
 
 
-class Known(NamedTuple):
+class KnownAttractors(NamedTuple):
     """Attractors found beforehand, from which the default plane of starts is laid out.
 
     Attributes
@@ -391,7 +393,7 @@ class Known(NamedTuple):
     samples: Floats
     gap: float
 
-    def side(self, name: str) -> PlaneAxis:
+    def default_axis(self, name: str) -> PlaneAxis:
         """Return a default axis for gap or gap velocity, twice as wide as the attractors."""
         gap = self.gap or self.point.length
         if name == "x_rel":
@@ -402,14 +404,14 @@ class Known(NamedTuple):
         )
         return PlaneAxis(name, -high, high, COUNT)
 
-    def middle(self) -> tuple[float, ...]:
+    def mean_state(self) -> tuple[float, ...]:
         """Return the mean of the known attractors' states at phase 0: the plane's centre."""
         return tuple(self.samples.mean(axis=0).tolist())
 
 
 def find_known_attractors(
     point: Point, settings: AttractorSettings, running: Mapping[str, Any]
-) -> Known:
+) -> KnownAttractors:
     """Find attractors from a few random starts, to lay the default plane around them."""
     excitation = {"frequency": point.excitation.frequency, "amplitude": point.excitation.amplitude}
     kept = {name: value for name, value in running.items() if name in ("fmu", "build_folder")}
@@ -422,9 +424,11 @@ def find_known_attractors(
         for state, n in zip(states, known.multiplicity.values, strict=True):
             begin(instance, *point, state)
             periods = int(n) or settings.irregular_samples
-            samples.append(sample(instance, point.excitation.period, 0, periods)[0].copy())
+            samples.append(
+                stroboscopic_samples(instance, point.excitation.period, 0, periods)[0].copy()
+            )
     gap = float(known.xi_rel_max.max()) * point.length
-    return Known(point, states, np.concatenate(samples), gap)
+    return KnownAttractors(point, states, np.concatenate(samples), gap)
 
 
 def round_to_two_digits(value: float) -> float:

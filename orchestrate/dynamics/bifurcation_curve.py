@@ -25,9 +25,9 @@ from .periodic_orbit import CLOSING, PeriodicOrbit
 from .tracer import BranchStep, BranchTracer, ContinuationSettings
 from .turning_points import (
     GAP,
-    derivatives,
     nearest_miss,
     pressing_force,
+    quantity_derivatives,
     turning_points,
     weakest_force,
 )
@@ -121,7 +121,10 @@ class BifurcationCurve:
         """Reset the bordering vectors to the singular vectors of the matrix at these unknowns."""
         if self.kind in SMOOTH_KINDS:
             left, _, right = np.linalg.svd(self.matrix(unknowns))
-            self.columns, self.rows = in_phase(left[:, -1]), in_phase(right[-1].conj())
+            self.columns, self.rows = (
+                rotated_to_real(left[:, -1]),
+                rotated_to_real(right[-1].conj()),
+            )
 
     def matrix(self, unknowns: Floats) -> NDArray[np.complex128]:
         """Return the orbit's scaled Jacobian at the multiplier: singular at the bifurcation."""
@@ -134,7 +137,7 @@ class BifurcationCurve:
             return self.orbit(unknowns).nodes[self.place, CLOSING : CLOSING + 1]
         if self.kind == TOUCHING:
             which = np.array([self.place]), np.array([GAP])
-            rate, _, gap = derivatives(self.orbit(unknowns), *which, unknowns[-1:])
+            rate, _, gap = quantity_derivatives(self.orbit(unknowns), *which, unknowns[-1:])
             return np.append(gap, rate)
         if self.kind == EARLIER_RELEASE:
             force, rate, _ = pressing_force(
@@ -185,7 +188,7 @@ class BifurcationCurve:
         return ""
 
 
-def in_phase(vector: NDArray[np.complex128]) -> NDArray[np.complex128]:
+def rotated_to_real(vector: NDArray[np.complex128]) -> NDArray[np.complex128]:
     """Rotate a complex vector so that its leading component is real and positive."""
     first = vector[leading_component(vector)]
     return np.asarray(vector * (first.conjugate() / abs(first)), dtype=complex)

@@ -1,4 +1,4 @@
-"""Kinds of bifurcation of periodic motions, as numbered in results, with their names."""
+"""Kinds of bifurcations of periodic orbits: their numbers and names in results."""
 
 from __future__ import annotations
 

@@ -14,20 +14,33 @@ from ..access import OSCILLATOR, EventInstance, finder
 from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import Variable, flags, variable
-from ..response.questions import checked_structure, numbers
+from ..response.questions import checked_numbers, checked_structure
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
 from .bifurcation_curve import BifurcationCurve, BifurcationTracer
 from .bifurcations import KINDS, TORUS
-from .branches import NODES, check_inside, check_start, complete_excitation, first_nodes
+from .branches import (
+    NODES,
+    complete_excitation,
+    require_inside_limits,
+    require_orbit_dataset,
+    start_nodes,
+)
 from .closed_form import Floats
 from .codimension_two import POINT_KINDS, locate_points
 from .continuation import NoConvergenceError, Root, newton_correct, unit_vector
 from .families import ACCELERATION, Family, Setting, check_parameters, require_delaminated
 from .orbit_point import OrbitPoint
-from .orbit_records import OrbitRecord, coordinates, table_of, variables
-from .orbit_search import run_in_fmu, solve_orbit
+from .orbit_records import (
+    OrbitRecord,
+    orbit_coordinates,
+    orbit_table,
+    orbit_variables,
+    prefixed_variables,
+    record_with_check,
+)
+from .orbit_search import solve_orbit
 from .orbits import FirstGuess, OneItemQuestion, excitation_arguments, finite_number
 from .tracer import BranchSegment, ContinuationSettings
 
@@ -73,26 +86,26 @@ class BorderJob(OneItemQuestion):
         setting, values = self.setting, np.array(self.values)
         guess = self.start.as_argument(setting.point(values).excitation.frequency)
         start = f"start={setting.orbit_call(values, self.period, guess)}"
-        given = [f"bifurcation={KINDS[self.kind]!r}", f"over={setting.over!r}"]
-        given += [f"limits={setting.limits!r}", f"longest={self.longest!r}", f"most={self.most}"]
-        return f"border({', '.join([repr(self.structure), start, *given])})"
+        keywords = [f"bifurcation={KINDS[self.kind]!r}", f"over={setting.over!r}"]
+        keywords += [f"limits={setting.limits!r}", f"longest={self.longest!r}", f"most={self.most}"]
+        return f"border({', '.join([repr(self.structure), start, *keywords])})"
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Trace the bifurcation curve over both parameters; return its points as a table."""
-        curve, root = first_root(self)
-        back, forth = (trace(self, curve, start) for start in (root.reversed(), root))
+        curve, root = start_root(self)
+        back, forth = (trace_curve(self, curve, start) for start in (root.reversed(), root))
         roots = [*reversed(back.points[1:]), *forth.points]
         points = locate_points(curve, roots, (back.end, forth.end))
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            rows = [record(instance, curve, root.unknowns, root.residual) for root in roots]
-            at = [record(instance, curve, each.unknowns, each.residual) for each in points]
+            rows = [record_at(instance, curve, root.unknowns, root.residual) for root in roots]
+            at = [record_at(instance, curve, each.unknowns, each.residual) for each in points]
         angles = [root.unknowns[-1] if self.kind == TORUS else np.nan for root in roots]
         ends = np.array([back.end, forth.end])
         return {
-            **table_of(rows),
+            **orbit_table(rows),
             "angle": np.array(angles),
             "ends": ends,
-            **{f"{POINT}_{name}": part for name, part in (table_of(at) if at else {}).items()},
+            **{f"{POINT}_{name}": part for name, part in (orbit_table(at) if at else {}).items()},
             f"{POINT}_kind": np.array([each.kind for each in points], dtype=int),
             f"{POINT}_place": np.array([each.position for each in points], dtype=float),
         }
@@ -104,18 +117,18 @@ class BorderJob(OneItemQuestion):
         setting, ends = self.setting, [str(text) for text in table["ends"]]
         located = {key: part for key, part in table.items() if key.startswith(POINT)}
         table = {key: part for key, part in table.items() if key not in located}
-        names = coordinates(setting, table, "point")
+        names = orbit_coordinates(setting, table, "point")
         title = f"{KINDS[self.kind]} over {' and '.join(setting.over)}: {self.structure.label()}"
         attributes = {"title": title, "kind": KINDS[self.kind], "over": list(setting.over)}
         attributes.update(first_end=ends[0], last_end=ends[1])
-        data = {**variables(setting, table, "point"), **names}
+        data = {**orbit_variables(setting, table, "point"), **names}
         text = "angle of the multipliers on the unit circle"
         data["angle"] = variable("point", table["angle"], "rad", text)
-        data |= point_variables(setting, located)
+        data |= codimension_two_variables(setting, located)
         return xr.Dataset(data, attrs=attributes).set_coords(list(names))
 
 
-def point_variables(setting: Setting, table: Table) -> dict[str, Variable]:
+def codimension_two_variables(setting: Setting, table: Table) -> dict[str, Variable]:
     """Return dataset variables of the points of codimension two: kind, position, orbit."""
     kinds = flags(POINT, table[f"{POINT}_kind"], "what happens as well", POINT_KINDS)
     text = "position along the curve's points: between two where not whole"
@@ -127,19 +140,15 @@ def point_variables(setting: Setting, table: Table) -> dict[str, Variable]:
         empty = {name: variable(POINT, np.zeros(0), "1", name) for name in setting.over}
         return {**data, **{f"{POINT}_{name}": each for name, each in empty.items()}}
     rows = {key.removeprefix(f"{POINT}_"): part for key, part in table.items()}
-    parameters = coordinates(setting, rows, POINT)
+    parameters = orbit_coordinates(setting, rows, POINT)
     data |= {f"{POINT}_{name}": parameters[name] for name in setting.over}
-    for key, (dims, values, attributes) in variables(setting, rows, POINT).items():
-        if key in KEPT:
-            each = (dims,) if isinstance(dims, str) else dims
-            own = tuple(f"{POINT}_node" if dim == "node" else dim for dim in each)
-            data[f"{POINT}_{key}"] = own, values, attributes
+    data |= prefixed_variables(setting, rows, POINT, KEPT)
     text = "what is left of both conditions, of the multipliers' polynomial over its largest part"
     data[f"{POINT}_residual"] = variable(POINT, rows["residual"], "1", text)
     return data
 
 
-def first_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
+def start_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
     """Solve for the bifurcation at which the curve begins; return its equations and the root.
 
     Raises
@@ -150,7 +159,7 @@ def first_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
     setting, nodes = job.setting, np.array(job.start.nodes).reshape(-1, 4)
     sequence, values = job.start.sequence(job.period), np.array(job.values)
     try:
-        alone = setting.over_first_alone(values)
+        alone = setting.with_first_varying(values)
         point = OrbitPoint(*solve_orbit(alone, (sequence, nodes), values[:1]))
         family = Family.from_nodes(setting, sequence, point.orbit.nodes)
         curve = BifurcationCurve.from_orbit(family, point, job.kind)
@@ -163,20 +172,18 @@ def first_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
         raise InputError(f"start: no bifurcation found there ({reason}); {expected}") from None
 
 
-def trace(job: BorderJob, curve: BifurcationCurve, start: Root) -> BranchSegment[Root]:
+def trace_curve(job: BorderJob, curve: BifurcationCurve, start: Root) -> BranchSegment[Root]:
     """Trace the bifurcation curve from a root, along its tangent, to a limit or an end."""
     settings = ContinuationSettings(job.longest, job.most)
     return BifurcationTracer(curve, start, settings).trace(start)
 
 
-def record(
+def record_at(
     instance: EventInstance, curve: BifurcationCurve, unknowns: Floats, residual: float
 ) -> OrbitRecord:
-    """Run an orbit of the curve through the FMU; return its record with the FMU's check."""
-    unknowns = unknowns[: curve.family.size + 2]
-    orbit = curve.orbit(unknowns)
-    check = run_in_fmu(instance, curve.family.setting, unknowns[curve.family.size :], orbit)
-    return OrbitRecord.from_root(curve.family, unknowns, residual, check)
+    """Return the record of the orbit at a curve's unknowns, checked by a run in the FMU."""
+    without_extra = unknowns[: curve.family.size + 2]
+    return record_with_check(instance, curve.family, without_extra, residual)
 
 
 def border(
@@ -249,7 +256,7 @@ def border(
     ('Neimark-Sacker', array([0.69, 0.71]))
     """
     require_delaminated(checked_structure(structure))
-    check_start(start, several=True)
+    require_orbit_dataset(start, several=True)
     names = tuple(over)
     check_parameters(names)
     if len(names) != 2 or names[0] != start.attrs.get("over"):
@@ -257,8 +264,8 @@ def border(
             f"over = {names!r}: expected two names, the first one that of start, "
             f"{start.attrs.get('over')!r}"
         )
-    pairs = check_both_limits(names, limits)
-    nodes, kind = first_nodes(start, "bifurcation", bifurcation)
+    pairs = checked_limit_pairs(names, limits)
+    nodes, kind = start_nodes(start, "bifurcation", bifurcation)
     value = float(start["bifurcation_value"].values[bifurcation])
     given = complete_excitation(
         start.isel(point=0),
@@ -267,9 +274,9 @@ def border(
         pairs[0],
         structure,
     )
-    second = second_value(structure, names[1], given, box_acceleration)
+    second = second_start_value(structure, names[1], given, box_acceleration)
     for name, number, pair in zip(names, (value, second), pairs, strict=True):
-        check_inside(name, number, pair)
+        require_inside_limits(name, number, pair)
     fixed = tuple((name, number) for name, number in given if name not in names)
     setting = Setting(structure, fixed, names, pairs, finite_number(ACCELERATION, box_acceleration))
     for i in range(2):  # what is out of range is said before any work
@@ -288,10 +295,10 @@ def border(
     return answer(job, running, finder(running))
 
 
-def check_both_limits(names: tuple[str, ...], limits: Any) -> tuple[tuple[float, float], ...]:
-    """Return both parameters' limits as pairs (low, high) of floats; raise if invalid."""
+def checked_limit_pairs(names: tuple[str, ...], limits: Any) -> tuple[tuple[float, float], ...]:
+    """Return both parameters' limits as (low, high) of floats; raise if invalid."""
     try:
-        rows = [numbers(name, row) for name, row in zip(names, limits, strict=True)]
+        rows = [checked_numbers(name, row) for name, row in zip(names, limits, strict=True)]
     except (TypeError, ValueError):
         rows = []
     good = [row for row in rows if isinstance(row, tuple) and len(row) == 2 and row[0] < row[1]]
@@ -302,10 +309,13 @@ def check_both_limits(names: tuple[str, ...], limits: Any) -> tuple[tuple[float,
     return tuple((row[0], row[1]) for row in good)
 
 
-def second_value(
-    structure: Structure, name: str, given: tuple[tuple[str, float], ...], box_acceleration: float
+def second_start_value(
+    structure: Structure,
+    name: str,
+    arguments: tuple[tuple[str, float], ...],
+    box_acceleration: float,
 ) -> float:
-    """Return the second parameter's start value: from excitation, structure or acceleration."""
+    """Return the second parameter's start value: of excitation, structure or acceleration."""
     if name == ACCELERATION:
         return box_acceleration
-    return dict(given)[name] if name in dict(given) else structure.get(name)
+    return dict(arguments)[name] if name in dict(arguments) else structure.get(name)

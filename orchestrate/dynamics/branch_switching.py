@@ -1,4 +1,4 @@
-"""Branch switching: where branches leave another one at a bifurcation, in which direction."""
+"""Branch switching: first orbit and tangent of the branch that leaves another at a bifurcation."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ def leaving_branch(kind: int, point: OrbitPoint) -> OrbitPoint:
     if kind == FLIP:
         return double_period(point)
     if kind == TOUCHING:
-        return add_touching(point)
+        return with_touching_impact(point)
     if kind == GRAZING:
-        return remove_grazing(point)
+        return without_grazing_impact(point)
     expected = "period doubling or grazing"
     raise InputError(
         f"switch: {KINDS[kind]}; no branch of orbits leaves there, expected {expected}"
@@ -57,8 +57,8 @@ def double_period(point: OrbitPoint) -> OrbitPoint:
     return OrbitPoint(twice, Root(unknowns, tangent, point.root.residual, 0))
 
 
-def add_touching(point: OrbitPoint) -> OrbitPoint:
-    """Return the orbit with the touching of a flight as an impact, and a tangent that closes on."""
+def with_touching_impact(point: OrbitPoint) -> OrbitPoint:
+    """Return an orbit with its touching point added as an impact, and the branch's tangent."""
     orbit = point.orbit
     _, segment, phase = nearest_miss(orbit, turning_points(orbit))
     state = orbit.states(np.array([segment]), np.array([phase]))[0]
@@ -70,23 +70,23 @@ def add_touching(point: OrbitPoint) -> OrbitPoint:
         node = segment + 1
         sequence = orbit.sequence.with_impact(node)
         nodes = np.insert(orbit.nodes, node, row, axis=0)
-    begin = same_motion(point, sequence, nodes)
+    begin = solve_same_motion(point, sequence, nodes)
     rising = begin.root.tangent[4 * node + CLOSING] > 0.0
     return begin if rising else begin.reversed()
 
 
-def remove_grazing(point: OrbitPoint) -> OrbitPoint:
-    """Return the orbit without its grazing impact, and a tangent that opens the gap."""
+def without_grazing_impact(point: OrbitPoint) -> OrbitPoint:
+    """Return an orbit without its grazing impact, and the tangent of the branch there."""
     orbit = point.orbit
     closing = np.where(orbit.sequence.releases, np.inf, orbit.nodes[:, CLOSING])
     node = int(np.abs(closing).argmin())
     nodes = np.delete(orbit.nodes, node, axis=0)
-    begin = same_motion(point, orbit.sequence.without(node), nodes)
+    begin = solve_same_motion(point, orbit.sequence.without(node), nodes)
     ahead = ArclengthStepper(begin.family, begin.root, AWAY, AWAY).root_after(AWAY)
     return begin if OrbitPoint(begin.family, ahead).nearest_miss > 0.0 else begin.reversed()
 
 
-def same_motion(point: OrbitPoint, sequence: ImpactSequence, nodes: Floats) -> OrbitPoint:
+def solve_same_motion(point: OrbitPoint, sequence: ImpactSequence, nodes: Floats) -> OrbitPoint:
     """Solve for the same motion as an orbit with another sequence of impacts; return it."""
     family = Family.from_nodes(point.family.setting, sequence, nodes)
     unknowns = np.append(nodes.ravel(), point.values)

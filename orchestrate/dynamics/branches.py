@@ -15,7 +15,7 @@ from ..access import OSCILLATOR, EventInstance, finder
 from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import Variable, flags, variable
-from ..response.questions import checked_structure, numbers
+from ..response.questions import checked_numbers, checked_structure
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
@@ -25,8 +25,15 @@ from .branch_switching import leaving_branch
 from .continuation import NoConvergenceError
 from .families import ACCELERATION, Setting, check_parameters, require_delaminated
 from .orbit_point import OrbitPoint
-from .orbit_records import OrbitRecord, coordinates, table_of, variables
-from .orbit_search import run_in_fmu, solve_orbit
+from .orbit_records import (
+    OrbitRecord,
+    orbit_coordinates,
+    orbit_table,
+    orbit_variables,
+    prefixed_variables,
+    record_with_check,
+)
+from .orbit_search import solve_orbit
 from .orbit_tracer import OrbitTracer
 from .orbits import (
     NODE,
@@ -34,7 +41,7 @@ from .orbits import (
     OneItemQuestion,
     excitation_arguments,
     finite_number,
-    from_result,
+    guess_from_result,
     orbit,
 )
 from .tracer import Bifurcation, BranchSegment, ContinuationSettings
@@ -102,9 +109,9 @@ class BranchJob(OneItemQuestion):
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Continue the branch from its first orbit; return orbits and bifurcations as a table."""
-        segments = trace(self)
+        segments = trace_branch(self)
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            return table(instance, self.setting, segments)
+            return branch_table(instance, segments)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Return the dataset of the branch: orbits, stability and bifurcations."""
@@ -112,16 +119,19 @@ class BranchJob(OneItemQuestion):
 
         setting, (name,) = self.setting, self.setting.over
         along = {key: table[key] for key in table if not key.startswith(BIFURCATION)}
-        data = {**variables(setting, along, "point"), **coordinates(setting, along, "point")}
+        data = {
+            **orbit_variables(setting, along, "point"),
+            **orbit_coordinates(setting, along, "point"),
+        }
         ends = [str(text) for text in table["bifurcation_ends"]]
         periods = along["zero"].shape[1]
         title = f"Branch of orbits of {periods} periods along {name}: {self.structure.label()}"
         attributes = {"title": title, "over": name, "first_end": ends[0], "last_end": ends[1]}
         dataset = xr.Dataset({**data, **bifurcation_variables(setting, table)}, attrs=attributes)
-        return dataset.set_coords(list(coordinates(setting, along, "point")))
+        return dataset.set_coords(list(orbit_coordinates(setting, along, "point")))
 
 
-def trace(job: BranchJob) -> list[OrbitSegment]:
+def trace_branch(job: BranchJob) -> list[OrbitSegment]:
     """Continue the branch in both directions (one if it leaves another); return its segments.
 
     Raises
@@ -142,22 +152,27 @@ def trace(job: BranchJob) -> list[OrbitSegment]:
     return [OrbitTracer(point, settings).trace(point) for point in starts]
 
 
-def table(instance: EventInstance, setting: Setting, segments: list[OrbitSegment]) -> Table:
-    """Return arrays of a branch's orbits and of its bifurcations, checked by the FMU."""
-    points, bifurcations = joined(segments)
+def branch_table(instance: EventInstance, segments: list[OrbitSegment]) -> Table:
+    """Return arrays of a branch's orbits and of its bifurcations, each checked by the FMU."""
+    points, bifurcations = join_segments(segments)
     ends = [segments[0].end if len(segments) > 1 else "start", segments[-1].end]
-    along = table_of([record(instance, setting, point) for point in points])
-    at = [record(instance, setting, each.point) for each in bifurcations]
+    along = orbit_table([record_of_point(instance, point) for point in points])
+    at = [record_of_point(instance, each.point) for each in bifurcations]
     return {
         **along,
-        **{f"{BIFURCATION}_{name}": rows for name, rows in (table_of(at) if at else {}).items()},
+        **{f"{BIFURCATION}_{name}": rows for name, rows in (orbit_table(at) if at else {}).items()},
         "bifurcation_kind": np.array([each.kind for each in bifurcations], dtype=int),
         "bifurcation_place": np.array([each.position for each in bifurcations]),
         "bifurcation_ends": np.array(ends),
     }
 
 
-def joined(
+def record_of_point(instance: EventInstance, point: OrbitPoint) -> OrbitRecord:
+    """Return the record of a branch point's orbit, checked by a run in the FMU."""
+    return record_with_check(instance, point.family, point.root.unknowns, point.root.residual)
+
+
+def join_segments(
     segments: list[OrbitSegment],
 ) -> tuple[list[OrbitPoint], list[Bifurcation[OrbitPoint]]]:
     """Join a branch's two segments; return its orbits in order, and its bifurcations."""
@@ -170,12 +185,6 @@ def joined(
         *(replace(each, position=middle + each.position) for each in forth.bifurcations),
     ]
     return [*reversed(back.points[1:]), *forth.points], bifurcations
-
-
-def record(instance: EventInstance, setting: Setting, point: OrbitPoint) -> OrbitRecord:
-    """Run an orbit of the branch through the FMU; return its record with the FMU's check."""
-    check = run_in_fmu(instance, setting, point.values, point.orbit)
-    return OrbitRecord.from_root(point.family, point.root.unknowns, point.root.residual, check)
 
 
 def bifurcation_variables(setting: Setting, table: Table) -> dict[str, Variable]:
@@ -195,14 +204,9 @@ def bifurcation_variables(setting: Setting, table: Table) -> dict[str, Variable]
         for key, values in table.items()
         if key.startswith(BIFURCATION)
     }
-    parameters = coordinates(setting, rows, BIFURCATION)
+    parameters = orbit_coordinates(setting, rows, BIFURCATION)
     data["bifurcation_value"] = parameters[name]
-    for key, (dims, values, attributes) in variables(setting, rows, BIFURCATION).items():
-        if key in KEPT:
-            each = (dims,) if isinstance(dims, str) else dims
-            own = tuple(f"{BIFURCATION}_node" if dim == "node" else dim for dim in each)
-            data[f"{BIFURCATION}_{key}"] = own, values, attributes
-    return data
+    return data | prefixed_variables(setting, rows, BIFURCATION, KEPT)
 
 
 def branch(
@@ -282,19 +286,19 @@ def branch(
     check_parameters((over,))
     require_delaminated(checked_structure(structure))
     if start is not None:
-        check_start(start, several=switch is not None)
-    low_high = check_limits(over, limits)
+        require_orbit_dataset(start, several=switch is not None)
+    low_high = checked_limits(over, limits)
     given = complete_excitation(
         start, (over,), excitation_arguments(eta, frequency, amplitude), low_high, structure
     )
     if start is None:
-        start, value = first_orbit(
+        start, value = find_first_orbit(
             structure, over, low_high, given, period, box_acceleration, running
         )
     else:
         value = start_value(start, over, switch, structure)
-    check_inside(over, value, low_high)
-    nodes, kind = first_nodes(start, "switch", switch)
+    require_inside_limits(over, value, low_high)
+    nodes, kind = start_nodes(start, "switch", switch)
     fixed = tuple((name, number) for name, number in given if name != over)
     setting = Setting(
         structure, fixed, (over,), (low_high,), finite_number(ACCELERATION, box_acceleration)
@@ -315,7 +319,7 @@ def branch(
     return answer(job, running, finder(running))
 
 
-def check_start(start: Any, several: bool) -> None:
+def require_orbit_dataset(start: Any, several: bool) -> None:
     """Raise ``InputError`` unless ``start`` is a dataset of one orbit (or ``several`` allowed).
 
     Several orbits will do where one of their bifurcations is named.
@@ -333,9 +337,9 @@ def check_start(start: Any, several: bool) -> None:
         )
 
 
-def check_limits(over: str, limits: ArrayLike) -> tuple[float, float]:
+def checked_limits(over: str, limits: ArrayLike) -> tuple[float, float]:
     """Return the limits (low, high) as floats; raise unless they are two numbers in order."""
-    pair = numbers(over, limits)
+    pair = checked_numbers(over, limits)
     if not isinstance(pair, tuple) or len(pair) != 2 or not pair[0] < pair[1]:
         raise InputError(f"limits = {limits!r}: expected two numbers, the lower one first")
     return pair[0], pair[1]
@@ -344,7 +348,7 @@ def check_limits(over: str, limits: ArrayLike) -> tuple[float, float]:
 def complete_excitation(
     start: xr.Dataset | None,
     varied: tuple[str, ...],
-    given: tuple[tuple[str, float], ...],
+    arguments: tuple[tuple[str, float], ...],
     limits: tuple[float, float],
     structure: Structure,
 ) -> tuple[tuple[str, float], ...]:
@@ -357,8 +361,8 @@ def complete_excitation(
     InputError
         Where ``eta`` varies, which takes the amplitude along, from another amplitude.
     """
-    over, names = varied[0], [name for name, _ in given]
-    if start is not None and not given:
+    over, names = varied[0], [name for name, _ in arguments]
+    if start is not None and not arguments:
         wanted = ("frequency", "amplitude") if over in ("frequency", "amplitude") else ("eta",)
         levels = structure.has_scale or not {*OF_LENGTH, "amplitude"}.isdisjoint(varied)
         eta, amplitude = (float(start[name].values.flat[0]) for name in ("eta", "amplitude"))
@@ -371,21 +375,21 @@ def complete_excitation(
             wanted = ("frequency", "amplitude")
         return tuple((name, float(start[name].values.flat[0])) for name in wanted)
     if over in ("eta", "frequency", "amplitude") and over not in names:
-        return (*given, (over, limits[0]))
-    return given
+        return (*arguments, (over, limits[0]))
+    return arguments
 
 
-def first_orbit(
+def find_first_orbit(
     structure: Structure,
     over: str,
     limits: tuple[float, float],
-    given: tuple[tuple[str, float], ...],
+    arguments: tuple[tuple[str, float], ...],
     period: int,
     box_acceleration: float,
     running: Mapping[str, Any],
 ) -> tuple[xr.Dataset, float]:
     """Find an orbit to begin a branch without ``start``; return it and the parameter's value."""
-    excitation: dict[str, Any] = dict(given)
+    excitation: dict[str, Any] = dict(arguments)
     quiet: dict[str, Any] = {
         name: value
         for name, value in running.items()
@@ -398,14 +402,14 @@ def first_orbit(
         own = structure.get(over)
         value = own if limits[0] <= own <= limits[1] else limits[0]
         structure = structure.replace(**{over: value})
-    check_inside(over, value, limits)
+    require_inside_limits(over, value, limits)
     start = orbit(
         structure, period=period, box_acceleration=box_acceleration, **excitation, **quiet
     )
     return start, value
 
 
-def check_inside(over: str, value: float, limits: tuple[float, float]) -> None:
+def require_inside_limits(over: str, value: float, limits: tuple[float, float]) -> None:
     """Raise ``InputError`` unless the parameter's start value lies between its limits."""
     if not limits[0] <= value <= limits[1]:
         raise InputError(
@@ -416,7 +420,9 @@ def check_inside(over: str, value: float, limits: tuple[float, float]) -> None:
 def start_value(start: xr.Dataset, over: str, switch: int | None, structure: Structure) -> float:
     """Return the parameter's value at the start: of the orbit, or of bifurcation ``switch``."""
     if switch is not None:
-        return float(start["bifurcation_value"].values[check_number(start, "switch", switch)])
+        return float(
+            start["bifurcation_value"].values[checked_bifurcation_index(start, "switch", switch)]
+        )
     if over in start.coords:
         return float(start[over])
     if over == ACCELERATION:
@@ -424,18 +430,18 @@ def start_value(start: xr.Dataset, over: str, switch: int | None, structure: Str
     return structure.get(over)
 
 
-def check_number(start: xr.Dataset, name: str, number: int) -> int:
-    """Return a bifurcation's index, checked to exist in the dataset ``start``."""
+def checked_bifurcation_index(start: xr.Dataset, name: str, number: int) -> int:
+    """Return a bifurcation's index; raise unless the start's dataset has it."""
     count = start.sizes.get(BIFURCATION, 0)
     if not count:
         raise InputError(f"{name} = {number!r}: start has no bifurcations; expected a branch")
     return checked_integer(name, number, 0, count - 1)
 
 
-def first_nodes(start: xr.Dataset, name: str, number: int | None) -> tuple[FirstGuess, int]:
+def start_nodes(start: xr.Dataset, name: str, number: int | None) -> tuple[FirstGuess, int]:
     """Return the start orbit's nodes, and the kind of the chosen bifurcation (-1: none)."""
     if number is None:
-        return from_result(start), -1
-    at = start.isel({BIFURCATION: check_number(start, name, number)})
+        return guess_from_result(start), -1
+    at = start.isel({BIFURCATION: checked_bifurcation_index(start, name, number)})
     nodes = {name: at[f"{BIFURCATION}_{name}"].values for name in NODES}
-    return from_result(nodes), int(at["bifurcation_kind"])
+    return guess_from_result(nodes), int(at["bifurcation_kind"])

@@ -1,4 +1,4 @@
-"""Impacts of a chattering that are added or removed along a branch, where (17) ends it."""
+"""Add or remove chattering impacts of an orbit, so that the sticking condition (17) holds."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def add_or_remove_impacts(point: OrbitPoint) -> OrbitPoint:
 
 
 def change_one_impact(point: OrbitPoint) -> OrbitPoint:
-    """Return the orbit with one more impact before its contact, or without those too many.
+    """Return the orbit with one more chattering impact, or without those that (17) excludes.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def change_one_impact(point: OrbitPoint) -> OrbitPoint:
     else:
         last = int(np.where(orbit.contact, margins, -np.inf).argmax())
         kinds = [*kinds[:last], IMPACT, STICK, *kinds[last + 1 :]]
-        nodes = np.insert(nodes, last + 1, next_impact(orbit, last), axis=0)
+        nodes = np.insert(nodes, last + 1, estimated_next_impact(orbit, last), axis=0)
     sequence = ImpactSequence(orbit.sequence.periods, tuple(kinds))
     guess, setting = (sequence, nodes), point.family.setting
     changed = OrbitPoint(
@@ -75,8 +75,8 @@ def without_impacts_after(
     return [STICK if i == sticking else kinds[i] for i in kept], nodes[kept]
 
 
-def next_impact(orbit: PeriodicOrbit, node: int) -> Floats:
-    """Return the node of the impact after a short flight, approximated as a parabola."""
+def estimated_next_impact(orbit: PeriodicOrbit, node: int) -> Floats:
+    """Return the node of the impact after a short flight, estimated as a parabola."""
     phase, position, velocity, closing = orbit.nodes[node]
     parting = orbit.form.parting(closing)
     time = 2.0 * parting / -float(orbit.form.force(position, velocity))

@@ -59,7 +59,7 @@ def transient_periods(transient: int, settle: float, eta: float) -> int:
     return max(transient, round(settle * eta))
 
 
-class Settled(NamedTuple):
+class SettledResponse(NamedTuple):
     """A response run until it repeats or the limit is reached, and the periods that took.
 
     Attributes
@@ -76,7 +76,7 @@ class Settled(NamedTuple):
 
 def run_until_settled(
     instance: Instance, point: Point, start: ArrayLike, settings: AttractorSettings
-) -> Settled:
+) -> SettledResponse:
     """Simulate from a state at phase 0 until samples repeat or the limit; return the response.
 
     Each time it does not repeat, it is run on for as long as before. One that nearly repeats at the
@@ -90,16 +90,18 @@ def run_until_settled(
         response = respond(instance, *point, start, dropped, settings.samples, settings.converged)
         done, start = done + dropped + settings.samples, response.end
         if response.multiplicity and repeats_first(response, settings):
-            return Settled(response, done)
+            return SettledResponse(response, done)
         nearly = response.repetition(settings.apart * settings.converged)
         if done >= settings.longest:
             break
         before, dropped = nearly, min(done, settings.longest - done)
     same = nearly.multiplicity == before.multiplicity
     if nearly.multiplicity and same and 2.0 * nearly.deviation < before.deviation:
-        return Settled(replace(response, tolerance=settings.apart * settings.converged), done)
+        return SettledResponse(
+            replace(response, tolerance=settings.apart * settings.converged), done
+        )
     response = respond(instance, *point, start, 0, settings.irregular_samples, settings.converged)
-    return Settled(response, done + settings.irregular_samples)
+    return SettledResponse(response, done + settings.irregular_samples)
 
 
 def repeats_first(response: Response, settings: AttractorSettings) -> bool:
@@ -111,7 +113,7 @@ def repeats_first(response: Response, settings: AttractorSettings) -> bool:
     return nearly.multiplicity == response.multiplicity
 
 
-def features(response: Response, length: float) -> list[float]:
+def response_features(response: Response, length: float) -> list[float]:
     """Return a response's phase-independent features: multiplicity, impacts, gap statistics.
 
     Parameters

@@ -109,8 +109,8 @@ class CodimensionTwoPoint:
     residual: float
 
 
-class Characteristic:
-    """Characteristic polynomial of an orbit's monodromy matrix: its roots are the multipliers.
+class CharacteristicPolynomial:
+    """Characteristic polynomial of an orbit's monodromy matrix: roots are multipliers.
 
     Parameters
     ----------
@@ -194,17 +194,20 @@ def points_between(
     length = float(chord @ before.tangent)
     stepper = ArclengthStepper(curve, before, length, length)
     try:
-        known = [characteristic(curve, root.unknowns) for root in (before, after)]
+        known = [characteristic_polynomial(curve, root.unknowns) for root in (before, after)]
     except NoConvergenceError:
         return
     for kind in ON_CURVE.get(curve.kind, ()):
 
         def value(position: float, kind: PointKind = kind) -> float:
-            return test(curve, stepper.root_after(position) if position else before, kind)
+            """Return the kind's test function at an arclength after ``before``."""
+            return test_function_value(
+                curve, stepper.root_after(position) if position else before, kind
+            )
 
         try:
             ends = [
-                test(curve, root, kind, polynomial)
+                test_function_value(curve, root, kind, polynomial)
                 for root, polynomial in zip((before, after), known, strict=True)
             ]
             if not (np.isfinite(ends).all() and ends[0] * ends[1] < 0.0):
@@ -213,23 +216,28 @@ def points_between(
                 continue
             position = float(brentq(value, 0.0, length, **TOLERANCE))
             root = stepper.root_after(position)
-            residual = abs(test(curve, root, kind))
+            residual = abs(test_function_value(curve, root, kind))
         except NoConvergenceError:
             continue
-        if residual < LOCATED and happens(curve, root, kind):
+        if residual < LOCATED and is_point_of_kind(curve, root, kind):
             unknowns = root.unknowns[: curve.family.size + 2]
             yield CodimensionTwoPoint(kind, unknowns, number + position / length, residual)
 
 
-def characteristic(curve: BifurcationCurve, unknowns: Floats) -> Characteristic:
+def characteristic_polynomial(
+    curve: BifurcationCurve, unknowns: Floats
+) -> CharacteristicPolynomial:
     """Return the characteristic polynomial of the orbit in a curve's unknowns."""
-    return Characteristic(curve.orbit(unknowns), curve.scale[: curve.family.size])
+    return CharacteristicPolynomial(curve.orbit(unknowns), curve.scale[: curve.family.size])
 
 
-def test(
-    curve: BifurcationCurve, root: Root, kind: PointKind, known: Characteristic | None = None
+def test_function_value(
+    curve: BifurcationCurve,
+    root: Root,
+    kind: PointKind,
+    known: CharacteristicPolynomial | None = None,
 ) -> float:
-    """Return the test function's value at a root: it changes sign at a point of this kind.
+    """Return a kind's test function at a root of the curve: it changes sign at such a point.
 
     Parameters
     ----------
@@ -248,7 +256,7 @@ def test(
         return float(root.unknowns[-1] - ANGLES[kind])
     if kind == PointKind.CUSP:
         return cusp_test(curve, root)
-    polynomial = known or characteristic(curve, root.unknowns)
+    polynomial = known or characteristic_polynomial(curve, root.unknowns)
     if kind == PointKind.RESONANCE_1:
         return polynomial.slope(1.0)
     if kind == PointKind.RESONANCE_2:
@@ -278,7 +286,7 @@ def cusp_test(curve: BifurcationCurve, root: Root) -> float:
     return float(along @ np.array([-normal[1], normal[0]]) / np.linalg.norm(normal))
 
 
-def happens(curve: BifurcationCurve, root: Root, kind: PointKind) -> bool:
+def is_point_of_kind(curve: BifurcationCurve, root: Root, kind: PointKind) -> bool:
     """Return whether a test function's zero is truly such a point (pair on the unit circle).
 
     Two real multipliers may have the product 1 as well as a pair on the unit circle.
@@ -286,7 +294,7 @@ def happens(curve: BifurcationCurve, root: Root, kind: PointKind) -> bool:
     if kind not in (PointKind.FOLD_TORUS, PointKind.FLIP_TORUS) or curve.kind == TORUS:
         return True
     real = 1.0 if kind == PointKind.FOLD_TORUS else -1.0
-    others = characteristic(curve, root.unknowns).others(real)
+    others = characteristic_polynomial(curve, root.unknowns).others(real)
     pair = others[others.imag > 0.0]
     return bool((np.abs(np.abs(pair) - 1.0) < ON_CIRCLE).any())
 
@@ -327,8 +335,9 @@ def solve_end(
     curve.update_border(root.unknowns)
 
     def conditions(unknowns: Floats) -> Floats:
+        """Return the residual of the two conditions that hold at the curve's end."""
         if resonance:
-            polynomial = characteristic(curve, unknowns)
+            polynomial = characteristic_polynomial(curve, unknowns)
             at = 1.0 if kind == PointKind.RESONANCE_1 else -1.0
             return np.array([polynomial(at).real, polynomial.slope(at)])
         return np.append(curve.condition(unknowns), grazing_test(curve, unknowns, reason))

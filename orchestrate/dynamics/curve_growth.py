@@ -1,4 +1,4 @@
-"""Grow a curve (manifold) point by point: denser where it bends, broken at discontinuities.
+"""Grow a curve that is an image of a parameter: adaptive steps, breaks at its discontinuities.
 
 A one-dimensional unstable manifold is what becomes of a short piece of it, from a point to its
 image, when it is mapped again and again (Hobson, Journal of Computational Physics 104, 14, 1993).
@@ -26,7 +26,7 @@ import numpy as np
 from .closed_form import Floats
 
 FIRST_STEP, MAX_STEP = 0.05, 0.25  # of s
-AFTER_BORDER = 1e-3  # of s: the first step behind a border, where no bend is known yet
+AFTER_CHANGE = 1e-3  # of s: the first step behind a change, where no bend is known yet
 SHORTER, LONGER = 0.5, 1.5  # of a step: after one that was too long, and after an easy one
 EASY = 0.5  # of the allowed distance and angle
 SHARP = 0.01  # of the allowed distance: where points are nearer, the curve may bend as it will
@@ -37,7 +37,7 @@ LENGTH, POINTS, CONVERGED = "length", "most points", "converges"
 
 
 class CurvePoint(NamedTuple):
-    """A point of a grown curve: parameter s, state, and itinerary (its sequence of impacts).
+    """A point of a grown curve: parameter s, state, and itinerary (its counts of impacts).
 
     Attributes
     ----------
@@ -54,8 +54,8 @@ class CurvePoint(NamedTuple):
     itinerary: tuple[int, ...]
 
 
-class Border(NamedTuple):
-    """Two points next to each other to rounding, between which the itinerary changes.
+class ItineraryChange(NamedTuple):
+    """Two neighbouring curve points, bisected to rounding, between which impacts change.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ class Border(NamedTuple):
 
 @dataclass(frozen=True)
 class GrowthSettings:
-    """Settings for growing a curve: length, steps, angle, number of points.
+    """Settings for growing a curve: its length, spacing, angle between chords, most points.
 
     Attributes
     ----------
@@ -122,7 +122,7 @@ class GrownCurve:
 
     points: list[CurvePoint] = field(default_factory=list)
     arclength: list[float] = field(default_factory=list)
-    breaks: dict[int, Border] = field(default_factory=dict)
+    breaks: dict[int, ItineraryChange] = field(default_factory=dict)
     end: str = ""
 
     def add(self, point: CurvePoint, distance: float) -> None:
@@ -131,13 +131,13 @@ class GrownCurve:
         self.points.append(point)
 
 
-def distance_of(one: CurvePoint, other: CurvePoint) -> float:
+def distance_between(first: CurvePoint, second: CurvePoint) -> float:
     """Return the Euclidean distance of two points' states, with equal bits on all processors."""
-    return math.dist(other.state.tolist(), one.state.tolist())
+    return math.dist(second.state.tolist(), first.state.tolist())
 
 
-def power_of(history: list[tuple[float, float]]) -> float:
-    """Return the exponent with which distances shrank in the last quarter of a bisection."""
+def shrinking_power(history: list[tuple[float, float]]) -> float:
+    """Return the power with which a bisection's distances shrink with its intervals (0: jump)."""
     (far, before), (near, after) = history[-1 - len(history) // 4], history[-1]
     if not (0.0 < near < far and after > 0.0 and before > 0.0):
         return 0.0 if after > 0.0 else 1.0
@@ -145,7 +145,7 @@ def power_of(history: list[tuple[float, float]]) -> float:
 
 
 class CurveGrower:
-    """Grows a curve that is the image of a parameter, with adaptive steps.
+    """Grows a curve point by point, with steps adapted to the distance and bend of its points.
 
     Parameters
     ----------
@@ -162,20 +162,24 @@ class CurveGrower:
         """Grow the curve from parameter ``first`` to its end; return all its points."""
         settings, curve = self.settings, GrownCurve()
         curve.add(self.image(first), 0.0)
-        step, ahead = FIRST_STEP, None
+        step, change_ahead = FIRST_STEP, None
         while not curve.end:
             last = curve.points[-1]
-            if ahead is not None and last.s >= ahead.low.s:
-                self.cross(curve, ahead)
-                ahead, step = None, min(step, AFTER_BORDER)
-                curve.end = self.end_of(curve)
+            if change_ahead is not None and last.s >= change_ahead.low.s:
+                self.cross_change(curve, change_ahead)
+                change_ahead, step = None, min(step, AFTER_CHANGE)
+                curve.end = self.end_reason(curve)
                 continue
             target = last.s + step
-            point = self.image(target) if ahead is None or target < ahead.low.s else ahead.low
+            point = (
+                self.image(target)
+                if change_ahead is None or target < change_ahead.low.s
+                else change_ahead.low
+            )
             if point.itinerary != last.itinerary:
-                ahead = self.locate(last, point)
+                change_ahead = self.bisect_change(last, point)
                 continue
-            distance, angle = distance_of(last, point), self.angle_to(last, point)
+            distance, angle = distance_between(last, point), self.angle_to(last, point)
             sharp = distance <= SHARP * settings.spacing
             if distance <= settings.spacing and (sharp or angle <= settings.angle):
                 curve.add(point, distance)
@@ -183,25 +187,25 @@ class CurveGrower:
                     self.direction = (point.state - last.state) / distance
                 easy = distance <= EASY * settings.spacing and angle <= EASY * settings.angle
                 step = min(step * (LONGER if easy else 1.0), settings.max_step)
-                curve.end = self.end_of(curve)
+                curve.end = self.end_reason(curve)
             elif point.s - last.s > settings.resolution * max(1.0, last.s):
                 step = SHORTER * (point.s - last.s)
             else:  # a jump without another itinerary
-                ahead = Border(last, point, distance, 0.0)
+                change_ahead = ItineraryChange(last, point, distance, 0.0)
         return curve
 
     def angle_to(self, last: CurvePoint, point: CurvePoint) -> float:
         """Return the angle, rad, between the curve's direction and the chord to a point."""
-        size = distance_of(last, point)
+        size = distance_between(last, point)
         if self.direction is None or size <= STILL * self.settings.size:
             return 0.0
         cosine = math.fsum((self.direction * (point.state - last.state)).tolist()) / size
         return math.acos(max(-1.0, min(1.0, cosine)))
 
-    def locate(self, low: CurvePoint, high: CurvePoint) -> Border:
+    def bisect_change(self, low: CurvePoint, high: CurvePoint) -> ItineraryChange:
         """Bisect between two points for where the itinerary changes; return the pair there."""
         resolution = self.settings.resolution * max(1.0, low.s)
-        history = [(high.s - low.s, distance_of(low, high))]
+        history = [(high.s - low.s, distance_between(low, high))]
         while high.s - low.s > resolution:
             middle = self.image(0.5 * (low.s + high.s))
             if not low.s < middle.s < high.s:
@@ -210,18 +214,18 @@ class CurveGrower:
                 low = middle
             else:
                 high = middle
-            history.append((high.s - low.s, distance_of(low, high)))
-        return Border(low, high, history[-1][1], power_of(history))
+            history.append((high.s - low.s, distance_between(low, high)))
+        return ItineraryChange(low, high, history[-1][1], shrinking_power(history))
 
-    def cross(self, curve: GrownCurve, border: Border) -> None:
-        """Continue the curve beyond a change of itinerary: connected, or with a break."""
-        broken = border.is_break(self.settings.size)
+    def cross_change(self, curve: GrownCurve, change: ItineraryChange) -> None:
+        """Append the point beyond a change of itinerary: connected, or after a break."""
+        broken = change.is_break(self.settings.size)
         if broken:
-            curve.breaks[len(curve.points)] = border
-        curve.add(border.high, 0.0 if broken else border.distance)
+            curve.breaks[len(curve.points)] = change
+        curve.add(change.high, 0.0 if broken else change.distance)
         self.direction = None
 
-    def end_of(self, curve: GrownCurve) -> str:
+    def end_reason(self, curve: GrownCurve) -> str:
         """Return why the curve ends at its last point (length, points ...); empty if not."""
         settings, last = self.settings, curve.points[-1]
         if curve.arclength[-1] >= settings.length:

@@ -18,23 +18,23 @@ from ..access import STATE, EventInstance, Instance, begin
 from ..constants import TURN
 from ..errors import FmuError, InputError
 from ..response.questions import Point
-from ..response.respond import Response, respond, sample
+from ..response.respond import Response, respond, stroboscopic_samples
 from .clusters import AttractorSettings, run_until_settled
 from .continuation import NoConvergenceError
 from .families import Setting
-from .guesses import Guess, from_impacts, start
+from .guesses import Guess, begin_at_state, guess_from_impacts
 from .orbit_search import least_periods, solve_orbit, why_no_motion
 from .periodic_orbit import ImpactSequence, PeriodicOrbit
 from .settled_motion import (
     IRREGULAR,
+    ON_KNOWN_MOTION,
     ORBIT,
     REPEATED,
-    SAME,
     UNDECIDED,
     Floats,
     SettledMotion,
 )
-from .turning_points import from_phase_zero
+from .turning_points import rotate_to_phase_zero
 
 RESIDUAL = 1e-9  # of an orbit's equations in units of a eta^2, at most
 MARGIN = 1e-9  # by which the multipliers of a stable orbit are smaller than 1 at least
@@ -74,8 +74,8 @@ class MotionDecider:
     ) -> None:
         self.plain, self.eventful, self.point, self.settings = plain, eventful, point, settings
         excitation = point.excitation
-        given = (("frequency", excitation.frequency), ("amplitude", excitation.amplitude))
-        self.system = Setting.fixed(point.structure, given)
+        arguments = (("frequency", excitation.frequency), ("amplitude", excitation.amplitude))
+        self.system = Setting.fixed(point.structure, arguments)
         self.values = np.array([excitation.frequency])
         self.known: list[SettledMotion] = []
 
@@ -147,7 +147,7 @@ class MotionDecider:
             motion = SettledMotion(self.point, IRREGULAR, states, 0, impacts, response.x_rel_max)
             return motion, state
         states = response.samples[-n:].copy()
-        impacts = count_impacts(self.plain, self.point, response.end, n) / n
+        impacts = count_impacts_from_pause(self.plain, self.point, response.end, n) / n
         decided = UNDECIDED if unstable else REPEATED
         motion = SettledMotion(self.point, decided, states, n, impacts, response.x_rel_max)
         self.known.append(motion)
@@ -159,7 +159,7 @@ class MotionDecider:
         """Return the known motion of ``n`` periods that passes at a state; None if on none."""
         for motion in self.known:
             distance = motion.nearest(state)[1]
-            within = SAME if motion.decided == ORBIT else self.settings.alike
+            within = ON_KNOWN_MOTION if motion.decided == ORBIT else self.settings.alike
             if distance < within and motion.multiplicity == n:
                 return motion
             near = motion.decided == ORBIT and distance < NEAR
@@ -170,7 +170,7 @@ class MotionDecider:
     def remember(self, motion: SettledMotion) -> SettledMotion:
         """Store a stable orbit; return it, or the equal one already stored."""
         for known in self.known:
-            if known.is_orbit_of(motion):
+            if known.is_same_orbit_as(motion):
                 return known
         self.known.append(motion)
         return motion
@@ -194,8 +194,8 @@ class MotionDecider:
             self.plain.step(0.0, motion.free_phase / excitation.frequency)
         there, states = self.plain.get(*STATE), motion.free_states
         before = states.nearest(there)[1]
-        if before < SAME or not before < NEAR:
-            return before < SAME
+        if before < ON_KNOWN_MOTION or not before < NEAR:
+            return before < ON_KNOWN_MOTION
         rate = max(motion.multiplier, 1e-3)
         turns = math.ceil(math.log(SHRUNK) / math.log(rate))
         turns = max(1, min(turns, self.settings.longest // periods))
@@ -240,33 +240,37 @@ class MotionDecider:
         instance, frequency = self.eventful, self.point.excitation.frequency
         assert instance is not None
         form, span = self.system.form(self.values), periods * self.point.excitation.period
-        start(instance, self.point, form, state)
+        begin_at_state(instance, self.point, form, state)
         times = instance.impacts(0.0, span).time
         if not len(times):
             return (ImpactSequence(periods, ()), np.zeros((0, 4))), 0.0
         stretches = np.diff(np.append(times, times[0] + span))
         longest = int(stretches.argmax())
         begun = float(times[longest] + 0.5 * stretches[longest]) % span
-        start(instance, self.point, form, state)
+        begin_at_state(instance, self.point, form, state)
         if begun > 0.0:
             instance.impacts(0.0, begun)
         impacts = instance.impacts(begun, begun + span)
-        return from_impacts(impacts, self.point, form, periods), frequency * begun
+        return guess_from_impacts(impacts, self.point, form, periods), frequency * begun
 
     def continue_orbit(self, motion: SettledMotion) -> SettledMotion | None:
-        """Solve here for the orbit of a neighbouring value; None if not stable here."""
+        """Continue an orbit of a neighbouring value to this one; None if not stable here."""
         if motion.orbit is None or self.eventful is None:
             return None
         orbit = self.solve((motion.orbit.sequence, motion.orbit.nodes))
         if orbit is None or largest_multiplier(orbit) >= 1.0 - MARGIN:
             return None
-        found = SettledMotion.from_orbit(self.point, orbit, phase_far_from_impacts(orbit))
-        if not self.stays_on(found):
+        continued = SettledMotion.from_orbit(self.point, orbit, phase_far_from_impacts(orbit))
+        if not self.stays_on(continued):
             return None
         own = self.stable_orbit_at(
-            found.states[0], found.multiplicity
+            continued.states[0], continued.multiplicity
         )  # with the impacts of the FMU
-        return own if own is not None and own.nearest(found.states[0])[1] < SAME else None
+        return (
+            own
+            if own is not None and own.nearest(continued.states[0])[1] < ON_KNOWN_MOTION
+            else None
+        )
 
     def stays_on(self, motion: SettledMotion) -> bool:
         """Return whether the FMU, started on an orbit, is still on it after its period."""
@@ -277,7 +281,7 @@ class MotionDecider:
         except (FmuError, InputError):  # in contact the masses overlap within rounding
             return False
         self.plain.step(0.0, motion.multiplicity * excitation.period)
-        return motion.free_states.nearest(self.plain.get(*STATE))[1] < SAME
+        return motion.free_states.nearest(self.plain.get(*STATE))[1] < ON_KNOWN_MOTION
 
 
 def largest_multiplier(orbit: PeriodicOrbit) -> float:
@@ -290,7 +294,7 @@ def without_copies(orbit: PeriodicOrbit) -> PeriodicOrbit:
     periods, least = orbit.sequence.periods, least_periods(orbit)
     if least == periods:
         return orbit
-    nodes, first = from_phase_zero(orbit.nodes, periods)
+    nodes, first = rotate_to_phase_zero(orbit.nodes, periods)
     count = len(nodes) * least // periods
     kinds = np.roll(np.array(orbit.sequence.kinds, dtype=int), -first)[:count]
     return PeriodicOrbit(ImpactSequence(least, tuple(kinds.tolist())), orbit.form, nodes[:count])
@@ -313,12 +317,14 @@ def sample_at_another_phase(
     instance.step(0.0, OTHER_PHASE / point.excitation.frequency)
     there = instance.get(*STATE)
     begin(instance, point.structure, point.excitation.replace(phase=OTHER_PHASE), there)
-    states, gap = sample(instance, point.excitation.period, 0, samples)
+    states, gap = stroboscopic_samples(instance, point.excitation.period, 0, samples)
     return replace(response, samples=states, x_rel_max=gap)
 
 
-def count_impacts(instance: Instance, point: Point, state: ArrayLike, periods: int) -> int:
-    """Simulate some periods from a state; return the number of impacts.
+def count_impacts_from_pause(
+    instance: Instance, point: Point, state: ArrayLike, periods: int
+) -> int:
+    """Count the impacts of some periods, begun in a pause between impacts.
 
     They are counted from a phase in the middle of a stretch without any, so that none is counted
     twice or left out.

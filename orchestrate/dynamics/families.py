@@ -10,7 +10,7 @@ import numpy as np
 
 from ..checks import REQUIRES_DELAMINATED
 from ..errors import InputError
-from ..response.questions import EXCITATION_PARAMETERS, Point, point
+from ..response.questions import EXCITATION_PARAMETERS, Point, make_point
 from ..structures import PARAMETERS, Structure
 from ..structures.ranges import expected_one_of
 from .closed_form import ClosedForm, Floats
@@ -60,9 +60,12 @@ class Setting:
 
     def point(self, values: Floats) -> Point:
         """Return structure and excitation with the varying parameters at these values."""
-        given = {**dict(self.excitation), **dict(zip(self.over, map(float, values), strict=True))}
-        given.pop(ACCELERATION, None)
-        return point(self.structure, given)
+        parameters = {
+            **dict(self.excitation),
+            **dict(zip(self.over, map(float, values), strict=True)),
+        }
+        parameters.pop(ACCELERATION, None)
+        return make_point(self.structure, parameters)
 
     def orbit_call(self, values: Floats, period: int, guess: str) -> str:
         """Return Python source of the ``orbit(...)`` call at these values of the parameters."""
@@ -76,8 +79,8 @@ class Setting:
 
     def acceleration(self, values: Floats) -> float:
         """Return the constant box acceleration, m/s2, at these values of the parameters."""
-        given = dict(zip(self.over, map(float, values), strict=True))
-        return given.get(ACCELERATION, self.box_acceleration)
+        parameters = dict(zip(self.over, map(float, values), strict=True))
+        return parameters.get(ACCELERATION, self.box_acceleration)
 
     def form(self, values: Floats) -> ClosedForm:
         """Return the closed-form coefficients at these values of the parameters.
@@ -91,8 +94,8 @@ class Setting:
         point.excitation.check(point.structure)
         return ClosedForm.from_structure(*point, self.acceleration(values))
 
-    def over_first_alone(self, values: Floats) -> Setting:
-        """Return a setting with only the first parameter varying, the others at these values."""
+    def with_first_varying(self, values: Floats) -> Setting:
+        """Return a setting in which only the first parameter varies, the others fixed."""
         fixed = dict(zip(self.over[1:], map(float, values[1:]), strict=True))
         acceleration = fixed.pop(ACCELERATION, self.box_acceleration)
         excitation = {

@@ -1,4 +1,4 @@
-"""Base of questions that follow responses impact by impact along a parameter."""
+"""Base of jobs that run responses from given or swept states and evaluate their impacts."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..access import OSCILLATOR, REST, STATE, EventInstance, Impacts, Instance, begin
 from ..errors import InputError
-from ..response.questions import Point, SeriesQuestion, states
+from ..response.questions import Point, SeriesQuestion, checked_states
 from ..running.job import Inputs, Table
-from .variational import nondimensional
+from .variational import nondimensional_impacts
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 State = tuple[float, ...]
 
 
-class Followed(NamedTuple):
+class FollowedResponse(NamedTuple):
     """A response to follow: structure, excitation, and its state at phase 0 (m, m/s).
 
     Attributes
@@ -43,7 +43,7 @@ class Followed(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class OnwardQuestion(SeriesQuestion, ABC):
+class StartStatesQuestion(SeriesQuestion, ABC):
     """Base of jobs along a parameter whose responses start from given or swept states.
 
     Attributes
@@ -62,18 +62,20 @@ class OnwardQuestion(SeriesQuestion, ABC):
         """Return the name of the sweep that gives the starts; an empty tuple without one."""
         return (self.follows,) if self.follows else ()
 
-    def items(self, inputs: Inputs) -> Sequence[Followed]:
+    def items(self, inputs: Inputs) -> Sequence[FollowedResponse]:
         """Return for each parameter value the response to follow, with its start state."""
         series = self.series
         rows = np.reshape(self.start, (-1, 4))
         if self.follows:
             rows = end_states(inputs[self.follows], series)
         starts = np.broadcast_to(rows, (len(series.points), 4)).tolist()
-        return [Followed(*item) for item in zip(series.points, map(tuple, starts), strict=True)]
+        return [
+            FollowedResponse(*item) for item in zip(series.points, map(tuple, starts), strict=True)
+        ]
 
 
 @dataclass(frozen=True, kw_only=True)
-class FollowingQuestion(OnwardQuestion, ABC):
+class ImpactsQuestion(StartStatesQuestion, ABC):
     """Base of jobs that evaluate the impacts of responses after a transient.
 
     Attributes
@@ -86,21 +88,21 @@ class FollowingQuestion(OnwardQuestion, ABC):
     periods: int = 100
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Followed], previous: Table | None
+        self, fmus: Mapping[str, Path], items: Sequence[FollowedResponse], previous: Table | None
     ) -> Table:
         """Simulate responses past their transients, then record impacts; return a row for each."""
         rows = []
         with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
             for item in items:
-                start = state_after(plain, item, self.transient)
+                start = state_after_transient(plain, item, self.transient)
                 first = starts_in_contact(eventful, item.point, start)
                 impacts = follow_impacts(eventful, item.point, start, self.periods)
                 last = eventful.flag("in_contact")()
-                rows.append(self.row(impacts, Followed(item.point, start, (first, last))))
+                rows.append(self.row(impacts, FollowedResponse(item.point, start, (first, last))))
         return {"rows": np.array(rows, dtype=float)}
 
     @abstractmethod
-    def row(self, impacts: Impacts, item: Followed) -> Sequence[float]:
+    def row(self, impacts: Impacts, item: FollowedResponse) -> Sequence[float]:
         """Return the numbers that one response's impacts give; subclasses choose them.
 
         Parameters
@@ -119,12 +121,12 @@ def end_states(swept: xr.Dataset, series: Series) -> NDArray[np.float64]:
     return states
 
 
-def start_states(given: ArrayLike | xr.Dataset | None, question: SeriesQuestion) -> State:
+def start_states(start: ArrayLike | xr.Dataset | None, question: SeriesQuestion) -> State:
     """Return the start states given by the user: one for all, one per value, or of a sweep.
 
     Parameters
     ----------
-    given : array_like or xarray.Dataset, optional
+    start : array_like or xarray.Dataset, optional
         One state, one for each value, or what :func:`orchestrate.sweep` has answered for these
         values; at rest by default.
     question : SeriesQuestion
@@ -135,8 +137,8 @@ def start_states(given: ArrayLike | xr.Dataset | None, question: SeriesQuestion)
         Where these are not as many as there are values, or no states of the structure.
     """
     series = question.series
-    if hasattr(given, "end_state"):
-        swept: xr.Dataset = given  # type: ignore[assignment]
+    if hasattr(start, "end_state"):
+        swept: xr.Dataset = start  # type: ignore[assignment]
         there = swept.end_state.dims
         known: ArrayLike = swept[series.name].values if series.name in there else []
         if there != (series.name, "coordinate") or not np.isin(series.values, known).all():
@@ -145,7 +147,7 @@ def start_states(given: ArrayLike | xr.Dataset | None, question: SeriesQuestion)
                 f"direction over the same values of {series.name}"
             )
         return tuple(end_states(swept, series).ravel().tolist())
-    rows = states("start", given, question.structure)
+    rows = checked_states("start", start, question.structure)
     if len(rows) not in (1, len(series.values)):
         raise InputError(
             f"start: {len(rows)} states; expected one, or one for each of {len(series.values)} "
@@ -154,7 +156,7 @@ def start_states(given: ArrayLike | xr.Dataset | None, question: SeriesQuestion)
     return tuple(rows.ravel().tolist())
 
 
-def state_after(instance: Instance, item: Followed, transient: int) -> State:
+def state_after_transient(instance: Instance, item: FollowedResponse, transient: int) -> State:
     """Simulate ``transient`` periods in the FMU; return the state at phase 0."""
     if not transient:
         return item.start
@@ -174,4 +176,4 @@ def follow_impacts(
 ) -> Impacts:
     """Simulate some periods from a state; return their impacts, non-dimensional."""
     begin(instance, *point, start)
-    return nondimensional(instance.impacts(0.0, periods * point.excitation.period), point)
+    return nondimensional_impacts(instance.impacts(0.0, periods * point.excitation.period), point)

@@ -1,4 +1,4 @@
-"""Attractors along a parameter: gathered from random starts, carried to neighbours, and matched.
+"""Match attractors along a parameter by global continuation from random starts (Datseris 2023).
 
 Global continuation as of Datseris, Rossi and Wagemakers, Chaos 33, 073151 (2023): states on the
 attractors of one value are further starts at its neighbours, so that an attractor is found as far
@@ -19,18 +19,19 @@ from numpy.typing import NDArray
 from ..access import EventInstance, Instance, begin
 from ..access.description import describe
 from ..response.questions import Point
-from ..response.respond import sample
+from ..response.respond import stroboscopic_samples
 from .clusters import AttractorSettings, irregular_clusters
 from .decision import MotionDecider
 from .settled_motion import IRREGULAR, ORBIT, Floats, SettledMotion
 
-FAR = 0.2  # distance over the motion's size from which an attractor may be another one's neighbour
-FLOWS, FOLLOWED = 1, 2  # how an attractor leads to one at a neighbour: by the FMU, or by its orbit
+# Distance over the motion's size beyond which attractors at neighbouring values may be different
+NEIGHBOUR_DISTANCE = 0.2
+BY_SIMULATION, BY_NEWTON = 1, 2  # how an attractor was continued to a neighbouring value
 
 
 @dataclass
-class Instances:
-    """The instances that decide motions, as a context manager.
+class InstancePair:
+    """Context manager that opens the FMU as a plain instance and, if FMI 3.0, one with events.
 
     Parameters
     ----------
@@ -53,7 +54,7 @@ class Instances:
 
 @dataclass
 class SettledStarts:
-    """What random starts at one value have settled to, one row a start.
+    """Motions that random starts at one parameter value settle to: features, states, how decided.
 
     Attributes
     ----------
@@ -72,7 +73,7 @@ class SettledStarts:
 
 @dataclass
 class AttractorsAtValue:
-    """The attractors at one value of the parameter, as far as they are known.
+    """Attractors known at one parameter value, and which of them each random start reaches.
 
     Attributes
     ----------
@@ -87,87 +88,89 @@ class AttractorsAtValue:
     motions: list[SettledMotion] = field(default_factory=list)
     labels: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
 
-    def gather(self, starts: SettledStarts, settings: AttractorSettings) -> None:
-        """Collect the attractors of random starts."""
+    def collect_from_starts(self, starts: SettledStarts, settings: AttractorSettings) -> None:
+        """Group the motions that random starts settle to into attractors; label each start."""
         self.labels = np.full(len(starts.ends), -1, dtype=np.intp)
         seen: dict[bytes, int] = {}
         for i in np.flatnonzero(starts.decided != IRREGULAR):
             row = starts.features[i]
             key = row.tobytes()
             if key not in seen:
-                motion = self.restored(row, starts.ends[i], int(starts.decided[i]))
-                seen[key] = self.index(motion)
+                motion = self.motion_from_features(row, starts.ends[i], int(starts.decided[i]))
+                seen[key] = self.find_or_add(motion)
             self.labels[i] = seen[key]
         irregular = np.flatnonzero(starts.decided == IRREGULAR)
         groups = irregular_clusters(starts.features[irregular], settings)
         for group in range(int(groups.max(initial=-1)) + 1):
             members = irregular[groups == group]
-            self.motions.append(self.irregular(starts.features[members], starts.ends[members[0]]))
+            self.motions.append(
+                self.mean_irregular_motion(starts.features[members], starts.ends[members[0]])
+            )
             self.labels[members] = len(self.motions) - 1
 
-    def restored(self, row: Floats, state: Floats, decided: int) -> SettledMotion:
-        """Return a motion that has been decided, from its features and a state on it."""
+    def motion_from_features(self, row: Floats, state: Floats, decided: int) -> SettledMotion:
+        """Rebuild a settled motion from its stored feature row and a state on it at phase 0."""
         decider, n = self.decider, int(row[0])
         known = decider.known_motion_at(state, n)
         if known is None and decided == ORBIT:
             known = decider.stable_orbit_at(state, n)
         if known is None:
             begin(decider.plain, *decider.point, state)
-            states, _ = sample(decider.plain, decider.point.excitation.period, 0, n)
+            states, _ = stroboscopic_samples(decider.plain, decider.point.excitation.period, 0, n)
             gap = float(row[2]) * decider.point.length
             known = SettledMotion(decider.point, decided, states.copy(), n, float(row[1]), gap)
             decider.known.append(known)
         return known
 
-    def irregular(self, rows: Floats, state: Floats) -> SettledMotion:
-        """Return what irregular responses have in common."""
+    def mean_irregular_motion(self, rows: Floats, state: Floats) -> SettledMotion:
+        """Return one irregular motion with the median features of a cluster of responses."""
         _, impacts, gap = np.median(rows[:, :3], axis=0)
         length = self.decider.point.length
         return SettledMotion(
             self.decider.point, IRREGULAR, state[np.newaxis], 0, float(impacts), gap * length
         )
 
-    def index(self, motion: SettledMotion) -> int:
-        """Return the number of a motion, which is added where it is new.
+    def find_or_add(self, motion: SettledMotion) -> int:
+        """Return the index of a motion among the attractors here; append it if it is new.
 
         An irregular response belongs to the irregular attractor with the nearest gap: means over
         few periods are no reason for one more.
         """
         if motion.decided == IRREGULAR:
-            alike = [k for k, one in enumerate(self.motions) if one.decided == IRREGULAR]
+            alike = [k for k, known in enumerate(self.motions) if known.decided == IRREGULAR]
             if alike:
                 return min(alike, key=lambda k: abs(np.log(self.motions[k].gap / motion.gap)))
-        for k, one in enumerate(self.motions):
-            if one is motion:
+        for k, known in enumerate(self.motions):
+            if known is motion:
                 return k
         self.motions.append(motion)
         return len(self.motions) - 1
 
-    def lead_from(self, motion: SettledMotion) -> tuple[int, int]:
-        """Return where an attractor of a neighbour leads here: the attractor's number, and how."""
+    def continue_from_neighbour(self, motion: SettledMotion) -> tuple[int, int]:
+        """Continue a neighbour's attractor here; return its index here, and how."""
         state = self.decider.point.from_faces(motion.point.faces(motion.states[0]))
         reached, _ = self.decider.decide(state)
-        if motion.orbit is not None and may_differ(motion, reached):
+        if motion.orbit is not None and may_be_different_branches(motion, reached):
             followed = self.decider.continue_orbit(motion)
             if followed is not None:
-                return self.index(followed), FOLLOWED
-        return self.index(reached), FLOWS
+                return self.find_or_add(followed), BY_NEWTON
+        return self.find_or_add(reached), BY_SIMULATION
 
 
-def may_differ(one: SettledMotion, other: SettledMotion) -> bool:
-    """Return whether two motions at neighbouring values may be of different branches."""
-    if (one.multiplicity, one.impacts_per_period) != (
+def may_be_different_branches(motion: SettledMotion, other: SettledMotion) -> bool:
+    """Return whether motions at neighbouring values differ enough to be of different branches."""
+    if (motion.multiplicity, motion.impacts_per_period) != (
         other.multiplicity,
         other.impacts_per_period,
     ):
         return True
-    state = other.point.from_faces(one.point.faces(one.states[0]))
-    return other.nearest(state)[1] > FAR
+    state = other.point.from_faces(motion.point.faces(motion.states[0]))
+    return other.nearest(state)[1] > NEIGHBOUR_DISTANCE
 
 
 @dataclass(frozen=True)
 class MatchedAttractors:
-    """Attractors along a parameter.
+    """Attractors at all values of a parameter, with one number for the same attractor everywhere.
 
     Attributes
     ----------
@@ -185,7 +188,7 @@ class MatchedAttractors:
 
     @property
     def count(self) -> int:
-        """Return the number of attractors over all values, each counted once."""
+        """Number of different attractors over all values of the parameter."""
         return 1 + max(max(row) for row in self.numbers)
 
 
@@ -196,7 +199,7 @@ def continue_attractors(
     settings: AttractorSettings,
     seeds: Sequence[Sequence[float]] = (),
 ) -> MatchedAttractors:
-    """Find the attractors that random starts lead to; carry them along a parameter and match them.
+    """Return the attractors along a parameter from random starts, continued and matched.
 
     Parameters
     ----------
@@ -209,11 +212,11 @@ def continue_attractors(
         States on attractors that are known at the first value, at phase 0.
     """
     values = [AttractorsAtValue(MotionDecider(*instances, point, settings)) for point in points]
-    for value, some in zip(values, starts, strict=True):
-        value.gather(some, settings)
+    for value, starts_there in zip(values, starts, strict=True):
+        value.collect_from_starts(starts_there, settings)
     for seed in seeds:
-        values[0].index(values[0].decider.decide(seed)[0])
-    links = carry_to_neighbours(values)
+        values[0].find_or_add(values[0].decider.decide(seed)[0])
+    links = continue_to_neighbours(values)
     numbers = number_attractors(values, links)
     labels = [
         np.array([row[label] for label in value.labels], dtype=np.intp)
@@ -225,8 +228,8 @@ def continue_attractors(
 Links = dict[tuple[int, int, int], tuple[int, int]]  # value, attractor, neighbour: where, how
 
 
-def carry_to_neighbours(values: Sequence[AttractorsAtValue]) -> Links:
-    """Carry every attractor to both neighbours, those that are added on the way too."""
+def continue_to_neighbours(values: Sequence[AttractorsAtValue]) -> Links:
+    """Continue each attractor to both neighbouring values; return where each one leads."""
     links: Links = {}
     waiting = deque((i, k) for i, value in enumerate(values) for k in range(len(value.motions)))
     while waiting:
@@ -235,13 +238,13 @@ def carry_to_neighbours(values: Sequence[AttractorsAtValue]) -> Links:
             if not 0 <= j < len(values):
                 continue
             before = len(values[j].motions)
-            links[i, k, j] = values[j].lead_from(values[i].motions[k])
+            links[i, k, j] = values[j].continue_from_neighbour(values[i].motions[k])
             waiting.extend((j, new) for new in range(before, len(values[j].motions)))
     return links
 
 
 def number_attractors(values: Sequence[AttractorsAtValue], links: Links) -> list[list[int]]:
-    """Return numbers of attractors along the parameter, the most frequent one first."""
+    """Return the attractors' numbers at each value: equal if matched, 0 for the largest share."""
     chains: list[list[int]] = []
     count = 0
     for j, value in enumerate(values):
@@ -265,7 +268,7 @@ def number_attractors(values: Sequence[AttractorsAtValue], links: Links) -> list
 def match_neighbours(
     before: AttractorsAtValue, value: AttractorsAtValue, i: int, links: Links
 ) -> list[tuple[int, int]]:
-    """Return pairs of attractors of two neighbouring values that are one.
+    """Return index pairs of attractors at two neighbouring values that are the same attractor.
 
     Each leads to the other; else the orbit of one is followed to the other; else one leads to the
     other and looks the same.
@@ -276,15 +279,15 @@ def match_neighbours(
     candidates: list[tuple[int, int, int]] = []
     for a, (b, how) in enumerate(forth):
         mutual = back[b][0] == a
-        alike = not may_differ(before.motions[a], value.motions[b])
-        if mutual or how == FOLLOWED or alike:
-            candidates.append((0 if mutual else 1 if how == FOLLOWED else 2, a, b))
+        alike = not may_be_different_branches(before.motions[a], value.motions[b])
+        if mutual or how == BY_NEWTON or alike:
+            candidates.append((0 if mutual else 1 if how == BY_NEWTON else 2, a, b))
     for b, (a, how) in enumerate(back):
-        alike = not may_differ(value.motions[b], before.motions[a])
-        if how == FOLLOWED or alike:
-            candidates.append((1 if how == FOLLOWED else 2, a, b))
+        alike = not may_be_different_branches(value.motions[b], before.motions[a])
+        if how == BY_NEWTON or alike:
+            candidates.append((1 if how == BY_NEWTON else 2, a, b))
     taken: list[tuple[int, int]] = []
     for _, a, b in sorted(candidates):
-        if all(a != one and b != other for one, other in taken):
+        if all(a != taken_a and b != taken_b for taken_a, taken_b in taken):
             taken.append((a, b))
     return taken

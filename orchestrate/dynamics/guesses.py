@@ -1,4 +1,4 @@
-"""Where Newton's method begins: sequences of impacts of the FMU, and close returns."""
+"""Initial guesses of periodic orbits for Newton's method, from runs of the FMU or impact times."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from .closed_form import ClosedForm, Floats
 from .families import ACCELERATION
 from .periodic_orbit import CLOSING, IMPACT, PHASE, RELEASE, STICK, ImpactSequence, PeriodicOrbit
 from .release import contact_durations
-from .turning_points import from_phase_zero
+from .turning_points import rotate_to_phase_zero
 
 Guess = tuple[ImpactSequence, Floats]
 
 
-def from_state(
+def guess_from_state(
     instance: EventInstance, point: Point, form: ClosedForm, state: Floats, periods: int
 ) -> Guess:
-    """Return the sequence that the FMU runs through from a state at phase 0.
+    """Run the FMU some periods from a state at phase 0; return its impacts as an orbit guess.
 
     Parameters
     ----------
@@ -33,13 +33,13 @@ def from_state(
         x1, x2 in m, v1, v2 in m/s.
     periods : int
     """
-    start(instance, point, form, state)
+    begin_at_state(instance, point, form, state)
     impacts = instance.impacts(0.0, periods * point.excitation.period)
-    return from_impacts(impacts, point, form, periods)
+    return guess_from_impacts(impacts, point, form, periods)
 
 
-def start(instance: EventInstance, point: Point, form: ClosedForm, state: Floats) -> None:
-    """Begin at a state at phase 0."""
+def begin_at_state(instance: EventInstance, point: Point, form: ClosedForm, state: Floats) -> None:
+    """Initialise the FMU at a state at phase 0, with the constant box acceleration of ``form``."""
     constant = -float(form.offset[0] * form.stiffness[0])
     push = constant * point.excitation.amplitude * point.excitation.frequency**2
     begin(
@@ -47,8 +47,8 @@ def start(instance: EventInstance, point: Point, form: ClosedForm, state: Floats
     )
 
 
-def from_impacts(impacts: Impacts, point: Point, form: ClosedForm, periods: int) -> Guess:
-    """Return the nodes of impacts, with the releases between them."""
+def guess_from_impacts(impacts: Impacts, point: Point, form: ClosedForm, periods: int) -> Guess:
+    """Return an orbit guess (sequence, nodes) from recorded impacts; add the releases between."""
     state, mu = point.faces(impacts.state), form.mu
     phase = point.excitation.frequency * impacts.time
     velocity = (state[:, 2] + mu * state[:, 3]) / (1.0 + mu)
@@ -57,18 +57,18 @@ def from_impacts(impacts: Impacts, point: Point, form: ClosedForm, periods: int)
     kinds: list[int] = []
     rows: list[Floats] = []
     for node, sticks, until in zip(nodes, impacts.sticks, following, strict=True):
-        released = release(form, node, float(until)) if sticks else None
+        released = release_node(form, node, float(until)) if sticks else None
         kinds.append(IMPACT if released is None else STICK)
         rows.append(node)
         if released is not None:
             kinds.append(RELEASE)
             rows.append(released)
-    ordered, first = from_phase_zero(np.array(rows).reshape(-1, 4), periods)
+    ordered, first = rotate_to_phase_zero(np.array(rows).reshape(-1, 4), periods)
     return ImpactSequence(periods, tuple(kinds[first:] + kinds[:first])), ordered
 
 
-def release(form: ClosedForm, stick: Floats, until: float) -> Floats | None:
-    """Return the node where permanent contact ends (19), before a phase; None where it does not."""
+def release_node(form: ClosedForm, stick: Floats, until: float) -> Floats | None:
+    """Return the node of the release (19) after a sticking impact; None if not before ``until``."""
     phase, position, velocity = stick[PHASE:CLOSING, None]
     span = (until - phase) / form.eta
     duration = contact_durations(form, phase, position, velocity, span)
@@ -78,21 +78,26 @@ def release(form: ClosedForm, stick: Floats, until: float) -> Floats | None:
     return np.concatenate([phase + form.eta * duration, *motion, np.zeros(1)])
 
 
-def from_phases(form: ClosedForm, sequence: ImpactSequence, phases: Floats) -> Guess:
-    """Return nodes at given phases that solve the other equations, which are linear, best."""
+def guess_from_phases(form: ClosedForm, sequence: ImpactSequence, phases: Floats) -> Guess:
+    """Return an orbit guess with impacts at given phases, its other unknowns by least squares."""
     nodes = np.zeros((len(phases), 4))
     nodes[:, PHASE] = phases
     orbit = PeriodicOrbit(sequence, form, nodes)
     others = np.arange(4 * len(phases)) % 4 != PHASE
-    found = np.linalg.lstsq(orbit.jacobian().real[:, others], -orbit.residual(), rcond=None)[0]
-    nodes[:, PHASE + 1 :] = found.reshape(-1, CLOSING)
+    solution = np.linalg.lstsq(orbit.jacobian().real[:, others], -orbit.residual(), rcond=None)[0]
+    nodes[:, PHASE + 1 :] = solution.reshape(-1, CLOSING)
     return sequence, nodes
 
 
 def close_returns(
-    instance: EventInstance, point: Point, form: ClosedForm, periods: int, transient: int, most: int
+    instance: EventInstance,
+    point: Point,
+    form: ClosedForm,
+    periods: int,
+    transient: int,
+    max_periods: int,
 ) -> Iterator[tuple[Floats, float]]:
-    """Yield states of the response from rest that come back after some periods, closest first.
+    """Yield stroboscopic states that nearly repeat after some periods, the closest return first.
 
     Parameters
     ----------
@@ -101,7 +106,7 @@ def close_returns(
         What responds.
     periods : int
         After which they come back.
-    transient, most : int
+    transient, max_periods : int
         Periods dropped, and searched.
 
     Yields
@@ -112,17 +117,19 @@ def close_returns(
         Largest deviation of a co-ordinate, over its largest absolute value.
     """
     period = point.excitation.period
-    start(instance, point, form, np.zeros(4))
+    begin_at_state(instance, point, form, np.zeros(4))
     instance.advance(0.0, transient * period)
-    states = stroboscopic_states(instance, point, transient, most)
+    states = simulate_stroboscopic_states(instance, point, transient, max_periods)
     scale = np.maximum(np.abs(states).max(axis=0), 1e-300)
     distance = (np.abs(states[periods:] - states[:-periods]) / scale).max(axis=1)
     for i in np.argsort(distance, kind="stable"):
         yield states[i], float(distance[i])
 
 
-def stroboscopic_states(instance: EventInstance, point: Point, first: int, count: int) -> Floats:
-    """Return states at phase 0 of successive periods, shape (count, 4)."""
+def simulate_stroboscopic_states(
+    instance: EventInstance, point: Point, first: int, count: int
+) -> Floats:
+    """Run the FMU on for ``count`` periods; return the states at phase 0, shape (count, 4)."""
     period = point.excitation.period
     states = np.empty((count, 4))
     for i in range(count):

@@ -1,4 +1,4 @@
-"""Statistics of the impacts of settled responses: how many, how strong, how far apart."""
+"""Count and measure impacts of responses: numbers, closing speeds, intervals, time in contact."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from numpy.typing import ArrayLike
 
 from ..access import Impacts, finder
 from ..checks import checked_integer
-from ..response.labels import columns
+from ..response.labels import column_variables
 from ..response.questions import series_arguments
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .following import Followed, FollowingQuestion, start_states
-from .lyapunov import Exponent, largest_exponent, without_impacts
-from .variational import contact_times, period
+from .following import FollowedResponse, ImpactsQuestion, start_states
+from .lyapunov import Exponent, exact_exponent_without_impacts, largest_exponent
+from .variational import contact_durations_after, period_in_tau
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -44,29 +44,29 @@ FIELDS = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class ImpactStatisticsJob(FollowingQuestion):
-    """Responses along a parameter, impact by impact."""
+class ImpactStatisticsJob(ImpactsQuestion):
+    """Job of :func:`orchestrate.impact_statistics`: impact statistics along a parameter."""
 
     asked: ClassVar[str] = "impact_statistics"
     chunk_size: ClassVar[int] = 40
 
-    def row(self, impacts: Impacts, item: Followed) -> Sequence[float]:
-        """Return the numbers in the order of ``FIELDS``."""
-        numbers = statistics(impacts, item, self.periods)
+    def row(self, impacts: Impacts, item: FollowedResponse) -> Sequence[float]:
+        """Return the statistics of one response's impacts, in the order of ``FIELDS``."""
+        numbers = response_statistics(impacts, item, self.periods)
         return [numbers[name] for name in FIELDS]
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return one variable a property, over the parameter."""
+        """Return the dataset of impact statistics over the parameter, a variable each."""
         import xarray as xr
 
         along = self.series.name
-        variables = columns(along, FIELDS, table["rows"].T)
+        variables = column_variables(along, FIELDS, table["rows"].T)
         title = f"Responses along {along}, impact by impact: {self.structure.label()}"
         return xr.Dataset(variables, self.series.coordinates(), {"title": title})
 
 
-def statistics(impacts: Impacts, item: Followed, periods: int) -> dict[str, float]:
-    """Return the numbers of a response by the names of ``FIELDS``.
+def response_statistics(impacts: Impacts, item: FollowedResponse, periods: int) -> dict[str, float]:
+    """Return the impact statistics and Lyapunov exponent of one response, by ``FIELDS`` names.
 
     Parameters
     ----------
@@ -77,11 +77,13 @@ def statistics(impacts: Impacts, item: Followed, periods: int) -> dict[str, floa
     """
     structure, excitation = item.point
     eta = excitation.eta(structure)
-    span = period(eta)
-    known: Exponent | None = None if len(impacts.time) else without_impacts(structure)
+    span = period_in_tau(eta)
+    known: Exponent | None = (
+        None if len(impacts.time) else exact_exponent_without_impacts(structure)
+    )
     exponent = known or largest_exponent(impacts, periods * span, item.point)
     return {
-        **count_impacts(impacts, span, periods),
+        **impact_counts(impacts, span, periods),
         "contact_share": contact_time(impacts, item, periods * span) / (periods * span),
         **impact_extremes(impacts, span, periods),
         "exponent": exponent.value,
@@ -89,8 +91,8 @@ def statistics(impacts: Impacts, item: Followed, periods: int) -> dict[str, floa
     }
 
 
-def count_impacts(impacts: Impacts, span: float, periods: int) -> dict[str, float]:
-    """Return numbers of impacts; those of a chattering are all counted."""
+def impact_counts(impacts: Impacts, span: float, periods: int) -> dict[str, float]:
+    """Return impacts and contacts per period, fewest and most impacts in a period, by name."""
     which = np.minimum((impacts.time / span).astype(int), periods - 1)
     each = np.bincount(which, minlength=periods)
     return {
@@ -101,8 +103,8 @@ def count_impacts(impacts: Impacts, span: float, periods: int) -> dict[str, floa
     }
 
 
-def contact_time(impacts: Impacts, item: Followed, end: float) -> float:
-    """Return the time in permanent contact until ``end``, in units of tau.
+def contact_time(impacts: Impacts, item: FollowedResponse, end: float) -> float:
+    """Return how long the masses are in permanent contact until ``end``, in units of tau.
 
     From each impact that begins it to the release (19), or to the end; and from the beginning where
     the masses are in contact there. Contact begins by impacts alone: without any, masses that
@@ -119,11 +121,11 @@ def contact_time(impacts: Impacts, item: Followed, end: float) -> float:
             np.append(True, impacts.sticks),
         )
     ends = np.append(impacts.time[1:], end)
-    return float(contact_times(impacts, ends, item.point).sum())
+    return float(contact_durations_after(impacts, ends, item.point).sum())
 
 
 def impact_extremes(impacts: Impacts, span: float, periods: int) -> dict[str, float]:
-    """Return closing velocities, and times between impacts; NaN where there is none."""
+    """Return extremes and sum of closing speeds, extremes of intervals; NaN without impacts."""
     distances, closing = np.diff(impacts.time) / span, impacts.closing
     return {
         "closing_max": closing.max() if len(closing) else math.nan,
@@ -147,7 +149,7 @@ def impact_statistics(
     start: ArrayLike | xr.Dataset | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Count and measure the impacts of settled responses.
+    """Compute impact statistics of responses along a parameter: counts, speeds, contact.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Exponents over successive parts of a long run: steady, or a transient that ended, or neither.
+"""Lyapunov exponents of long runs, judged steady or not by comparing successive parts (F test).
 
 The standard error of one run knows how much the exponent scatters within the run. It knows nothing
 of a transient that ends later: chaos that dies out has an exponent of its own while it lasts. So a
@@ -17,7 +17,7 @@ from ..access import STATE, EventInstance, gap_between
 from ..response.questions import Point
 from .following import State, follow_impacts
 from .lyapunov import WANDER, Exponent, largest_exponent
-from .variational import period
+from .variational import period_in_tau
 
 NOT_RUN, STEADY, ENDED, UNDECIDED = -1, 0, 1, 2
 WORDS = {
@@ -27,11 +27,11 @@ WORDS = {
     UNDECIDED: "undecided",
 }
 BLOCKS, BATCHES = 400, 40  # of each part: its error must be known well enough to judge by it
-RARELY = 1e-3  # chance at which parts of a steady response are taken for unsteady ones
+FALSE_ALARM_CHANCE = 1e-3  # chance at which parts of a steady response are taken for unsteady ones
 
 
 class LongRun(NamedTuple):
-    """The largest Lyapunov exponent of a long run.
+    """Result of a long run: its Lyapunov exponent, whether it was steady, and its periods.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class LongRun(NamedTuple):
 
 
 def parts_agree(values: ArrayLike, errors: ArrayLike, floor: float, batches: int = BATCHES) -> bool:
-    """Return whether the exponents of successive parts scatter no more than their errors say.
+    """Return whether exponents of successive parts scatter as their errors predict (F test).
 
     Parameters
     ----------
@@ -64,7 +64,8 @@ def parts_agree(values: ArrayLike, errors: ArrayLike, floor: float, batches: int
     Returns
     -------
     bool
-        By an F test of the scatter of the parts against their errors, at the level ``RARELY``.
+        By an F test of the scatter of the parts against their errors, at the level
+        ``FALSE_ALARM_CHANCE``.
 
     Examples
     --------
@@ -80,19 +81,19 @@ def parts_agree(values: ArrayLike, errors: ArrayLike, floor: float, batches: int
         return False
     ratio = means.var(ddof=1) / max(float(np.mean(own**2)) + floor**2, 1e-300)
     freedom = len(means) - 1, len(means) * max(batches - 2, 1)
-    return bool(f.sf(ratio, *freedom) > RARELY)
+    return bool(f.sf(ratio, *freedom) > FALSE_ALARM_CHANCE)
 
 
 def mean_exponent(parts: Sequence[Exponent]) -> Exponent:
-    """Return the mean over parts of equal length, with the standard error by their scatter."""
+    """Return the mean exponent of equally long parts, its error from the parts' scatter."""
     values = np.array([part.value for part in parts])
     return Exponent(float(values.mean()), float(values.std(ddof=1) / np.sqrt(len(values))))
 
 
-def follow_parts(
+def exponents_of_parts(
     instance: EventInstance, point: Point, start: State, periods: int, parts: int
 ) -> tuple[list[Exponent], State]:
-    """Return the exponent of each successive part of a motion, and the state at the end.
+    """Run the FMU over successive parts; return each part's exponent, and the end state.
 
     Parameters
     ----------
@@ -108,18 +109,18 @@ def follow_parts(
     for _ in range(parts):
         impacts = follow_impacts(instance, point, start, periods)
         start = tuple(instance.get(*STATE))
-        end = periods * period(eta)
+        end = periods * period_in_tau(eta)
         exponents.append(largest_exponent(impacts, end, point, BLOCKS, BATCHES))
     return exponents, start
 
 
 def wander_error(periods: int, eta: float, wander: float = WANDER) -> float:
-    """Return the error that a deviation makes which wanders by a factor over some periods."""
-    floor: float = np.log(wander) / (periods * period(eta))
+    """Return the exponent's error if a deviation wanders by a factor over the run: log/time."""
+    floor: float = np.log(wander) / (periods * period_in_tau(eta))
     return floor
 
 
-def long_run(
+def run_until_steady(
     instance: EventInstance,
     point: Point,
     start: State,
@@ -127,7 +128,7 @@ def long_run(
     parts: int,
     runs: int,
 ) -> LongRun:
-    """Follow a response until the exponents of successive parts agree.
+    """Simulate run after run until the exponents of a run's parts agree; return the exponent.
 
     Where the parts of a run do not agree, the motion is followed on for as many parts again, which
     are then judged by themselves: a transient that ended is left behind.
@@ -146,10 +147,10 @@ def long_run(
         At most; after that the exponent is undecided.
     """
     floor = wander_error(periods, point.excitation.eta(point.structure))
-    _, start = follow_parts(instance, point, start, periods, 1)
+    _, start = exponents_of_parts(instance, point, start, periods, 1)
     exponents: list[Exponent] = []
     for run in range(runs):
-        exponents, start = follow_parts(instance, point, start, periods, parts)
+        exponents, start = exponents_of_parts(instance, point, start, periods, parts)
         values, errors = np.transpose(exponents)
         if parts_agree(values, errors, floor):
             outcome = ENDED if run else STEADY
@@ -157,8 +158,8 @@ def long_run(
     return LongRun(mean_exponent(exponents), UNDECIDED, periods * (1 + parts * runs))
 
 
-def another_start(point: Point, start: State, seed: NDArray[np.int64] | Sequence[int]) -> State:
-    """Return a state near another one, from which a chaotic motion goes its own way.
+def perturbed_start(point: Point, start: State, seed: NDArray[np.int64] | Sequence[int]) -> State:
+    """Return a start state randomly perturbed by up to 1 per cent, for an independent chaotic run.
 
     Parameters
     ----------
@@ -175,9 +176,9 @@ def another_start(point: Point, start: State, seed: NDArray[np.int64] | Sequence
         masses do not overlap.
     """
     x1, _, v1, v2 = start
-    gap, moved, fast, slow = 0.01 * np.random.default_rng(seed).uniform(-1.0, 1.0, 4)
+    gap_change, shift, fast, slow = 0.01 * np.random.default_rng(seed).uniform(-1.0, 1.0, 4)
     offset = point.structure.gap_offset
-    apart = float(gap_between(np.array(start), offset)) * (1.0 + gap)
-    x1 = x1 * (1.0 + moved)
-    x2 = x1 + apart - offset
+    new_gap = float(gap_between(np.array(start), offset)) * (1.0 + gap_change)
+    x1 = x1 * (1.0 + shift)
+    x2 = x1 + new_gap - offset
     return float(x1), float(x2), float(v1 * (1.0 + fast)), float(v2 * (1.0 + slow))

@@ -1,4 +1,4 @@
-"""The largest Lyapunov exponent of a response from its impacts, and the verdict it allows.
+"""Largest Lyapunov exponents from impacts, with errors: periodic, neutral or chaotic responses.
 
 It is computed from the impacts that the FMU reports, with exact flow and saltation matrices
 (:mod:`.variational`), not from two neighbours: a neighbour must be near enough for its distance to
@@ -20,19 +20,19 @@ from ..access import Impacts, finder
 from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import Variable, flags, variable
-from ..response.questions import Point, positive, series_arguments
+from ..response.questions import Point, checked_positive, series_arguments
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .following import Followed, FollowingQuestion, start_states
-from .lyapunov_growth import block_growth, means_of_batches
+from .following import FollowedResponse, ImpactsQuestion, start_states
+from .lyapunov_growth import block_growth, growth_by_batch_means
 from .lyapunov_spectrum import (
     STATES,
     kaplan_yorke_dimension,
     lyapunov_spectrum,
     spectrum_without_impacts,
 )
-from .variational import impact_matrices, period
+from .variational import impact_matrices, period_in_tau
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -49,14 +49,14 @@ Floats = NDArray[np.float64]
 
 
 class Exponent(NamedTuple):
-    """A largest Lyapunov exponent per unit of tau, and its standard error; NaN where unknown."""
+    """Largest Lyapunov exponent per unit of tau and its standard error; NaN where unknown."""
 
     value: float
     error: float
 
 
-def fewest_impacts(batches: int = BATCHES) -> int:
-    """Return how many impacts an exponent with an uncertainty takes."""
+def min_impacts(batches: int = BATCHES) -> int:
+    """Return the number of impacts needed to estimate an exponent and its error."""
     return 2 * batches
 
 
@@ -67,7 +67,7 @@ def largest_exponent(
     blocks: int = BLOCKS,
     batches: int = BATCHES,
 ) -> Exponent:
-    """Return the largest Lyapunov exponent over a span.
+    """Return the largest Lyapunov exponent and its error, from a response's impacts in a span.
 
     Parameters
     ----------
@@ -86,18 +86,18 @@ def largest_exponent(
     Exponent
         Natural logarithm per unit of tau, and the standard error of the mean over batches. Minus
         infinity where the deviation vanishes. NaN where there are fewer impacts than
-        :func:`fewest_impacts` says.
+        :func:`min_impacts` says.
     """
-    if len(impacts.time) < fewest_impacts(batches):
+    if len(impacts.time) < min_impacts(batches):
         return Exponent(math.nan, math.nan)
     growth = block_growth(impact_matrices(impacts, end, point), impacts.time, end, blocks)
     if growth is None:
         return Exponent(-math.inf, math.nan)
-    return Exponent(*means_of_batches(growth, batches))
+    return Exponent(*growth_by_batch_means(growth, batches))
 
 
-def without_impacts(structure: Structure) -> Exponent | None:
-    """Return the exponent of a structure that never impacts (bonded, alike, pressed); else None.
+def exact_exponent_without_impacts(structure: Structure) -> Exponent | None:
+    """Return the exact exponent of a structure that never impacts; None if it may impact.
 
     Returns
     -------
@@ -115,7 +115,7 @@ def without_impacts(structure: Structure) -> Exponent | None:
 
 
 def decay_rate(damping: float, square: float) -> float:
-    """Return the rate at which the free motion of an oscillator decays in the long run.
+    """Return the decay rate of a damped oscillator's free motion (overdamped: the slower rate).
 
     Parameters
     ----------
@@ -126,10 +126,10 @@ def decay_rate(damping: float, square: float) -> float:
     return damping if excess >= 0.0 else square / (damping + math.sqrt(-excess))
 
 
-def verdict(
+def classify_exponents(
     exponent: ArrayLike, error: ArrayLike, floor: ArrayLike, sigmas: float = SIGMAS
 ) -> NDArray[np.int8]:
-    """Decide whether responses are periodic, neutral (quasi-periodic, or undecided) or chaotic.
+    """Classify exponents by their errors as -1 periodic, 0 neutral or 1 chaotic.
 
     Parameters
     ----------
@@ -147,8 +147,8 @@ def verdict(
 
 
 @dataclass(frozen=True, kw_only=True)
-class LyapunovJob(FollowingQuestion):
-    """Largest Lyapunov exponents along a parameter.
+class LyapunovJob(ImpactsQuestion):
+    """Job of :func:`orchestrate.lyapunov`: largest Lyapunov exponents along a parameter.
 
     Attributes
     ----------
@@ -169,8 +169,8 @@ class LyapunovJob(FollowingQuestion):
     asked: ClassVar[str] = "lyapunov"
     chunk_size: ClassVar[int] = 5
 
-    def row(self, impacts: Impacts, item: Followed) -> Sequence[float]:
-        """Return exponent, error, impacts per period; all exponents and errors if wanted."""
+    def row(self, impacts: Impacts, item: FollowedResponse) -> Sequence[float]:
+        """Return one response's exponent, error and impact rate, and the spectrum if asked for."""
         rate = len(impacts.time) / self.periods
         if not self.spectrum:
             return [*self.exponent(impacts, item), rate]
@@ -180,41 +180,41 @@ class LyapunovJob(FollowingQuestion):
             largest = np.array(self.exponent(impacts, item))
         return [*largest, rate, *all_of_them]
 
-    def all_exponents(self, impacts: Impacts, item: Followed) -> NDArray[np.float64]:
-        """Return the four exponents and their errors; NaN of alike masses, which never part."""
+    def all_exponents(self, impacts: Impacts, item: FollowedResponse) -> NDArray[np.float64]:
+        """Return four exponents, then their errors; NaN if equal masses never separate."""
         structure = item.point.structure
         if len(impacts.time):
-            self.check_count(impacts, item)
-            found = lyapunov_spectrum(
-                impacts, self.end(item), item.point, self.blocks, self.batches
+            self.require_enough_impacts(impacts, item)
+            spectrum = lyapunov_spectrum(
+                impacts, self.end_tau(item), item.point, self.blocks, self.batches
             )
         elif structure.bonded:
-            found = spectrum_without_impacts(structure)
+            spectrum = spectrum_without_impacts(structure)
         else:
             return np.full(2 * STATES, math.nan)
-        return np.concatenate(found)
+        return np.concatenate(spectrum)
 
-    def exponent(self, impacts: Impacts, item: Followed) -> Exponent:
-        """Return the largest exponent of one response.
+    def exponent(self, impacts: Impacts, item: FollowedResponse) -> Exponent:
+        """Return the largest exponent and its error for one response.
 
         Raises
         ------
         InputError
             Where it has too few impacts.
         """
-        known = None if len(impacts.time) else without_impacts(item.point.structure)
+        known = None if len(impacts.time) else exact_exponent_without_impacts(item.point.structure)
         if known is not None:
             return known
-        self.check_count(impacts, item)
-        return largest_exponent(impacts, self.end(item), item.point, self.blocks, self.batches)
+        self.require_enough_impacts(impacts, item)
+        return largest_exponent(impacts, self.end_tau(item), item.point, self.blocks, self.batches)
 
-    def end(self, item: Followed) -> float:
-        """Return the dimensionless time tau at which an item's periods end."""
-        return self.periods * period(item.point.excitation.eta(item.point.structure))
+    def end_tau(self, item: FollowedResponse) -> float:
+        """Return the time tau at which the periods followed end."""
+        return self.periods * period_in_tau(item.point.excitation.eta(item.point.structure))
 
-    def check_count(self, impacts: Impacts, item: Followed) -> None:
-        """Check that a response has enough impacts."""
-        count, needed = len(impacts.time), fewest_impacts(self.batches)
+    def require_enough_impacts(self, impacts: Impacts, item: FollowedResponse) -> None:
+        """Raise ``InputError`` if a response has too few impacts to estimate an error."""
+        count, needed = len(impacts.time), min_impacts(self.batches)
         if count < needed:
             enough = f" (periods >= {-(-needed * self.periods // count)})" if count else ""
             raise InputError(
@@ -224,12 +224,12 @@ class LyapunovJob(FollowingQuestion):
             )
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return exponent, error and verdict over the parameter."""
+        """Return the dataset over the parameter: exponents, errors, verdicts, impact rates."""
         import xarray as xr
 
         along, (exponent, error, impacts) = self.series.name, table["rows"].T[:3]
-        spans = self.periods * np.array([period(eta) for eta in self.series.etas])
-        verdicts = verdict(exponent, error, np.log(self.wander) / spans, self.sigmas)
+        spans = self.periods * np.array([period_in_tau(eta) for eta in self.series.etas])
+        verdicts = classify_exponents(exponent, error, np.log(self.wander) / spans, self.sigmas)
         variables: dict[str, Variable] = {
             "exponent": variable(along, exponent, "1", f"{LARGEST}, per unit of tau"),
             "standard_error": variable(along, error, "1", "standard error of the exponent"),
@@ -245,7 +245,7 @@ class LyapunovJob(FollowingQuestion):
 
 
 def spectrum_variables(along: str, rows: NDArray[np.float64]) -> dict[str, Variable]:
-    """Return all exponents, their errors, and the dimension that follows from them."""
+    """Return dataset variables of all four exponents, their errors, and the dimension."""
     exponents, errors = rows[:, :STATES], rows[:, STATES:]
     dimensions = [kaplan_yorke_dimension(row) for row in exponents]
     text = "Kaplan-Yorke dimension of the attractor in the stroboscopic section"
@@ -274,7 +274,7 @@ def lyapunov(
     wander: float = WANDER,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Compute largest Lyapunov exponents of responses: periodic, neutral or chaotic.
+    """Compute largest Lyapunov exponents along a parameter, with verdicts periodic to chaotic.
 
     Parameters
     ----------
@@ -349,7 +349,7 @@ def lyapunov(
         spectrum=bool(spectrum),
         blocks=checked_integer("blocks", blocks, 1),
         batches=checked_integer("batches", batches, 3),
-        sigmas=positive("sigmas", sigmas),
-        wander=positive("wander", wander),
+        sigmas=checked_positive("sigmas", sigmas),
+        wander=checked_positive("wander", wander),
     )
     return answer(job, running, finder(running))

@@ -1,4 +1,4 @@
-"""How fast products of matrices grow: logarithms by blocks, their mean, and its standard error."""
+"""Growth rate of a vector under a product of matrices, with its error by batch means."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from .closed_form import Floats
 FIRST_VECTOR = np.array([1.0, 0.7, 0.3, -0.5, 0.2, -0.4])  # in no special direction
 
 
-class Growth(NamedTuple):
-    """Growth by blocks of successive matrices.
+class BlockGrowth(NamedTuple):
+    """Logarithmic growth of a vector over successive blocks of matrices, and their durations.
 
     Attributes
     ----------
@@ -26,8 +26,8 @@ class Growth(NamedTuple):
     durations: Floats
 
 
-def block_growth(matrices: Floats, times: Floats, end: float, blocks: int) -> Growth | None:
-    """Return the growth of a vector by blocks of matrices; None where it vanishes.
+def block_growth(matrices: Floats, times: Floats, end: float, blocks: int) -> BlockGrowth | None:
+    """Return a vector's logarithmic growth over blocks of matrices; None if it becomes zero.
 
     Parameters
     ----------
@@ -40,14 +40,14 @@ def block_growth(matrices: Floats, times: Floats, end: float, blocks: int) -> Gr
         About how many.
     """
     size = max(1, len(matrices) // blocks)
-    growth = log_growth(*scaled_products(matrices, size))
+    growth = vector_log_growth(*scaled_products(matrices, size))
     if growth is None:
         return None
-    return Growth(growth, np.diff(np.append(times[::size], end)))
+    return BlockGrowth(growth, np.diff(np.append(times[::size], end)))
 
 
-def means_of_batches(blocks: Growth, batches: int) -> tuple[float, float]:
-    """Return the mean growth per unit of tau and its standard error, by means of batches.
+def growth_by_batch_means(blocks: BlockGrowth, batches: int) -> tuple[float, float]:
+    """Return the mean growth per unit of tau, and its standard error by batch means.
 
     The first batch is left out: meanwhile the vector turns into the direction that grows most.
     """
@@ -60,7 +60,7 @@ def means_of_batches(blocks: Growth, batches: int) -> tuple[float, float]:
 
 
 def scaled_products(matrices: Floats, size: int) -> tuple[Floats, Floats]:
-    """Return products of ``size`` successive matrices, scaled, and the logarithms of the scales.
+    """Multiply each ``size`` successive matrices; return scaled products and the scales' logs.
 
     Parameters
     ----------
@@ -89,8 +89,8 @@ def scaled_products(matrices: Floats, size: int) -> tuple[Floats, Floats]:
     return stack[:, 0], logs[:, 0]
 
 
-def log_growth(blocks: Floats, logs: Floats) -> Floats | None:
-    """Return logarithms of a vector's growth by each block in turn; None where it vanishes."""
+def vector_log_growth(blocks: Floats, logs: Floats) -> Floats | None:
+    """Multiply a vector by blocks in turn; return its log growth by each, None if it vanishes."""
     growth, vector = np.empty(len(blocks)), FIRST_VECTOR[: blocks.shape[-1]]
     for i, (block, log) in enumerate(zip(blocks, logs, strict=True)):
         vector = block @ vector

@@ -22,7 +22,7 @@ from ..access import Impacts
 from ..response.questions import Point
 from ..structures import Structure
 from .closed_form import Floats
-from .lyapunov_growth import block_growth, means_of_batches
+from .lyapunov_growth import block_growth, growth_by_batch_means
 from .variational import impact_matrices
 
 STATES = 4
@@ -30,7 +30,7 @@ CONTACT_RANK = 2  # of a matrix where permanent contact begins
 
 
 class Spectrum(NamedTuple):
-    """Lyapunov exponents per unit of tau, the largest first, and their standard errors.
+    """Four Lyapunov exponents per unit of tau, the largest first, and their standard errors.
 
     Attributes
     ----------
@@ -46,8 +46,8 @@ class Spectrum(NamedTuple):
         return kaplan_yorke_dimension(self.exponents)
 
 
-def compound(matrices: Floats, order: int) -> Floats:
-    """Return compound matrices: how matrices carry volumes of ``order`` dimensions.
+def compound_matrices(matrices: Floats, order: int) -> Floats:
+    """Return compound matrices (all minors of an order), which map volume elements.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def compound(matrices: Floats, order: int) -> Floats:
 
     Examples
     --------
-    >>> compound(np.array([np.diag([2.0, 3.0, 5.0])]), 2)[0].diagonal().round(12).tolist()
+    >>> compound_matrices(np.array([np.diag([2.0, 3.0, 5.0])]), 2)[0].diagonal().round(12).tolist()
     [6.0, 10.0, 15.0]
     """
     if order == 1:
@@ -75,7 +75,7 @@ def compound(matrices: Floats, order: int) -> Floats:
 def lyapunov_spectrum(
     impacts: Impacts, end: float, point: Point, blocks: int, batches: int
 ) -> Spectrum:
-    """Return the four exponents over a span with impacts.
+    """Return all four exponents and their errors, from a response's impacts in a span.
 
     Parameters
     ----------
@@ -92,19 +92,19 @@ def lyapunov_spectrum(
     exponents, errors = np.full(STATES, -math.inf), np.full(STATES, math.nan)
     before: Floats | None = None
     for order in range(1, rank + 1):
-        volumes = block_growth(compound(matrices, order), impacts.time, end, blocks)
+        volumes = block_growth(compound_matrices(matrices, order), impacts.time, end, blocks)
         if volumes is None:
             break
         growth = volumes.growth if before is None else volumes.growth - before
         before = volumes.growth
-        exponents[order - 1], errors[order - 1] = means_of_batches(
+        exponents[order - 1], errors[order - 1] = growth_by_batch_means(
             volumes._replace(growth=growth), batches
         )
     return Spectrum(exponents, errors)
 
 
 def spectrum_without_impacts(structure: Structure) -> Spectrum:
-    """Return the exact spectrum of a bonded structure: that of the common motion of (10).
+    """Return the exact spectrum of a bonded structure: damped common motion (10), gap -inf.
 
     The gap is no state of it: two exponents are minus infinity.
     """
@@ -116,7 +116,7 @@ def spectrum_without_impacts(structure: Structure) -> Spectrum:
 
 
 def kaplan_yorke_dimension(exponents: Floats) -> float:
-    """Return the Kaplan-Yorke (Lyapunov) dimension of an attractor.
+    """Return the Kaplan-Yorke (Lyapunov) dimension from exponents in descending order.
 
     The number of exponents, the largest first, whose sum is not negative, and the part of the next
     one that makes the sum zero (Kaplan and Yorke, in Lecture Notes in Mathematics 730, 1979).

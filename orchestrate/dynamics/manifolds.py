@@ -1,4 +1,4 @@
-"""Unstable manifolds of saddles of the stroboscopic map, as curves."""
+"""Unstable manifolds of saddles of the stroboscopic map: the job and ``orchestrate.manifold``."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from numpy.typing import ArrayLike
 from ..access import OSCILLATOR, Instance, begin, finder
 from ..checks import checked_integer
 from ..errors import InputError
-from ..response.labels import flags, nondimensional_state, variable
-from ..response.questions import checked_structure, positive
+from ..response.labels import flags, nondimensional_state_coordinate, variable
+from ..response.questions import checked_positive, checked_structure
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .branches import check_start, complete_excitation
+from .branches import complete_excitation, require_orbit_dataset
 from .closed_form import Floats
 from .continuation import NoConvergenceError, fix_sign
 from .curve_growth import (
@@ -32,14 +32,15 @@ from .curve_growth import (
     GrownCurve,
     GrowthSettings,
 )
-from .families import ACCELERATION, Setting, require_delaminated
+from .families import ACCELERATION, require_delaminated
+from .orbit_records import pad_rows
 from .orbit_search import solve_orbit
 from .orbits import (
     FirstGuess,
-    OneItemQuestion,
+    SingleOrbitQuestion,
     excitation_arguments,
     finite_number,
-    from_result,
+    guess_from_result,
     orbit,
 )
 from .periodic_orbit import ON_CIRCLE, PHASE, PeriodicOrbit
@@ -61,7 +62,7 @@ MIN_GAP = 2.0  # starting distances: a gap at phase 0 that is smaller leaves no 
 
 @dataclass(frozen=True)
 class Saddle:
-    """A periodic orbit with one multiplier outside the unit circle, at phase 0.
+    """A saddle orbit at phase 0: state, unstable direction, its multiplier outside the circle.
 
     Attributes
     ----------
@@ -83,7 +84,7 @@ class Saddle:
 
     @classmethod
     def from_orbit(cls, orbit: PeriodicOrbit) -> Saddle:
-        """Return an orbit as a saddle; raise unless just one multiplier is outside the circle.
+        """Return an orbit as a saddle; raise unless just one multiplier lies outside the circle.
 
         Raises
         ------
@@ -98,29 +99,29 @@ class Saddle:
                 "expected a saddle with one, whose unstable manifold is a curve"
             )
         largest = float(np.abs(orbit.nodes[:, 1:]).max())
-        size = float(coarsened(np.array([largest]), largest)[0])
-        state = coarsened(stroboscopic_states(orbit)[0], size)
-        direction = coarsened(unstable_direction(orbit), 1.0, ROUNDED[1])
-        multiplier = float(coarsened(outside[:1].real, 1.0, ROUNDED[1])[0])
+        size = float(round_off_last_bits(np.array([largest]), largest)[0])
+        state = round_off_last_bits(stroboscopic_states(orbit)[0], size)
+        direction = round_off_last_bits(unstable_direction(orbit), 1.0, ROUNDED[1])
+        multiplier = float(round_off_last_bits(outside[:1].real, 1.0, ROUNDED[1])[0])
         return cls(state, direction, multiplier, orbit.sequence.periods, size)
 
     @property
-    def growth(self) -> float:
-        """By what a distance on one side of the manifold grows until it is on that side again."""
+    def growth_factor(self) -> float:
+        """Factor by which a distance along the manifold grows until it is on the same side."""
         return self.multiplier if self.multiplier > 0.0 else self.multiplier**2
 
     @property
-    def returns(self) -> int:
-        """Excitation periods until then: twice the orbit's where the multiplier is negative."""
+    def periods_per_return(self) -> int:
+        """Excitation periods until a point is on the same side: doubled if the multiplier < 0."""
         return self.periods if self.multiplier > 0.0 else 2 * self.periods
 
-    def start(self, distance: float) -> Floats:
-        """Return a state on the tangent of the manifold, so far from the orbit."""
+    def state_at_distance(self, distance: float) -> Floats:
+        """Return the state at a distance from the saddle along the unstable direction."""
         return self.state + distance * self.direction
 
 
-def coarsened(numbers: Floats, size: float, to: float = ROUNDED[0]) -> Floats:
-    """Return numbers without their last bits, in which linear algebra differs by the processor.
+def round_off_last_bits(numbers: Floats, size: float, to: float = ROUNDED[0]) -> Floats:
+    """Round numbers to a multiple of ``to`` times ``size``: equal on all processors.
 
     All that follows from them is the FMU's, and the same everywhere.
     """
@@ -129,7 +130,7 @@ def coarsened(numbers: Floats, size: float, to: float = ROUNDED[0]) -> Floats:
 
 
 def unstable_direction(orbit: PeriodicOrbit) -> Floats:
-    """Return the eigenvector of the largest multiplier in the states at phase 0.
+    """Return the unit eigenvector of the largest multiplier, for states at phase 0.
 
     That of the nodes' matrix is a deviation at the first node; it is carried back to phase 0.
     """
@@ -150,18 +151,15 @@ def unstable_direction(orbit: PeriodicOrbit) -> Floats:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ManifoldJob(OneItemQuestion):
-    """The unstable manifold of a saddle; what is not said here is as in :func:`manifold`.
+class ManifoldJob(SingleOrbitQuestion):
+    """Job of :func:`orchestrate.manifold`: the unstable manifold of one saddle, both sides.
 
     Attributes
     ----------
-    excitation : tuple of (str, float)
     start : FirstGuess
         Nodes of the saddle.
     """
 
-    excitation: tuple[tuple[str, float], ...]
-    box_acceleration: float
     start: FirstGuess
     period: int
     length: float
@@ -171,18 +169,8 @@ class ManifoldJob(OneItemQuestion):
     most: int
     asked: ClassVar[str] = "manifold"
 
-    @property
-    def setting(self) -> Setting:
-        """Return the structure under its excitation, as the orbit's equations take it."""
-        return Setting.fixed(self.structure, self.excitation, self.box_acceleration)
-
-    @property
-    def values(self) -> Floats:
-        """Return the value of the setting's parameter, in an array of one."""
-        return np.array([self.excitation[0][1]])
-
     def call_text(self) -> str:
-        """Return the Python call that asks this question, for the answer's history."""
+        """Return Python source of a ``manifold(...)`` call that repeats this, saddle included."""
         setting, values = self.setting, self.values
         guess = self.start.as_argument(setting.point(values).excitation.frequency)
         start = f"start={setting.orbit_call(values, self.period, guess)}"
@@ -191,7 +179,7 @@ class ManifoldJob(OneItemQuestion):
         return f"manifold({', '.join([repr(self.structure), start, *more])})"
 
     def saddle(self) -> Saddle:
-        """Solve for the saddle.
+        """Solve for the saddle by Newton's method from the start's nodes; raise if it is none.
 
         Raises
         ------
@@ -216,26 +204,29 @@ class ManifoldJob(OneItemQuestion):
         return saddle
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
-        """Grow the manifold's both sides from the saddle; return their points as a table."""
+        """Grow both sides of the manifold from the saddle; return their points as a table."""
         saddle = self.saddle()
         with Instance(fmus[OSCILLATOR]) as instance:
-            curves = [self.grow(instance, saddle, sign) for sign in (1.0, -1.0)]
-        return {**table_of(curves, saddle), "saddle": saddle.state[np.newaxis]}
+            curves = [self.grow_side(instance, saddle, sign) for sign in (1.0, -1.0)]
+        return {**curves_table(curves, saddle), "saddle": saddle.state[np.newaxis]}
 
-    def grow(self, instance: Instance, saddle: Saddle, sign: float) -> GrownCurve:
-        """Grow the manifold to one side of the saddle; return its points in order."""
-        return CurveGrower(self.point_at(instance, saddle, sign), self.settings(saddle)).grow()
+    def grow_side(self, instance: Instance, saddle: Saddle, sign: float) -> GrownCurve:
+        """Grow one side of the manifold (``sign`` +1 or -1) from the saddle; return the curve."""
+        return CurveGrower(
+            self.point_function(instance, saddle, sign), self.growth_settings(saddle)
+        ).grow()
 
-    def point_at(
+    def point_function(
         self, instance: Instance, saddle: Saddle, sign: float
     ) -> Callable[[float], CurvePoint]:
-        """Return what gives the points of one side by their numbers: each by a run of its own."""
+        """Return a function s -> point of one side, which iterates the stroboscopic map."""
         point = self.setting.point(self.values)
-        time = saddle.returns * point.excitation.period
+        time = saddle.periods_per_return * point.excitation.period
         push = self.box_acceleration
         more: dict[str, Any] = {ACCELERATION: push} if push else {}
 
         def run(faces: Floats, returns: int) -> tuple[Floats, Floats]:
+            """Simulate some returns from a state; return the end state, and counts of impacts."""
             begin(instance, *point, point.from_faces(faces.copy()), **more)
             if returns:
                 instance.step(0.0, returns * time)
@@ -245,16 +236,17 @@ class ManifoldJob(OneItemQuestion):
         own = run(saddle.state, 1)[1]  # what happens on the orbit itself is no change
 
         def image(s: float) -> CurvePoint:
+            """Return the manifold's point at s: the image after floor(s) returns of the map."""
             returns = math.floor(s)
-            distance = self.distance * saddle.size * saddle.growth ** (s - returns)
-            state, counts = run(saddle.start(sign * distance), returns)
+            distance = self.distance * saddle.size * saddle.growth_factor ** (s - returns)
+            state, counts = run(saddle.state_at_distance(sign * distance), returns)
             return CurvePoint(s, state, tuple(int(n) for n in counts - returns * own))
 
         return image
 
-    def settings(self, saddle: Saddle) -> GrowthSettings:
-        """Return how its curves are grown: at least four points while a distance doubles."""
-        growth, largest = math.log(saddle.growth), float(np.abs(saddle.state).max())
+    def growth_settings(self, saddle: Saddle) -> GrowthSettings:
+        """Return settings for growing a side, in the saddle's units, four points a doubling."""
+        growth, largest = math.log(saddle.growth_factor), float(np.abs(saddle.state).max())
         return GrowthSettings(
             length=self.length * saddle.size,
             spacing=self.spacing * saddle.size,
@@ -266,7 +258,7 @@ class ManifoldJob(OneItemQuestion):
         )
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return both sides of the manifold as a dataset with units."""
+        """Return the dataset of both sides of the manifold: points, breaks, why each side ends."""
         import xarray as xr
 
         point = self.setting.point(self.values)
@@ -275,28 +267,24 @@ class ManifoldJob(OneItemQuestion):
             {**curve_variables(table, point), **break_variables(table)},
             {
                 "side": variable("side", np.array(SIDES), "1", "on which the gap grows, or falls"),
-                **nondimensional_state(),
+                **nondimensional_state_coordinate(),
             },
             {"title": title, **dict(self.excitation)},
         )
 
 
-def table_of(curves: Sequence[GrownCurve], saddle: Saddle) -> Table:
-    """Return both sides as arrays; a break is a row of NaN, and so is what is behind an end."""
-    sides = [rows_of(curve) for curve in curves]
-    most = max(len(rows) for rows in sides)
-    padded = np.full((len(sides), most, 6), np.nan)
-    for rows, side in zip(padded, sides, strict=True):
-        rows[: len(side)] = side
+def curves_table(curves: Sequence[GrownCurve], saddle: Saddle) -> Table:
+    """Return both sides' points, breaks and ends as arrays, padded with NaN to equal length."""
+    sides = [curve_rows(curve) for curve in curves]
     breaks = [
-        [side, border.low.s, curve.arclength[number], border.distance, border.power]
-        + [float(b - a) for a, b in zip(border.low.itinerary, border.high.itinerary, strict=True)]
+        [side, change.low.s, curve.arclength[number], change.distance, change.power]
+        + [float(b - a) for a, b in zip(change.low.itinerary, change.high.itinerary, strict=True)]
         for side, curve in enumerate(curves)
-        for number, border in curve.breaks.items()
+        for number, change in curve.breaks.items()
     ]
     words = {word: number for number, word in ENDS.items()}
     return {
-        "rows": padded,
+        "rows": pad_rows(sides, np.nan),
         "ends": np.array([words[curve.end] for curve in curves]),
         "breaks": np.array(breaks, dtype=float).reshape(-1, 7),
         "multiplier": np.array([saddle.multiplier]),
@@ -304,8 +292,8 @@ def table_of(curves: Sequence[GrownCurve], saddle: Saddle) -> Table:
     }
 
 
-def rows_of(curve: GrownCurve) -> Floats:
-    """Return state, arclength and number of each point, with a row of NaN at each break."""
+def curve_rows(curve: GrownCurve) -> Floats:
+    """Return rows of state, arclength and parameter s by point, a row of NaN at each break."""
     numbers = np.array([point.s for point in curve.points])
     states = np.array([point.state for point in curve.points])
     rows = np.column_stack([states, curve.arclength, numbers])
@@ -313,7 +301,7 @@ def rows_of(curve: GrownCurve) -> Floats:
 
 
 def curve_variables(table: Table, point: Any) -> dict[str, Any]:
-    """Return the variables of the curves."""
+    """Return dataset variables of the manifold's points: states, gap, arclength, iterate."""
     faces, along = table["rows"][..., :4], ("side", "point")
     xi, gap = faces.copy(), faces[..., 1] - faces[..., 0]
     xi[..., 1] -= point.structure.gap_offset / point.length
@@ -338,7 +326,7 @@ def curve_variables(table: Table, point: Any) -> dict[str, Any]:
 
 
 def break_variables(table: Table) -> dict[str, Any]:
-    """Return the variables of the breaks: where they are, and how they were told."""
+    """Return dataset variables of the manifold's breaks: place, distance, impacts gained."""
     texts = {
         "iterate": "number of the last point before the break",
         "arclength": "from the saddle to the break",
@@ -374,7 +362,7 @@ def manifold(
     most: int = 10000,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Grow the unstable manifold of a saddle of the stroboscopic map, as a curve to each side.
+    """Compute the unstable manifold of a saddle of the stroboscopic map, as two curves.
 
     Parameters
     ----------
@@ -439,28 +427,28 @@ def manifold(
     (-3.3595, 2)
     """
     require_delaminated(checked_structure(structure))
-    given = excitation_arguments(eta, frequency, amplitude)
+    arguments = excitation_arguments(eta, frequency, amplitude)
     if start is None:
-        quiet: dict[str, Any] = {
+        run_options: dict[str, Any] = {
             name: value
             for name, value in running.items()
             if name in ("fmu", "build_folder", "progress")
         }
-        asked: dict[str, Any] = {**dict(given), **quiet, "period": period}
-        start = orbit(structure, box_acceleration=box_acceleration, **asked)
-    check_start(start, several=False)
-    excitation = complete_excitation(start, ("e",), given, (0.0, 0.0), structure)
+        keywords: dict[str, Any] = {**dict(arguments), **run_options, "period": period}
+        start = orbit(structure, box_acceleration=box_acceleration, **keywords)
+    require_orbit_dataset(start, several=False)
+    excitation = complete_excitation(start, ("e",), arguments, (0.0, 0.0), structure)
     job = ManifoldJob(
         name=f"manifold_{structure.label()}",
         structure=structure,
         excitation=excitation,
         box_acceleration=finite_number(ACCELERATION, box_acceleration),
-        start=from_result(start),
+        start=guess_from_result(start),
         period=start.sizes["sample"],
-        length=positive("length", length),
-        spacing=positive("spacing", spacing),
-        angle=positive("angle", angle),
-        distance=positive("distance", distance),
+        length=checked_positive("length", length),
+        spacing=checked_positive("spacing", spacing),
+        angle=checked_positive("angle", angle),
+        distance=checked_positive("distance", distance),
         most=checked_integer("most", most, 2),
     )
     job.saddle()  # what is none is said before any work

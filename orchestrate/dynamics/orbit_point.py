@@ -1,4 +1,4 @@
-"""A periodic orbit as a point of a branch, with the test functions of its bifurcations."""
+"""Points of an orbit branch: a periodic orbit with the test functions of its bifurcations."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ from .turning_points import nearest_miss, turning_points, weakest_force
 
 CONTACT_KINDS = (CONTACT_LOST, CONTACT_BEGUN)
 ON_CIRCLE = 1e-6  # of a located pair of multipliers: how far its size may be from 1
-EITHER = 1e-10  # of (17), over a eta^2: an impact that is so near to sticking may do either
+STICK_TOLERANCE = 1e-10  # of (17), over a eta^2: an impact so near to sticking may do either
 
 
 @dataclass(frozen=True)
 class OrbitPoint:
-    """An orbit on a branch.
+    """One point of an orbit branch: the root, its orbit, multipliers and test functions.
 
     Attributes
     ----------
@@ -51,27 +51,27 @@ class OrbitPoint:
 
     @property
     def values(self) -> Floats:
-        """Return the values of the parameters that vary along the branch."""
+        """Return the values of the continuation parameters at this point."""
         return self.root.unknowns[self.family.size :]
 
     @cached_property
     def multipliers(self) -> NDArray[np.complex128]:
-        """Floquet multipliers, the largest first."""
+        """Return the orbit's Floquet multipliers, the largest first."""
         return self.orbit.multipliers()
 
     @cached_property
     def pairs(self) -> NDArray[np.complex128]:
-        """Return the complex multipliers of positive imaginary part: one of each pair."""
+        """Return one multiplier of each complex-conjugate pair, the one with imaginary part > 0."""
         return self.multipliers[self.multipliers.imag > 0.0]
 
     @cached_property
     def nearest_miss(self) -> float:
-        """Smallest gap at which the masses turn away from each other without an impact."""
+        """Return the smallest gap minimum in flight without an impact: 0 at touching."""
         return nearest_miss(self.orbit, turning_points(self.orbit))[0]
 
     @cached_property
     def sticking_margins(self) -> Floats:
-        """By how much each impact misses (17): negative where it would stick.
+        """Return each impact's margin in the sticking condition (17): negative where it sticks.
 
         Infinite where the contact force would not press the masses together.
         """
@@ -83,17 +83,17 @@ class OrbitPoint:
 
     @property
     def wrong_contact(self) -> bool:
-        """Return whether an impact sticks that should not, or the reverse, or no contact is left.
+        """Return whether an impact sticks, or not, against the sticking condition (17).
 
         Where (17) is all but met either will do: an orbit that has just got or lost an impact
         meets it to rounding, and rounding must not say how it goes on.
         """
         if not self.orbit.count:
             return False
-        return min(self.contact_margin(kind) for kind in CONTACT_KINDS) <= -EITHER
+        return min(self.contact_margin(kind) for kind in CONTACT_KINDS) <= -STICK_TOLERANCE
 
     def contact_margin(self, kind: BifurcationKind) -> float:
-        """Return how far an orbit is from losing a permanent contact, or from one more.
+        """Return the margin to losing or gaining a permanent contact: negative beyond it.
 
         Chattering ends in contact by (17). The margin is negative beyond: for ``CONTACT_LOST``
         where an impact does not stick that should, or no time is left for the contact, for
@@ -106,7 +106,7 @@ class OrbitPoint:
         return float(margins[~(orbit.contact | orbit.sequence.releases)].min(initial=1.0))
 
     def test(self, kind: BifurcationKind) -> float:
-        """Return the function whose sign changes at a bifurcation of a kind.
+        """Return the test function of a bifurcation kind: it changes sign at the bifurcation.
 
         Products of multipliers are scaled, as multipliers are infinite where an impact grazes.
         """
@@ -127,8 +127,8 @@ class OrbitPoint:
             return weakest_force(self.orbit)[0]
         return self.contact_margin(kind)
 
-    def happens(self, kind: BifurcationKind) -> bool:
-        """Return whether a zero of the test function is the bifurcation.
+    def zero_is_bifurcation(self, kind: BifurcationKind) -> bool:
+        """Return whether this zero of a kind's test function is a true bifurcation.
 
         The product of two real multipliers may be 1 as well as that of a pair on the unit circle.
         """
@@ -137,5 +137,5 @@ class OrbitPoint:
         return bool((np.abs(np.abs(self.pairs) - 1.0) < ON_CIRCLE).any())
 
     def reversed(self) -> OrbitPoint:
-        """Return the same orbit with the branch's other direction."""
+        """Return the same point with its tangent reversed, to continue the other way."""
         return OrbitPoint(self.family, self.root.reversed())

@@ -1,25 +1,33 @@
-"""Records of periodic orbits: one row an orbit, for a single one and along a branch alike."""
+"""Tables of periodic orbits and their dataset variables, for ``orbit``, ``branch``, ``border``."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence as Rows
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..response.labels import Variable, flags, nondimensional_state, parameter, variable, yes_or_no
+from ..access import EventInstance
+from ..response.labels import (
+    Variable,
+    flags,
+    nondimensional_state_coordinate,
+    parameter_variable,
+    variable,
+    yes_or_no,
+)
 from ..response.questions import Point
 from ..running.job import Table
 from .closed_form import Floats
 from .families import ACCELERATION, Family, Setting
-from .orbit_search import FmuCheck
+from .orbit_search import FmuCheck, check_orbit_in_fmu
 from .periodic_orbit import CLOSING, ON_CIRCLE, PHASE, POSITION, RELEASE, VELOCITY
 from .turning_points import (
     Amplitudes,
-    from_phase_zero,
     nearest_miss,
+    rotate_to_phase_zero,
     stroboscopic_states,
     turning_points,
 )
@@ -30,7 +38,7 @@ PARTS = np.array(["real", "imaginary"])
 
 @dataclass(frozen=True)
 class OrbitRecord:
-    """One orbit.
+    """All stored numbers of one orbit: nodes, states, multipliers, amplitudes, FMU check.
 
     Attributes
     ----------
@@ -66,10 +74,10 @@ class OrbitRecord:
     def from_root(
         cls, family: Family, unknowns: Floats, residual: float, fmu: FmuCheck
     ) -> OrbitRecord:
-        """Return what is stored of an orbit found by Newton's method, and of its run in the FMU."""
+        """Return the record of an orbit from Newton's root and its check by the FMU."""
         orbit = family.orbit(unknowns)
         turns = turning_points(orbit)
-        nodes, first = from_phase_zero(orbit.nodes, orbit.sequence.periods)
+        nodes, first = rotate_to_phase_zero(orbit.nodes, orbit.sequence.periods)
         multipliers = orbit.multipliers()
         return cls(
             values=unknowns[family.size :],
@@ -85,8 +93,17 @@ class OrbitRecord:
         )
 
 
-def pad(rows: Rows[Floats], fill: float) -> Floats:
-    """Return arrays of different lengths as one, the shorter ones filled up."""
+def record_with_check(
+    instance: EventInstance, family: Family, unknowns: Floats, residual: float
+) -> OrbitRecord:
+    """Run the FMU through the orbit of a root; return its record with the FMU's check."""
+    orbit, values = family.orbit(unknowns), unknowns[family.size :]
+    check = check_orbit_in_fmu(instance, family.setting, values, orbit)
+    return OrbitRecord.from_root(family, unknowns, residual, check)
+
+
+def pad_rows(rows: Sequence[Floats], fill: float) -> Floats:
+    """Stack arrays of different lengths into one, the shorter ones filled up with ``fill``."""
     most = max(len(row) for row in rows)
     table = np.full((len(rows), most, *rows[0].shape[1:]), fill)
     for index, row in enumerate(rows):
@@ -94,12 +111,12 @@ def pad(rows: Rows[Floats], fill: float) -> Floats:
     return table
 
 
-def table_of(records: Rows[OrbitRecord]) -> Table:
-    """Return arrays with one row an orbit."""
+def orbit_table(records: Sequence[OrbitRecord]) -> Table:
+    """Return the records of orbits as a dict of arrays, one row per orbit."""
     return {
         "values": np.array([r.values for r in records]),
-        "kinds": pad([r.kinds for r in records], -1).astype(int),
-        "nodes": pad([r.nodes for r in records], np.nan),
+        "kinds": pad_rows([r.kinds for r in records], -1).astype(int),
+        "nodes": pad_rows([r.nodes for r in records], np.nan),
         "zero": np.array([r.zero for r in records]),
         "multipliers": np.array([r.multipliers for r in records]),
         "product": np.array([r.product for r in records]),
@@ -113,8 +130,8 @@ def table_of(records: Rows[OrbitRecord]) -> Table:
     }
 
 
-def coordinates(setting: Setting, table: Table, row: str) -> dict[str, Variable]:
-    """Return the parameters along the rows, and the names of what has several parts."""
+def orbit_coordinates(setting: Setting, table: Table, row: str) -> dict[str, Variable]:
+    """Return dataset coordinates of a table of orbits: parameters, state and sample names."""
     points = [setting.point(values) for values in table["values"]]
     excitations = [point.excitation for point in points]
     along: dict[str, Any] = {
@@ -125,7 +142,7 @@ def coordinates(setting: Setting, table: Table, row: str) -> dict[str, Variable]
     along.update(
         {n: table["values"][:, i] for i, n in enumerate(setting.over) if n != ACCELERATION}
     )
-    parameters = {name: parameter(name, row, values) for name, values in along.items()}
+    parameters = {name: parameter_variable(name, row, values) for name, values in along.items()}
     if ACCELERATION in setting.over:
         parameters[ACCELERATION] = variable(
             row,
@@ -136,31 +153,44 @@ def coordinates(setting: Setting, table: Table, row: str) -> dict[str, Variable]
     periods = np.arange(table["zero"].shape[1])
     return {
         **parameters,
-        **nondimensional_state(),
+        **nondimensional_state_coordinate(),
         "part": variable("part", PARTS, "1", "of a complex number"),
         "sample": variable("sample", periods, "1", "excitation period of the orbit"),
     }
 
 
-def variables(setting: Setting, table: Table, row: str) -> dict[str, Variable]:
-    """Return all variables of the orbits."""
+def orbit_variables(setting: Setting, table: Table, row: str) -> dict[str, Variable]:
+    """Return all dataset variables of a table of orbits: states, impacts, stability, checks."""
     points = [setting.point(values) for values in table["values"]]
     scale = np.array([point.scale for point in points])
     frequency = np.array([point.excitation.frequency for point in points])
     omega = np.array([point.structure.omega for point in points])
     closed = np.array([setting.form(values).rests_in_contact for values in table["values"]])
     return {
-        **states(table, points, row),
-        **impacts(table, scale, frequency, closed, row),
-        **stability(table, frequency / omega, row),
+        **state_variables(table, points, row),
+        **impact_variables(table, scale, frequency, closed, row),
+        **stability_variables(table, frequency / omega, row),
         **amplitude_variables(table, row),
-        **checks(table, row),
+        **check_variables(table, row),
         **node_variables(table, row),
     }
 
 
-def states(table: Table, points: Rows[Point], row: str) -> dict[str, Variable]:
-    """Return the states of the orbits at each phase 0."""
+def prefixed_variables(
+    setting: Setting, table: Table, prefix: str, names: Sequence[str]
+) -> dict[str, Variable]:
+    """Return the named orbit variables with names, rows and nodes prefixed, as at bifurcations."""
+    data: dict[str, Variable] = {}
+    for name, (dims, values, attributes) in orbit_variables(setting, table, prefix).items():
+        if name in names:
+            each = (dims,) if isinstance(dims, str) else dims
+            own = tuple(f"{prefix}_node" if dim == "node" else dim for dim in each)
+            data[f"{prefix}_{name}"] = own, values, attributes
+    return data
+
+
+def state_variables(table: Table, points: Sequence[Point], row: str) -> dict[str, Variable]:
+    """Return dataset variables of the orbits' stroboscopic states at phase 0, SI and xi."""
     zero, along = table["zero"], (row, "sample", "coordinate")
     text = "states at phase 0: x1, x2 in m, v1, v2 in m/s"
     gap, xi = zero[:, :, 1] - zero[:, :, 0], zero.copy()
@@ -173,10 +203,10 @@ def states(table: Table, points: Rows[Point], row: str) -> dict[str, Variable]:
     }
 
 
-def impacts(
+def impact_variables(
     table: Table, scale: Floats, frequency: Floats, closed: NDArray[np.bool_], row: str
 ) -> dict[str, Variable]:
-    """Return the impacts of the orbits; NaN of nodes that are none.
+    """Return dataset variables of the orbits' impacts: times, speeds, rate; NaN for releases.
 
     Without any node the masses are in contact all the time where they rest so (``closed``).
     """
@@ -195,8 +225,8 @@ def impacts(
     }
 
 
-def stability(table: Table, eta: Floats, row: str) -> dict[str, Variable]:
-    """Return the multipliers, stability and Lyapunov exponents of the orbits."""
+def stability_variables(table: Table, eta: Floats, row: str) -> dict[str, Variable]:
+    """Return dataset variables of multipliers, their product, stability and exponents."""
     multipliers, time = table["multipliers"], table["zero"].shape[1] * 2.0 * np.pi / eta
     size = np.hypot(*np.moveaxis(multipliers, -1, 0))
     with np.errstate(divide="ignore"):
@@ -218,7 +248,7 @@ def stability(table: Table, eta: Floats, row: str) -> dict[str, Variable]:
 
 
 def amplitude_variables(table: Table, row: str) -> dict[str, Variable]:
-    """Return the largest displacements and gaps, and the smallest gap of a near miss."""
+    """Return dataset variables of the largest displacements and gap, and the nearest miss."""
     texts = {
         "xi1_max": "largest distance of mass 1 from the box's middle over a eta^2",
         "xi2_max": "largest distance of mass 2 from the box's middle over a eta^2",
@@ -233,8 +263,8 @@ def amplitude_variables(table: Table, row: str) -> dict[str, Variable]:
     return data
 
 
-def checks(table: Table, row: str) -> dict[str, Variable]:
-    """Return how exactly the orbits are known, and what the FMU makes of them."""
+def check_variables(table: Table, row: str) -> dict[str, Variable]:
+    """Return dataset variables of Newton's residual and of the check by the FMU."""
     return {
         "residual": variable(
             row, table["residual"], "1", "what Newton's method leaves of the equations"
@@ -249,7 +279,7 @@ def checks(table: Table, row: str) -> dict[str, Variable]:
 
 
 def node_variables(table: Table, row: str) -> dict[str, Variable]:
-    """Return the nodes: what Newton's method solves for, and another orbit may begin with."""
+    """Return dataset variables of the orbits' nodes: kind, phase, position, velocities."""
     nodes = table["nodes"]
     along = (row, "node")
     text = "closing speed before the impact over omega a eta^2"

@@ -1,4 +1,4 @@
-"""Search for a periodic orbit by Newton's method, and run it through in the FMU."""
+"""Solve for periodic orbits by Newton's method from guesses, and run them in the FMU as a check."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from ..constants import TURN
 from .closed_form import ClosedForm, Floats
 from .continuation import NoConvergenceError, Root, newton_correct, unit_vector
 from .families import Family, Setting
-from .guesses import Guess, from_phases, start
+from .guesses import Guess, begin_at_state, guess_from_phases
 from .periodic_orbit import CLOSING, IMPACT, PHASE, RELEASE, STICK, ImpactSequence, PeriodicOrbit
 from .turning_points import (
-    from_phase_zero,
     nearest_miss,
+    rotate_to_phase_zero,
     stroboscopic_states,
     turning_points,
     weakest_force,
@@ -33,7 +33,7 @@ PHASES = 24  # at which a single impact is tried: every 15 degrees
 
 @dataclass(frozen=True)
 class FmuCheck:
-    """Whether the FMU runs through an orbit.
+    """Result of running an orbit in the FMU: same impacts or not, and the error of its return.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ def solve_orbit(
     max_iterations: int = 25,
     max_distance: float = 100.0,
 ) -> tuple[Family, Root]:
-    """Solve for the orbit of a guess by Newton's method; return its family and the root, or raise.
+    """Solve for a periodic orbit from a guess by Newton's method; return equations and root.
 
     Raises
     ------
@@ -72,7 +72,7 @@ def solve_orbit(
 
 
 def why_no_motion(orbit: PeriodicOrbit) -> str:
-    """Say why a root of the equations is no motion; empty where it is one."""
+    """Return why a solved orbit is no possible motion (masses overlap ...); empty if it is one."""
     if (orbit.durations <= 0.0).any():
         return "its impacts are out of order"
     closing = orbit.nodes[~orbit.sequence.releases, CLOSING] if orbit.count else np.ones(1)
@@ -86,7 +86,7 @@ def why_no_motion(orbit: PeriodicOrbit) -> str:
 
 
 def least_periods(orbit: PeriodicOrbit) -> int:
-    """Return the least number of periods after which an orbit closes.
+    """Return the orbit's least period in excitation periods, by comparing shifted nodes.
 
     Phases are compared on a circle, so that one at phase 0 may also be 2 pi.
     """
@@ -107,23 +107,23 @@ def least_periods(orbit: PeriodicOrbit) -> int:
     return periods
 
 
-def run_in_fmu(
+def check_orbit_in_fmu(
     instance: EventInstance, setting: Setting, values: Floats, orbit: PeriodicOrbit
 ) -> FmuCheck:
-    """Run the FMU through an orbit; return whether impacts agree, and how far the end is off."""
+    """Run the FMU through an orbit; return whether impacts agree, and the error of its return."""
     point = setting.point(values)
     state = stroboscopic_states(orbit)[0]
-    start(instance, point, orbit.form, point.from_faces(state))
+    begin_at_state(instance, point, orbit.form, point.from_faces(state))
     end = orbit.sequence.periods * point.excitation.period
     observed = instance.impacts(0.0, end)
     after = point.faces(instance.read("x1", "x2", "v1", "v2"))
     away = float(np.abs(after - state).max())
-    nodes, first = from_phase_zero(orbit.nodes, orbit.sequence.periods)
+    nodes, first = rotate_to_phase_zero(orbit.nodes, orbit.sequence.periods)
     kinds = np.roll(np.array(orbit.sequence.kinds, dtype=int), -first)
     wanted, kinds = nodes[kinds != RELEASE], kinds[kinds != RELEASE]
     phases, sticks = point.excitation.frequency * observed.time, observed.sticks
     if len(phases) != len(wanted):
-        here, there = beyond_grazing(observed.closing), beyond_grazing(wanted[:, CLOSING])
+        here, there = not_grazing(observed.closing), not_grazing(wanted[:, CLOSING])
         phases, sticks = phases[here], sticks[here]
         wanted, kinds = wanted[there], kinds[there]
     if len(phases) != len(wanted):
@@ -132,15 +132,15 @@ def run_in_fmu(
     return FmuCheck(bool(near and (sticks == (kinds == STICK)).all()), away)
 
 
-def beyond_grazing(closing: Floats) -> NDArray[np.bool_]:
-    """Return which impacts are no grazing, by their closing speeds."""
+def not_grazing(closing: Floats) -> NDArray[np.bool_]:
+    """Return, for each closing speed, whether the impact is well above grazing."""
     return np.asarray(closing > GRAZES * closing.max(initial=0.0))
 
 
-def first_motion(
+def first_possible_orbit(
     setting: Setting, guesses: Iterable[Guess], values: Floats, *, stable: bool = False
 ) -> tuple[Family, Root]:
-    """Return family and root of the first guess that leads to a motion of just its periods.
+    """Solve guesses in turn; return equations and root of the first possible orbit.
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ def first_motion(
             reason = reason or str(error)
             continue
         orbit = family.orbit(root.unknowns)
-        why = why_no_motion(orbit) or why_shorter(orbit, guess[0].periods)
+        why = why_no_motion(orbit) or why_shorter_period(orbit, guess[0].periods)
         if not why and (not stable or orbit.stable):
             return family, root
         unstable = unstable or (None if why else (family, root))
@@ -173,14 +173,14 @@ def first_motion(
     raise NoConvergenceError(reason or "there is no impact to begin with")
 
 
-def why_shorter(orbit: PeriodicOrbit, periods: int) -> str:
-    """Say why an orbit is none of so many periods; empty where it is one."""
+def why_shorter_period(orbit: PeriodicOrbit, periods: int) -> str:
+    """Return a message if an orbit repeats in fewer periods than asked; empty if not."""
     shorter = least_periods(orbit)
     return f"the orbit found repeats after {shorter} already" if shorter < periods else ""
 
 
-def single_impacts(form: ClosedForm, periods: int) -> Iterator[Guess]:
-    """Yield guesses with one impact in all, at phases all around."""
+def single_impact_guesses(form: ClosedForm, periods: int) -> Iterator[Guess]:
+    """Yield orbit guesses with a single impact, at phases spaced around the circle."""
     sequence = ImpactSequence(periods, (IMPACT,))
     for phase in np.arange(PHASES) * TURN / PHASES:
-        yield from_phases(form, sequence, np.array([phase]))
+        yield guess_from_phases(form, sequence, np.array([phase]))

@@ -1,4 +1,4 @@
-"""Branches of periodic orbits: what the tracer needs to know of them."""
+"""Continuation of orbit branches: the tracer's steps, limits and tests for periodic orbits."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .bifurcations import (
 from .chattering import add_or_remove_impacts, change_one_impact
 from .continuation import ArclengthStepper, NoConvergenceError, Root
 from .families import Family
-from .orbit_point import EITHER, OrbitPoint
+from .orbit_point import STICK_TOLERANCE, OrbitPoint
 from .periodic_orbit import POSITION
 from .tracer import NO_CONVERGENCE, BranchSegment, BranchStep, BranchTracer, ContinuationSettings
 
@@ -33,7 +33,7 @@ SAME_SIZE = 0.5, 2.0  # size of the motion over the one that its unknowns are me
 
 
 class OrbitTracer(BranchTracer[Family, OrbitPoint]):
-    """Traces a branch of periodic orbits from one of them, along its tangent.
+    """Traces a branch of periodic orbits by pseudo-arclength continuation, with its bifurcations.
 
     Parameters
     ----------
@@ -51,29 +51,29 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         super().__init__(stepper, settings.max_points)
 
     def point(self, root: Root) -> OrbitPoint:
-        """Return the periodic orbit of a root with its multipliers and tests."""
+        """Return the branch point of a solved root, with its orbit and test functions."""
         return OrbitPoint(self.stepper.curve, root)
 
     def limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
-        """Return the index of the parameter among the unknowns, and its limits in a list."""
+        """Return the index of the parameter among the unknowns, and its (low, high) in a list."""
         family = self.stepper.curve
         return family.size, family.setting.limits
 
     def accepts(self, root: Root) -> bool:
-        """Return whether all flights of a root have a length."""
+        """Return whether all flights between the root's impacts have positive duration."""
         orbit = self.stepper.curve.orbit(root.unknowns)
         return bool((orbit.durations[~orbit.contact] > 0.0).all())
 
     def test(self, point: OrbitPoint, kind: BifurcationKind) -> float:
-        """Return the orbit's test function of a kind of bifurcation, 0 where it happens."""
+        """Return a point's test function of a bifurcation kind: it changes sign there."""
         return point.test(kind)
 
     def confirms(self, kind: BifurcationKind, point: OrbitPoint, part: float) -> bool:
-        """Return whether it happens, and is not the bifurcation that the step begins at."""
-        return part > AT_BEGIN and point.happens(kind)
+        """Return whether a located zero is a true bifurcation, and not the step's own start."""
+        return part > AT_BEGIN and point.zero_is_bifurcation(kind)
 
     def go_on_from(self, point: OrbitPoint) -> OrbitPoint:
-        """Put the stepper to an orbit, and measure the unknowns in the size of the motion."""
+        """Set the stepper to an orbit, rescaling unknowns if its size has changed; return it."""
         family, root = point.family, point.root
         nodes = root.unknowns[: family.size].reshape(-1, 4)
         scaled = Family.from_nodes(family.setting, family.sequence, nodes)
@@ -87,7 +87,7 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
     def finish_step(
         self, segment: BranchSegment[OrbitPoint], step: BranchStep[OrbitPoint]
     ) -> OrbitPoint:
-        """Return the step's orbit, with one impact more or less where chattering asks for it.
+        """Return the step's last orbit, with impacts added or removed as chattering (17) needs.
 
         Where permanent contact is lost or begins, the branch ends: infinitely many impacts would
         graze one after the other.
@@ -98,9 +98,9 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         try:
             return add_or_remove_impacts(after)
         except NoConvergenceError:  # too far on: go back to where the first impact comes or goes
-            lost = after.contact_margin(CONTACT_LOST) <= -EITHER
+            lost = after.contact_margin(CONTACT_LOST) <= -STICK_TOLERANCE
             kind = CONTACT_LOST if lost else CONTACT_BEGUN
-            position, first = step.root_of(kind, 0.0, step.length, -EITHER)
+            position, first = step.solve_for_level(kind, 0.0, step.length, -STICK_TOLERANCE)
         try:
             changed = add_or_remove_impacts(change_one_impact(first))
         except NoConvergenceError:
@@ -112,7 +112,7 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         return changed
 
     def end_without_root(self, segment: BranchSegment[OrbitPoint]) -> None:
-        """Set as the end of a branch that its permanent contact vanishes, if none is left."""
+        """Set why a branch ends where Newton fails: contact lost, or no convergence."""
         last = segment.points[-1]
         if last.orbit.contact.any() and last.contact_margin(CONTACT_LOST) < NO_CONTACT:
             segment.add_bifurcation(CONTACT_LOST, last, 0.0)

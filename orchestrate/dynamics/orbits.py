@@ -1,4 +1,4 @@
-"""One periodic orbit, stable or not: its impacts and multipliers, run through in the FMU."""
+"""One periodic orbit by Newton's method: the job and function ``orchestrate.orbit``."""
 
 from __future__ import annotations
 
@@ -16,17 +16,16 @@ from ..access import OSCILLATOR, EventInstance, finder
 from ..checks import checked_integer
 from ..constants import TURN
 from ..errors import InputError
-from ..response.questions import Question, numbers, one_point
-from ..response.questions import state as checked_state
+from ..response.questions import Question, checked_numbers, checked_point, checked_state
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
 from .closed_form import Floats
 from .continuation import NoConvergenceError
 from .families import ACCELERATION, Setting, require_delaminated
-from .guesses import Guess, close_returns, from_phases, from_state
-from .orbit_records import OrbitRecord, coordinates, table_of, variables
-from .orbit_search import first_motion, run_in_fmu, single_impacts
+from .guesses import Guess, close_returns, guess_from_phases, guess_from_state
+from .orbit_records import OrbitRecord, orbit_coordinates, orbit_table, orbit_variables
+from .orbit_search import check_orbit_in_fmu, first_possible_orbit, single_impact_guesses
 from .periodic_orbit import IMPACT, PHASE, RELEASE, ImpactSequence
 
 if TYPE_CHECKING:
@@ -42,7 +41,7 @@ NODE = ("node_phase", "node_position", "node_velocity", "node_closing")
 
 @dataclass(frozen=True)
 class FirstGuess:
-    """What a user knows of an orbit, as plain numbers.
+    """The user's guess of an orbit in plain numbers: a state, or kinds and nodes of its impacts.
 
     Attributes
     ----------
@@ -59,7 +58,7 @@ class FirstGuess:
     nodes: tuple[tuple[float, ...], ...] = ()
 
     def as_argument(self, frequency: float) -> str:
-        """Return the guess as a user would write it; contacts are left to the FMU."""
+        """Return Python source of the ``guess=`` argument that repeats this guess."""
         if self.state:
             return f"{self.state!r}"
         rows = zip(self.kinds, self.nodes, strict=True)
@@ -67,35 +66,53 @@ class FirstGuess:
         return f"{{'impact_time': {times!r}}}"
 
     def sequence(self, periods: int) -> ImpactSequence:
-        """Return the guess's impacts, sticking and releases in order, for some periods."""
+        """Return the guess's impacts and releases as an impact sequence over some periods."""
         return ImpactSequence(periods, self.kinds)
 
 
 @dataclass(frozen=True, kw_only=True)
 class OneItemQuestion(Question, ABC):
-    """A question whose answer is computed in one go."""
+    """Base of jobs with a single item, computed in one go."""
 
     def count(self) -> int:
-        """Return 1: the question has one item."""
+        """Return 1: such a job has one item."""
         return 1
 
     def items(self, inputs: Inputs) -> Sequence[int]:
-        """Return the number of the only item."""
+        """Return the items: a list with 0, the index of the only one."""
         return [0]
 
 
 @dataclass(frozen=True, kw_only=True)
-class OrbitJob(OneItemQuestion):
-    """An orbit; what is not said here is as in :func:`orchestrate.orbit`.
+class SingleOrbitQuestion(OneItemQuestion, ABC):
+    """Base of jobs about one orbit at a fixed excitation.
 
     Attributes
     ----------
     excitation : tuple of (str, float)
         As the user gave it.
+    box_acceleration : float
+        Constant acceleration of the box beside the harmonic one, m/s2.
     """
 
     excitation: tuple[tuple[str, float], ...]
     box_acceleration: float
+
+    @property
+    def setting(self) -> Setting:
+        """Return structure, excitation and box acceleration as setting of the orbit's equations."""
+        return Setting.fixed(self.structure, self.excitation, self.box_acceleration)
+
+    @property
+    def values(self) -> Floats:
+        """Return the value of the setting's only parameter, as an array of length 1."""
+        return np.array([self.excitation[0][1]])
+
+
+@dataclass(frozen=True, kw_only=True)
+class OrbitJob(SingleOrbitQuestion):
+    """Job of :func:`orchestrate.orbit`: one periodic orbit, checked by the FMU."""
+
     period: int
     guess: FirstGuess | None
     transient: int
@@ -104,8 +121,8 @@ class OrbitJob(OneItemQuestion):
     asked: ClassVar[str] = "orbit"
 
     def call_text(self) -> str:
-        """Return the Python call that asks this question, for the answer's history."""
-        frequency = self.setting.point(np.array([self.excitation[0][1]])).excitation.frequency
+        """Return Python source of an ``orbit(...)`` call that repeats this, guess included."""
+        frequency = self.setting.point(self.values).excitation.frequency
         arguments = {**dict(self.excitation), "period": self.period}
         if self.box_acceleration:
             arguments[ACCELERATION] = self.box_acceleration
@@ -116,32 +133,27 @@ class OrbitJob(OneItemQuestion):
             parts.append(f"guess={self.guess.as_argument(frequency)}")
         return f"orbit({', '.join(parts)})"
 
-    @property
-    def setting(self) -> Setting:
-        """Return the structure under its excitation, as the orbit's equations take it."""
-        return Setting.fixed(self.structure, self.excitation, self.box_acceleration)
-
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
-        """Find the orbit by Newton's method; return it as a table of one row."""
+        """Solve for the orbit by Newton's method; return its record as a table of one row."""
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            return table_of([find_orbit(instance, self)])
+            return orbit_table([find_orbit(instance, self)])
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return the orbit, its impacts and its multipliers as a dataset with units."""
+        """Return the dataset of the orbit: states, impacts, multipliers, check by the FMU."""
         import xarray as xr
 
         setting = self.setting
         title = f"Periodic orbit of {self.period} periods: {self.structure.label()}"
         whole_table = xr.Dataset(
-            variables(setting, table, "point"),
-            coordinates(setting, table, "point"),
+            orbit_variables(setting, table, "point"),
+            orbit_coordinates(setting, table, "point"),
             {"title": title},
         )
         return whole_table.isel(point=0)
 
 
 def find_orbit(instance: EventInstance, job: OrbitJob) -> OrbitRecord:
-    """Find the orbit of a question by Newton's method; raise where no guess leads to one.
+    """Solve for a job's orbit from its guesses, check it in the FMU; return its record, or raise.
 
     Raises
     ------
@@ -149,44 +161,44 @@ def find_orbit(instance: EventInstance, job: OrbitJob) -> OrbitRecord:
         Where none is found.
     """
     setting = job.setting
-    values = np.array([job.excitation[0][1]])
+    values = job.values
     try:
-        tried = guesses(instance, job, setting, values)
-        family, root = first_motion(setting, tried, values, stable=job.guess is None)
+        tried = orbit_guesses(instance, job, setting, values)
+        family, root = first_possible_orbit(setting, tried, values, stable=job.guess is None)
     except NoConvergenceError as reason:
         expected = "another guess" if job.guess else "another period, or a guess"
         raise InputError(
             f"period = {job.period}: no orbit found ({reason}); expected {expected}"
         ) from None
-    check = run_in_fmu(instance, setting, values, family.orbit(root.unknowns))
+    check = check_orbit_in_fmu(instance, setting, values, family.orbit(root.unknowns))
     return OrbitRecord.from_root(family, root.unknowns, root.residual, check)
 
 
-def guesses(
+def orbit_guesses(
     instance: EventInstance, job: OrbitJob, setting: Setting, values: Floats
 ) -> Iterator[Guess]:
-    """Yield the user's guess; or close returns of the response, then single impacts."""
+    """Yield the user's guess; without one, close returns of the response, then single impacts."""
     point, form, guess = setting.point(values), setting.form(values), job.guess
     if guess is not None and guess.state:
-        yield from_state(instance, point, form, np.array(guess.state), job.period)
+        yield guess_from_state(instance, point, form, np.array(guess.state), job.period)
     elif guess is not None:
         nodes, sequence = np.array(guess.nodes), guess.sequence(job.period)
         if nodes.shape[1:] == (4,):
             yield sequence, nodes
             return
         for shift in np.arange(SHIFTS) * TURN / SHIFTS:
-            yield from_phases(form, sequence, nodes[:, 0] + shift)
+            yield guess_from_phases(form, sequence, nodes[:, 0] + shift)
     else:
         returns = close_returns(instance, point, form, job.period, job.transient, job.search)
         for state, _ in islice(list(returns), job.tries):
-            yield from_state(instance, point, form, state, job.period)
-        yield from single_impacts(form, job.period)
+            yield guess_from_state(instance, point, form, state, job.period)
+        yield from single_impact_guesses(form, job.period)
 
 
-def first_guess(
-    given: Any, structure: Structure, frequency: float, period: int
+def checked_guess(
+    guess: Any, structure: Structure, frequency: float, period: int
 ) -> FirstGuess | None:
-    """Return a user's guess as plain numbers; None if none is given, an error in no known form.
+    """Return the user's guess as plain numbers, None if not given; raise if its form is unknown.
 
     Raises
     ------
@@ -194,15 +206,17 @@ def first_guess(
         Where it is none of them.
     """
     expected = "expected a state, impact times, or a result of orbit or branch"
-    if given is None:
+    if guess is None:
         return None
-    if not isinstance(given, Mapping):
-        return FirstGuess(state=checked_state("guess", given, structure))
-    if "node_kind" in given:
-        return from_result(given)
-    if "impact_time" not in given:
+    if not isinstance(guess, Mapping):
+        return FirstGuess(state=checked_state("guess", guess, structure))
+    if "node_kind" in guess:
+        return guess_from_result(guess)
+    if "impact_time" not in guess:
         raise InputError(f"guess: without impact_time; {expected}")
-    times = np.sort(np.asarray(numbers("impact_time", given["impact_time"]), dtype=float).ravel())
+    times = np.sort(
+        np.asarray(checked_numbers("impact_time", guess["impact_time"]), dtype=float).ravel()
+    )
     phases = frequency * times
     if not (phases[0] >= 0.0 and phases[-1] - phases[0] < 2.0 * np.pi * period):
         raise InputError(f"impact_time = {times.tolist()}: expected times within {period} periods")
@@ -210,19 +224,19 @@ def first_guess(
     return FirstGuess(kinds=(IMPACT,) * len(rows), nodes=rows)
 
 
-def from_result(given: Mapping[Any, Any]) -> FirstGuess:
-    """Return the nodes of an orbit that was found before.
+def guess_from_result(result: Mapping[Any, Any]) -> FirstGuess:
+    """Return the guess that repeats an orbit from a dataset of ``orbit`` or ``branch``.
 
     Raises
     ------
     InputError
         Where it holds several.
     """
-    kinds = np.asarray(given["node_kind"])
+    kinds = np.asarray(result["node_kind"])
     if kinds.ndim != 1:
         raise InputError("guess: several orbits; expected one, such as branch.isel(point=0)")
     there = kinds >= 0
-    columns = [np.asarray(given[name])[there] for name in NODE]
+    columns = [np.asarray(result[name])[there] for name in NODE]
     rows = tuple(tuple(map(float, row)) for row in np.stack(columns, axis=1))
     return FirstGuess(kinds=tuple(map(int, kinds[there])), nodes=rows)
 
@@ -230,9 +244,9 @@ def from_result(given: Mapping[Any, Any]) -> FirstGuess:
 def excitation_arguments(
     eta: ArrayLike | None, frequency: ArrayLike | None, amplitude: ArrayLike | None
 ) -> tuple[tuple[str, float], ...]:
-    """Return an excitation as plain numbers."""
-    given = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
-    return tuple((name, float(np.asarray(v))) for name, v in given.items() if v is not None)
+    """Return the excitation arguments that are given, as (name, float) pairs."""
+    arguments = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
+    return tuple((name, float(np.asarray(v))) for name, v in arguments.items() if v is not None)
 
 
 def orbit(
@@ -249,7 +263,7 @@ def orbit(
     tries: int = 20,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Find a periodic orbit by Newton's method, stable or unstable.
+    """Compute a periodic orbit by Newton's method, stable or unstable, and its multipliers.
 
     Parameters
     ----------
@@ -303,9 +317,9 @@ def orbit(
     >>> found.multipliers.sel(part="real").values.round(4)
     array([-3.3595, -0.5903, -0.5903, -0.1421])
     """
-    given = one_point(structure, eta, frequency, amplitude)
+    point = checked_point(structure, eta, frequency, amplitude)
     require_delaminated(structure)
-    given.excitation.check(structure)
+    point.excitation.check(structure)
     count = checked_integer("period", period, 1, MAX_PERIODS)
     job = OrbitJob(
         name=f"orbit_{structure.label()}_{count}T",
@@ -313,7 +327,7 @@ def orbit(
         excitation=excitation_arguments(eta, frequency, amplitude),
         box_acceleration=finite_number("box_acceleration", box_acceleration),
         period=count,
-        guess=first_guess(guess, structure, given.excitation.frequency, count),
+        guess=checked_guess(guess, structure, point.excitation.frequency, count),
         transient=checked_integer("transient", transient, 0),
         search=checked_integer("search", search, count + 1),
         tries=checked_integer("tries", tries, 1),
@@ -321,15 +335,15 @@ def orbit(
     return answer(job, running, finder(running))
 
 
-def finite_number(name: str, given: ArrayLike) -> float:
-    """Return one finite number.
+def finite_number(name: str, argument: ArrayLike) -> float:
+    """Return one finite number as float; raise ``InputError`` if it is a list or no number.
 
     Raises
     ------
     InputError
         Where it is none.
     """
-    value = numbers(name, given)
+    value = checked_numbers(name, argument)
     if not isinstance(value, float):
-        raise InputError(f"{name} = {given!r}: expected one number")
+        raise InputError(f"{name} = {argument!r}: expected one number")
     return value

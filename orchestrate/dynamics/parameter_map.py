@@ -1,4 +1,4 @@
-"""Responses over two parameters, each from the same start: impacts, multiplicity, gaps, exponents.
+"""Responses over a grid of two parameters: the job and function ``orchestrate.map``.
 
 Points are independent of each other; where attractors coexist a map shows the one that the start
 leads to.
@@ -19,19 +19,19 @@ from numpy.typing import ArrayLike
 from ..access import OSCILLATOR, REST, EventInstance, Impacts, Instance, finder
 from ..checks import checked_integer
 from ..errors import InputError
-from ..response.labels import Variable, flags, parameter, variable
+from ..response.labels import Variable, flags, parameter_variable, variable
 from ..response.multiplicity import DECIDED, REPEATED, UNDECIDED, Decision
 from ..response.questions import (
     EXCITATION_PARAMETERS,
     Numbers,
     Point,
     Question,
-    check_form,
+    check_excitation_form,
+    checked_numbers,
+    checked_positive,
+    checked_state,
     checked_structure,
-    numbers,
-    point,
-    positive,
-    state,
+    make_point,
 )
 from ..response.respond import Response, respond
 from ..response.sweep import HOW_DECIDED
@@ -40,11 +40,11 @@ from ..running.options import Running, RunOptions
 from ..running.runner import answer
 from ..structures import PARAMETERS, Structure
 from ..structures.ranges import check_flag, expected_one_of
-from ..structures.structure import Varied
+from ..structures.structure import ValueListKeywords
 from .clusters import transient_periods
 from .following import follow_impacts
-from .lyapunov import largest_exponent, without_impacts
-from .variational import period
+from .lyapunov import exact_exponent_without_impacts, largest_exponent
+from .variational import period_in_tau
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -63,12 +63,12 @@ EXPONENT = {
 }
 
 
-class Parameters(Running, Varied, total=False):
-    """Keywords of :func:`map`: parameters of a structure, and how the question is computed."""
+class MapKeywords(Running, ValueListKeywords, total=False):
+    """Keywords of :func:`map` beside its own: structure parameters and running options."""
 
 
-class Axis(NamedTuple):
-    """One side of the map."""
+class MapAxis(NamedTuple):
+    """One axis of the map: a parameter's name and its values."""
 
     name: str
     values: tuple[float, ...]
@@ -76,7 +76,7 @@ class Axis(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class MapJob(Question):
-    """A map; what is not said here is as in :func:`orchestrate.map`.
+    """Job of :func:`orchestrate.map`: responses over two parameters, each from the same start.
 
     Attributes
     ----------
@@ -101,26 +101,26 @@ class MapJob(Question):
 
     @property
     def points(self) -> tuple[Point, ...]:
-        """Return structure and excitation of each point, row by row."""
+        """Return structure and excitation of all grid points, the second parameter fastest."""
         return map_points(self.structure, self.given)
 
     @property
-    def axes(self) -> tuple[Axis, ...]:
-        """Return both axes of the map, x and y."""
-        return tuple(Axis(name, value) for name, value in self.given if isinstance(value, tuple))
+    def axes(self) -> tuple[MapAxis, ...]:
+        """Return the map's two axes, those parameters whose value is a list."""
+        return tuple(MapAxis(name, value) for name, value in self.given if isinstance(value, tuple))
 
     def parameters(self) -> dict[str, Any]:
-        """Return all that decides the numbers, the parameters by their own names."""
+        """Return the job's parameters for its identity, map parameters under their own names."""
         others = super().parameters()
         del others["given"]
         return {**{name: plain(value) for name, value in self.given}, **others}
 
     def count(self) -> int:
-        """Return the number of points of the map."""
+        """Return the number of grid points of the map."""
         return len(self.points)
 
     def items(self, inputs: Inputs) -> Sequence[Point]:
-        """Return the points."""
+        """Return the items: structure and excitation of each grid point."""
         return self.points
 
     def work(
@@ -132,13 +132,13 @@ class MapJob(Question):
         return {"rows": np.array(rows, dtype=float)}
 
     def row(self, plain: Instance, eventful: EventInstance, item: Point) -> list[float]:
-        """Return the numbers of one point, in the order of ``FIELDS`` and ``EXPONENT``."""
-        response, (n, decided) = self.response(plain, item)
+        """Return one point's results in the order of ``FIELDS``, and ``EXPONENT`` if asked for."""
+        response, (n, decided) = self.decided_response(plain, item)
         impacts = follow_impacts(eventful, item, response.end, self.samples // 2)
         impulse = impacts.impulse(item.structure, item.speed).max(initial=0.0) / item.structure.m1
         rate = response.impacts_per_period
         if decided == REPEATED:
-            turn = period(item.excitation.eta(item.structure))
+            turn = period_in_tau(item.excitation.eta(item.structure))
             rate = int((impacts.time <= n * turn).sum()) / n
         numbers = [rate, n, decided, response.x_rel_max / item.length, impulse]
         return (
@@ -147,8 +147,8 @@ class MapJob(Question):
             else numbers
         )
 
-    def response(self, instance: Instance, item: Point) -> tuple[Response, Decision]:
-        """Run a point until its multiplicity is decided; return last response and decision."""
+    def decided_response(self, instance: Instance, item: Point) -> tuple[Response, Decision]:
+        """Run a point on until its multiplicity is decided; return response and decision."""
         eta = item.excitation.eta(item.structure)
         dropped, done, start = transient_periods(self.transient, self.settle, eta), 0, self.start
         while True:
@@ -162,14 +162,14 @@ class MapJob(Question):
     def exponent_at(
         self, eventful: EventInstance, item: Point, start: ArrayLike
     ) -> tuple[float, float]:
-        """Return the Lyapunov exponent and its standard error; NaN where impacts are too few."""
+        """Return a response's Lyapunov exponent and standard error; NaN with too few impacts."""
         structure, eta = item.structure, item.excitation.eta(item.structure)
         impacts: Impacts = follow_impacts(eventful, item, start, self.periods)
-        known = None if len(impacts.time) else without_impacts(structure)
-        return known or largest_exponent(impacts, self.periods * period(eta), item)
+        known = None if len(impacts.time) else exact_exponent_without_impacts(structure)
+        return known or largest_exponent(impacts, self.periods * period_in_tau(eta), item)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return the variables of ``FIELDS`` over both parameters."""
+        """Return the dataset of the map: the variables of ``FIELDS`` over both parameters."""
         import xarray as xr
 
         names = tuple(axis.name for axis in self.axes)
@@ -183,24 +183,26 @@ class MapJob(Question):
         decided = variables["multiplicity_decided"][1]
         variables["multiplicity_decided"] = flags(names, decided, HOW_DECIDED, DECIDED)
         coordinates = {
-            axis.name: parameter(axis.name, axis.name, axis.values) for axis in self.axes
+            axis.name: parameter_variable(axis.name, axis.name, axis.values) for axis in self.axes
         }
         title = f"Map over {' and '.join(names)}: {self.structure.label()}"
         return xr.Dataset(variables, coordinates, {"title": title})
 
 
 @lru_cache(maxsize=4)
-def map_points(structure: Structure, given: tuple[tuple[str, Numbers], ...]) -> tuple[Point, ...]:
-    """Return structures and excitations of a map, row by row.
+def map_points(
+    structure: Structure, arguments: tuple[tuple[str, Numbers], ...]
+) -> tuple[Point, ...]:
+    """Return structure and excitation of each grid point, row by row; raise if not two lists.
 
     Raises
     ------
     InputError
         Where there are not two lists, the excitation is incomplete, or a number is out of range.
     """
-    values = dict(given)
-    check_form(values.keys() & EXCITATION_PARAMETERS.keys())
-    lists = {name: value for name, value in given if isinstance(value, tuple)}
+    values = dict(arguments)
+    check_excitation_form(values.keys() & EXCITATION_PARAMETERS.keys())
+    lists = {name: value for name, value in arguments if isinstance(value, tuple)}
     if len(lists) != 2:
         names = ", ".join(lists) or "none"
         raise InputError(f"lists of values: {names}; expected two of the parameters as lists")
@@ -208,7 +210,7 @@ def map_points(structure: Structure, given: tuple[tuple[str, Numbers], ...]) -> 
         if len(set(column)) < len(column):
             raise InputError(f"{name}: a value twice; expected each once")
     rows = (dict(zip(lists, row, strict=True)) for row in itertools.product(*lists.values()))
-    return tuple(point(structure, {**values, **row}) for row in rows)
+    return tuple(make_point(structure, {**values, **row}) for row in rows)
 
 
 def map(
@@ -226,9 +228,9 @@ def map(
     start: ArrayLike | None = None,
     exponent: bool = False,
     periods: int = 500,
-    **others: Unpack[Parameters],
+    **others: Unpack[MapKeywords],
 ) -> xr.Dataset:
-    """Compute responses over two parameters, each from the same start.
+    """Compute responses over a grid of two parameters, each from the same start state.
 
     Parameters
     ----------
@@ -295,17 +297,17 @@ def map(
             )
     box = {"eta": eta, "frequency": frequency, "amplitude": amplitude, "level": level}
     asked: dict[str, Any] = {**box, **others}
-    arguments = {name: numbers(name, asked[name]) for name in asked if name not in running}
+    arguments = {name: checked_numbers(name, asked[name]) for name in asked if name not in running}
     job = MapJob(
         structure=checked_structure(structure),
         name=f"map_{structure.label()}",
         given=tuple((name, value) for name, value in arguments.items() if value is not None),
         transient=checked_integer("transient", transient, 0),
-        settle=positive("settle", settle),
+        settle=checked_positive("settle", settle),
         samples=checked_integer("samples", samples, 4),
-        tolerance=positive("tolerance", tolerance),
+        tolerance=checked_positive("tolerance", tolerance),
         longest=checked_integer("longest", longest, 0),
-        start=state("start", start, structure),
+        start=checked_state("start", start, structure),
         exponent=check_flag("exponent", exponent),
         periods=checked_integer("periods", periods, 1),
     )

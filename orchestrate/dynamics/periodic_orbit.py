@@ -1,4 +1,4 @@
-"""Periodic orbits with a given sequence of impacts, in unknowns in which everything is smooth.
+"""Equations of periodic orbits with a fixed impact sequence: residual, Jacobian, multipliers.
 
 An orbit is a closed sequence of nodes: impacts, impacts that end in permanent contact, and
 releases. Each node has four unknowns: the excitation's phase, and displacement, velocity and
@@ -27,7 +27,7 @@ ON_CIRCLE = 1e-7  # of a multiplier's size: nearer to the unit circle no orbit i
 
 @dataclass(frozen=True)
 class ImpactSequence:
-    """What happens in an orbit.
+    """The order of impacts, sticking impacts and releases in an orbit, and its periods.
 
     Attributes
     ----------
@@ -42,21 +42,21 @@ class ImpactSequence:
 
     @cached_property
     def sticks(self) -> NDArray[np.bool_]:
-        """Nodes after which the masses are in permanent contact."""
+        """Return, for each node, whether permanent contact follows it."""
         return np.array(self.kinds, dtype=int) == STICK
 
     @cached_property
     def releases(self) -> NDArray[np.bool_]:
-        """Nodes where permanent contact ends."""
+        """Return, for each node, whether it is a release from permanent contact."""
         return np.array(self.kinds, dtype=int) == RELEASE
 
     @property
     def impacts(self) -> int:
-        """Number of impacts."""
+        """Return the number of impacts, releases not counted."""
         return len(self.kinds) - self.kinds.count(RELEASE)
 
     def doubled(self) -> ImpactSequence:
-        """Return the same orbit run through twice."""
+        """Return the sequence repeated twice, over twice the periods."""
         return ImpactSequence(2 * self.periods, self.kinds * 2)
 
     def without(self, node: int) -> ImpactSequence:
@@ -64,13 +64,13 @@ class ImpactSequence:
         return ImpactSequence(self.periods, self.kinds[:node] + self.kinds[node + 1 :])
 
     def with_impact(self, before: int) -> ImpactSequence:
-        """Return the sequence with one impact more, before a node."""
+        """Return the sequence with an impact inserted before the node of this index."""
         return ImpactSequence(self.periods, (*self.kinds[:before], IMPACT, *self.kinds[before:]))
 
 
 @dataclass(frozen=True)
 class PeriodicOrbit:
-    """A periodic orbit by its nodes, and the equations that these must solve.
+    """A candidate periodic orbit: nodes (impacts and releases) and the equations they solve.
 
     Attributes
     ----------
@@ -86,34 +86,34 @@ class PeriodicOrbit:
 
     @property
     def count(self) -> int:
-        """Number of nodes."""
+        """Return the number of nodes."""
         return len(self.nodes)
 
     @cached_property
     def begins(self) -> Floats:
-        """Phases at which the segments begin; without nodes there is one, from phase 0 on."""
+        """Return the phases, rad, at which segments between nodes begin (0 without nodes)."""
         return self.nodes[:, PHASE] if self.count else np.zeros(1)
 
     @cached_property
     def ends(self) -> Floats:
-        """Return the phases at which the segments end, rad."""
+        """Return the phases, rad, at which segments between nodes end."""
         phases = np.roll(self.begins, -1)
         phases[-1] += TURN * self.sequence.periods
         return phases
 
     @cached_property
     def durations(self) -> Floats:
-        """Return the durations of the segments in units of tau."""
+        """Return the durations of the segments between nodes, in units of tau."""
         return (self.ends - self.begins) / self.form.eta
 
     @cached_property
     def contact(self) -> NDArray[np.bool_]:
-        """Return whether each segment is permanent contact."""
+        """Return, for each segment, whether it is permanent contact."""
         return self.sequence.sticks if self.count else np.array([self.form.rests_in_contact])
 
     @cached_property
     def starts(self) -> Floats:
-        """Return the states at the segments' begins, shape (k, 4): after the impact (15)."""
+        """Return the states at the begin of segments, just after impacts (15), shape (k, 4)."""
         if not self.count:
             return self.form.steady(np.zeros(1), self.contact)
         _, position, velocity, closing = self.nodes.T
@@ -125,14 +125,14 @@ class PeriodicOrbit:
 
     @cached_property
     def flows(self) -> Floats:
-        """Return each segment's flow matrix, from its start to its end, shape (k, 4, 4)."""
+        """Return the flow matrix of each segment from begin to end, shape (k, 4, 4)."""
         matrices = self.form.flight(self.durations)
         if self.contact.any():
             matrices[self.contact] = self.form.contact(self.durations[self.contact])
         return matrices
 
     def states(self, segment: NDArray[np.int_], phase: Floats) -> Floats:
-        """Return the states at phases inside segments, from the closed form.
+        """Return the states at phases inside given segments, by the closed form, shape (n, 4).
 
         Parameters
         ----------
@@ -155,14 +155,14 @@ class PeriodicOrbit:
 
     @cached_property
     def arrivals(self) -> Floats:
-        """States at the segments' ends, before what happens there, shape (k, 4)."""
+        """Return the states at the end of segments, just before the next node, shape (k, 4)."""
         free = self.starts - self.form.steady(self.begins, self.contact)
         moved: Floats = (self.flows @ free[:, :, None])[:, :, 0]
         return moved + self.form.steady(self.ends, self.contact)
 
     @cached_property
     def reduction(self) -> Floats:
-        """Gap, place and velocity of the centre of mass, closing speed of a state, shape (4, 4)."""
+        """Return the matrix from a state to gap, centre of mass (x, v) and closing speed."""
         share = self.form.mu / (1.0 + self.form.mu)
         return np.array(
             [
@@ -174,7 +174,7 @@ class PeriodicOrbit:
         )
 
     def residual(self) -> Floats:
-        """Return the residual of the equations, shape (4 k,).
+        """Return the residual of the orbit's equations at its nodes, shape (4 k,).
 
         Each segment must arrive at the node after it: with no gap, at its displacement and
         velocity, and with its closing speed; at a release with f = 0 (19) and no closing speed.
@@ -191,8 +191,8 @@ class PeriodicOrbit:
             residual[released, 3] = closing
         return residual.ravel()
 
-    def blocks(self) -> tuple[Floats, Floats]:
-        """Return derivatives of each segment's equations by the node before and the one after it.
+    def segment_jacobians(self) -> tuple[Floats, Floats]:
+        """Return each segment's residual derivatives by the nodes before and after it.
 
         Returns
         -------
@@ -220,7 +220,7 @@ class PeriodicOrbit:
         return before, after
 
     def jacobian(self, multiplier: complex = 1.0) -> NDArray[np.inexact]:
-        """Return the derivative of the residual by the unknowns, shape (4 k, 4 k).
+        """Return the Jacobian of the residual by all nodes' unknowns, shape (4 k, 4 k).
 
         Parameters
         ----------
@@ -228,7 +228,7 @@ class PeriodicOrbit:
             What a deviation is multiplied by in one run through the orbit. Where the matrix is
             singular, it is a Floquet multiplier.
         """
-        before, after = self.blocks()
+        before, after = self.segment_jacobians()
         k = self.count
         matrix = np.zeros((k, 4, k, 4), dtype=complex if isinstance(multiplier, complex) else float)
         for i in range(k):
@@ -237,21 +237,21 @@ class PeriodicOrbit:
         return matrix.reshape(4 * k, 4 * k)
 
     def monodromy(self) -> Floats:
-        """Return the matrix of a deviation at the first node over one run through the orbit.
+        """Return the monodromy matrix (4, 4): a deviation at the first node over one period.
 
         Its eigenvalues are the Floquet multipliers: those of the stroboscopic map too. In permanent
         contact the deviation of the gap is gone, so with a contact two of them are zero.
         """
         if not self.count:
             return self.flows[0] @ self.form.centre() if self.contact[0] else self.flows[0]
-        before, after = self.blocks()
+        before, after = self.segment_jacobians()
         product = np.eye(4)
         for step in -np.linalg.solve(after, before):
             product = step @ product
         return product
 
     def multipliers(self) -> NDArray[np.complex128]:
-        """Return the Floquet multipliers, the largest first; infinite where an impact grazes."""
+        """Return the Floquet multipliers, the largest first; infinite if an impact grazes."""
         try:
             values = np.linalg.eigvals(self.monodromy()).astype(complex)
         except np.linalg.LinAlgError:
@@ -262,14 +262,14 @@ class PeriodicOrbit:
 
     @property
     def stable(self) -> bool:
-        """Return whether all multipliers lie inside the unit circle, by more than their error.
+        """Return whether all multipliers lie inside the unit circle, by more than rounding.
 
         At a bifurcation, where one lies on the circle, rounding would say so or not.
         """
         return bool(np.abs(self.multipliers()).max() < 1.0 - ON_CIRCLE)
 
     def multiplier_product(self) -> float:
-        """Return the multipliers' product, by Liouville's formula and the impacts' restitutions.
+        """Return the multipliers' product by Liouville's formula, as an independent check.
 
         An impact contributes e(v) d(e(v) v)/dv: e^2 where e is constant.
         """

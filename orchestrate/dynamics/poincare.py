@@ -1,4 +1,4 @@
-"""Poincaré sections of a motion: its states at a phase of the box, at impacts, or at releases."""
+"""Poincaré sections of a motion at a phase, at impacts or releases: ``orchestrate.poincare``."""
 
 from __future__ import annotations
 
@@ -16,13 +16,19 @@ from ..checks import checked_integer, checked_word
 from ..constants import TURN
 from ..errors import InputError
 from ..response.labels import variable, yes_or_no
-from ..response.questions import Point, Question, numbers, one_point, state
+from ..response.questions import (
+    OneMotionQuestion,
+    Point,
+    checked_numbers,
+    checked_point,
+    checked_state,
+)
 from ..response.simulate import IN_TIME
 from ..running.job import Inputs, Table
 from ..running.runner import answer
-from ..structures import Excitation, Structure
-from .following import Followed, state_after
-from .variational import contact_times, nondimensional
+from ..structures import Structure
+from .following import FollowedResponse, state_after_transient
+from .variational import contact_durations_after, nondimensional_impacts
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -40,12 +46,11 @@ Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
-class PoincareJob(Question):
-    """A section of one motion.
+class PoincareJob(OneMotionQuestion):
+    """Job of :func:`orchestrate.poincare`: the Poincaré section of one motion.
 
     Attributes
     ----------
-    excitation : Excitation
     at : str
         Of ``SECTIONS``.
     phase : float
@@ -56,7 +61,6 @@ class PoincareJob(Question):
         x1, x2 in m, v1, v2 in m/s at phase 0.
     """
 
-    excitation: Excitation
     at: str = "phase"
     phase: float = 0.0
     transient: int = 500
@@ -64,36 +68,30 @@ class PoincareJob(Question):
     start: tuple[float, ...] = REST
     asked: ClassVar[str] = "poincare"
 
-    def count(self) -> int:
-        """Return 1: there is one motion."""
-        return 1
-
-    def items(self, inputs: Inputs) -> Sequence[Point]:
-        """Return the structure under its excitation."""
-        return [Point(self.structure, self.excitation)]
-
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
     ) -> Table:
-        """Follow the motion after its transient, and read it in the section."""
+        """Simulate the motion after its transient; return states and times of the section."""
         point, period = items[0], self.excitation.period
         with Instance(fmus[OSCILLATOR]) as plain:
-            start = state_after(plain, Followed(point, self.start), self.transient)
+            start = state_after_transient(
+                plain, FollowedResponse(point, self.start), self.transient
+            )
             if self.at == "phase":
                 times = self.phase / self.excitation.frequency + period * np.arange(
                     float(self.periods)
                 )
-                return {"time": times, "rows": read_at(plain, point, start, times)}
+                return {"time": times, "rows": states_at_times(plain, point, start, times)}
             with EventInstance(fmus[OSCILLATOR]) as eventful:
                 begin(eventful, *point, start)
                 impacts = eventful.impacts(0.0, self.periods * period)
             if self.at == "releases":
                 times = release_times(impacts, point, self.periods * period)
-                return {"time": times, "rows": read_at(plain, point, start, times)}
+                return {"time": times, "rows": states_at_times(plain, point, start, times)}
         return impact_table(impacts)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return the states, when they are passed, and at which phase."""
+        """Return the dataset of the section's points: states, times, phases, impact speeds."""
         import xarray as xr
 
         time, columns = table["time"], dict(zip(COLUMNS, table["rows"].T, strict=True))
@@ -116,8 +114,8 @@ class PoincareJob(Question):
         return xr.Dataset(variables, coordinates, {"title": title})
 
 
-def read_at(instance: Instance, point: Point, start: ArrayLike, times: Floats) -> Floats:
-    """Return the outputs of a motion from phase 0 on at some times, s, shape (n, 6)."""
+def states_at_times(instance: Instance, point: Point, start: ArrayLike, times: Floats) -> Floats:
+    """Simulate from phase 0; return displacements, velocities and gap at given times (n, 6)."""
     begin(instance, *point, start)
     rows, now = np.empty((len(times), len(COLUMNS))), 0.0
     for row, time in zip(rows, times.tolist(), strict=True):
@@ -128,21 +126,21 @@ def read_at(instance: Instance, point: Point, start: ArrayLike, times: Floats) -
 
 
 def release_times(impacts: Impacts, point: Point, end: float) -> Floats:
-    """Return when permanent contacts end, s, which impacts in the span began.
+    """Return the times, s, at which permanent contacts begun by given impacts are released.
 
     Not those that outlast the span or end in another impact's place.
     """
     omega = point.structure.omega
-    scaled = nondimensional(impacts, point)
+    scaled = nondimensional_impacts(impacts, point)
     ends = np.append(scaled.time[1:], omega * end)
-    lasting = contact_times(scaled, ends, point)
+    lasting = contact_durations_after(scaled, ends, point)
     released = scaled.sticks & (lasting < ends - scaled.time)
     times: Floats = (scaled.time + lasting)[released] / omega
     return times
 
 
 def impact_table(impacts: Impacts) -> Table:
-    """Return impacts as columns of a table; the gap is closed there."""
+    """Return impacts as a table: times, states just after them, closing speeds, sticking."""
     rate = np.where(impacts.sticks, 0.0, impacts.state[:, 3] - impacts.state[:, 2])
     return {
         "time": impacts.time,
@@ -215,8 +213,8 @@ def poincare(
     >>> section.sizes["point"], float(abs(section.v_rel).max() < 1e-12)
     (3, 1.0)
     """
-    chosen, excitation = one_point(structure, eta, frequency, amplitude)
-    angle = numbers("phase", phase)
+    chosen, excitation = checked_point(structure, eta, frequency, amplitude)
+    angle = checked_numbers("phase", phase)
     if not isinstance(angle, float):
         raise InputError(f"phase = {phase!r}: expected a number, rad")
     job = PoincareJob(
@@ -227,6 +225,6 @@ def poincare(
         phase=math.fmod(angle, TURN) % TURN,
         transient=checked_integer("transient", transient, 0),
         periods=checked_integer("periods", periods, 1),
-        start=state("start", start, structure),
+        start=checked_state("start", start, structure),
     )
     return answer(job, running, finder(running))

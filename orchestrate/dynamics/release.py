@@ -1,4 +1,4 @@
-"""The release (19): where permanent contact ends."""
+"""How long permanent contact lasts: root search for the first zero (19) of the contact force."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SAMPLES_PER_PERIOD = 16  # and in a period of the fastest oscillation: the force
 def contact_durations(
     form: ClosedForm, phase: Floats, position: Floats, velocity: Floats, spans: Floats
 ) -> Floats:
-    """Return how long permanent contacts last: to the first zero (19) of the contact force (18).
+    """Return how long permanent contacts last, in tau; infinite if not released in the span.
 
     The zero is bracketed by samples of the force, and solved for by Chandrupatla's method.
 
@@ -38,6 +38,7 @@ def contact_durations(
         return np.zeros(0)
 
     def force(time: Floats, *begin: Floats) -> Floats:
+        """Return the contact force (18) a time after permanent contact has begun."""
         return form.force(*form.common_motion(time, *begin))
 
     periods = form.fastest * float(spans.max()) / (2.0 * math.pi)

@@ -1,4 +1,4 @@
-"""What a response has settled to, and how that was decided; when two of these are the same."""
+"""Settled motions (orbit, repeated or irregular) and comparison of states and orbits with them."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ DECIDED = {
     IRREGULAR: "irregular",
     UNDECIDED: "undecided",
 }
-SAME = 1e-5  # distance over the motion's size within which a state lies on a known motion
+ON_KNOWN_MOTION = 1e-5  # over the motion's size: a state that is nearer lies on that motion
 LENGTHS = np.array(  # displacements, velocities, the gap and its rate, from a state
     [[1, 0, 0, 0, -1, 0], [0, 1, 0, 0, 1, 0], [0, 0, 1, 0, 0, -1], [0, 0, 0, 1, 0, 1]], dtype=float
 )
-ALIKE = 1e-6  # of the nodes of two orbits over their size, within which these are one orbit
+SAME_NODES = 1e-6  # of the nodes of two orbits over their size, within which these are one orbit
 
 
 @dataclass(frozen=True, eq=False)
 class SettledMotion:
-    """A settled motion: an orbit, or what is known of a response that is none.
+    """A motion that responses settle to: its states, period, impacts, gap, and how decided.
 
     Attributes
     ----------
@@ -69,7 +69,7 @@ class SettledMotion:
 
     @classmethod
     def from_orbit(cls, point: Point, orbit: PeriodicOrbit, free_phase: float) -> SettledMotion:
-        """Return a stable orbit as a motion that responses settle to."""
+        """Return a stable orbit of Newton's method as a settled motion."""
         periods, faces = orbit.sequence.periods, stroboscopic_states(orbit)
         faces[:, 1] = np.maximum(faces[:, 0], faces[:, 1])  # in contact, within rounding
         states = point.from_faces(faces)
@@ -87,41 +87,45 @@ class SettledMotion:
 
     @cached_property
     def features(self) -> list[float]:
-        """Return features of the motion that do not depend on the phase, for clustering."""
+        """Return features that do not depend on the phase: period, impacts, gap statistics."""
         gaps = gap_between(self.states, self.point.structure.gap_offset) / self.point.length
         means = [float(gaps.mean()), float(gaps.std())]
         gap = self.gap / self.point.length
         return [self.multiplicity, self.impacts_per_period, gap, *means]
 
     def nearest(self, state: ArrayLike) -> tuple[int, float]:
-        """Return the period whose first state is nearest to one at phase 0, and its distance."""
-        return self._known.nearest(state)
+        """Return the period whose state at phase 0 is nearest to a state, and its distance."""
+        return self._scaled_states.nearest(state)
 
     @cached_property
-    def _known(self) -> KnownStates:
-        return KnownStates.from_states(self.states, self.point.excitation.frequency, self.gap)
+    def _scaled_states(self) -> ScaledStates:
+        """Return the states at phase 0, scaled for comparison with others."""
+        return ScaledStates.from_states(self.states, self.point.excitation.frequency, self.gap)
 
     @cached_property
-    def free_states(self) -> KnownStates:
-        """States of an orbit at its free phase in successive periods."""
+    def free_states(self) -> ScaledStates:
+        """Return the orbit's states at its impact-free phase, scaled for comparison."""
         assert self.orbit is not None, "no orbit"
         states = self.point.from_faces(stroboscopic_states(self.orbit, self.free_phase))
-        return KnownStates.from_states(states, self.point.excitation.frequency, self.gap)
+        return ScaledStates.from_states(states, self.point.excitation.frequency, self.gap)
 
-    def is_orbit_of(self, other: SettledMotion) -> bool:
-        """Return whether both are one orbit.
+    def is_same_orbit_as(self, other: SettledMotion) -> bool:
+        """Return whether both motions are the same orbit: same nodes, or same states.
 
         They have the same nodes, begun in the same period or not; or the same states, where
         chattering that ends in contact has one more of its smallest impacts.
         """
         if self.orbit is None or other.orbit is None or self.multiplicity != other.multiplicity:
             return False
-        return same_nodes(self.orbit, other.orbit) or self.nearest(other.states[0])[1] < SAME
+        return (
+            same_nodes(self.orbit, other.orbit)
+            or self.nearest(other.states[0])[1] < ON_KNOWN_MOTION
+        )
 
 
 @dataclass(frozen=True)
-class KnownStates:
-    """States of a motion at one phase in successive periods, and what differences compare with.
+class ScaledStates:
+    """Stroboscopic states of a motion, scaled by its size to find the nearest to a given state.
 
     Displacements and velocities over the frequency are compared with the largest of them; the gap
     and its rate with the largest gap, as by :func:`orchestrate.response.multiplicity.scale_states`.
@@ -141,8 +145,8 @@ class KnownStates:
     matrix: Floats
 
     @classmethod
-    def from_states(cls, states: Floats, frequency: float, gap: float) -> KnownStates:
-        """Return states, SI, for a frequency in rad/s and a largest gap in m to compare with."""
+    def from_states(cls, states: Floats, frequency: float, gap: float) -> ScaledStates:
+        """Return scaled states from SI states, with frequency and largest gap as scales."""
         matrix = LENGTHS / np.array([1.0, 1.0, frequency, frequency])[:, np.newaxis]
         values = states @ matrix
         size = float(np.abs(values[:, :4]).max()) or 1.0
@@ -152,26 +156,26 @@ class KnownStates:
         return cls(states, values / sizes, matrix / sizes)
 
     def nearest(self, state: ArrayLike) -> tuple[int, float]:
-        """Return the period whose state is nearest to a state, and the distance over the size."""
+        """Return the index of the nearest state, and its distance over the motion's size."""
         distances = np.abs(self.scaled - np.asarray(state) @ self.matrix).max(axis=1)
         period = int(distances.argmin())
         return period, float(distances[period])
 
 
-def same_nodes(one: PeriodicOrbit, other: PeriodicOrbit) -> bool:
-    """Return whether two orbits of as many periods have the same nodes, up to whole periods."""
-    kinds, others = np.array(one.sequence.kinds), np.array(other.sequence.kinds)
-    if len(kinds) != len(others):
+def same_nodes(first: PeriodicOrbit, second: PeriodicOrbit) -> bool:
+    """Return whether two orbits have the same nodes, up to a shift by whole periods."""
+    kinds, second_kinds = np.array(first.sequence.kinds), np.array(second.sequence.kinds)
+    if len(kinds) != len(second_kinds):
         return False
     if not len(kinds):
         return True
-    size = float(np.abs([one.nodes[:, 1:], other.nodes[:, 1:]]).max()) or 1.0
+    size = float(np.abs([first.nodes[:, 1:], second.nodes[:, 1:]]).max()) or 1.0
     for shift in range(len(kinds)):
-        if (np.roll(others, -shift) != kinds).any():
+        if (np.roll(second_kinds, -shift) != kinds).any():
             continue
-        away = np.roll(other.nodes, -shift, axis=0) - one.nodes
+        away = np.roll(second.nodes, -shift, axis=0) - first.nodes
         away[:, PHASE] -= TURN * np.round(away[:, PHASE] / TURN)
         away[:, 1:] /= size
-        if np.abs(away).max() < ALIKE:
+        if np.abs(away).max() < SAME_NODES:
             return True
     return False

@@ -1,4 +1,4 @@
-"""Where along a branch its orbits are stable: the exact limits, and what happens there."""
+"""Stable parameter intervals of a branch dataset, with the bifurcations that bound them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class StableWindow(NamedTuple):
-    """A stable part of a branch.
+    """A parameter interval with a stable orbit, and the bifurcations at both of its ends.
 
     Attributes
     ----------
@@ -30,7 +30,7 @@ class StableWindow(NamedTuple):
 
 
 def stable_windows(branch: xr.Dataset) -> list[StableWindow]:
-    """Return the stable parts of a branch, in the order along it.
+    """Return the stable parameter intervals of a branch dataset, in order along the branch.
 
     Parameters
     ----------
@@ -63,5 +63,5 @@ def stable_windows(branch: xr.Dataset) -> list[StableWindow]:
 
 
 def kind_names(branch: xr.Dataset) -> dict[int, str]:
-    """Return the names of the kinds of bifurcations by number."""
+    """Return a dict from number to name of the bifurcation kinds in a branch dataset."""
     return flag_words(branch.bifurcation_kind.attrs)

@@ -1,4 +1,4 @@
-"""Trace branches: predict, correct, test for bifurcations, locate them, and say why a branch ends.
+"""Continuation loop that traces a branch: steps, bifurcations located by test functions, end.
 
 Every branch is traced by the same loop (:meth:`BranchTracer.trace`), whatever its equations are:
 periodic orbits (:mod:`.orbit_tracer`), bifurcations over two parameters (:mod:`.borders`), motions
@@ -33,7 +33,7 @@ Point = TypeVar("Point")
 
 @dataclass(frozen=True)
 class ContinuationSettings:
-    """How a branch is traced.
+    """Settings for tracing a branch: the longest step, and the most points.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class ContinuationSettings:
 
 @dataclass(frozen=True)
 class Bifurcation(Generic[Point]):
-    """A bifurcation on a branch.
+    """A bifurcation located on a branch: its kind, its point, and its position on the branch.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ class Bifurcation(Generic[Point]):
 
 @dataclass
 class BranchSegment(Generic[Point]):
-    """A branch in one direction.
+    """One direction of a traced branch: points, bifurcations, and why it ends.
 
     Attributes
     ----------
@@ -85,12 +85,12 @@ class BranchSegment(Generic[Point]):
     end: str = ""
 
     def add_bifurcation(self, kind: BifurcationKind, point: Point, beyond: float) -> None:
-        """Add a bifurcation so far beyond the last point, in steps."""
+        """Append a bifurcation located ``beyond`` the last point, as a fraction of a step."""
         self.bifurcations.append(Bifurcation(kind, point, len(self.points) - 1 + beyond))
 
 
 class BranchTracer(ABC, Generic[AnyCurve, Point]):
-    """Traces a branch; a subclass supplies what is special to its equations.
+    """Base of tracers: the loop of continuation; subclasses supply points and test functions.
 
     Parameters
     ----------
@@ -120,48 +120,48 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
 
     @abstractmethod
     def point(self, root: Root) -> Point:
-        """Return the point of a root that has just been solved for."""
+        """Return the branch point of a solved root; subclasses define what a point is."""
 
     @abstractmethod
     def limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
-        """Return the index of the first unknown that has limits, and the limits."""
+        """Return the index of the first limited unknown, and (low, high) from it onwards."""
 
     def accepts(self, root: Root) -> bool:
-        """Return whether a root may be the next one of this branch."""
+        """Return whether a solved root may be the branch's next point; by default yes."""
         return True
 
     def test(self, point: Point, kind: BifurcationKind) -> float:
-        """Return the test function of a kind: it changes its sign at the bifurcation."""
+        """Return the test function of a bifurcation kind: it changes sign at the bifurcation."""
         raise NotImplementedError
 
     def confirms(self, kind: BifurcationKind, point: Point, part: float) -> bool:
-        """Return whether a change of sign, at a part of a step, is the bifurcation of its kind."""
+        """Return whether a test function's zero at a fraction of a step is a true bifurcation."""
         return True
 
     def location_tolerances(self, length: float) -> dict[str, float]:
-        """Return the tolerances of Brent's method in a step, as SciPy has them."""
+        """Return the tolerances of Brent's method (xtol, rtol) in a step of this length."""
         return {"xtol": ACCURACY, "rtol": ACCURACY}
 
     def end_before(self, step: BranchStep[Point]) -> tuple[str, Iterable[Point]]:
-        """Return why the branch ends within a step, ``""`` if not, and then its last points."""
+        """Return why the branch ends within a step (empty if not), and its last points."""
         return "", ()
 
     def finish_step(self, segment: BranchSegment[Point], step: BranchStep[Point]) -> Point:
-        """Return the point that a step adds; it may add bifurcations and set the segment's end."""
+        """Return the point that a step appends; subclasses may add bifurcations or an end."""
         return step.after
 
     def end_without_root(self, segment: BranchSegment[Point]) -> None:
-        """Say why a segment ends where no step is short enough."""
+        """Set the reason why a segment ends where no step converges, however short."""
         segment.end = NO_CONVERGENCE
 
     @abstractmethod
     def go_on_from(self, point: Point) -> Point:
-        """Put the stepper to a point, perhaps in other unknowns; return the point in these."""
+        """Set the stepper to a point for the next step; return the point, perhaps rescaled."""
 
     # -- the loop ----------------------------------------------------------------------------------
 
     def trace(self, start: Point) -> BranchSegment[Point]:
-        """Trace the branch from its start until it ends."""
+        """Trace the branch from a start point until it ends; return the segment."""
         segment = BranchSegment([start])
         before, rates = self.go_on_from(start), dict.fromkeys(self.kinds, np.inf)
         while True:
@@ -173,15 +173,15 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
             except NoConvergenceError:
                 self.end_without_root(segment)
                 return segment
-            rates = {kind: step.rate(kind) for kind in self.kinds}
-            self.add(segment, step, located)
+            rates = {kind: step.mean_slope(kind) for kind in self.kinds}
+            self.add_step(segment, step, located)
             if segment.end:
                 return segment
             before = self.go_on_from(segment.points[-1])
 
     def next_step(
         self, before: Point, rates: Mapping[BifurcationKind, float]
-    ) -> tuple[BranchStep[Point], list[Located[Point]]]:
+    ) -> tuple[BranchStep[Point], list[LocatedBifurcation[Point]]]:
         """Take a step, shortened until its bifurcations can be located; return it and these.
 
         Raises
@@ -203,27 +203,27 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
                 if stepper.length < stepper.min_length:
                     raise
 
-    def locate(self, step: BranchStep[Point]) -> list[Located[Point]]:
-        """Locate the bifurcations in a step, in order, up to one that ends the branch.
+    def locate(self, step: BranchStep[Point]) -> list[LocatedBifurcation[Point]]:
+        """Locate all bifurcations in a step, in order, up to the first that ends the branch.
 
         Raises
         ------
         NoConvergenceError
             Where no root is found on the way.
         """
-        ends = self.located(step, self.ending_kinds)[:1]
+        ends = self.locate_kinds(step, self.ending_kinds)[:1]
         if ends:
             length = ends[0].position * BEFORE_END
             step = replace(step, after=step.point(length), length=length)
         others = [kind for kind in self.kinds if kind not in self.ending_kinds]
-        return [*self.located(step, others), *ends]
+        return [*self.locate_kinds(step, others), *ends]
 
-    def located(
+    def locate_kinds(
         self, step: BranchStep[Point], kinds: Sequence[BifurcationKind]
-    ) -> list[Located[Point]]:
-        """Locate the bifurcations of some kinds in a step, in order."""
+    ) -> list[LocatedBifurcation[Point]]:
+        """Locate the confirmed bifurcations of given kinds in a step; return them in order."""
         crossings = [
-            Located(kind, *step.root_of(kind, *bracket))
+            LocatedBifurcation(kind, *step.solve_for_level(kind, *bracket))
             for kind in kinds
             for bracket in step.brackets(kind)
         ]
@@ -234,13 +234,13 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
         ]
         return sorted(confirmed, key=lambda each: each.position)
 
-    def add(
+    def add_step(
         self,
         segment: BranchSegment[Point],
         step: BranchStep[Point],
-        located: Sequence[Located[Point]],
+        located: Sequence[LocatedBifurcation[Point]],
     ) -> None:
-        """Add a step with its bifurcations to a segment."""
+        """Append a step's bifurcations and end point to a segment, and the reason if it ends."""
         if step.end:
             segment.points += step.last_points
             segment.end = step.end
@@ -258,8 +258,8 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
 
 
 @dataclass(frozen=True)
-class Located(Generic[Point]):
-    """A bifurcation in a step: its kind, how far into the step it is, and the point there."""
+class LocatedBifurcation(Generic[Point]):
+    """A bifurcation located in a step: its kind, arclength from the step's start, and point."""
 
     kind: BifurcationKind
     position: float
@@ -268,7 +268,7 @@ class Located(Generic[Point]):
 
 @dataclass
 class BranchStep(Generic[Point]):
-    """A step along a branch, with the points on the way.
+    """One continuation step between two points, with the points solved for in between.
 
     Attributes
     ----------
@@ -300,30 +300,30 @@ class BranchStep(Generic[Point]):
         self.known = {0.0: self.before, self.length: self.after}
 
     def point(self, position: float) -> Point:
-        """Return the branch's point at a position in the step, by Newton's method."""
+        """Return the branch's point at an arclength into the step, by Newton's method (cached)."""
         if position not in self.known:
             tracer = self.tracer
             self.known[position] = tracer.point(tracer.stepper.root_after(position))
         return self.known[position]
 
     def test(self, position: float, kind: BifurcationKind) -> float:
-        """Return the test function of a kind so far into the step; 1 where it is not finite."""
+        """Return a kind's test function at an arclength into the step; 1 where not finite."""
         value = self.tracer.test(self.point(position), kind)
         return value if np.isfinite(value) else 1.0
 
     def brackets(self, kind: BifurcationKind) -> list[tuple[float, float]]:
-        """Return pairs of positions that bifurcations of a kind lie between."""
+        """Return intervals of the step in which a kind's test function changes sign."""
         before, after = (self.tracer.test(point, kind) for point in (self.before, self.after))
         if before * after < 0.0:
             return [(0.0, self.length)]
-        if self.tracer.finds_pairs and self.turns_back(kind):
-            middle = self.lowest(kind)
+        if self.tracer.finds_pairs and self.may_cross_twice(kind):
+            middle = self.extremum_position(kind)
             if before * self.test(middle, kind) < 0.0:
                 return [(0.0, middle), (middle, self.length)]
         return []
 
-    def turns_back(self, kind: BifurcationKind) -> bool:
-        """Return whether two bifurcations of a kind are possible: the test falls, then rises.
+    def may_cross_twice(self, kind: BifurcationKind) -> bool:
+        """Return whether a test function may cross zero twice: its size falls, then rises.
 
         Slopes are computed only where the test could have come to zero if it changed ``SPEED_UP``
         times as fast as in the step before.
@@ -336,14 +336,14 @@ class BranchStep(Generic[Point]):
         falls, rises = (sign * self.slope(end, kind) for end in (0.0, self.length))
         return bool(falls < 0.0 < rises)
 
-    def rate(self, kind: BifurcationKind) -> float:
-        """Return the mean slope of a test function; infinite where it is not known."""
+    def mean_slope(self, kind: BifurcationKind) -> float:
+        """Return a test function's mean slope over the step; infinite where it is not finite."""
         after, before = (self.tracer.test(point, kind) for point in (self.after, self.before))
         change = after - before
         return change / self.length if np.isfinite(change) and self.length else np.inf
 
     def slope(self, position: float, kind: BifurcationKind) -> float:
-        """Return the slope of a test function at an end of the step; 0 where it is not known."""
+        """Return a test function's slope at either end of the step; 0 where not computable."""
         near = position + (SLOPE_PART if position == 0.0 else -SLOPE_PART) * self.length
         tests = self.tracer.test
         try:
@@ -352,8 +352,8 @@ class BranchStep(Generic[Point]):
             return 0.0
         return change / (near - position) if np.isfinite(change) else 0.0
 
-    def lowest(self, kind: BifurcationKind) -> float:
-        """Return where a test function is nearest to changing its sign, or beyond."""
+    def extremum_position(self, kind: BifurcationKind) -> float:
+        """Return the position where a test function is nearest to zero, or deepest beyond it."""
         from scipy.optimize import minimize_scalar
 
         sign = np.sign(self.tracer.test(self.before, kind))
@@ -365,10 +365,10 @@ class BranchStep(Generic[Point]):
         )
         return float(minimum.x)
 
-    def root_of(
+    def solve_for_level(
         self, kind: BifurcationKind, low: float, high: float, level: float = 0.0
     ) -> tuple[float, Point]:
-        """Solve for where on a step a test is at a level (Brent); return position and point.
+        """Solve by Brent's method for where a test has a level; return position, point.
 
         Raises
         ------

@@ -1,7 +1,8 @@
-"""Where displacements and gap turn inside an orbit: amplitudes, and near misses."""
+"""Extrema of displacements and gap along an orbit: amplitudes, near misses, stroboscopic states."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +21,7 @@ REFINEMENTS = 6  # Newton steps: each doubles the digits of a bracketed extremum
 
 @dataclass(frozen=True)
 class TurningPoints:
-    """Instants at which a displacement or the gap has an extremum inside a segment.
+    """Extrema of both displacements and the gap inside an orbit's segments, as arrays.
 
     Attributes
     ----------
@@ -37,7 +38,7 @@ class TurningPoints:
 
 
 def sample_grid(orbit: PeriodicOrbit) -> tuple[NDArray[np.int_], Floats]:
-    """Return two arrays, segments and phases, at which a motion is sampled in order.
+    """Return segment indices and phases of a fine sampling grid along an orbit.
 
     Without nodes the only segment is sampled all around.
     """
@@ -45,15 +46,15 @@ def sample_grid(orbit: PeriodicOrbit) -> tuple[NDArray[np.int_], Floats]:
         SAMPLES_PER_PERIOD * np.abs(orbit.durations) * orbit.form.fastest / TURN
     ).astype(int)
     segment = np.repeat(np.arange(len(counts)), counts)
-    place = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
-    part = (place + 0.5) / counts[segment]
+    number_in_segment = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
+    part = (number_in_segment + 0.5) / counts[segment]
     if not orbit.count:  # a segment that closes: once around, and to the first sample again
         segment, part = np.append(segment, 0), np.append(part, part[0] + 1.0)
     return segment, orbit.begins[segment] + part * (orbit.ends - orbit.begins)[segment]
 
 
 def turning_points(orbit: PeriodicOrbit) -> TurningPoints:
-    """Find all turning points of both displacements and, in flight, of the gap."""
+    """Return all extrema of both displacements and, in flight, of the gap, by Newton's method."""
     segment, phase = sample_grid(orbit)
     rates = orbit.states(segment, phase)[:, 2:] @ WEIGHTS.T
     same = segment[1:] == segment[:-1]
@@ -63,18 +64,46 @@ def turning_points(orbit: PeriodicOrbit) -> TurningPoints:
     low, high, segment = phase[which], phase[which + 1], segment[which]
     first, last = rates[which, quantity], rates[which + 1, quantity]
     phases = low + (high - low) * first / (first - last)
-    for _ in range(REFINEMENTS):
-        rate, curvature, _ = derivatives(orbit, segment, quantity, phases)
-        step = np.divide(rate, curvature, out=np.zeros_like(rate), where=curvature != 0.0)
-        phases = np.clip(phases - orbit.form.eta * step, low, high)
-    _, curvature, value = derivatives(orbit, segment, quantity, phases)
+
+    def rate_and_slope(phase: Floats) -> tuple[Floats, Floats]:
+        """Return each quantity's rate and its derivative by tau, at phases."""
+        return quantity_derivatives(orbit, segment, quantity, phase)[:2]
+
+    phases = refine_zeros(rate_and_slope, phases, (low, high), orbit.form.eta)
+    _, curvature, value = quantity_derivatives(orbit, segment, quantity, phases)
     return TurningPoints(segment, quantity, phases, value, curvature)
 
 
-def derivatives(
+def refine_zeros(
+    rate_and_slope: Callable[[Floats], tuple[Floats, Floats]],
+    phases: Floats,
+    brackets: tuple[Floats, Floats],
+    eta: float,
+) -> Floats:
+    """Refine phases, rad, of zeros of rates by Newton's method within their brackets.
+
+    Parameters
+    ----------
+    rate_and_slope : callable
+        From phases to values and derivatives by tau.
+    phases : ndarray, shape (n,)
+        First estimates.
+    brackets : (ndarray, ndarray)
+        Lowest and highest phase of each.
+    eta : float
+        Phase per unit of tau.
+    """
+    for _ in range(REFINEMENTS):
+        rate, slope = rate_and_slope(phases)
+        step = np.divide(rate, slope, out=np.zeros_like(rate), where=slope != 0.0)
+        phases = np.clip(phases - eta * step, *brackets)
+    return phases
+
+
+def quantity_derivatives(
     orbit: PeriodicOrbit, segment: NDArray[np.int_], quantity: NDArray[np.int_], phase: Floats
 ) -> tuple[Floats, Floats, Floats]:
-    """Return first and second derivatives by tau of quantities inside segments, then values."""
+    """Return first and second tau derivatives, and values, of displacements or the gap."""
     state = orbit.states(segment, phase)
     field = orbit.form.field(state, phase, orbit.contact[segment])
     weights = WEIGHTS[quantity]
@@ -84,7 +113,7 @@ def derivatives(
 
 @dataclass(frozen=True)
 class Amplitudes:
-    """The largest values over an orbit, in units of a eta^2.
+    """Largest displacements of both masses and largest gap over an orbit, in units of a eta^2.
 
     Attributes
     ----------
@@ -100,7 +129,7 @@ class Amplitudes:
 
     @classmethod
     def from_orbit(cls, orbit: PeriodicOrbit, turns: TurningPoints) -> Amplitudes:
-        """Return those of an orbit; a displacement may also be largest at an impact."""
+        """Return the amplitudes of an orbit from its extrema and its states at impacts."""
         places = np.array([0.0, orbit.form.gap_offset, 0.0])  # of unloaded springs, and no gap
         ends = np.abs(orbit.arrivals[:, :2] - places[:2]).max(axis=0)
         inside = [
@@ -111,7 +140,7 @@ class Amplitudes:
 
 
 def nearest_miss(orbit: PeriodicOrbit, turns: TurningPoints) -> tuple[float, int, float]:
-    """Find the least gap of a flight that turns away again; return it, its segment and phase.
+    """Return the smallest gap minimum of all flights, with its segment and phase; infinite if none.
 
     Returns
     -------
@@ -129,7 +158,7 @@ def nearest_miss(orbit: PeriodicOrbit, turns: TurningPoints) -> tuple[float, int
 
 
 def weakest_force(orbit: PeriodicOrbit) -> tuple[float, int, float]:
-    """Find the least contact force of permanent contact; return it, its segment and phase.
+    """Return the smallest minimum of the contact pressure -f, with its segment and phase.
 
     Returns
     -------
@@ -149,11 +178,12 @@ def weakest_force(orbit: PeriodicOrbit) -> tuple[float, int, float]:
     if not turned.any():
         return np.inf, -1, 0.0
     low, high, segment = phase[:-1][turned], phase[1:][turned], segment[1:][turned]
-    phases = 0.5 * (low + high)
-    for _ in range(REFINEMENTS):
-        _, rate, curvature = pressing_force(orbit, segment, phases)
-        step = np.divide(rate, curvature, out=np.zeros_like(rate), where=curvature != 0.0)
-        phases = np.clip(phases - orbit.form.eta * step, low, high)
+
+    def rate_and_slope(phase: Floats) -> tuple[Floats, Floats]:
+        """Return the contact pressure's rate and its derivative by tau, at phases."""
+        return pressing_force(orbit, segment, phase)[1:]
+
+    phases = refine_zeros(rate_and_slope, 0.5 * (low + high), (low, high), orbit.form.eta)
     forces = pressing_force(orbit, segment, phases)[0]
     lowest = forces.argmin()
     return float(forces[lowest]), int(segment[lowest]), float(phases[lowest])
@@ -162,7 +192,7 @@ def weakest_force(orbit: PeriodicOrbit) -> tuple[float, int, float]:
 def pressing_force(
     orbit: PeriodicOrbit, segment: NDArray[np.int_], phase: Floats
 ) -> tuple[Floats, Floats, Floats]:
-    """Return -f (18) inside permanent contact, and its first two derivatives by tau."""
+    """Return the contact pressure -f (18) and its first two tau derivatives, at phases."""
     form, state = orbit.form, orbit.states(segment, phase)
     position, velocity = state[:, 0], state[:, 2]
     acceleration = form.field(state, phase, True)[:, 2]
@@ -176,7 +206,7 @@ def pressing_force(
 
 
 def stroboscopic_states(orbit: PeriodicOrbit, phase: float = 0.0) -> Floats:
-    """Return states at a phase of successive periods, shape (periods, 4)."""
+    """Return an orbit's states at one phase in successive periods, shape (periods, 4)."""
     periods, begin = orbit.sequence.periods, orbit.begins[0]
     wanted = phase + TURN * np.arange(periods)
     shifted = begin + np.mod(wanted - begin, TURN * periods)
@@ -184,8 +214,8 @@ def stroboscopic_states(orbit: PeriodicOrbit, phase: float = 0.0) -> Floats:
     return orbit.states(segment, shifted)
 
 
-def from_phase_zero(nodes: Floats, periods: int) -> tuple[Floats, int]:
-    """Rotate nodes to begin at phase 0; return them and the index of the node that is first now."""
+def rotate_to_phase_zero(nodes: Floats, periods: int) -> tuple[Floats, int]:
+    """Reorder nodes to begin at phase 0; return them, and the old index of the first one."""
     turn = TURN * periods
     phase = np.mod(nodes[:, PHASE], turn)
     first = int(phase.argmin()) if len(nodes) else 0

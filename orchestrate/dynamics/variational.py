@@ -1,4 +1,4 @@
-"""Variational equations: how a small deviation of a motion grows from impact to impact.
+"""Linearised motion (variational equations): saltation matrices at impacts, flow matrices between.
 
 All is non-dimensional; the state is (xi_1, xi_2, xi_1', xi_2') as in :mod:`.closed_form`. In flight
 both masses are free oscillators (6), so the flow matrix is that of :class:`.ClosedForm` and
@@ -23,13 +23,13 @@ from .release import contact_durations
 LEAST_SPEED = 1e-300  # a grazing impact has no closing speed: its matrix is very large instead
 
 
-def period(eta: float) -> float:
-    """Return T = 2 pi/eta in units of tau, (22) as it must read."""
+def period_in_tau(eta: float) -> float:
+    """Return the excitation period 2 pi/eta in units of tau, (22) as it must read."""
     return 2.0 * math.pi / eta
 
 
 def saltation_matrices(impacts: Impacts, point: Point) -> Floats:
-    """Return ``R + (F+ - R F-) n^T / (n F-)`` of each impact, shape (n, 4, 4).
+    """Return the saltation matrix ``R + (F+ - R F-) n^T/(n F-)`` of each impact, (n, 4, 4).
 
     R is the derivative of the restitution (15) by the velocities before it.
     """
@@ -53,8 +53,8 @@ def saltation_matrices(impacts: Impacts, point: Point) -> Floats:
     return matrices
 
 
-def contact_times(impacts: Impacts, ends: Floats, point: Point) -> Floats:
-    """Return how long permanent contact lasts after each impact, 0 where none follows, shape (n,).
+def contact_durations_after(impacts: Impacts, ends: Floats, point: Point) -> Floats:
+    """Return how long permanent contact lasts after each impact, in tau; 0 without.
 
     Parameters
     ----------
@@ -73,12 +73,12 @@ def contact_times(impacts: Impacts, ends: Floats, point: Point) -> Floats:
 
 
 def impact_matrices(impacts: Impacts, end: float, point: Point) -> Floats:
-    """Return for each impact the matrix from just before it to just before the next, or to ``end``.
+    """Return matrices that map a deviation from each impact to the next, just before both.
 
     Parameters
     ----------
     impacts : Impacts
-        Non-dimensional, see :func:`nondimensional`; time 0 is at phase 0.
+        Non-dimensional, see :func:`nondimensional_impacts`; time 0 is at phase 0.
     end : float
         tau.
     point : Point
@@ -89,7 +89,7 @@ def impact_matrices(impacts: Impacts, end: float, point: Point) -> Floats:
     """
     form = ClosedForm.from_structure(*point)
     ends = np.append(impacts.time[1:], end)
-    touching = contact_times(impacts, ends, point)
+    touching = contact_durations_after(impacts, ends, point)
     matrices = saltation_matrices(impacts, point)
     sticks = touching > 0.0
     matrices[sticks] = form.contact(touching[sticks]) @ form.centre()
@@ -98,12 +98,12 @@ def impact_matrices(impacts: Impacts, end: float, point: Point) -> Floats:
 
 
 def monodromy(impacts: Impacts, point: Point, periods: int = 1) -> Floats:
-    """Return the matrix of a span of periods from phase 0, in flight there, with its impacts.
+    """Return the monodromy matrix (4, 4) over some periods from phase 0, impacts included.
 
     Parameters
     ----------
     impacts : Impacts
-        Of the span, non-dimensional, see :func:`nondimensional`.
+        Of the span, non-dimensional, see :func:`nondimensional_impacts`.
     point : Point
     periods : int
 
@@ -112,7 +112,7 @@ def monodromy(impacts: Impacts, point: Point, periods: int = 1) -> Floats:
     ndarray, shape (4, 4)
     """
     form = ClosedForm.from_structure(*point)
-    end = periods * period(form.eta)
+    end = periods * period_in_tau(form.eta)
     first = impacts.time[0] if len(impacts.time) else end
     matrix: Floats = form.flight(np.array([first]))[0]
     for each in impact_matrices(impacts, end, point):
@@ -120,8 +120,8 @@ def monodromy(impacts: Impacts, point: Point, periods: int = 1) -> Floats:
     return matrix
 
 
-def nondimensional(impacts: Impacts, point: Point) -> Impacts:
-    """Return impacts in units of 1/omega, a eta^2, omega a eta^2 (3), (4), from the faces."""
+def nondimensional_impacts(impacts: Impacts, point: Point) -> Impacts:
+    """Convert impacts from SI to the paper's units, displacements to those of the faces."""
     return Impacts(
         point.structure.omega * impacts.time,
         point.faces(impacts.state),

@@ -16,7 +16,7 @@ from ..access import OSCILLATOR, PLAYED, REST, Player, finder
 from ..errors import InputError
 from ..response.equations import absolute_accelerations
 from ..response.labels import variable, yes_or_no
-from ..response.questions import Question, checked_structure, positive, state
+from ..response.questions import Question, checked_positive, checked_state, checked_structure
 from ..response.simulate import IN_TIME, impact_columns, impact_variables
 from ..running.job import Inputs, Table
 from ..running.runner import answer
@@ -212,13 +212,15 @@ def shake(
     if not isinstance(excitation, ExcitationSignal):
         kinds = "expected a SweptSine, SteppedSine, Random, Shock or Sampled, or a sum"
         raise InputError(f"excitation = {excitation!r}: {kinds}")
-    rate = positive("sample_rate", excitation.usual_rate if sample_rate is None else sample_rate)
+    rate = checked_positive(
+        "sample_rate", excitation.usual_rate if sample_rate is None else sample_rate
+    )
     if rate * excitation.duration > MOST_SAMPLES:
         most = MOST_SAMPLES / excitation.duration
         raise InputError(
             f"sample_rate = {rate!r} Hz: expected at most {most:.3g} for that duration"
         )
-    wanted = positive("accuracy", accuracy)
+    wanted = checked_positive("accuracy", accuracy)
     if not 1e-10 <= wanted <= 1e-2:
         raise InputError(f"accuracy = {wanted!r}: expected 1e-10 <= accuracy <= 0.01")
     shaken = checked_structure(structure)
@@ -228,6 +230,6 @@ def shake(
         excitation=excitation,
         sample_rate=rate,
         accuracy=wanted,
-        start=state("start", start, shaken),
+        start=checked_state("start", start, shaken),
     )
     return answer(job, running, finder(running))

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from ..access import OSCILLATOR, EventInstance, Impacts, begin
-from ..response.labels import columns, variable
+from ..response.labels import column_variables, variable
 from ..response.questions import Point
 from ..running.job import Inputs, Job, Table
 from ..structures import Excitation, Structure
@@ -117,7 +117,7 @@ class ChatteringJob(Job):
 
         dims = "e", "gamma"
         shape = len(self.restitutions), len(self.gammas)
-        variables = columns(dims, NUMBERS, table["rows"].T.reshape(-1, *shape))
+        variables = column_variables(dims, NUMBERS, table["rows"].T.reshape(-1, *shape))
         coordinates = {
             "e": variable("e", np.array(self.restitutions), "1", "coefficient of restitution"),
             "gamma": variable("gamma", np.array(self.gammas), "1", "end of chattering (17)"),

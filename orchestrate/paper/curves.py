@@ -12,7 +12,7 @@ import numpy as np
 
 from ..access import OSCILLATOR, Instance
 from ..dynamics.clusters import AttractorSettings, run_until_settled
-from ..response.curves import KINDS, trace
+from ..response.curves import KINDS, simulate_curve
 from ..response.labels import flags, variable
 from ..response.questions import Point
 from ..response.relative_resonance import follow_to_peak
@@ -113,7 +113,7 @@ class CurvesJob(Job):
         ((index, panel),) = items
         panel = self.settled(fmus[OSCILLATOR], panel)
         settings = self.skip, self.keep, self.points
-        curve = trace(fmus[OSCILLATOR], panel.point, panel.start, *settings)
+        curve = simulate_curve(fmus[OSCILLATOR], panel.point, panel.start, *settings)
         return {
             "tau": curve.tau,
             "state": curve.state.astype(np.float32),

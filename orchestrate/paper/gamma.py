@@ -12,7 +12,7 @@ import numpy as np
 from ..access import OSCILLATOR, REST, Instance
 from ..response.labels import variable
 from ..response.questions import Point
-from ..response.respond import follow
+from ..response.respond import follow_responses
 from ..running.job import Inputs, Job, Table
 from ..structures import Excitation, Structure
 from .cases import CASES
@@ -71,7 +71,7 @@ class GammaJob(Job):
         settings = self.transient, self.samples, 1e-2
         last = np.nan
         with Instance(fmus[OSCILLATOR]) as instance:
-            responses = follow(instance, points, REST, *settings)
+            responses = follow_responses(instance, points, REST, *settings)
             for eta, response in zip(etas, responses, strict=True):
                 last = eta if response.permanent_contact else last
         return {"last": np.array([last])}

@@ -22,8 +22,8 @@ from ..dynamics.long_runs import (
     UNDECIDED,
     WORDS,
     LongRun,
-    another_start,
-    long_run,
+    perturbed_start,
+    run_until_steady,
     wander_error,
 )
 from ..response.labels import flags, variable
@@ -141,8 +141,8 @@ class LargestJob(Job):
         rows[:, -1] = NOT_RUN
         with EventInstance(fmus[OSCILLATOR]) as instance:
             for place, (point, start, screened) in enumerate(candidates):
-                other = another_start(point, start, [self.seed, number, place])
-                run = long_run(instance, point, other, self.periods, self.parts, self.runs)
+                other = perturbed_start(point, start, [self.seed, number, place])
+                run = run_until_steady(instance, point, other, self.periods, self.parts, self.runs)
                 eta = point.excitation.eta(point.structure)
                 outcome = self.judged(run, screened, eta)
                 rows[place] = [eta, screened, *run.exponent, outcome]

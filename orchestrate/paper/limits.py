@@ -13,7 +13,7 @@ from ..access import OSCILLATOR
 from ..dynamics.branches import branch
 from ..dynamics.orbits import orbit
 from ..dynamics.stable_windows import StableWindow, stable_windows
-from ..response.labels import columns, variable
+from ..response.labels import column_variables, variable
 from ..running.job import Inputs, Job, Table
 from ..structures import Structure
 from .cases import CASES
@@ -135,7 +135,7 @@ class LimitsJob(Job):
             "below": "what happens where it begins",
             "above": "what happens where it ends",
         }
-        variables = columns("window", texts, [*table["ends"].T, *table["kinds"].T])
+        variables = column_variables("window", texts, [*table["ends"].T, *table["kinds"].T])
         variables["case"] = variable("window", [one.case for one in of], "1", "structure")
         text = "orbit: mT/k has k impacts in m periods"
         variables["orbit"] = variable("window", [one.label for one in of], "1", text)

@@ -16,7 +16,7 @@ import numpy as np
 from ..access import OSCILLATOR, REST, EventInstance, begin
 from ..dynamics.closed_form import ClosedForm
 from ..dynamics.following import follow_impacts
-from ..response.labels import columns, variable
+from ..response.labels import column_variables, variable
 from ..response.questions import Point
 from ..running.job import Inputs, Job, Table
 from ..structures import Excitation
@@ -90,7 +90,7 @@ class LowSpeedJob(Job):
         """Return the counts over the motions."""
         import xarray as xr
 
-        variables = columns("motion", COUNTS, table["rows"].T)
+        variables = column_variables("motion", COUNTS, table["rows"].T)
         etas = [point.excitation.eta(point.structure) for point in self.points]
         numbers = {"eta": etas} | {
             name: [point.structure.get(name) for point in self.points] for name in ("mu", "kappa")

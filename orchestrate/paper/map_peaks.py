@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..dynamics.impact_statistics import ImpactStatisticsJob
-from ..dynamics.lyapunov import WANDER, WORDS, verdict
-from ..dynamics.variational import period
+from ..dynamics.lyapunov import WANDER, WORDS, classify_exponents
+from ..dynamics.variational import period_in_tau
 from ..response.labels import flags, variable
 from ..running.job import Inputs, Table
 from ..structures import Structure
@@ -70,8 +70,8 @@ class MapPeakJob(DerivedJob):
         structure = self.question(inputs).structure
         answer = super().dataset(table, inputs)
         factor = (1.0 + structure.e) * structure.mu / (1.0 + structure.mu)
-        floor = np.log(WANDER) / (self.periods * period(float(answer.eta[0])))
-        kind = verdict(answer.exponent, answer.standard_error, floor)
+        floor = np.log(WANDER) / (self.periods * period_in_tau(float(answer.eta[0])))
+        kind = classify_exponents(answer.exponent, answer.standard_error, floor)
         text = "largest impulse over m1 omega a eta^2"
         answer["impulse_max"] = variable("eta", factor * answer.closing_max.values, "1", text)
         answer["verdict"] = flags("eta", kind, "what the exponent says of the response", WORDS)

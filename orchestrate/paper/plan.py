@@ -11,7 +11,7 @@ import numpy as np
 from ..dynamics.attractors import AttractorsJob
 from ..dynamics.basins import PlaneAxis
 from ..dynamics.clusters import AttractorSettings
-from ..dynamics.following import OnwardQuestion
+from ..dynamics.following import StartStatesQuestion
 from ..dynamics.impact_statistics import ImpactStatisticsJob
 from ..dynamics.lyapunov import LyapunovJob
 from ..dynamics.parameter_map import MapJob
@@ -35,7 +35,7 @@ from .settled import SettledJob
 from .spectra import PeakSpectraJob
 from .transients import LaterJob
 
-Followers = TypeVar("Followers", bound=OnwardQuestion)
+Followers = TypeVar("Followers", bound=StartStatesQuestion)
 FIRST_REGION = (0.45, 0.49, 0.59, 0.63, 0.70, 0.80, 0.88, 1.047, 1.08, 1.13, 1.24, 1.31)
 FEW = 100  # frequencies at which responses are run on for longest
 SECOND_REGION = (2.60, 2.65, 2.69, 2.737, 2.83, 2.92, 3.05, 3.17, 3.30, 3.49, 3.56, 3.70)

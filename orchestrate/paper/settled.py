@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from ..access import OSCILLATOR, Instance
-from ..dynamics.clusters import AttractorSettings, features, run_until_settled
-from ..dynamics.following import Followed, OnwardQuestion
-from ..response.labels import columns, nondimensional_state, variable, yes_or_no
-from ..response.respond import impacts_in
+from ..dynamics.clusters import AttractorSettings, response_features, run_until_settled
+from ..dynamics.following import FollowedResponse, StartStatesQuestion
+from ..response.labels import column_variables, nondimensional_state_coordinate, variable, yes_or_no
+from ..response.respond import count_impacts
 from ..running.job import Inputs, Table
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ FIELDS = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class SettledJob(OnwardQuestion):
+class SettledJob(StartStatesQuestion):
     """What a sweep's responses settle to.
 
     Attributes
@@ -44,7 +44,7 @@ class SettledJob(OnwardQuestion):
     chunk_size: ClassVar[int] = 20
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Followed], previous: Table | None
+        self, fmus: Mapping[str, Path], items: Sequence[FollowedResponse], previous: Table | None
     ) -> Table:
         """Compute some responses."""
         rows, ends, contacts = [], [], []
@@ -53,9 +53,9 @@ class SettledJob(OnwardQuestion):
                 response, periods = run_until_settled(
                     instance, item.point, item.start, self.settings
                 )
-                n, impacts, gap = features(response, item.point.length)[:3]
+                n, impacts, gap = response_features(response, item.point.length)[:3]
                 if n:  # over the response's own period
-                    impacts = impacts_in(instance, item.point, response.end, int(n)) / n
+                    impacts = count_impacts(instance, item.point, response.end, int(n)) / n
                 rows.append([n, impacts, gap, periods])
                 ends.append(response.end / item.point.scale)
                 contacts.append(response.permanent_contact)
@@ -66,11 +66,11 @@ class SettledJob(OnwardQuestion):
         import xarray as xr
 
         along = self.series.name
-        variables = columns(along, FIELDS, table["rows"].T)
+        variables = column_variables(along, FIELDS, table["rows"].T)
         contact = "whether permanent contact occurs"
         variables["permanent_contact"] = yes_or_no(along, table["contact"], contact)
         text = "state at phase 0 at the end"
         variables["end_state"] = variable((along, "coordinate"), table["end"], "1", text)
-        coordinates = {**self.series.coordinates(), **nondimensional_state()}
+        coordinates = {**self.series.coordinates(), **nondimensional_state_coordinate()}
         title = f"Settled responses along {along}: {self.structure.label()}"
         return xr.Dataset(variables, coordinates, {"title": title})

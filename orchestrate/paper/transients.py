@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from ..access import OSCILLATOR, Instance
-from ..dynamics.following import Followed, OnwardQuestion
-from ..response.labels import columns
+from ..dynamics.following import FollowedResponse, StartStatesQuestion
+from ..response.labels import column_variables
 from ..response.respond import respond
 from ..running.job import Inputs, Table
 
@@ -30,7 +30,7 @@ NUMBERS = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class LaterJob(OnwardQuestion):
+class LaterJob(StartStatesQuestion):
     """A sweep's responses, some periods later.
 
     Attributes
@@ -47,7 +47,7 @@ class LaterJob(OnwardQuestion):
     chunk_size: ClassVar[int] = 20
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Followed], previous: Table | None
+        self, fmus: Mapping[str, Path], items: Sequence[FollowedResponse], previous: Table | None
     ) -> Table:
         """Compute some responses."""
         rows = []
@@ -64,7 +64,7 @@ class LaterJob(OnwardQuestion):
         """Return the later responses' features over the parameter."""
         import xarray as xr
 
-        variables = columns(self.series.name, NUMBERS, table["rows"].T)
+        variables = column_variables(self.series.name, NUMBERS, table["rows"].T)
         title = f"{self.transient} periods after the sweep: {self.structure.label()}"
         return xr.Dataset(variables, self.series.coordinates(), {"title": title})
 

@@ -1,16 +1,16 @@
-"""How a shaken structure responds: its motion in time, along a parameter, as spectra.
+"""Responses of a shaken structure: motion in time, sweeps, resonance curves, spectra, threshold.
 
 ==========================  ==================================================================
 module                      idea
 ==========================  ==================================================================
-:mod:`.questions`           arguments of a question: structures and excitations
-:mod:`.labels`              units and long names of results
+:mod:`.questions`           checks of the user's arguments; base classes of jobs
+:mod:`.labels`              dataset variables with units and long names
 :mod:`.equations`           accelerations from the state: (6) and (18)
 :mod:`.multiplicity`        period of a response in excitation periods
-:mod:`.respond`             steady-state response at one excitation
-:mod:`.peaks`               amplitudes and peak accelerations of both masses
+:mod:`.respond`             steady-state response at one operating point
+:mod:`.peaks`               largest displacements and accelerations of both masses
 :mod:`.simulate`            a motion in time
-:mod:`.sweep`               responses along a parameter, each from the end of the last
+:mod:`.sweep`               responses along a parameter; the columns of their CSV
 :mod:`.resonance`           resonance curves, bonded against delaminated, with peaks and jumps
 :mod:`.resonance_levels`    the same at several levels of the shaking
 :mod:`.threshold`           the level at which a pressed structure opens, or an open one touches

@@ -1,4 +1,4 @@
-"""Phase and time curves with their jumps: equally spaced states, and both sides of each impact."""
+"""Sampled time and phase curves of a motion, with the states just before and after each impact."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ FLIGHT, SEQUENCE, CONTACT = 0, 1, 2  # the three states of Figure 5
 KINDS = {FLIGHT: "separate motion", SEQUENCE: "sequence of impacts", CONTACT: "permanent contact"}
 
 
-class Curve(NamedTuple):
-    """Sampled motion with its jumps: at an impact two points have the same time.
+class SampledCurve(NamedTuple):
+    """A sampled motion with its jumps: times, states, kind; two points at an impact.
 
     Attributes
     ----------
@@ -34,15 +34,15 @@ class Curve(NamedTuple):
     kind: NDArray[np.int8]
 
 
-def trace(
+def simulate_curve(
     fmu: Path,
     point: Point,
     start: ArrayLike,
     transient: int,
     periods: int,
     points: int,
-) -> Curve:
-    """Compute a motion over ``periods`` periods after a transient.
+) -> SampledCurve:
+    """Simulate a motion after a transient; return samples and both sides of its impacts.
 
     Parameters
     ----------
@@ -78,23 +78,23 @@ def trace(
 
 def merge_by_time(
     grid: NDArray[np.float64], states: NDArray[np.float64], impacts: Impacts, point: Point
-) -> Curve:
-    """Merge states at equal times with those before and after impacts, in the order of time."""
+) -> SampledCurve:
+    """Merge samples and the states just before and after impacts into one curve, by time."""
     count = len(impacts.time)
     time = np.concatenate([grid, impacts.time, impacts.time])
     rank = np.repeat([0, 1, 2], [len(grid), count, count])
     order = np.lexsort((rank, time))
     pieces = [states, impacts.before(point.structure), impacts.state]
     state, time = np.concatenate(pieces)[order], time[order]
-    kind = kinds(time, state, impacts, point.structure.gap_offset)
+    kind = classify_points(time, state, impacts, point.structure.gap_offset)
     omega = point.structure.omega
-    return Curve(omega * time - omega * grid[0], state / point.scale, kind)
+    return SampledCurve(omega * time - omega * grid[0], state / point.scale, kind)
 
 
-def kinds(
+def classify_points(
     time: NDArray[np.float64], state: NDArray[np.float64], impacts: Impacts, gap_offset: float = 0.0
 ) -> NDArray[np.int8]:
-    """Classify each point by the three states of Figure 5.
+    """Classify each point as flight, chattering or permanent contact (states of Figure 5).
 
     A sequence of impacts is what leads to permanent contact: flights each shorter than the one
     before it.

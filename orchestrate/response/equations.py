@@ -1,7 +1,7 @@
-"""Accelerations from the state by (6); in permanent contact those of both masses as one.
+"""Accelerations of both masses from their states by the equations of motion (6).
 
-In space a mass feels springs, dampers and the other mass; relative to the box minus the box's
-acceleration, ``a Omega^2 sin(phase)``, comes to it.
+Springs, dampers and the other mass make a mass's absolute acceleration. That relative to the box is
+the same minus the box's acceleration, which adds ``a Omega^2 sin(phase)``.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 
-class Rates(NamedTuple):
-    """Stiffness and damping over mass, 1/s2 and 1/s: of mass 1, of mass 2, of both as one.
+class MotionCoefficients(NamedTuple):
+    """Coefficients k/m and d/m of the equations of motion: mass 1, mass 2, both as one.
 
     Attributes
     ----------
@@ -36,8 +36,8 @@ class Rates(NamedTuple):
     push: Floats | None = None
 
     @classmethod
-    def from_structures(cls, structures: Iterable[Structure]) -> Rates:
-        """Return the rates of n structures."""
+    def from_structures(cls, structures: Iterable[Structure]) -> MotionCoefficients:
+        """Return the coefficients of n structures, as arrays with a column each."""
         rows = [(s.m1, s.m2, s.k1, s.k2, s.d1, s.d2, s.gap_offset) for s in structures]
         m1, m2, k1, k2, d1, d2, offset = np.array(rows).T
         both = m1 + m2
@@ -46,8 +46,8 @@ class Rates(NamedTuple):
         push = np.array([k2 / both, -k1 / both]) * offset if offset.any() else None
         return cls(np.array(stiffness), np.array(damping), push)
 
-    def effective(self, touching: Flags) -> Rates:
-        """Return the rates that act on each mass: its own, or those of both while they touch.
+    def effective(self, touching: Flags) -> MotionCoefficients:
+        """Return each mass's acting coefficients: its own, or those of both in contact.
 
         Parameters
         ----------
@@ -55,32 +55,34 @@ class Rates(NamedTuple):
         """
 
         def columns(rates: Floats) -> Floats:
+            """Return coefficients with axes appended to broadcast over ``touching``."""
             return rates.reshape(*rates.shape, *(1,) * (touching.ndim - 1))
 
         def chosen(rates: Floats) -> Floats:
+            """Return each mass's coefficients, those of both as one where they touch."""
             each = columns(rates)
             return np.where(touching, each[2:], each[:2])
 
         push = None if self.push is None else np.where(touching, columns(self.push), 0.0)
-        return Rates(chosen(self.stiffness), chosen(self.damping), push)
+        return MotionCoefficients(chosen(self.stiffness), chosen(self.damping), push)
 
-    def in_flight(self, indices: NDArray[np.intp]) -> Rates:
-        """Return stiffness and damping in flight of the structures at these indices."""
-        return Rates(self.stiffness[:2, indices], self.damping[:2, indices])
+    def in_flight(self, indices: NDArray[np.intp]) -> MotionCoefficients:
+        """Return the coefficients in flight of the structures at given indices."""
+        return MotionCoefficients(self.stiffness[:2, indices], self.damping[:2, indices])
 
     def acceleration(self, x: Floats, v: Floats) -> Floats:
-        """Return each mass's acceleration in space by the rates that act on it, shape (2, ...)."""
+        """Return both masses' absolute accelerations from x and v, shape (2, ...)."""
         restoring = self.restoring_acceleration(x, v)
         return restoring if self.push is None else restoring + self.push
 
     def restoring_acceleration(self, x: Floats, v: Floats) -> Floats:
-        """Return ``-(k x + d v)/m`` of each mass, by the rates that act on it; shape (2, ...)."""
+        """Return ``-(k x + d v)/m`` of each mass, shape (2, ...)."""
         acceleration: Floats = -(self.stiffness * x + self.damping * v)
         return acceleration
 
 
 def in_touch(states: Floats, gap_offset: ArrayLike = 0.0) -> Flags:
-    """Return whether states are of permanent contact: the same velocity and no gap.
+    """Return, for each state, whether it is permanent contact: no gap and equal velocities.
 
     Parameters
     ----------
@@ -97,7 +99,7 @@ def in_touch(states: Floats, gap_offset: ArrayLike = 0.0) -> Flags:
 def absolute_accelerations(
     states: Floats, structure: Structure, touching: Flags | None = None
 ) -> Floats:
-    """Return accelerations in space: what an accelerometer on a mass reads between impacts.
+    """Return both masses' absolute accelerations, as accelerometers read between impacts.
 
     Parameters
     ----------
@@ -119,6 +121,6 @@ def absolute_accelerations(
     array([[ 1. , -1.2]])
     """
     together = in_touch(states, structure.gap_offset) if touching is None else touching
-    felt = Rates.from_structures([structure]).effective(together[None])
+    felt = MotionCoefficients.from_structures([structure]).effective(together[None])
     columns = states.T[:, None, :]
     return felt.acceleration(columns[:2], columns[2:])[:, 0].T

@@ -1,9 +1,10 @@
-"""Period of a response in excitation periods, and how it was decided.
+"""Multiplicity of a response (period in excitation periods), decided by how deviations decay.
 
 A tolerance alone decides little: a transient that turns round, or that changes sides as next to a
 period doubling, comes back closer after some periods than after one; a torus comes back as close as
 one likes after enough of them; and a narrow period doubling stays within any tolerance. So
-:func:`decide` asks how deviations develop: those of a response that repeats have died, or die away.
+:func:`decide_multiplicity` asks how deviations develop: those of a response that repeats have died,
+or die away.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ Floats = NDArray[np.float64]
 
 
 class Repetition(NamedTuple):
-    """Period of a response, and the deviation from exact repetition.
+    """Multiplicity of a response, and the largest deviation of states so many periods apart.
 
     Attributes
     ----------
@@ -51,7 +52,7 @@ class Repetition(NamedTuple):
 
 
 class Decision(NamedTuple):
-    """Period of a response, and how it was decided.
+    """Multiplicity of a response, and how it was decided: irregular, repeated or undecided.
 
     Attributes
     ----------
@@ -66,7 +67,7 @@ class Decision(NamedTuple):
 
 
 def scale_states(samples: ArrayLike, frequency: float = 1.0, gap: float | None = None) -> Floats:
-    """Divide states by the size of the motion, so that their differences compare with a tolerance.
+    """Divide states by the motion's size, so that differences compare with a tolerance.
 
     Parameters
     ----------
@@ -103,8 +104,8 @@ def scale_states(samples: ArrayLike, frequency: float = 1.0, gap: float | None =
     return np.column_stack([states / size, gap_and_rate / (of_gap, of_rate)])
 
 
-def repetition(states: Floats, tolerance: float) -> Repetition:
-    """Return the least n such that the state repeats after n periods, and the largest deviation.
+def find_repetition(states: Floats, tolerance: float) -> Repetition:
+    """Find the least n after which states repeat within a tolerance; return n, deviation.
 
     Parameters
     ----------
@@ -122,7 +123,7 @@ def repetition(states: Floats, tolerance: float) -> Repetition:
 def multiplicity(
     samples: ArrayLike, tolerance: float, frequency: float = 1.0, gap: float | None = None
 ) -> int:
-    """Return the least n such that the state repeats after n periods.
+    """Return the multiplicity of stroboscopic samples: least n that repeats, 0 without.
 
     Parameters
     ----------
@@ -152,11 +153,11 @@ def multiplicity(
     >>> multiplicity([one, other] * 20, 1e-2)
     2
     """
-    return repetition(scale_states(samples, frequency, gap), tolerance).multiplicity
+    return find_repetition(scale_states(samples, frequency, gap), tolerance).multiplicity
 
 
-def decide(states: Floats, tolerance: float) -> Decision:
-    """Return the multiplicity of a response, and how it was decided.
+def decide_multiplicity(states: Floats, tolerance: float) -> Decision:
+    """Decide a response's multiplicity: its deviations must have died or be decaying.
 
     Parameters
     ----------
@@ -193,7 +194,7 @@ def decide(states: Floats, tolerance: float) -> Decision:
                 return Decision(n, REPEATED)
             nearly = nearly or (0 if drifting else n)
             break
-        spread = float(spread_of(later, n))
+        spread = float(spread_over_returns(later, n))
         died = spread <= ROUNDING
         left = ROUNDING if died else remaining_change(later, n, spread)
         minimum = max(4.0 * left, spread / MAX_DRIFT if died else tolerance)
@@ -205,17 +206,17 @@ def decide(states: Floats, tolerance: float) -> Decision:
             drifting = n
     ratio = MAX_DYING_RATIO if nearly else MAX_CONTRACTION
     shorter = range(1, min(nearly or many, many // MIN_VISITS) + 1)
-    guess = next((n for n in shorter if contraction(later, n) < ratio), nearly)
+    guess = next((n for n in shorter if contraction_ratio(later, n) < ratio), nearly)
     return Decision(guess, UNDECIDED if guess else IRREGULAR)
 
 
 def later_half(states: Floats) -> tuple[Floats, int]:
-    """Return the later half of states, a row per co-ordinate, and the most periods to compare."""
+    """Return the later half of states, transposed, and the largest number of periods to test."""
     return np.ascontiguousarray(states[len(states) // 2 :].T), max(1, len(states) // 4)
 
 
 def repeating_periods(later: Floats, limit: int, tolerance: float) -> Iterator[int]:
-    """Yield numbers of periods after which states agree within a tolerance, the least first."""
+    """Yield all period numbers n for which states n apart agree within the tolerance."""
     first = np.abs(later[:, 1 : limit + 1] - later[:, :1]).max(axis=0, initial=0.0)
     for n in ((first <= tolerance).nonzero()[0] + 1).tolist():
         if np.abs(later[:, n:] - later[:, :-n]).max() <= tolerance:
@@ -223,20 +224,20 @@ def repeating_periods(later: Floats, limit: int, tolerance: float) -> Iterator[i
 
 
 def deviations(later: Floats, n: int) -> Floats:
-    """Return how far each state is from that n periods before."""
+    """Return the largest difference of each state from the state n periods before."""
     away: Floats = np.abs(later[:, n:] - later[:, :-n]).max(axis=0)
     return away
 
 
 def growth_ratio(deviation: Floats) -> float:
-    """Return the largest deviation of the later half over the largest of the earlier half."""
+    """Return the maximum of the later half of deviations over that of the earlier half."""
     half = max(1, len(deviation) // 2)
     early, late = float(deviation[:half].max()), float(deviation[-half:].max())
     return late / early if early and late else 1.0
 
 
-def spread_of(states: Floats, n: int) -> Floats:
-    """Return the largest distance of states any multiple of n periods apart.
+def spread_over_returns(states: Floats, n: int) -> Floats:
+    """Return the largest distance between states any multiple of n periods apart.
 
     Parameters
     ----------
@@ -258,17 +259,17 @@ def spread_of(states: Floats, n: int) -> Floats:
 
 
 def remaining_change(later: Floats, n: int, spread: float) -> float:
-    """Estimate how far states n periods apart still go; infinity if their deviation stays.
+    """Estimate how far n-periodic states still drift (geometric series); infinite if steady.
 
     Like a geometric series: what shrinks by q over the samples seen and has moved by ``spread``
     still moves by ``spread q/(1 - q)``, less where it turns round.
     """
-    ratio = contraction(later, n)
+    ratio = contraction_ratio(later, n)
     q = ratio**2  # over twice the time
     return spread * q / (1.0 - q) if ratio < MAX_DYING_RATIO else np.inf
 
 
-def contraction(later: Floats, n: int) -> float:
+def contraction_ratio(later: Floats, n: int) -> float:
     """Return the late spread of states n periods apart over the early one; 1 if unknown.
 
     The spread over many periods sees a deviation that turns round, and that is small after one turn
@@ -280,12 +281,12 @@ def contraction(later: Floats, n: int) -> float:
         blocks = [float(part.max()) for part in np.array_split(away, BLOCKS) if len(part)]
         steady = len(blocks) == BLOCKS and bool((np.diff(blocks) < 0.0).all())
         return growth_ratio(away) if steady else 1.0
-    early, late = spread_of(np.array([later[:, :half], later[:, -half:]]), n).tolist()
+    early, late = spread_over_returns(np.array([later[:, :half], later[:, -half:]]), n).tolist()
     return late / early if early else 1.0
 
 
 def has_persistent_difference(later: Floats, n: int, minimum: float) -> bool:
-    """Return whether states fewer periods apart differ steadily, by more than ``minimum``.
+    """Return whether states a divisor of n periods apart keep a steady difference.
 
     Next to a period doubling the deviation after half the periods dies slowly: while it does,
     nothing tells the response from the doubled one.

@@ -1,4 +1,4 @@
-"""Amplitudes and peak accelerations of both masses, from states sampled over a response's periods.
+"""Largest displacements and accelerations of responses, interpolated between samples (Hermite).
 
 Between two samples without an impact, displacement and velocity, acceleration and its rate are
 known at both ends by the equations of motion: the extremum between them is one of a cubic. An
@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..access import Instance, sampled
-from .equations import Flags, Floats, Rates, in_touch
+from .equations import Flags, Floats, MotionCoefficients, in_touch
 from .questions import Point
 from .respond import Response
 
@@ -24,12 +24,12 @@ Rows = NDArray[np.intp]
 
 
 class Motion(NamedTuple):
-    """Motion at some times, in the order of ``PEAKS`` along the first axis.
+    """Displacements and accelerations of both masses at some times, with two time derivatives.
 
     Attributes
     ----------
     value, slope : ndarray, shape (4, ...)
-        Displacements of both masses and their accelerations in space; their time derivatives.
+        Displacements of both masses and their absolute accelerations; their time derivatives.
     bend : ndarray, shape (4, ...)
         Accelerations of both masses relative to the box, and their time derivatives.
     """
@@ -39,8 +39,10 @@ class Motion(NamedTuple):
     bend: Floats
 
     @classmethod
-    def from_states(cls, states: Floats, rates: Rates, forces: tuple[Floats, Floats]) -> Motion:
-        """Return the motion with its derivatives, by the equations of motion.
+    def from_states(
+        cls, states: Floats, rates: MotionCoefficients, forces: tuple[Floats, Floats]
+    ) -> Motion:
+        """Return the motion's values and derivatives at states, by the equations of motion.
 
         Parameters
         ----------
@@ -57,23 +59,23 @@ class Motion(NamedTuple):
         value, slope = np.concatenate([x, absolute]), np.concatenate([v, rate])
         return cls(value, slope, np.concatenate([relative, rate + forces[1]]))
 
-    def part(self, index: tuple[Any, ...]) -> Motion:
-        """Return the motion at the times of an index or mask."""
-        return self.each(lambda array: array[(slice(None), *index)])
+    def at_index(self, index: tuple[Any, ...]) -> Motion:
+        """Return the motion at the times that an index or mask selects."""
+        return self.map_arrays(lambda array: array[(slice(None), *index)])
 
-    def each(self, change: Callable[[Floats], Floats]) -> Motion:
-        """Apply a function to each of the arrays."""
+    def map_arrays(self, change: Callable[[Floats], Floats]) -> Motion:
+        """Apply a function to all three arrays; return the motion of its results."""
         return Motion(change(self.value), change(self.slope), change(self.bend))
 
 
 class BoxMotion(NamedTuple):
-    """The box's motion, one row per point: frequency, and amplitude of its acceleration."""
+    """Harmonic motion of the box, a row per point: frequency and acceleration amplitude."""
 
     frequency: Floats
     amplitude: Floats
 
     def forcing_at(self, angle: Floats) -> tuple[Floats, Floats]:
-        """Return minus the box's acceleration at a phase, m/s2, and its time derivative."""
+        """Return the inertial forcing (minus box acceleration) and its rate, at phases in rad."""
         return self.forcing(np.sin(angle), np.cos(angle))
 
     def forcing(self, sine: Floats, cosine: Floats) -> tuple[Floats, Floats]:
@@ -82,14 +84,14 @@ class BoxMotion(NamedTuple):
 
 
 def periods_to_sample(multiplicity: int, max_periods: int) -> int:
-    """Return the periods after which a response repeats; half of ``max_periods`` if it does not."""
+    """Return how many periods to sample: the multiplicity, or half of the most if none."""
     return min(multiplicity, max_periods) or (max_periods + 1) // 2
 
 
 def sample_periods(
     instance: Instance, point: Point, response: Response, first: int, periods: int
 ) -> Floats:
-    """Sample states over some periods from phase 0 on.
+    """Run the FMU over some periods; return their states, equally spaced, with the start.
 
     Parameters
     ----------
@@ -114,7 +116,7 @@ def sample_periods(
 def peaks(
     points: Sequence[Point], periods: Sequence[int], states: Floats, jump: float = 1e-3
 ) -> dict[str, Floats]:
-    """Return the largest displacements and accelerations of both masses.
+    """Return the largest displacements and accelerations of both masses in each response.
 
     Parameters
     ----------
@@ -132,7 +134,7 @@ def peaks(
     -------
     dict of ndarray, shape (n,)
         ``x1_max``, ``x2_max``: largest distances from the box's middle, m; ``a1_max``, ``a2_max``:
-        largest accelerations in space, m/s2, impulses left out.
+        largest absolute accelerations, m/s2, impulses left out.
 
     Notes
     -----
@@ -143,7 +145,7 @@ def peaks(
     the others may then be missed by up to ``w h`` of it.
     """
     count = states.shape[1] - 1
-    rates = Rates.from_structures(point.structure for point in points)
+    rates = MotionCoefficients.from_structures(point.structure for point in points)
     speed = np.array([[point.excitation.frequency] for point in points])
     drive = BoxMotion(speed, np.array([[p.excitation.amplitude] for p in points]) * speed**2)
     kinds, kind = np.unique(periods, return_inverse=True)
@@ -155,22 +157,24 @@ def peaks(
     columns = np.ascontiguousarray(np.moveaxis(states, -1, 0))
     forces = drive.forcing(np.sin(angles)[kind], np.cos(angles)[kind])
     motion = Motion.from_states(columns, rates.effective(touching), forces)
-    left, right = (motion.part((slice(None), side)) for side in (np.s_[:-1], np.s_[1:]))
-    smooth = without_impact(left, right, width, jump * np.abs(columns[2:]).max(axis=(0, 2)))
+    left, right = (motion.at_index((slice(None), side)) for side in (np.s_[:-1], np.s_[1:]))
+    smooth = is_without_impact(left, right, width, jump * np.abs(columns[2:]).max(axis=(0, 2)))
     largest = np.abs(motion.value).max(axis=2)
-    include_cubic_extrema(largest, np.broadcast_to(smooth, left.value.shape), left, right, width)
+    update_maxima_from_cubics(
+        largest, np.broadcast_to(smooth, left.value.shape), left, right, width
+    )
     index = np.nonzero(~smooth & ~touching[:, :-1])
-    sides = left.part(index), right.part(index)
+    sides = left.at_index(index), right.at_index(index)
     rows = index[0]
     cut = ImpactIntervals(rows, *sides, width[rows, 0], angle[index], offsets[rows, 0])
     cut = cut.that_can_exceed(largest)
     if len(cut.row):
-        include_impacts(largest, cut, points, rates, drive)
+        update_maxima_from_impacts(largest, cut, points, rates, drive)
     return dict(zip(PEAKS, largest, strict=True))
 
 
-def without_impact(left: Motion, right: Motion, width: Floats, jump: Floats) -> Flags:
-    """Return whether velocities differ by the integral of the acceleration alone, shape (n, k)."""
+def is_without_impact(left: Motion, right: Motion, width: Floats, jump: Floats) -> Flags:
+    """Return whether velocities over intervals change as by accelerations alone, (n, k)."""
     change = 0.5 * width * (left.bend[:2] + right.bend[:2])
     change += width * width / 12.0 * (left.bend[2:] - right.bend[2:])
     matches = np.abs(right.slope[:2] - left.slope[:2] - change) <= jump[:, None]
@@ -179,7 +183,7 @@ def without_impact(left: Motion, right: Motion, width: Floats, jump: Floats) -> 
 
 
 def cubic_extrema(left: Motion, right: Motion, width: Floats) -> Floats:
-    """Return the extrema of Hermite cubics whose slopes at both ends differ in sign."""
+    """Return the extreme values of Hermite cubics whose end slopes have opposite signs."""
     rise, start, end = right.value - left.value, left.slope * width, right.slope * width
     b, c = 3.0 * rise - 2.0 * start - end, start + end - 2.0 * rise
     # the slope is start + 2 b u + 3 c u^2, with one root in (0, 1)
@@ -191,10 +195,10 @@ def cubic_extrema(left: Motion, right: Motion, width: Floats) -> Floats:
     return extremum
 
 
-def include_cubic_extrema(
+def update_maxima_from_cubics(
     largest: Floats, candidates: Flags, left: Motion, right: Motion, width: Floats
 ) -> None:
-    """Raise ``largest`` in place by the extrema inside intervals.
+    """Raise maxima in place where the interpolating cubics of intervals exceed them.
 
     Parameters
     ----------
@@ -206,14 +210,12 @@ def include_cubic_extrema(
     width : ndarray, shape (n, 1)
     """
     turns = np.nonzero(candidates & (left.slope * right.slope < 0.0))
-    ends = [side.each(lambda array: array[turns]) for side in (left, right)]
+    ends = [side.map_arrays(lambda array: array[turns]) for side in (left, right)]
     np.maximum.at(largest, turns[:2], np.abs(cubic_extrema(ends[0], ends[1], width[turns[1], 0])))
 
 
 class ImpactIntervals(NamedTuple):
-    """Intervals with an impact: rows of their points, both ends, length, phase at the left one, and
-    the gap between unloaded springs.
-    """
+    """Sampling intervals that contain an impact: row, both ends, width, phase, clearance."""
 
     row: Rows
     left: Motion
@@ -222,38 +224,42 @@ class ImpactIntervals(NamedTuple):
     angle: Floats
     gap_offset: Floats
 
-    def part(self, chosen: Flags) -> ImpactIntervals:
-        """Return some of the intervals."""
+    def at_index(self, chosen: Flags) -> ImpactIntervals:
+        """Return the intervals that a mask selects."""
         row, left, right, *numbers = self
-        ends = left.part((chosen,)), right.part((chosen,))
+        ends = left.at_index((chosen,)), right.at_index((chosen,))
         return ImpactIntervals(row[chosen], *ends, *(each[chosen] for each in numbers))
 
     def that_can_exceed(self, largest: Floats) -> ImpactIntervals:
-        """Return the intervals in which a larger value is possible: most cannot reach so far."""
+        """Return the intervals whose bound on the motion exceeds the maxima so far."""
         left, right, width = self.left, self.right, self.width
         reach = np.maximum(np.abs(left.value), np.abs(right.value))
         reach += width * (np.abs(left.slope) + np.abs(right.slope))
-        return self.part(np.any(reach > largest[:, self.row], axis=0))
+        return self.at_index(np.any(reach > largest[:, self.row], axis=0))
 
 
-def include_impacts(
-    largest: Floats, cut: ImpactIntervals, points: Sequence[Point], rates: Rates, drive: BoxMotion
+def update_maxima_from_impacts(
+    largest: Floats,
+    cut: ImpactIntervals,
+    points: Sequence[Point],
+    rates: MotionCoefficients,
+    drive: BoxMotion,
 ) -> None:
-    """Raise ``largest`` in place by values at both sides of impacts, and on to the samples."""
-    time = first_touch(cut)
+    """Raise maxima in place by the motion before and after impacts in intervals."""
+    time = first_contact_time(cut)
     touches = np.isfinite(time)
-    cut, time = cut.part(touches), time[touches]
+    cut, time = cut.at_index(touches), time[touches]
     effective_rates = rates.in_flight(cut.row)
     drive = BoxMotion(drive.frequency[cut.row, 0], drive.amplitude[cut.row, 0])
     forcing = drive.forcing_at(cut.angle + drive.frequency * time)
     before = taylor_step(cut.left, time)
-    after = after_impacts(before, [points[row] for row in cut.row])
+    after = states_after_impacts(before, [points[row] for row in cut.row])
     ends = [Motion.from_states(states, effective_rates, forcing) for states in (before, after)]
     extreme = np.maximum(np.abs(ends[0].value), np.abs(ends[1].value))
     everywhere = np.ones((*extreme.shape, 1), dtype=bool)
     for left, right, width in ((cut.left, ends[0], time), (ends[1], cut.right, cut.width - time)):
-        sides = [side.each(lambda array: array[..., None]) for side in (left, right)]
-        include_cubic_extrema(extreme, everywhere, sides[0], sides[1], width[:, None])
+        sides = [side.map_arrays(lambda array: array[..., None]) for side in (left, right)]
+        update_maxima_from_cubics(extreme, everywhere, sides[0], sides[1], width[:, None])
     for channel, values in enumerate(extreme):
         np.maximum.at(largest[channel], cut.row, values)
 
@@ -265,8 +271,8 @@ def taylor_step(motion: Motion, time: Floats) -> Floats:
     return np.concatenate([position, v + time * (a + time * j / 2.0)])
 
 
-def first_touch(cut: ImpactIntervals, iterations: int = 20) -> Floats:
-    """Return the time from the left end to the first touch; NaN if none is in the interval.
+def first_contact_time(cut: ImpactIntervals, iterations: int = 20) -> Floats:
+    """Return when the gap first closes in each interval (Newton, bisection); NaN if never.
 
     Newton's method, and halving where it would leave what is known to hold the root.
     """
@@ -275,6 +281,7 @@ def first_touch(cut: ImpactIntervals, iterations: int = 20) -> Floats:
     g[0] = np.where(cut.gap_offset == 0.0, g[0], g[0] + cut.gap_offset)
 
     def gap(s: Floats) -> Floats:
+        """Return the gap a time after the left end, by its cubic Taylor polynomial."""
         distance: Floats = g[0] + s * (g[1] + s * (g[2] / 2.0 + s * g[3] / 6.0))
         return distance
 
@@ -289,8 +296,8 @@ def first_touch(cut: ImpactIntervals, iterations: int = 20) -> Floats:
     return np.where((g[0] > 0.0) & (gap(cut.width) <= 0.0), time, np.nan)
 
 
-def after_impacts(before: Floats, points: Sequence[Point]) -> Floats:
-    """Return states after impacts, (4, n), by (15) with ``(1+e)/(1+mu)`` in its second line."""
+def states_after_impacts(before: Floats, points: Sequence[Point]) -> Floats:
+    """Return the states just after impacts (15) from those just before, shape (4, n)."""
     m1, m2 = np.array([(p.structure.m1, p.structure.m2) for p in points]).T
     closing = before[2] - before[3]
     e = np.array([p.structure.restitution(v) for p, v in zip(points, closing, strict=True)])

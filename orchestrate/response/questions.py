@@ -1,4 +1,4 @@
-"""Arguments of a question: structures and excitations, at one point or along one parameter.
+"""Check the user's arguments: excitation, parameter values, start states; base classes of jobs.
 
 An excitation is given as ``eta``: frequency ``eta omega`` and amplitude ``1/eta^2`` m, so that x is
 the xi of (3) in metres; or as ``frequency`` in rad/s with ``amplitude`` in m, or with ``level``,
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, ClassVar, NamedTuple
@@ -20,10 +20,10 @@ from numpy.typing import ArrayLike, NDArray
 from ..access import REST, gap_between
 from ..checks import MAX_COUNT
 from ..errors import InputError
-from ..running.job import Job, brief
+from ..running.job import Inputs, Job, brief
 from ..structures import PARAMETERS, Excitation, Structure
 from ..structures.ranges import EXCITATION, LEVEL, RATIO_QUANTITIES, expected_one_of
-from .labels import Variable, parameter, variable
+from .labels import Variable, parameter_variable, variable
 
 Numbers = float | tuple[float, ...]
 EXCITATION_PARAMETERS = {
@@ -36,30 +36,30 @@ FORMS = "expected eta=, or frequency= with amplitude="
 
 
 class Point(NamedTuple):
-    """Structure under an excitation."""
+    """One operating point: a structure under an excitation, with the units of its motion."""
 
     structure: Structure
     excitation: Excitation
 
     @property
     def length(self) -> float:
-        """Return the unit of xi, a eta^2 in m (3)."""
+        """Return the unit of displacement xi, a eta^2 in m (3)."""
         return self.excitation.length(self.structure)
 
     @property
     def speed(self) -> float:
-        """Return the unit of the velocity xi', omega a eta^2 in m/s."""
+        """Return the unit of velocity xi', omega a eta^2 in m/s."""
         return self.structure.omega * self.length
 
     @property
     def scale(self) -> NDArray[np.float64]:
-        """Return the units of a state's four co-ordinates: m, m, m/s, m/s."""
+        """Return the units of a state's four coordinates: m, m, m/s, m/s."""
         length = self.length
         speed = self.structure.omega * length
         return np.array([length, length, speed, speed])
 
     def faces(self, states: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return states in units of xi, with the faces' places for displacements.
+        """Return SI states in the paper's units, with displacements of the contact faces.
 
         That of mass 2 is ``xi_2`` and the clearance over a eta^2: the gap is the difference of
         both, 0 in contact.
@@ -77,7 +77,7 @@ class Point(NamedTuple):
         return faces
 
     def from_faces(self, faces: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the states, SI, of :meth:`faces`."""
+        """Return SI states from states in the paper's units with faces, as :meth:`faces` gives."""
         states: NDArray[np.float64] = faces * self.scale
         if self.structure.gap_offset != 0.0:
             states[..., 1] -= self.structure.gap_offset
@@ -86,7 +86,7 @@ class Point(NamedTuple):
 
 @dataclass(frozen=True)
 class Series:
-    """Structures and excitations along one parameter, in the order in which the values were given.
+    """Operating points along one parameter, in the order of the values given.
 
     Attributes
     ----------
@@ -104,15 +104,17 @@ class Series:
     etas: tuple[float, ...]
 
     def coordinates(self) -> dict[str, Variable]:
-        """Return the parameter, and the excitation along it."""
+        """Return dataset coordinates: the parameter, eta, frequency, amplitude and period."""
         excitations = [point.excitation for point in self.points]
         along = {
             "eta": self.etas,
             "frequency": [excitation.frequency for excitation in excitations],
             "amplitude": [excitation.amplitude for excitation in excitations],
         }
-        coordinates = {name: parameter(name, self.name, values) for name, values in along.items()}
-        coordinates[self.name] = parameter(self.name, self.name, self.values)
+        coordinates = {
+            name: parameter_variable(name, self.name, values) for name, values in along.items()
+        }
+        coordinates[self.name] = parameter_variable(self.name, self.name, self.values)
         coordinates["period"] = variable(
             self.name,
             2.0 * np.pi / np.array(self.etas),
@@ -122,12 +124,12 @@ class Series:
         return coordinates
 
     def scales(self) -> NDArray[np.float64]:
-        """Return the units of the four coordinates of each point's state, shape (n, 4)."""
+        """Return the units of the states' coordinates at each point, shape (n, 4)."""
         return np.array([point.scale for point in self.points])
 
 
 @lru_cache(maxsize=16)
-def series(
+def make_series(
     structure: Structure,
     eta: Numbers | None,
     frequency: Numbers | None,
@@ -135,7 +137,7 @@ def series(
     over: str | None = None,
     values: Numbers | None = None,
 ) -> Series:
-    """Return the points of a question along one parameter.
+    """Return the operating points along the parameter whose argument is a list of values.
 
     Parameters
     ----------
@@ -154,8 +156,8 @@ def series(
     """
     excitation_values = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
     excitation = {name: value for name, value in excitation_values.items() if value is not None}
-    varied = values_along(over, values, excitation)
-    check_form(excitation.keys() | (varied.keys() & EXCITATION_PARAMETERS.keys()))
+    varied = varied_values(over, values, excitation)
+    check_excitation_form(excitation.keys() | (varied.keys() & EXCITATION_PARAMETERS.keys()))
     for name in list(excitation):
         value = excitation[name]
         if isinstance(value, tuple):
@@ -169,17 +171,17 @@ def series(
     varied = varied or {name: (excitation[name],)}
     check_lengths(name, over, varied)
     rows = [dict(zip(varied, row, strict=True)) for row in zip(*varied.values(), strict=True)]
-    points = [point(structure, {**excitation, **row}) for row in rows]
+    points = [make_point(structure, {**excitation, **row}) for row in rows]
     etas = varied.get("eta") or tuple(p.excitation.eta(p.structure) for p in points)
     if "eta" in excitation:
         etas = (excitation["eta"],) * len(points)
     return Series(name, varied[name], tuple(points), etas)
 
 
-def values_along(
+def varied_values(
     over: str | None, values: Numbers | None, excitation: Mapping[str, Numbers]
 ) -> dict[str, Any]:
-    """Return the values of the parameter named by ``over``, if any."""
+    """Return the parameter named ``over`` with its values, as a dict; empty without ``over``."""
     if over is None:
         if values is not None:
             raise InputError(
@@ -196,8 +198,8 @@ def values_along(
     return {over: values if isinstance(values, tuple) else (values,)}
 
 
-def check_form(names: Any) -> None:
-    """Check that an excitation is given completely in one of its forms."""
+def check_excitation_form(names: Any) -> None:
+    """Raise unless the argument names make one complete form of excitation."""
     if set(names) not in COMPLETE:
         present = (
             " and ".join(f"{name}=" for name in EXCITATION_PARAMETERS if name in names) or "nothing"
@@ -206,7 +208,7 @@ def check_form(names: Any) -> None:
 
 
 def check_lengths(name: str, over: str | None, varied: Mapping[str, tuple[float, ...]]) -> None:
-    """Check that there is one parameter, or a frequency with an amplitude for each."""
+    """Raise unless one parameter varies, or frequency and amplitude lists have equal lengths."""
     others = [other for other in varied if other != name]
     if over and others:
         raise InputError(f"{others[0]}: is a list beside over = {over!r}; expected one number")
@@ -218,8 +220,8 @@ def check_lengths(name: str, over: str | None, varied: Mapping[str, tuple[float,
             )
 
 
-def point(structure: Structure, arguments: Mapping[str, Any]) -> Point:
-    """Make a structure under an excitation from parameters of either, by name."""
+def make_point(structure: Structure, arguments: Mapping[str, Any]) -> Point:
+    """Return the operating point for a structure with parameters changed and an excitation."""
     changes = {
         name: value for name, value in arguments.items() if name not in EXCITATION_PARAMETERS
     }
@@ -234,13 +236,13 @@ def point(structure: Structure, arguments: Mapping[str, Any]) -> Point:
     return Point(changed, excitation)
 
 
-def one_point(
+def checked_point(
     structure: Structure,
     eta: ArrayLike | None,
     frequency: ArrayLike | None,
     amplitude: ArrayLike | None,
 ) -> Point:
-    """Return the point of a question at a single excitation.
+    """Return the operating point of scalar excitation arguments; raise if incomplete or lists.
 
     Raises
     ------
@@ -248,26 +250,28 @@ def one_point(
         Where a list is given, too.
     """
     arguments = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
-    checked = {name: numbers(name, value) for name, value in arguments.items() if value is not None}
-    check_form(checked)
+    checked = {
+        name: checked_numbers(name, value) for name, value in arguments.items() if value is not None
+    }
+    check_excitation_form(checked)
     for name, value in checked.items():
         if isinstance(value, tuple):
             raise InputError(f"{name}: {len(value)} values; expected one number")
-    return point(checked_structure(structure), checked)
+    return make_point(checked_structure(structure), checked)
 
 
 # -- what was given, checked ----------------------------------------------------------------------
 
 
 def checked_structure(structure: object) -> Structure:
-    """Return the structure; raise if it is none."""
+    """Return the argument unchanged; raise ``InputError`` unless it is a ``Structure``."""
     if not isinstance(structure, Structure):
         raise InputError(f"structure = {structure!r}: expected a Structure")
     return structure
 
 
-def numbers(name: str, argument: ArrayLike | None) -> Numbers | None:
-    """Return a number or a tuple of them, each in the parameter's range; None if not given.
+def checked_numbers(name: str, argument: ArrayLike | None) -> Numbers | None:
+    """Return an argument as float or tuple of floats, checked for its range; None if not given.
 
     Parameters
     ----------
@@ -308,22 +312,22 @@ def numbers(name: str, argument: ArrayLike | None) -> Numbers | None:
     return result if array.ndim else result[0]
 
 
-def positive(name: str, value: Any) -> float:
-    """Return a finite number above zero.
+def checked_positive(name: str, value: Any) -> float:
+    """Return an argument as finite float above zero; raise ``InputError`` otherwise.
 
     Raises
     ------
     InputError
         Where it is none.
     """
-    number = numbers(name, value)
+    number = checked_numbers(name, value)
     if not isinstance(number, float) or number <= 0.0:
         raise InputError(f"{name} = {value!r}: expected a number > 0")
     return number
 
 
-def states(name: str, value: ArrayLike | None, structure: Structure) -> NDArray[np.float64]:
-    """Return states x1, x2 in m, v1, v2 in m/s of a structure, shape (n, 4); rest by default.
+def checked_states(name: str, value: ArrayLike | None, structure: Structure) -> NDArray[np.float64]:
+    """Return start states (n, 4) in m, m/s, rest by default; raise if masses overlap.
 
     Displacements count from the unloaded springs; zeros mean rest, with a preload too.
 
@@ -354,9 +358,9 @@ def states(name: str, value: ArrayLike | None, structure: Structure) -> NDArray[
     return rows
 
 
-def state(name: str, value: ArrayLike | None, structure: Structure) -> tuple[float, ...]:
-    """Return the four numbers of a start state; raise if several states are given."""
-    rows = states(name, value, structure)
+def checked_state(name: str, value: ArrayLike | None, structure: Structure) -> tuple[float, ...]:
+    """Return one start state as four floats, rest by default; raise if there are several."""
+    rows = checked_states(name, value, structure)
     if len(rows) != 1:
         raise InputError(f"{name}: {len(rows)} states; expected one")
     return tuple(rows[0].tolist())
@@ -367,7 +371,7 @@ def state(name: str, value: ArrayLike | None, structure: Structure) -> tuple[flo
 
 @dataclass(frozen=True, kw_only=True)
 class Question(Job, ABC):
-    """Job that answers a function of the public API.
+    """Base of jobs that answer a public function about a structure.
 
     Attributes
     ----------
@@ -378,7 +382,7 @@ class Question(Job, ABC):
     asked: ClassVar[str] = ""  # name of the function
 
     def call_text(self) -> str:
-        """Return the call of the public function as text."""
+        """Return Python source of the public function's call that repeats this job."""
         arguments: dict[str, Any] = {}
         for name, value in self.parameters().items():
             inside = isinstance(value, dict) and "sha256" not in value and name != "structure"
@@ -395,8 +399,28 @@ class Question(Job, ABC):
 
 
 @dataclass(frozen=True, kw_only=True)
+class OneMotionQuestion(Question, ABC):
+    """Base of jobs that simulate one motion, under one excitation.
+
+    Attributes
+    ----------
+    excitation : Excitation
+    """
+
+    excitation: Excitation
+
+    def count(self) -> int:
+        """Return 1: there is one motion."""
+        return 1
+
+    def items(self, inputs: Inputs) -> Sequence[Point]:
+        """Return the items: a list with the structure under its excitation."""
+        return [Point(self.structure, self.excitation)]
+
+
+@dataclass(frozen=True, kw_only=True)
 class SeriesQuestion(Question, ABC):
-    """Question along one parameter.
+    """Base of jobs that compute responses along one parameter.
 
     Attributes
     ----------
@@ -418,13 +442,13 @@ class SeriesQuestion(Question, ABC):
 
     @property
     def series(self) -> Series:
-        """Return structures and excitations along the parameter, a point each."""
-        return series(
+        """Return the operating points along the parameter."""
+        return make_series(
             self.structure, self.eta, self.frequency, self.amplitude, self.over, self.values
         )
 
     def count(self) -> int:
-        """Return the number of values."""
+        """Return the number of parameter values."""
         return len(self.series.values)
 
 
@@ -436,10 +460,10 @@ def series_arguments(
     over: str | None = None,
     values: ArrayLike | None = None,
 ) -> dict[str, Any]:
-    """Return the fields of a :class:`SeriesQuestion` from a user's arguments."""
+    """Check the user's excitation arguments; return them as fields of a series question."""
     arguments = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
-    checked = {name: numbers(name, value) for name, value in arguments.items()}
-    checked_values = numbers(over if over in EXCITATION_PARAMETERS else "values", values)
+    checked = {name: checked_numbers(name, value) for name, value in arguments.items()}
+    checked_values = checked_numbers(over if over in EXCITATION_PARAMETERS else "values", values)
     return {
         "structure": checked_structure(structure),
         **checked,

@@ -1,4 +1,4 @@
-"""Continuation of a response in frequency until its largest gap has passed a maximum."""
+"""Follow a response in frequency to its relative resonance, the maximum of its largest gap."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from numpy.typing import ArrayLike
 
 from ..access import Instance
 from ..structures import Structure
-from .questions import series
-from .respond import Response, follow
+from .questions import make_series
+from .respond import Response, follow_responses
 
 
 @dataclass(frozen=True)
-class Peak:
-    """Relative resonance: frequency ratio, state and largest gap.
+class RelativeResonance:
+    """The relative resonance of a response: frequency ratio eta of its largest gap, state.
 
     Attributes
     ----------
@@ -42,8 +42,8 @@ def follow_to_peak(
     transient: int = 500,
     samples: int = 80,
     tolerance: float = 1e-2,
-) -> Peak:
-    """Increase eta until the largest gap of the 1-impact response has passed its peak; return that.
+) -> RelativeResonance:
+    """Increase eta until the largest gap of a 1-impact response passes its peak; return that.
 
     Parameters
     ----------
@@ -68,18 +68,18 @@ def follow_to_peak(
         The known response itself where none larger of its kind is found.
     """
     etas = np.round(eta + step * np.arange(1, round(reach / step)), 9)
-    points = series(structure, tuple(etas.tolist()), None, None).points
-    peak, largest = Peak(eta, tuple(np.asarray(start, dtype=float).tolist())), 0.0
-    responses = follow(instance, points, start, transient, samples, tolerance)
+    points = make_series(structure, tuple(etas.tolist()), None, None).points
+    peak, largest = RelativeResonance(eta, tuple(np.asarray(start, dtype=float).tolist())), 0.0
+    responses = follow_responses(instance, points, start, transient, samples, tolerance)
     for current_eta, response in zip(etas, responses, strict=True):
         if response.x_rel_max < (1.0 - fall) * largest:
             break
-        if response.x_rel_max > largest and is_simple(response, multiplicity):
-            peak, largest = Peak(float(current_eta), response.end), response.x_rel_max
+        if response.x_rel_max > largest and is_one_impact_orbit(response, multiplicity):
+            peak, largest = RelativeResonance(float(current_eta), response.end), response.x_rel_max
     return peak
 
 
-def is_simple(response: Response, multiplicity: int, slack: float = 0.1) -> bool:
-    """Return whether a response has a multiplicity and about one impact per period."""
+def is_one_impact_orbit(response: Response, multiplicity: int, slack: float = 0.1) -> bool:
+    """Return whether a response has the multiplicity and about one impact per repetition."""
     impacts = response.impacts_per_period * multiplicity
     return response.multiplicity == multiplicity and abs(impacts - 1.0) < slack

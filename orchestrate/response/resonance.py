@@ -1,4 +1,4 @@
-"""Resonance curves: bonded against delaminated, up and down, with their peaks and jumps."""
+"""Resonance curves, bonded and delaminated, peaks and jumps: ``orchestrate.resonance``."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from ..structures import Structure
 from .labels import Variable, variable, yes_or_no
 from .multiplicity import IRREGULAR
 from .peaks import PEAKS
-from .questions import Point, positive, series_arguments
-from .sweep import RESPONSE_QUANTITIES, Direction, SweepJob, multiplicities
+from .questions import Point, checked_positive, series_arguments
+from .sweep import RESPONSE_QUANTITIES, Direction, SweepJob, multiplicity_variables
 from .threshold import threshold_variables
-from .turns_and_jumps import inside_irregular, jumps, maxima
+from .turns_and_jumps import inside_irregular, jump_indices, prominent_maxima
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,7 +37,7 @@ PEAK_QUANTITIES = ("x1_max", "x2_max", "a1_max", "a2_max", "x_rel_max", "impacts
 
 @dataclass(frozen=True, kw_only=True)
 class ResonanceJob(SweepJob):
-    """Sweeps of a structure, bonded and delaminated.
+    """Job of :func:`orchestrate.resonance`: up and down sweeps, bonded and delaminated.
 
     Attributes
     ----------
@@ -55,17 +55,17 @@ class ResonanceJob(SweepJob):
             raise InputError("direction = 'given': expected one of up, down, both")
 
     def independent_series(self) -> int:
-        """Return twice the series of a sweep: bonded and delaminated are independent."""
+        """Return how many sweeps are independent: each direction, for both structures."""
         return len(KINDS) * super().independent_series()
 
     def items(self, inputs: Inputs) -> Sequence[Point]:
-        """Return structure and excitation of each response, bonded first."""
+        """Return the operating points of all responses, the bonded structure's first."""
         both = self.structure.as_bonded(), self.structure.as_delaminated()
         points = super().items(inputs)
         return [Point(structure, point.excitation) for structure in both for point in points]
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return everything over structure, direction and frequency."""
+        """Return the dataset of the resonance curves with their peaks and jumps."""
         import xarray as xr
 
         curves = xr.Dataset(
@@ -76,7 +76,7 @@ class ResonanceJob(SweepJob):
         return curves.assign(self.peaks(curves) | self.jumps(curves))
 
     def in_order(self, values: NDArray[np.generic]) -> NDArray[np.generic]:
-        """Return rows over structure, direction and the values as they were given."""
+        """Reorder rows to (structure, direction, value), the values as they were given."""
         ordered = []
         for part in np.split(values, len(KINDS)):
             rows = super().in_order(part)
@@ -84,7 +84,7 @@ class ResonanceJob(SweepJob):
         return np.array(ordered)
 
     def variables(self, table: Table) -> dict[str, Variable]:
-        """Return amplitudes, accelerations and related variables."""
+        """Return dataset variables of the curves: amplitudes, accelerations, multiplicity."""
         along = (*DIMENSIONS, self.series.name)
         length = self.series.scales()[:, 0]
         numbers = {
@@ -97,11 +97,11 @@ class ResonanceJob(SweepJob):
             **self.threshold(),
             **{name: variable(along, numbers[name], *REPORTED[name]) for name in REPORTED},
             "permanent_contact": yes_or_no(along, table["permanent_contact"], contact),
-            **multiplicities(along, table),
+            **multiplicity_variables(along, table),
         }
 
     def threshold(self) -> dict[str, Variable]:
-        """Return the level at which the structure opens or touches; empty without a clearance."""
+        """Return dataset variables of the contact threshold; empty without a clearance."""
         structure = self.structure.as_delaminated()
         if structure.gap_offset == 0.0:
             return {}
@@ -109,7 +109,7 @@ class ResonanceJob(SweepJob):
         return threshold_variables(structure, self.series.name, speeds)
 
     def coordinates(self) -> dict[str, Variable]:
-        """Return structure, direction and the excitation, in Hz too."""
+        """Return dataset coordinates: structure, direction, excitation, frequency in Hz."""
         name = self.series.name
         turns = [point.excitation.frequency / (2.0 * np.pi) for point in self.series.points]
         directions = ["up", "down"] if self.direction == "both" else [self.direction]
@@ -124,18 +124,18 @@ class ResonanceJob(SweepJob):
         }
 
     def curves(self, data: xr.Dataset) -> list[xr.Dataset]:
-        """Return the distinct curves by increasing frequency: up and down, bonded one for both."""
+        """Return the distinct curves by frequency: bonded once, delaminated by direction."""
         ordered = data.sortby(self.series.name)
         glued = [ordered.isel(structure=0, direction=0)]
         return glued + [ordered.isel(structure=1, direction=i) for i in range(data.direction.size)]
 
     def peaks(self, data: xr.Dataset) -> dict[str, Variable]:
-        """Return the maxima of the larger one of both displacements."""
+        """Return dataset variables of the peaks: maxima of the larger displacement."""
         rows, noise = [], []
         for curve in self.curves(data):
             parts = str(curve.structure.values) != KINDS[0]  # glued, no response is irregular
             inside = inside_irregular(parts & (curve.multiplicity_decided.values == IRREGULAR))
-            for index in maxima(larger_displacement(curve), self.prominence):
+            for index in prominent_maxima(larger_displacement(curve), self.prominence):
                 rows.append(curve.isel({self.series.name: index}))
                 noise.append(inside[index])
         text = "whether it lies inside a range of irregular responses, where a maximum is chance"
@@ -151,13 +151,13 @@ class ResonanceJob(SweepJob):
         }
 
     def jumps(self, data: xr.Dataset) -> dict[str, Variable]:
-        """Return where the largest gap jumps, in the direction of the sweep."""
+        """Return dataset variables of the jumps of the largest gap, by direction."""
         rows, sizes = [], []
         for curve in self.curves(data):
             down = str(curve.direction.values) == "down"
             passed = curve.isel({self.series.name: np.s_[::-1]}) if down else curve
             gaps = passed.x_rel_max.values
-            for index in jumps(gaps, self.jump):
+            for index in jump_indices(gaps, self.jump):
                 rows.append(passed.isel({self.series.name: index + 1}))
                 sizes.append((gaps[index], gaps[index + 1]))
         text = "largest gap {} the jump"
@@ -169,7 +169,7 @@ class ResonanceJob(SweepJob):
         }
 
     def locations(self, what: str, rows: Sequence[xr.Dataset]) -> dict[str, Variable]:
-        """Return structure, direction and frequency of peaks or of jumps."""
+        """Return variables of structure, direction and frequency for peaks or jumps."""
         words = {
             f"{what}_{name}": variable(
                 what, np.array([str(row[name].values) for row in rows], dtype="U11"), "1", name
@@ -189,7 +189,7 @@ class ResonanceJob(SweepJob):
 
 
 def larger_displacement(curve: xr.Dataset) -> NDArray[np.float64]:
-    """Return the larger one of both displacements."""
+    """Return the larger of both masses' largest displacements, along a curve."""
     return np.maximum(curve.x1_max.values, curve.x2_max.values)
 
 
@@ -208,7 +208,7 @@ def resonance(
     jump: float = 0.15,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Compute resonance curves, bonded against delaminated, with their peaks and jumps.
+    """Compute resonance curves, bonded and delaminated, with their peaks and jumps.
 
     Parameters
     ----------
@@ -232,7 +232,7 @@ def resonance(
     xarray.Dataset
         Over ``structure`` (bonded, delaminated), ``direction`` and the frequency, which is there in
         ``hertz`` too: largest distances of both masses from the box's middle ``x1_max``, ``x2_max``
-        in m and over a eta^2 as ``xi1_max``, ``xi2_max``; largest accelerations in space between
+        in m and over a eta^2 as ``xi1_max``, ``xi2_max``; largest absolute accelerations between
         impacts ``a1_max``, ``a2_max`` in m/s2; the largest gap ``x_rel_max`` and ``xi_rel_max``;
         ``impacts_per_period``, ``multiplicity`` and ``multiplicity_decided``,
         ``permanent_contact``. Over ``peak`` and ``jump``: structure, direction and frequency of
@@ -270,9 +270,9 @@ def resonance(
         direction=direction,
         transient=checked_integer("transient", transient, 0),
         samples=checked_integer("samples", samples, 1),
-        tolerance=positive("tolerance", tolerance),
+        tolerance=checked_positive("tolerance", tolerance),
         peak_periods=checked_integer("peak_periods", peak_periods, 1),
-        prominence=positive("prominence", prominence),
-        jump=positive("jump", jump),
+        prominence=checked_positive("prominence", prominence),
+        jump=checked_positive("jump", jump),
     )
     return answer(job, running, finder(running))

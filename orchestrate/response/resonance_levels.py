@@ -1,4 +1,4 @@
-"""Resonance curves at several levels: how a structure with a clearance changes with the shaking."""
+"""Resonance curves at several excitation levels: ``orchestrate.resonance_levels``."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from ..errors import InputError
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .labels import parameter, variable
-from .questions import Point, Question, checked_structure, numbers, positive
+from .labels import parameter_variable, variable
+from .questions import Point, Question, checked_numbers, checked_positive, checked_structure
 from .resonance import ResonanceJob
 from .sweep import Direction
 
@@ -33,7 +33,7 @@ RAGGED = ("peak", "jump")  # of each level as many as it has
 
 @dataclass(frozen=True, kw_only=True)
 class ResonanceLevelsJob(Question):
-    """Resonance curves at several levels; the rest as in :func:`orchestrate.resonance`.
+    """Job of :func:`orchestrate.resonance_levels`: resonance curves at several levels.
 
     Attributes
     ----------
@@ -58,11 +58,11 @@ class ResonanceLevelsJob(Question):
     warmup_items: ClassVar[int] = ResonanceJob.warmup_items
 
     def __post_init__(self) -> None:
-        _ = self.each  # what is wrong is said before any work
+        _ = self.level_jobs  # what is wrong is said before any work
 
     @cached_property
-    def each(self) -> tuple[ResonanceJob, ...]:
-        """Return one job per level, in the order of the levels."""
+    def level_jobs(self) -> tuple[ResonanceJob, ...]:
+        """Return one resonance job per level, in the order of the levels."""
         own = {field.name: getattr(self, field.name) for field in fields(self)}
         own.pop("level")
         return tuple(
@@ -71,56 +71,60 @@ class ResonanceLevelsJob(Question):
         )
 
     def independent_series(self) -> int:
-        """Return how many series of responses are independent of each other."""
-        return sum(job.independent_series() for job in self.each)
+        """Return how many sweeps are independent, over all levels."""
+        return sum(job.independent_series() for job in self.level_jobs)
 
     def count(self) -> int:
-        """Return the number of responses."""
-        return sum(job.count() for job in self.each)
+        """Return the number of responses, over all levels."""
+        return sum(job.count() for job in self.level_jobs)
 
     def items(self, inputs: Inputs) -> Sequence[Point]:
-        """Return structure and excitation of each response."""
-        return [point for job in self.each for point in job.items(inputs)]
+        """Return the operating points of all responses, level by level."""
+        return [point for job in self.level_jobs for point in job.items(inputs)]
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
     ) -> Table:
         """Compute a chunk of responses; each starts from the end of the one before."""
-        return self.each[0].work(fmus, items, previous)
+        return self.level_jobs[0].work(fmus, items, previous)
 
     def boundary_state(self, table: Table) -> bytes:
-        """Return the state that the next response starts from."""
-        return self.each[0].boundary_state(table)
+        """Return, as bytes, the state that the next chunk's first response starts from."""
+        return self.level_jobs[0].boundary_state(table)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return everything over level, structure, direction and frequency."""
+        """Return the dataset of all curves, with ``level`` as first dimension."""
         import xarray as xr
 
-        parts = {name: np.split(values, len(self.each)) for name, values in table.items()}
+        parts = {name: np.split(values, len(self.level_jobs)) for name, values in table.items()}
         curves = [
             job.dataset({name: parts[name][i] for name in parts}, inputs)
-            for i, job in enumerate(self.each)
+            for i, job in enumerate(self.level_jobs)
         ]
-        levels = xr.Variable(*parameter("level", "level", self.level))
+        levels = xr.Variable(*parameter_variable("level", "level", self.level))
         whole, *_ = regular = [curve.drop_dims(RAGGED) for curve in curves]
         joined = xr.concat(
             regular,
             dim=xr.DataArray(levels, dims="level", name="level"),
-            data_vars=[str(name) for name, values in whole.data_vars.items() if depends(values)],
+            data_vars=[
+                str(name) for name, values in whole.data_vars.items() if varies_with_level(values)
+            ],
             coords=["amplitude"],
             compat="equals",
             join="exact",
         )
         ragged = [
-            xr.concat([self.at_level(i, curve, name) for i, curve in enumerate(curves)], dim=name)
+            xr.concat(
+                [self.rows_of_level(i, curve, name) for i, curve in enumerate(curves)], dim=name
+            )
             for name in RAGGED
         ]
-        found = xr.merge([joined, *ragged], combine_attrs="drop_conflicts")
-        found.attrs["title"] = f"Resonance curves over the level: {self.structure.label()}"
-        return found
+        result = xr.merge([joined, *ragged], combine_attrs="drop_conflicts")
+        result.attrs["title"] = f"Resonance curves over the level: {self.structure.label()}"
+        return result
 
-    def at_level(self, index: int, curve: xr.Dataset, name: str) -> xr.Dataset:
-        """Return the peaks or the jumps of one level's curves, with that level."""
+    def rows_of_level(self, index: int, curve: xr.Dataset, name: str) -> xr.Dataset:
+        """Return the peaks or jumps of one level's curves, with a variable of the level."""
         of_kind = [str(key) for key, values in curve.data_vars.items() if values.dims == (name,)]
         part = curve[of_kind].reset_coords(drop=True)
         level = np.full(curve.sizes[name], self.level[index])
@@ -142,7 +146,7 @@ def resonance_levels(
     jump: float = 0.15,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Compute resonance curves at several levels of the shaking, bonded against delaminated.
+    """Compute resonance curves at several excitation levels, bonded and delaminated.
 
     Parameters
     ----------
@@ -183,28 +187,28 @@ def resonance_levels(
     """
     job = ResonanceLevelsJob(
         structure=checked_structure(structure),
-        frequency=several("frequency", frequency),
-        level=several("level", level),
+        frequency=checked_distinct_numbers("frequency", frequency),
+        level=checked_distinct_numbers("level", level),
         name=f"resonance_levels_{structure.label()}",
         direction=direction,
         transient=checked_integer("transient", transient, 0),
         samples=checked_integer("samples", samples, 1),
-        tolerance=positive("tolerance", tolerance),
+        tolerance=checked_positive("tolerance", tolerance),
         peak_periods=checked_integer("peak_periods", peak_periods, 1),
-        prominence=positive("prominence", prominence),
-        jump=positive("jump", jump),
+        prominence=checked_positive("prominence", prominence),
+        jump=checked_positive("jump", jump),
     )
     return answer(job, running, finder(running))
 
 
-def depends(values: xr.DataArray) -> bool:
-    """Return whether a quantity of one level's curves depends on the level: all responses do."""
+def varies_with_level(values: xr.DataArray) -> bool:
+    """Return whether a variable differs between levels, by its dimension ``structure``."""
     return "structure" in values.dims
 
 
-def several(name: str, given: Any) -> tuple[float, ...]:
-    """Return numbers of the box's motion, one or more, each once."""
-    values = numbers(name, given)
+def checked_distinct_numbers(name: str, argument: Any) -> tuple[float, ...]:
+    """Return one or more numbers as a tuple; raise ``InputError`` if one is repeated."""
+    values = checked_numbers(name, argument)
     listed = values if isinstance(values, tuple) else (values,)
     if values is None or len(set(listed)) < len(listed):
         raise InputError(f"{name}: expected numbers, each once")

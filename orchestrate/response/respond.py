@@ -1,6 +1,4 @@
-"""Steady-state response at one excitation: stroboscopic samples, impacts, largest gap, final
-state.
-"""
+"""Simulate the steady-state response at one operating point: samples, impacts, largest gap."""
 
 from __future__ import annotations
 
@@ -14,13 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..access import STATE, Instance, begin, gap_between, last_samples, samples_per_step
 from ..structures import Excitation, Structure
-from .multiplicity import Decision, Repetition, decide, repetition, scale_states
+from .multiplicity import Decision, Repetition, decide_multiplicity, find_repetition, scale_states
 from .questions import Point
 
 
 @dataclass(frozen=True)
 class Response:
-    """Response to one excitation, in m and m/s.
+    """Steady-state response at one operating point: stroboscopic samples, impacts, largest gap.
 
     Attributes
     ----------
@@ -53,40 +51,40 @@ class Response:
 
     @cached_property
     def states(self) -> NDArray[np.float64]:
-        """The samples over the motion's size, see :func:`.multiplicity.scale_states`."""
+        """Return the samples over the motion's size, see :func:`.multiplicity.scale_states`."""
         return scale_states(self.samples, self.frequency, self.x_rel_max)
 
     @cached_property
     def multiplicity(self) -> int:
-        """Return the least number of periods that the state repeats after; 0: none.
+        """Return the least number of periods after which states repeat, 0 if they do not.
 
         Within the tolerance; :meth:`decision` says how reliable it is.
         """
         return self.repetition(self.tolerance).multiplicity
 
     def repetition(self, tolerance: float) -> Repetition:
-        """Return after how many periods states repeat within a tolerance, and how closely."""
-        return repetition(self.states, tolerance)
+        """Return the multiplicity within a tolerance, and the largest deviation from it."""
+        return find_repetition(self.states, tolerance)
 
     def decision(self, tolerance: float) -> Decision:
-        """Return the multiplicity by how deviations develop, see :func:`.multiplicity.decide`."""
-        return decide(self.states, tolerance)
+        """Return the multiplicity as decided by how deviations decay, and how it was decided."""
+        return decide_multiplicity(self.states, tolerance)
 
     @property
     def gap(self) -> NDArray[np.float64]:
-        """Gap at the samples, m."""
+        """Return the gap at the samples, m."""
         return gap_between(self.samples, self.gap_offset)
 
     @cached_property
     def end(self) -> tuple[float, ...]:
-        """Return the state at the last sample, from which a next response starts."""
+        """Return the rounded state at the last sample, from which the next response starts."""
         return round_state(self.samples[-1], self.gap_offset)
 
 
 def round_state(
     state: NDArray[np.float64], gap_offset: float = 0.0, bits: int = 44
 ) -> tuple[float, ...]:
-    """Round a state to 13 digits, so that it does not depend on how its response was reached.
+    """Round a state to 44 bits (13 digits), so that it hardly depends on its history.
 
     Rounding never settles: what has converged to one response from two sides goes on to differ in
     its last digits for good. Without them it is the same to the last bit, and parts of a sweep that
@@ -115,7 +113,7 @@ def round_state(
 
 
 def round_to_bits(first: float, second: float, bits: int) -> tuple[float, float]:
-    """Round two values to so many binary digits of the larger one."""
+    """Round two numbers to a number of binary digits of the larger one."""
     digit = math.ldexp(1.0, math.frexp(max(abs(first), abs(second)))[1] - bits)
     if digit == 0.0:  # of the smallest numbers there are
         return first, second
@@ -134,7 +132,7 @@ def respond(
     samples: int,
     tolerance: float,
 ) -> Response:
-    """Compute the response after a transient, from a state at phase 0.
+    """Simulate a transient and samples from a state at phase 0; return the response.
 
     Parameters
     ----------
@@ -158,7 +156,7 @@ def respond(
     if transient:
         instance.step(0.0, transient * period)
     impacts, contacts, touching = instance.get("impact_count", "contact_count", "in_contact")
-    states, peak = sample(instance, period, transient, samples)
+    states, peak = stroboscopic_samples(instance, period, transient, samples)
     impacts_after, contacts_after = instance.get("impact_count", "contact_count")
     return Response(
         samples=states,
@@ -172,10 +170,10 @@ def respond(
     )
 
 
-def sample(
+def stroboscopic_samples(
     instance: Instance, period: float, transient: int, samples: int
 ) -> tuple[NDArray[np.float64], float]:
-    """Take stroboscopic samples after the transient; return the states and the largest gap between.
+    """Run the FMU over some periods; return states at phase 0, and the largest gap.
 
     Returns
     -------
@@ -195,8 +193,8 @@ def sample(
     return states, peak
 
 
-def impacts_since(instance: Instance, before: int, time: float, target: float) -> int:
-    """Count impacts until a time, after a count that was read before.
+def count_impacts_until(instance: Instance, before: int, time: float, target: float) -> int:
+    """Run the FMU on to a time; return the impacts since an earlier count.
 
     Parameters
     ----------
@@ -213,14 +211,14 @@ def impacts_since(instance: Instance, before: int, time: float, target: float) -
     return count - before
 
 
-def impacts_in(instance: Instance, point: Point, start: ArrayLike, periods: int) -> int:
-    """Return the impacts in some periods from a state at phase 0 on, in m and m/s."""
+def count_impacts(instance: Instance, point: Point, start: ArrayLike, periods: int) -> int:
+    """Run the FMU some periods from a state at phase 0; return the number of impacts."""
     begin(instance, *point, start)
     (before,) = instance.get("impact_count")
-    return impacts_since(instance, before, 0.0, periods * point.excitation.period)
+    return count_impacts_until(instance, before, 0.0, periods * point.excitation.period)
 
 
-def follow(
+def follow_responses(
     instance: Instance,
     points: Iterable[Point],
     start: ArrayLike,
@@ -229,7 +227,7 @@ def follow(
     tolerance: float,
     gap_offset: float | None = None,
 ) -> Iterator[Response]:
-    """Yield responses one after the other, each from the final state of the one before.
+    """Yield the response at each point, started from the end state of the one before.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A motion in time, with its impacts: one pass through the FMU's event mode."""
+"""One motion in time with its impacts, by the FMU's event mode: ``orchestrate.simulate``."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from ..access import NO_INPUT, OSCILLATOR, REST, EventInstance, Impacts, begin, 
 from ..checks import checked_integer
 from ..running.job import Inputs, Table
 from ..running.runner import answer
-from ..structures import Excitation, Structure
+from ..structures import Structure
 from .equations import absolute_accelerations
 from .labels import Variable, variable, yes_or_no
-from .questions import Point, Question, one_point, state
+from .questions import OneMotionQuestion, Point, checked_point, checked_state
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from ..running.options import Running
 
 OUTPUTS = ("x1", "x2", "v1", "v2", "x_rel", "v_rel", "contact_force", "phase")
-IN_SPACE = "in space, what an accelerometer on it reads between impacts"
+AS_MEASURED = "as an accelerometer on it reads it between impacts"
 IN_TIME = {  # units, long name
     "x1": ("m", "displacement of mass 1 relative to the box"),
     "x2": ("m", "displacement of mass 2 relative to the box"),
@@ -34,8 +34,8 @@ IN_TIME = {  # units, long name
     "v2": ("m/s", "velocity of mass 2 relative to the box"),
     "a1": ("m/s2", "acceleration of mass 1 relative to the box between impacts"),
     "a2": ("m/s2", "acceleration of mass 2 relative to the box between impacts"),
-    "a1_abs": ("m/s2", f"acceleration of mass 1 {IN_SPACE}"),
-    "a2_abs": ("m/s2", f"acceleration of mass 2 {IN_SPACE}"),
+    "a1_abs": ("m/s2", f"absolute acceleration of mass 1, {AS_MEASURED}"),
+    "a2_abs": ("m/s2", f"absolute acceleration of mass 2, {AS_MEASURED}"),
     "box_acceleration": ("m/s2", "acceleration of the box"),
     "x_rel": ("m", "gap x2 - x1 + clearance"),
     "v_rel": ("m/s", "velocity of the gap"),
@@ -44,33 +44,24 @@ IN_TIME = {  # units, long name
 
 
 @dataclass(frozen=True, kw_only=True)
-class SimulateJob(Question):
-    """One motion in time; attributes are as in :func:`orchestrate.simulate`."""
+class SimulateJob(OneMotionQuestion):
+    """Job of :func:`orchestrate.simulate`: one motion in time."""
 
-    excitation: Excitation
     periods: int = 20
     transient: int = 0
     points: int = 200
     start: tuple[float, ...] = REST
     asked: ClassVar[str] = "simulate"
 
-    def count(self) -> int:
-        """Return 1: there is one motion."""
-        return 1
-
-    def items(self, inputs: Inputs) -> Sequence[Point]:
-        """Return the structure under its excitation."""
-        return [Point(self.structure, self.excitation)]
-
     def grid(self) -> NDArray[np.float64]:
-        """Return the communication points, s."""
+        """Return the equally spaced times, s, at which the motion is sampled."""
         numbers = np.arange(self.periods * self.points + 1)
         return (self.transient + numbers / self.points) * self.excitation.period
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
     ) -> Table:
-        """Compute the motion and its impacts by the FMU; return them as a table."""
+        """Simulate the motion in the FMU; return its samples and its impacts as a table."""
         grid = self.grid()
         with EventInstance(fmus[OSCILLATOR]) as instance:
             begin(instance, *items[0], self.start)
@@ -86,7 +77,7 @@ class SimulateJob(Question):
     def accelerations(
         self, rows: NDArray[np.float64], touching: NDArray[np.bool_]
     ) -> dict[str, NDArray[np.float64]]:
-        """Return the accelerations of both masses and of the box, by the equations of motion."""
+        """Return accelerations of box and masses, absolute and relative, from samples."""
         excitation, phase = self.excitation, rows[:, OUTPUTS.index("phase")]
         box = -excitation.amplitude * excitation.frequency**2 * np.sin(phase)
         first, second = absolute_accelerations(rows[:, :4], self.structure, touching).T
@@ -97,7 +88,7 @@ class SimulateJob(Question):
         }
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return the motion in time, and its impacts."""
+        """Return the dataset of the motion: variables over time, and its impacts."""
         import xarray as xr
 
         contact = "whether the masses are in permanent contact"
@@ -112,7 +103,7 @@ class SimulateJob(Question):
         )
 
     def coordinates(self) -> dict[str, Variable]:
-        """Return time in seconds, in units of 1/omega, and in periods."""
+        """Return dataset coordinates of time: in seconds, in units of tau, in periods."""
         time = self.grid()
         tau, turns = self.structure.omega * time, time / self.excitation.period
         return {
@@ -123,7 +114,7 @@ class SimulateJob(Question):
 
 
 def impact_variables(table: Table) -> dict[str, Variable]:
-    """Return the impacts of the stored time as variables."""
+    """Return dataset variables of impacts: time, closing speed, impulse, sticking."""
     closing, impulse = table["impact_velocity"], table["impulse"]
     text = "whether permanent contact follows the impact (17)"
     return {
@@ -135,7 +126,7 @@ def impact_variables(table: Table) -> dict[str, Variable]:
 
 
 def impact_columns(impacts: Impacts, structure: Structure) -> Table:
-    """Return time, closing speed, impulse and whether it sticks, of each impact, as columns."""
+    """Return impacts as table columns: time, closing speed, impulse, sticking."""
     return {
         "impact_time": impacts.time,
         "impact_velocity": impacts.closing,
@@ -157,7 +148,7 @@ def simulate(
     phase: float = 0.0,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Compute a motion in time, with its impacts.
+    """Simulate a motion in time; return displacements to accelerations, and its impacts.
 
     Parameters
     ----------
@@ -185,7 +176,7 @@ def simulate(
     xarray.Dataset
         Over ``time`` in s, ``periods*points + 1`` points from the first kept one on: ``x1``,
         ``x2``, ``v1``, ``v2``, ``x_rel``, ``v_rel`` relative to the box; ``a1``, ``a2``, the
-        velocities' derivatives between impacts; ``a1_abs``, ``a2_abs``, accelerations in space;
+        velocities' derivatives between impacts; ``a1_abs``, ``a2_abs``, absolute accelerations;
         ``box_acceleration``; ``contact_force`` in N and ``in_contact``. Over ``impact``:
         ``impact_time`` in s, ``impact_velocity``, the closing speed in m/s, ``impulse`` in N s,
         and ``sticks``.
@@ -210,7 +201,7 @@ def simulate(
     >>> motion.sizes["time"], motion.sizes["impact"], int(motion.sticks.sum())
     (401, 60, 2)
     """
-    chosen, excitation = one_point(structure, eta, frequency, amplitude)
+    chosen, excitation = checked_point(structure, eta, frequency, amplitude)
     job = SimulateJob(
         name=f"motion_{structure.label()}",
         structure=chosen,
@@ -218,6 +209,6 @@ def simulate(
         periods=checked_integer("periods", periods, 1),
         transient=checked_integer("transient", transient, 0),
         points=checked_integer("points", points, 1),
-        start=state("start", start, structure),
+        start=checked_state("start", start, structure),
     )
     return answer(job, running, finder(running))

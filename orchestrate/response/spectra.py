@@ -1,4 +1,4 @@
-"""Amplitude spectra of accelerations in space, impulses included, bonded beside delaminated.
+"""Amplitude spectra of the masses' absolute accelerations: ``orchestrate.spectra``.
 
 An impulse is no part of sampled accelerations, whatever the rate. It is in the displacement, which
 is continuous and has a kink there: the spectrum of the acceleration as a distribution is the square
@@ -23,7 +23,7 @@ from ..running.runner import answer
 from ..structures import Structure
 from .equations import absolute_accelerations
 from .labels import variable
-from .questions import Point, SeriesQuestion, positive, series_arguments
+from .questions import Point, SeriesQuestion, checked_positive, series_arguments
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -36,7 +36,7 @@ Floats = NDArray[np.float64]
 
 
 def amplitude_spectrum(signal: ArrayLike, interval: float) -> tuple[Floats, Floats]:
-    """Return frequencies in rad/s and amplitudes (Hann window): a sine of amplitude A shows as A.
+    """Return frequencies, rad/s, and amplitudes of a sampled signal (Hann window).
 
     Parameters
     ----------
@@ -70,9 +70,7 @@ def amplitude_spectrum(signal: ArrayLike, interval: float) -> tuple[Floats, Floa
 
 
 def hann_spectrum(signal: Floats, interval: float) -> tuple[Floats, Floats]:
-    """Return lines in Hz and amplitudes as :func:`amplitude_spectrum` has them, of all that is
-    in the signal.
-    """
+    """Return frequencies, Hz, and amplitudes of a signal (Hann window), its mean not removed."""
     from scipy.signal import periodogram
 
     turns, power = periodogram(
@@ -85,7 +83,7 @@ def hann_spectrum(signal: Floats, interval: float) -> tuple[Floats, Floats]:
 
 @dataclass(frozen=True, kw_only=True)
 class SpectraJob(SeriesQuestion):
-    """Spectra of steady-state responses; attributes are as in :func:`orchestrate.spectra`."""
+    """Job of :func:`orchestrate.spectra`: spectra of responses, bonded and delaminated."""
 
     periods: int = 64
     points: int = 1024
@@ -101,18 +99,18 @@ class SpectraJob(SeriesQuestion):
             )
 
     def items(self, inputs: Inputs) -> Sequence[Point]:
-        """Return structure and excitation of each response."""
+        """Return the operating points of all responses."""
         return self.series.points
 
     def orders(self) -> Floats:
-        """Return the lines as multiples of the excitation frequency."""
+        """Return the spectral lines as multiples of the excitation frequency."""
         orders = np.arange(self.periods * self.points // 2 + 1) / self.periods
         return orders[orders <= self.highest]
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
     ) -> Table:
-        """Compute spectra: bonded, delaminated, and delaminated without its impulses."""
+        """Compute a chunk of spectra: bonded, delaminated, and delaminated without impulses."""
         amplitudes = []
         with Instance(fmus[OSCILLATOR]) as instance:
             for structure, excitation in items:
@@ -122,7 +120,7 @@ class SpectraJob(SeriesQuestion):
         return {"acceleration": np.array(amplitudes)}
 
     def spectrum(self, instance: Instance, point: Point) -> tuple[Floats, Floats]:
-        """Return both masses' spectra, (2, lines) each: with impulses, and without them."""
+        """Simulate a response; return both masses' spectra with impulses, and without."""
         span, count = point.excitation.period, self.periods * self.points
         first, last = self.transient * span, (self.transient + self.periods) * span
         begin(instance, *point, REST)
@@ -138,12 +136,12 @@ class SpectraJob(SeriesQuestion):
         return (frequency**2 * displaced)[:, :shown], between[:, :shown]
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return amplitudes over the lines."""
+        """Return the dataset of the spectra over parameter, kind, mass and order."""
         import xarray as xr
 
         along, orders = self.series.name, self.orders()
         speeds = np.array([point.excitation.frequency for point in self.series.points])
-        text = "amplitude of the acceleration in space"
+        text = "amplitude of the absolute acceleration"
         kinds = "bonded and delaminated with impulses; delaminated as sampled between impulses"
         variables = {
             "acceleration": variable(
@@ -175,7 +173,7 @@ def spectra(
     highest: float = 40.0,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Compute amplitude spectra of the masses' accelerations in space, bonded beside delaminated.
+    """Compute amplitude spectra of the masses' absolute accelerations, bonded and delaminated.
 
     Parameters
     ----------
@@ -211,7 +209,7 @@ def spectra(
     Notes
     -----
     The paper's Figure 3. With impulses: the square of the frequency times the spectrum of the
-    displacement in space, through a Hann window; states sampled ``points`` times a period fold
+    absolute displacement, through a Hann window; states sampled ``points`` times a period fold
     what lies above half that rate, which for a kink falls with the square of the frequency.
 
     Examples
@@ -228,6 +226,6 @@ def spectra(
         periods=checked_integer("periods", periods, 1),
         points=checked_integer("points", points, 2),
         transient=checked_integer("transient", transient, 0),
-        highest=positive("highest", highest),
+        highest=checked_positive("highest", highest),
     )
     return answer(job, running, finder(running))

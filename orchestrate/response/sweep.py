@@ -1,4 +1,4 @@
-"""Responses along a parameter, each from the end of the last: orbit diagrams (section 3.1)."""
+"""Sweeps (orbit diagrams), ``orchestrate.sweep``: the job and the columns of its result and CSV."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from ..errors import InputError
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .labels import Dims, Variable, flags, nondimensional_state, variable, yes_or_no
+from .labels import Dims, Variable, flags, nondimensional_state_coordinate, variable, yes_or_no
 from .multiplicity import DECIDED, REPEATED
 from .peaks import PEAKS, peaks, periods_to_sample, sample_periods
-from .questions import Point, SeriesQuestion, positive, series_arguments, state
-from .respond import Response, follow, impacts_since
+from .questions import Point, SeriesQuestion, checked_positive, checked_state, series_arguments
+from .respond import Response, count_impacts_until, follow_responses
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -40,8 +40,8 @@ RESPONSE_QUANTITIES = {  # one a response: units, long name
     "x2_max": ("m", "largest distance of mass 2 from the box's middle"),
     "xi1_max": ("1", "largest distance of mass 1 from the box's middle over a eta^2"),
     "xi2_max": ("1", "largest distance of mass 2 from the box's middle over a eta^2"),
-    "a1_max": ("m/s2", "largest acceleration of mass 1 in space between impacts"),
-    "a2_max": ("m/s2", "largest acceleration of mass 2 in space between impacts"),
+    "a1_max": ("m/s2", "largest absolute acceleration of mass 1 between impacts"),
+    "a2_max": ("m/s2", "largest absolute acceleration of mass 2 between impacts"),
 }
 END = "state at the last sample, from which the next value starts"
 MULTIPLICITY = "least n such that the state repeats after n periods; 0: none"
@@ -50,7 +50,7 @@ HOW_DECIDED = "how the multiplicity was decided; where it is undecided it is a g
 
 @dataclass(frozen=True, kw_only=True)
 class SweepJob(SeriesQuestion):
-    """Responses along one parameter; attributes are as in :func:`orchestrate.sweep`."""
+    """Job of :func:`orchestrate.sweep`: responses along one parameter, up, down or both."""
 
     direction: Direction = "up"
     transient: int = 500
@@ -76,7 +76,7 @@ class SweepJob(SeriesQuestion):
             )
 
     def orders(self) -> list[NDArray[np.intp]]:
-        """Return the indices of the values in the order of computing, for each direction."""
+        """Return the indices of the values in computing order, an array per direction."""
         up = np.argsort(self.series.values, kind="stable")
         known = {"up": [up], "down": [up[::-1]], "both": [up, up[::-1]]}
         return known.get(self.direction) or [np.arange(len(up))]
@@ -86,11 +86,11 @@ class SweepJob(SeriesQuestion):
         return len(self.orders())
 
     def count(self) -> int:
-        """Return the number of responses."""
+        """Return the number of responses, over all directions."""
         return self.independent_series() * super().count()
 
     def items(self, inputs: Inputs) -> Sequence[Point]:
-        """Return structure and excitation of each response."""
+        """Return the operating points of all responses, in computing order."""
         points = self.series.points
         return [points[index] for order in self.orders() for index in order]
 
@@ -106,7 +106,7 @@ class SweepJob(SeriesQuestion):
             rows = [
                 self.row(instance, point, response)
                 for point, response in zip(
-                    items, follow(instance, items, start, *settings), strict=True
+                    items, follow_responses(instance, items, start, *settings), strict=True
                 )
             ]
         spans, orbits = ([row.pop(name) for row in rows] for name in ("span", "orbit"))
@@ -114,7 +114,7 @@ class SweepJob(SeriesQuestion):
         return {**table, **peaks(items, spans, np.array(orbits))}
 
     def row(self, instance: Instance, point: Point, response: Response) -> dict[str, Any]:
-        """Return one response, and how it goes on after the samples."""
+        """Return one response's numbers by column name, and its states sampled for peaks."""
         n, decided = response.decision(self.tolerance)
         span = periods_to_sample(n, self.peak_periods)
         first = self.transient + self.samples
@@ -122,7 +122,7 @@ class SweepJob(SeriesQuestion):
         impacts = response.impacts_per_period
         if decided == REPEATED:
             done, end = ((first + count) * point.excitation.period for count in (span, n))
-            impacts = impacts_since(instance, response.impact_count, done, end) / n
+            impacts = count_impacts_until(instance, response.impact_count, done, end) / n
         return {
             "gap": response.gap,
             "end": response.end,
@@ -137,18 +137,18 @@ class SweepJob(SeriesQuestion):
         }
 
     def boundary_state(self, table: Table) -> bytes:
-        """Return the state that the next response starts from."""
+        """Return, as bytes, the state that the next chunk's first response starts from."""
         return bytes(table["end"][-1].tobytes())
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return everything over the parameter, in the order of its values."""
+        """Return the dataset of the sweep over the parameter, in the order of its values."""
         import xarray as xr
 
         ordered = {name: self.in_order(values) for name, values in table.items()}
         return xr.Dataset(self.variables(ordered), self.coordinates(), {"title": self.title()})
 
     def in_order(self, values: NDArray[np.generic]) -> NDArray[np.generic]:
-        """Return rows as the values were given, with a first axis if there are both directions."""
+        """Reorder rows from computing order to the values' order, (direction, value) if both."""
         orders = self.orders()
         rows = values.reshape(len(orders), -1, *values.shape[1:])
         ordered = np.empty_like(rows)
@@ -157,7 +157,7 @@ class SweepJob(SeriesQuestion):
         return ordered if self.direction == "both" else ordered[0]
 
     def variables(self, table: Table) -> dict[str, Variable]:
-        """Return what was computed, in the paper's units too."""
+        """Return the result's variables, which become the CSV columns, from response rows."""
         along: Dims = (self.series.name,)
         if self.direction == "both":
             along = ("direction", self.series.name)
@@ -180,16 +180,16 @@ class SweepJob(SeriesQuestion):
                 for name in RESPONSE_QUANTITIES
             },
             "permanent_contact": yes_or_no(along, table["permanent_contact"], contact),
-            **multiplicities(along, table),
+            **multiplicity_variables(along, table),
             "end_state": variable((*along, "coordinate"), table["end"] / scales, "1", END),
         }
 
     def coordinates(self) -> dict[str, Variable]:
-        """Return the parameter, the excitation along it, periods and names."""
+        """Return dataset coordinates: parameter, excitation, sample numbers, direction."""
         numbers = np.arange(self.transient + 1, self.transient + self.samples + 1)
         coordinates = {
             **self.series.coordinates(),
-            **nondimensional_state(),
+            **nondimensional_state_coordinate(),
             "sample": variable("sample", numbers, "1", "excitation period n of the sample"),
         }
         if self.direction == "both":
@@ -198,12 +198,12 @@ class SweepJob(SeriesQuestion):
         return coordinates
 
     def title(self) -> str:
-        """Return the title of the result."""
+        """Return the title of the dataset: parameter, direction and structure."""
         return f"Responses along {self.series.name}, {self.direction}: {self.structure.label()}"
 
 
-def multiplicities(along: Dims, table: Table) -> dict[str, Variable]:
-    """Return the multiplicity, and how it was decided, as variables."""
+def multiplicity_variables(along: Dims, table: Table) -> dict[str, Variable]:
+    """Return dataset variables of the multiplicity and of how it was decided."""
     return {
         "multiplicity": variable(along, table["multiplicity"].astype("i4"), "1", MULTIPLICITY),
         "multiplicity_decided": flags(along, table["decided"], HOW_DECIDED, DECIDED),
@@ -226,7 +226,7 @@ def sweep(
     peak_periods: int = 8,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Compute responses along a parameter, each started from a state of the last.
+    """Compute responses along a parameter, each started from the end state of the one before.
 
     Parameters
     ----------
@@ -269,7 +269,7 @@ def sweep(
         ``end_state``, the non-dimensional state at the last sample, at phase 0, from which the next
         value starts; largest distances of both masses from the
         box's middle, ``x1_max`` and ``x2_max`` in m, ``xi1_max`` and ``xi2_max`` over a eta^2; and
-        ``a1_max``, ``a2_max``, the largest accelerations in space in m/s2, which an accelerometer
+        ``a1_max``, ``a2_max``, the largest absolute accelerations in m/s2, which an accelerometer
         on a mass reads between impacts.
 
     Raises
@@ -317,8 +317,8 @@ def sweep(
         direction=direction,
         transient=checked_integer("transient", transient, 0),
         samples=checked_integer("samples", samples, 1),
-        tolerance=positive("tolerance", tolerance),
-        start=state("start", start, structure),
+        tolerance=checked_positive("tolerance", tolerance),
+        start=checked_state("start", start, structure),
         peak_periods=checked_integer("peak_periods", peak_periods, 1),
     )
     return answer(job, running, finder(running))

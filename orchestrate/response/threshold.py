@@ -1,4 +1,4 @@
-"""The level of shaking at which a pressed structure first opens, or an open one first touches.
+"""Excitation level at which faces first open or touch, exact: ``orchestrate.contact_threshold``.
 
 Below it the response is linear, (10) and (11) with i = 3 where a preload holds the masses together,
 with i = 1 and 2 where a gap keeps them apart. There the contact force (18), or the gap (13), is a
@@ -18,8 +18,8 @@ from ..checks import REQUIRES_DELAMINATED
 from ..errors import InputError
 from ..running.job import brief
 from ..structures import Structure
-from .labels import Variable, parameter, variable
-from .questions import checked_structure, numbers
+from .labels import Variable, parameter_variable, variable
+from .questions import checked_numbers, checked_structure
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,7 +30,7 @@ ACCURACY = 1e-12  # of a frequency at a minimum; the level there is flat, and ex
 
 
 def threshold_amplitudes(structure: Structure, frequency: Floats) -> Floats:
-    """Return amplitudes of the box at the threshold, m.
+    """Return box amplitudes, m, at which the linear response first opens or touches.
 
     Parameters
     ----------
@@ -53,23 +53,23 @@ def threshold_amplitudes(structure: Structure, frequency: Floats) -> Floats:
     if structure.bonded:
         return np.full_like(eta, np.inf)
     # what the accelerations of both masses alone differ by, for a common motion e^{i eta tau}
-    differs = (square[0] - square[1]) + 1j * eta * (twice[0] - twice[1])
+    difference = (square[0] - square[1]) + 1j * eta * (twice[0] - twice[1])
     one, two, both = ((square[i] - eta**2) + 1j * eta * twice[i] for i in range(3))
     if structure.gap_offset < 0.0:
-        held, response = -structure.gap_offset * square[1] / square[2], differs * eta**2 / both
+        limit, response = -structure.gap_offset * square[1] / square[2], difference * eta**2 / both
     else:
-        held, response = structure.gap_offset, differs * eta**2 / (one * two)
-    if held == 0.0:
+        limit, response = structure.gap_offset, difference * eta**2 / (one * two)
+    if limit == 0.0:
         return np.zeros_like(eta)
     with np.errstate(divide="ignore"):
-        amplitudes: Floats = held / np.abs(response)
+        amplitudes: Floats = limit / np.abs(response)
     return amplitudes
 
 
 def threshold_variables(structure: Structure, along: str, frequency: Floats) -> dict[str, Variable]:
-    """Return the threshold over some frequencies, as amplitude and as acceleration of the box."""
+    """Return dataset variables of the threshold over frequencies: amplitude, acceleration."""
     amplitudes = threshold_amplitudes(structure, frequency)
-    event = event_of(structure)
+    event = threshold_event(structure)
     where = f"at which the structure first {event}"
     levels = {
         "threshold_amplitude": (amplitudes, "m", f"amplitude of the box {where}"),
@@ -79,33 +79,33 @@ def threshold_variables(structure: Structure, along: str, frequency: Floats) -> 
             f"peak acceleration of the box {where}",
         ),
     }
-    made = {name: variable(along, *about) for name, about in levels.items()}
-    made |= lowest_variables(structure, np.asarray(frequency, dtype=float), amplitudes)
+    variables = {name: variable(along, *attributes) for name, attributes in levels.items()}
+    variables |= lowest_variables(structure, np.asarray(frequency, dtype=float), amplitudes)
     return {
-        name: (dims, values, {**about, "event": event})
-        for name, (dims, values, about) in made.items()
+        name: (dims, values, {**attributes, "event": event})
+        for name, (dims, values, attributes) in variables.items()
     }
 
 
 def lowest_variables(
     structure: Structure, frequency: Floats, amplitudes: Floats
 ) -> dict[str, Variable]:
-    """Return the lowest threshold between some frequencies; empty where there is none to find."""
+    """Return dataset variables of the lowest threshold in a range; empty if there is none."""
     low, high = float(frequency.min()), float(frequency.max())
     if not (low < high and np.isfinite(amplitudes).all() and (amplitudes > 0.0).all()):
         return {}
-    place, level = lowest_threshold(structure, low, high)
-    where = f"at which the structure first {event_of(structure)}"
+    frequency_at_lowest, level = lowest_threshold(structure, low, high)
+    where = f"at which the structure first {threshold_event(structure)}"
     return {
         "lowest_threshold": variable((), level, "m/s2", f"lowest peak acceleration {where}"),
         "lowest_threshold_frequency": variable(
-            (), place, "rad/s", f"frequency of the lowest peak acceleration {where}"
+            (), frequency_at_lowest, "rad/s", f"frequency of the lowest peak acceleration {where}"
         ),
     }
 
 
 def lowest_threshold(structure: Structure, low: float, high: float) -> tuple[float, float]:
-    """Find the lowest threshold between two frequencies; return its rad/s, and the box's m/s2.
+    """Minimise the threshold between two frequencies; return rad/s and box level, m/s2.
 
     The curve is a smooth one with a valley at each natural frequency of the linear response, as
     narrow as that is damped: its minima are bracketed on a grid with these frequencies in it, and
@@ -126,6 +126,7 @@ def lowest_threshold(structure: Structure, low: float, high: float) -> tuple[flo
     from scipy.optimize import minimize_scalar
 
     def level(frequency: float) -> float:
+        """Return the threshold acceleration of the box, m/s2, at a frequency."""
         speed = np.array([frequency])
         return float(threshold_amplitudes(structure, speed)[0]) * (frequency * frequency)
 
@@ -137,25 +138,25 @@ def lowest_threshold(structure: Structure, low: float, high: float) -> tuple[flo
     best = (float(values.min()), float(grid[values.argmin()]))
     inside = np.flatnonzero((values[1:-1] <= values[:-2]) & (values[1:-1] <= values[2:])) + 1
     for middle, before, after in zip(grid[inside], grid[inside - 1], grid[inside + 1], strict=True):
-        found = minimize_scalar(  # by the distance, whose rounding is that of a narrow valley
+        minimum = minimize_scalar(  # by the distance, whose rounding is that of a narrow valley
             lambda distance, middle=middle: level(middle + distance),
             bounds=(before - middle, after - middle),
             method="bounded",
             options={"xatol": ACCURACY * middle},
         )
-        best = min(best, (float(found.fun), float(middle + found.x)))
+        best = min(best, (float(minimum.fun), float(middle + minimum.x)))
     return best[1], best[0]
 
 
-def event_of(structure: Structure) -> str:
-    """Return what happens to a structure at its threshold: it "opens", or it "touches"."""
+def threshold_event(structure: Structure) -> str:
+    """Return "opens" for a pressed structure, "touches" for one with a gap."""
     return "opens" if structure.gap_offset < 0.0 else "touches"
 
 
 def contact_threshold(
     structure: Structure, *, eta: ArrayLike | None = None, frequency: ArrayLike | None = None
 ) -> xr.Dataset:
-    """Return the level at which a pressed structure first opens, or an open one first touches.
+    """Compute the excitation level at which a structure's faces first open or touch.
 
     Parameters
     ----------
@@ -207,19 +208,24 @@ def contact_threshold(
 
     if checked_structure(structure).bonded:
         raise InputError(REQUIRES_DELAMINATED)
-    asked = {"eta": numbers("eta", eta), "frequency": numbers("frequency", frequency)}
-    given = {name: values for name, values in asked.items() if values is not None}
-    if len(given) != 1:
-        raise InputError(f"{' and '.join(given) or 'nothing'} given; expected eta= or frequency=")
-    ((name, values),) = given.items()
+    checked = {
+        "eta": checked_numbers("eta", eta),
+        "frequency": checked_numbers("frequency", frequency),
+    }
+    arguments = {name: values for name, values in checked.items() if values is not None}
+    if len(arguments) != 1:
+        raise InputError(
+            f"{' and '.join(arguments) or 'nothing'} given; expected eta= or frequency="
+        )
+    ((name, values),) = arguments.items()
     column = np.atleast_1d(np.asarray(values, dtype=float))
     speeds = column * structure.omega if name == "eta" else column
     other = {"eta": speeds / structure.omega, "frequency": speeds, name: column}
-    event = event_of(structure)
+    event = threshold_event(structure)
     return xr.Dataset(
         threshold_variables(structure, name, speeds),
         {
-            **{key: parameter(key, name, each) for key, each in other.items()},
+            **{key: parameter_variable(key, name, each) for key, each in other.items()},
             "hertz": variable(name, speeds / (2.0 * np.pi), "Hz", "frequency of the box"),
         },
         {

@@ -1,4 +1,4 @@
-"""Significant maxima and jumps of a curve."""
+"""Find prominent maxima and jumps in a sampled curve, such as a resonance curve."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ WINDOW = 3  # values: the least that can show a maximum of their own
 NEIGHBOURS, JUMP_FACTOR = 2, 3.0  # of the curve's own slope, which a jump must stand out from
 
 
-def maxima(curve: ArrayLike, prominence: float) -> Rows:
-    """Return the indices of maxima inside a curve that stand out.
+def prominent_maxima(curve: ArrayLike, prominence: float) -> Rows:
+    """Return the indices of a curve's inner maxima whose relative prominence is enough.
 
     Parameters
     ----------
@@ -23,7 +23,7 @@ def maxima(curve: ArrayLike, prominence: float) -> Rows:
 
     Examples
     --------
-    >>> maxima([1.0, 2.0, 1.9, 2.0, 5.0, 2.0], 0.1)
+    >>> prominent_maxima([1.0, 2.0, 1.9, 2.0, 5.0, 2.0], 0.1)
     array([4])
     """
     from scipy.signal import find_peaks
@@ -35,7 +35,7 @@ def maxima(curve: ArrayLike, prominence: float) -> Rows:
 
 
 def inside_irregular(irregular: ArrayLike) -> NDArray[np.bool_]:
-    """Return which values of a curve lie inside a range of irregular responses.
+    """Return, for each value of a curve, whether it lies in a range of irregular responses.
 
     Parameters
     ----------
@@ -60,8 +60,8 @@ def inside_irregular(irregular: ArrayLike) -> NDArray[np.bool_]:
     return inside
 
 
-def jumps(curve: ArrayLike, minimum: float) -> Rows:
-    """Return the indices of values from which a curve jumps to the next one.
+def jump_indices(curve: ArrayLike, minimum: float) -> Rows:
+    """Return the indices after which a curve jumps: steps far larger than their neighbours.
 
     Parameters
     ----------
@@ -72,22 +72,22 @@ def jumps(curve: ArrayLike, minimum: float) -> Rows:
 
     Examples
     --------
-    >>> jumps([1.0, 1.1, 1.2, 2.0, 2.1, 2.2], 0.15)
+    >>> jump_indices([1.0, 1.1, 1.2, 2.0, 2.1, 2.2], 0.15)
     array([2])
-    >>> jumps([1.0, 1.3, 1.7, 2.2, 2.9, 3.8], 0.15)
+    >>> jump_indices([1.0, 1.3, 1.7, 2.2, 2.9, 3.8], 0.15)
     array([], dtype=int64)
     """
     values = np.asarray(curve, dtype=float)
     steps = np.abs(np.diff(values))
     large = steps > minimum * np.maximum(np.abs(values[1:]), np.abs(values[:-1]))
     padded = np.pad(steps, NEIGHBOURS)
-    around = [np.roll(padded, shift)[NEIGHBOURS:-NEIGHBOURS] for shift in offsets()]
+    around = [np.roll(padded, shift)[NEIGHBOURS:-NEIGHBOURS] for shift in neighbour_offsets()]
     indices: Rows = np.flatnonzero(
         large & (steps > JUMP_FACTOR * np.max(around, axis=0, initial=0.0))
     )
     return indices
 
 
-def offsets() -> list[int]:
-    """Return the offsets of the neighbours of a step."""
+def neighbour_offsets() -> list[int]:
+    """Return the offsets of a step's neighbours that it is compared with, 0 left out."""
     return [shift for shift in range(-NEIGHBOURS, NEIGHBOURS + 1) if shift]

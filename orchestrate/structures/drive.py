@@ -10,7 +10,7 @@ from os import PathLike
 from ..errors import InputError
 from .described import Described
 from .ranges import DRIVE, RATIO_QUANTITIES, construct_or_explain, exact_inverse
-from .structure import Structure
+from .structure import Structure, damping_from_ratio
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,8 +106,8 @@ class Drive(Described):
             checked,
             lambda: cls(
                 box_mass=mass,
-                box_stiffness=stiffness(checked["Omega_b"], omega, mass),
-                box_damping=damping(checked["D_b"], omega, mass),
+                box_stiffness=suspension_stiffness(checked["Omega_b"], omega, mass),
+                box_damping=damping_from_ratio(checked["D_b"], omega, mass),
                 unbalance_mass=0.01 * mass,
                 unbalance_radius=100.0 * length,
                 rotor_inertia=inertia,
@@ -227,13 +227,17 @@ class Drive(Described):
         """Return the empty box's natural frequency over the structure's omega."""
         omega, mass = structure.omega, self.box_mass
         guess = math.sqrt(self.box_stiffness / mass) / omega
-        return exact_inverse(guess, lambda ratio: stiffness(ratio, omega, mass), self.box_stiffness)
+        return exact_inverse(
+            guess, lambda ratio: suspension_stiffness(ratio, omega, mass), self.box_stiffness
+        )
 
     def D_b(self, structure: Structure) -> float:
         """Return the box's damping ratio, c_b/(2 omega M_t)."""
         omega, mass = structure.omega, self.box_mass
         guess = self.box_damping / (2.0 * omega * mass)
-        return exact_inverse(guess, lambda ratio: damping(ratio, omega, mass), self.box_damping)
+        return exact_inverse(
+            guess, lambda ratio: damping_from_ratio(ratio, omega, mass), self.box_damping
+        )
 
     def volts(self, structure: Structure) -> float:
         """Return the unit of voltage, V: the one whose no-load speed is the structure's omega."""
@@ -268,11 +272,6 @@ def torque_line(
     return constant, constant * rated_voltage / stall_torque
 
 
-def stiffness(ratio: float, omega: float, mass: float) -> float:
+def suspension_stiffness(ratio: float, omega: float, mass: float) -> float:
     """Return the stiffness k_b, N/m, of the box's suspension: M_t (Omega_b omega)^2."""
     return mass * (ratio * omega) ** 2
-
-
-def damping(ratio: float, omega: float, mass: float) -> float:
-    """Return the damper c_b, N s/m, of the box's suspension: 2 D_b omega M_t."""
-    return 2.0 * ratio * omega * mass

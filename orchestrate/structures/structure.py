@@ -47,31 +47,31 @@ ALTERNATIVES = {  # names that set the same value
 }
 
 
-def stiffness(f: float, mass: float) -> float:
+def stiffness_from_frequency(f: float, mass: float) -> float:
     """Return the stiffness, N/m, that gives a mass the natural frequency f, Hz: m (2 pi f)^2."""
     omega = 2.0 * math.pi * f
     return mass * (omega * omega)
 
 
-def damping(ratio: float, omega: float, mass: float) -> float:
-    """Return the damper, N s/m, for a damping ratio D: d = 2 D omega m (8)."""
+def damping_from_ratio(ratio: float, omega: float, mass: float) -> float:
+    """Return the damping constant, N s/m, from a damping ratio D: d = 2 D omega m (8)."""
     return 2.0 * ratio * omega * mass
 
 
 def natural_frequency(spring: float, mass: float) -> float:
-    """Return a mass's natural frequency, Hz, on a spring; exact inverse of :func:`stiffness`."""
+    """Return a mass's natural frequency, Hz; inverse of :func:`stiffness_from_frequency`."""
     guess = math.sqrt(spring / mass) / (2.0 * math.pi)
-    return exact_inverse(guess, lambda f: stiffness(f, mass), spring)
+    return exact_inverse(guess, lambda f: stiffness_from_frequency(f, mass), spring)
 
 
 def damping_ratio(damper: float, f: float, mass: float) -> float:
-    """Return a damper's ratio to critical damping for a mass with natural frequency f, Hz."""
+    """Return the damping ratio (1: critical) from a damping constant and a frequency, Hz."""
     omega = 2.0 * math.pi * f
     ratio = damper / (2.0 * omega * mass)
-    return exact_inverse(ratio, lambda guess: damping(guess, omega, mass), damper)
+    return exact_inverse(ratio, lambda guess: damping_from_ratio(guess, omega, mass), damper)
 
 
-def check_thicknesses(thicknesses: tuple[float, float]) -> tuple[float, float]:
+def checked_thicknesses(thicknesses: tuple[float, float]) -> tuple[float, float]:
     """Return two layer thicknesses as floats; raise ``InputError`` unless both are > 0.
 
     Raises
@@ -90,19 +90,19 @@ def check_thicknesses(thicknesses: tuple[float, float]) -> tuple[float, float]:
     return h1, h2
 
 
-def short(value: float) -> str:
+def format_short(value: float) -> str:
     """Format a float for a file name: all its digits, without a trailing ``.0``."""
     return repr(value).removesuffix(".0")
 
 
-class Added(TypedDict, total=False):
-    """Types of the constructors' keywords that came later: clearance, e_slope and others."""
+class LaterKeywords(TypedDict, total=False):
+    """Types of the constructors' further keywords: clearance, e_slope and others."""
 
     clearance: float
     e_slope: float
 
 
-class Varied(TypedDict, total=False):
+class ValueListKeywords(TypedDict, total=False):
     """Types of ``PARAMETERS`` as keywords that take a list of values each."""
 
     m1: ArrayLike
@@ -207,7 +207,7 @@ class Structure(Described):
         *,
         m1: float = 1.0,
         omega: float = 1.0,
-        **added: Unpack[Added],
+        **added: Unpack[LaterKeywords],
     ) -> Structure:
         """Make a structure from mu, kappa, D and omega of the paper, (2) and (8).
 
@@ -243,8 +243,8 @@ class Structure(Described):
                 m2=v["mu"] * m1,
                 k1=k1,
                 k2=v["kappa"] * k1,
-                d1=damping(v.get("D1", v["D"]), v["omega"], m1),
-                d2=damping(v.get("D2", v["D"]), v["omega"], m1) * v["mu"],
+                d1=damping_from_ratio(v.get("D1", v["D"]), v["omega"], m1),
+                d2=damping_from_ratio(v.get("D2", v["D"]), v["omega"], m1) * v["mu"],
                 e=e,
                 gamma=gamma,
                 bonded=bonded,
@@ -265,7 +265,7 @@ class Structure(Described):
         e: float = STRUCTURE["e"].default,
         gamma: float = STRUCTURE["gamma"].default,
         bonded: bool = False,
-        **added: Unpack[Added],
+        **added: Unpack[LaterKeywords],
     ) -> Structure:
         """Make a structure from mass, natural frequency and damping ratio of each half alone.
 
@@ -302,10 +302,10 @@ class Structure(Described):
             lambda: cls(
                 m1=m1,
                 m2=m2,
-                k1=stiffness(v["f1"], m1),
-                k2=stiffness(v["f2"], m2),
-                d1=damping(v["zeta1"], 2.0 * math.pi * v["f1"], m1),
-                d2=damping(v["zeta2"], 2.0 * math.pi * v["f2"], m2),
+                k1=stiffness_from_frequency(v["f1"], m1),
+                k2=stiffness_from_frequency(v["f2"], m2),
+                d1=damping_from_ratio(v["zeta1"], 2.0 * math.pi * v["f1"], m1),
+                d2=damping_from_ratio(v["zeta2"], 2.0 * math.pi * v["f2"], m2),
                 e=e,
                 gamma=gamma,
                 bonded=bonded,
@@ -324,7 +324,7 @@ class Structure(Described):
         e: float = STRUCTURE["e"].default,
         gamma: float = STRUCTURE["gamma"].default,
         bonded: bool = False,
-        **added: Unpack[Added],
+        **added: Unpack[LaterKeywords],
     ) -> Structure:
         """Make a structure by splitting the undamaged beam's mode between two layers by thickness.
 
@@ -367,10 +367,10 @@ class Structure(Described):
         mass, f = STRUCTURE["m1"].check(mass), RATIO_QUANTITIES["f1"].check(f)
         zeta = RATIO_QUANTITIES["zeta1"].check(zeta)
         warn_of_per_cent({"zeta": zeta})
-        h1, h2 = check_thicknesses(thicknesses)
+        h1, h2 = checked_thicknesses(thicknesses)
         heavy, light = h1 / (h1 + h2), h2 / (h1 + h2)
         stiff, soft = heavy**3 / (heavy**3 + light**3), light**3 / (heavy**3 + light**3)
-        k, d = stiffness(f, mass), damping(zeta, 2.0 * math.pi * f, mass)
+        k, d = stiffness_from_frequency(f, mass), damping_from_ratio(zeta, 2.0 * math.pi * f, mass)
         return construct_or_explain(
             {"mass": mass, "f": f, "zeta": zeta},
             lambda: cls(
@@ -436,7 +436,9 @@ class Structure(Described):
         """Damping ratio d1/(2 omega m1) of mass 1 (8)."""
         omega, m1 = self.omega, self.m1
         return exact_inverse(
-            self.d1 / (2.0 * omega * m1), lambda ratio: damping(ratio, omega, m1), self.d1
+            self.d1 / (2.0 * omega * m1),
+            lambda ratio: damping_from_ratio(ratio, omega, m1),
+            self.d1,
         )
 
     @property
@@ -445,7 +447,7 @@ class Structure(Described):
         omega, m1, mu = self.omega, self.m1, self.mu
         return exact_inverse(
             self.d2 / (2.0 * omega * self.m2),
-            lambda ratio: damping(ratio, omega, m1) * mu,
+            lambda ratio: damping_from_ratio(ratio, omega, m1) * mu,
             self.d2,
         )
 
@@ -610,11 +612,11 @@ class Structure(Described):
         for half, mass in (("1", self.m1), ("2", self.m2)):
             f, zeta = f"f{half}", f"zeta{half}"
             if f in changes:
-                new[f"k{half}"] = stiffness(changes[f], mass)
+                new[f"k{half}"] = stiffness_from_frequency(changes[f], mass)
             if f in changes or zeta in changes:
                 ratio = changes.get(zeta, getattr(self, zeta))
                 omega = 2.0 * math.pi * changes.get(f, getattr(self, f))
-                new[f"d{half}"] = damping(ratio, omega, mass)
+                new[f"d{half}"] = damping_from_ratio(ratio, omega, mass)
         return new
 
     def _by_ratios(self, ratios: dict[str, float]) -> dict[str, Any]:
@@ -631,9 +633,9 @@ class Structure(Described):
         if all_ratios.keys() & {"kappa", "omega"}:
             new["k2"] = all_ratios.get("kappa", self.kappa) * k1
         if all_ratios.keys() & {"D1", "omega"}:
-            new["d1"] = damping(all_ratios.get("D1", self.D1), omega, self.m1)
+            new["d1"] = damping_from_ratio(all_ratios.get("D1", self.D1), omega, self.m1)
         if all_ratios.keys() & {"D2", "mu", "omega"}:
-            new["d2"] = damping(all_ratios.get("D2", self.D2), omega, self.m1) * mu
+            new["d2"] = damping_from_ratio(all_ratios.get("D2", self.D2), omega, self.m1) * mu
         return new
 
     def parameters(self) -> dict[str, float | bool]:
@@ -642,7 +644,7 @@ class Structure(Described):
 
     def _pair(self, letter: str) -> str:
         """Return a parameter of both halves as text for a label: ``k1.0-2.0``."""
-        first, second = (short(self.get(f"{letter}{half}")) for half in (1, 2))
+        first, second = (format_short(self.get(f"{letter}{half}")) for half in (1, 2))
         return f"{letter}{first}-{second}"
 
     def _is_by_halves(self) -> bool:
@@ -654,16 +656,16 @@ class Structure(Described):
         """Return a short text of the parameters for file names and titles, unique per structure."""
         default = type(self)()
         if (self.m1, self.k1) == (1.0, 1.0):
-            damping_ratios = dict.fromkeys((short(self.D1), short(self.D2)))
-            parts = [f"e{short(self.e)}", f"D{'-'.join(damping_ratios)}"]
+            damping_ratios = dict.fromkeys((format_short(self.D1), format_short(self.D2)))
+            parts = [f"e{format_short(self.e)}", f"D{'-'.join(damping_ratios)}"]
             names: tuple[str, ...] = ("mu", "kappa", "gamma", *ADDED)
         else:
             masses, *si = (self._pair(letter) for letter in ("m", "k", "d"))
             halves = [self._pair(letter) for letter in ("f", "zeta")]
             shorter = self._is_by_halves() and len("".join(halves)) < len("".join(si))
-            parts = [f"e{short(self.e)}", masses, *(halves if shorter else si)]
+            parts = [f"e{format_short(self.e)}", masses, *(halves if shorter else si)]
             names = ("gamma", *ADDED)
         for name in names:
             if self.get(name) != default.get(name):
-                parts.append(f"{name}{short(self.get(name))}")
+                parts.append(f"{name}{format_short(self.get(name))}")
         return "_".join([*parts, *(["bonded"] if self.bonded else [])])

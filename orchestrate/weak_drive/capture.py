@@ -22,7 +22,7 @@ from ..access.exported import finder
 from ..access.models import OSCILLATOR, SHAKER
 from ..checks import checked_integer
 from ..errors import InputError
-from ..response.labels import Variable, parameter, variable, yes_or_no
+from ..response.labels import Variable, parameter_variable, variable, yes_or_no
 from ..running.job import Inputs, Job, Table
 from ..running.runner import answer
 from ..structures.drive import Drive
@@ -255,7 +255,7 @@ def axis(over: str, values: ArrayLike) -> Variable:
     if over in DRIVE:
         numbers = np.asarray(values, dtype=float)
         return variable(over, numbers, DRIVE[over].unit, DRIVE[over].description)
-    return parameter(over, over, values)
+    return parameter_variable(over, over, values)
 
 
 def voltages_of(voltage: tuple[float, float], count: int) -> tuple[float, ...]:

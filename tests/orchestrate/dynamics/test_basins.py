@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 
 from orchestrate.access import OSCILLATOR, REST, Instance, find, finder
-from orchestrate.dynamics.basins import BasinJob, Plane, PlaneAxis, Start, basin, run_to_phase_zero
+from orchestrate.dynamics.basins import (
+    BasinJob,
+    Plane,
+    PlaneAxis,
+    PlaneStart,
+    basin,
+    run_to_phase_zero,
+)
 from orchestrate.errors import InputError
 from orchestrate.response.questions import Point
 from orchestrate.response.simulate import simulate
@@ -82,7 +89,7 @@ def test_states_on_attractors_stay_there(found):
 @pytest.mark.parametrize("phase", [0.0, 0.7, 2.0 * np.pi, 5.0, -1.0, 9.0])
 def test_a_start_at_another_phase_is_run_on_to_phase_zero(phase):
     with Instance(find(OSCILLATOR).path) as instance:
-        found = run_to_phase_zero(instance, Start(POINT, AT, phase))
+        found = run_to_phase_zero(instance, PlaneStart(POINT, AT, phase))
     left = (-phase % (2.0 * np.pi)) / (2.0 * np.pi)
     motion = simulate(PAPER, eta=ETA, start=AT, phase=phase, periods=1, points=20_000)
     for name, value in zip(("x1", "x2", "v1", "v2"), found, strict=True):

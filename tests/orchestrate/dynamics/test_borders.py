@@ -113,9 +113,9 @@ def test_one_direction_does_not_depend_on_the_other(monkeypatch):
     monkeypatch.setattr(borders, "answer", lambda job, *rest: job)
     at, limits = number("Neimark-Sacker"), [(3.0, 4.0), (0.65, 0.75)]
     job = border(PAPER, start=window(), bifurcation=at, limits=limits)
-    curve, start = borders.first_root(job)
-    alone = borders.trace(job, curve, start)
-    borders.trace(job, curve, start.reversed())
-    after_the_other = borders.trace(job, curve, start)
+    curve, start = borders.start_root(job)
+    alone = borders.trace_curve(job, curve, start)
+    borders.trace_curve(job, curve, start.reversed())
+    after_the_other = borders.trace_curve(job, curve, start)
     for first, second in zip(alone.points, after_the_other.points, strict=True):
         assert first.unknowns.tobytes() == second.unknowns.tobytes()

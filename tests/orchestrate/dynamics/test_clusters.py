@@ -11,8 +11,8 @@ from scipy.cluster.hierarchy import fcluster, linkage
 from orchestrate.access import OSCILLATOR, REST, Instance, find
 from orchestrate.dynamics.clusters import (
     AttractorSettings,
-    features,
     irregular_clusters,
+    response_features,
     run_until_settled,
     single_linkage,
     transient_periods,
@@ -58,9 +58,11 @@ def test_features_of_periodic_responses_are_over_whole_periods():
     given = {"x_rel_max": 16.0, "permanent_contact": False, "frequency": 1.0, "tolerance": 1e-2}
     given |= {"impacts_per_period": 19.0 / 48.0, "impact_count": 19}
     periodic = Response(samples=samples, **given)
-    assert features(periodic, 3.0) == pytest.approx([5, 0.4, 16.0 / 3.0, 3.0, np.sqrt(2.0)])
+    assert response_features(periodic, 3.0) == pytest.approx(
+        [5, 0.4, 16.0 / 3.0, 3.0, np.sqrt(2.0)]
+    )
     irregular = Response(samples=np.arange(192.0).reshape(48, 4), **given)
-    assert features(irregular, 3.0)[:2] == [0, 19.0 / 48.0]
+    assert response_features(irregular, 3.0)[:2] == [0, 19.0 / 48.0]
 
 
 @pytest.mark.parametrize(
@@ -89,7 +91,7 @@ def test_a_long_transient_is_not_what_it_settles_to(exported):
         early = respond(instance, *point, near, 500, 200, 1e-2)
         response, periods = run_until_settled(instance, point, near, AttractorSettings())
     assert (early.multiplicity, early.impacts_per_period) == (1, 1.0)
-    assert (response.multiplicity, features(response, 1.0)[1]) == (2, 1.5)
+    assert (response.multiplicity, response_features(response, 1.0)[1]) == (2, 1.5)
     assert periods > 2_000
 
 

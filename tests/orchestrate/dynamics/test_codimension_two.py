@@ -12,7 +12,7 @@ import orchestrate
 from orchestrate import Structure
 from orchestrate.dynamics import codimension_two
 from orchestrate.dynamics.bifurcations import FOLD
-from orchestrate.dynamics.codimension_two import Characteristic, PointKind, points_between
+from orchestrate.dynamics.codimension_two import CharacteristicPolynomial, PointKind, points_between
 from orchestrate.dynamics.continuation import Root, newton_correct, unit_vector
 from orchestrate.dynamics.families import Setting
 from orchestrate.dynamics.periodic_orbit import ImpactSequence, PeriodicOrbit
@@ -118,7 +118,7 @@ def test_the_roots_of_the_polynomial_are_the_multipliers():
         kinds = tuple(map(int, found.node_kind.values[there]))
         form = Setting.fixed(PAPER, (("eta", eta),)).form(np.array([eta]))
         orbit = PeriodicOrbit(ImpactSequence(1, kinds), form, nodes)
-        d = Characteristic(orbit, np.ones(4 * len(nodes)))
+        d = CharacteristicPolynomial(orbit, np.ones(4 * len(nodes)))
         own = [complex(*pair) for pair in found.multipliers.values]
         for multiplier in own[:count]:
             assert abs(d(multiplier)) < 1e-9
@@ -152,7 +152,7 @@ class Normal:
         return np.vstack([self.first(unknowns), [-6.0 * unknowns[0], 0.0, 1.0]])
 
 
-class Known(Characteristic):
+class Known(CharacteristicPolynomial):
     """The polynomial of multipliers that are known."""
 
     def __init__(self, *multipliers):
@@ -171,7 +171,7 @@ def between(curve, first, last):
 @pytest.mark.parametrize("first", [-0.05, -0.15])
 def test_a_cusp_is_where_the_normal_form_has_it(monkeypatch, first):
     known = Known(1.0, 0.5, 0.3, 0.2)
-    monkeypatch.setattr(codimension_two, "characteristic", lambda *_: known)
+    monkeypatch.setattr(codimension_two, "characteristic_polynomial", lambda *_: known)
     found = between(Normal(), first, 0.1)
     assert set(found) == {PointKind.CUSP}
     assert found[PointKind.CUSP].unknowns == pytest.approx(np.zeros(3), abs=1e-12)
@@ -193,7 +193,7 @@ def test_what_the_multipliers_beside_1_say_on_a_fold(monkeypatch):
         def known(curve, unknowns, others=others):
             return Known(1.0, *others(unknowns[0]))
 
-        monkeypatch.setattr(codimension_two, "characteristic", known)
+        monkeypatch.setattr(codimension_two, "characteristic_polynomial", known)
         found = between(Normal(), 0.1, 0.35)
         assert set(found) == ({kind} if kind is not None else set())
         if kind is not None:

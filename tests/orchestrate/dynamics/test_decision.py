@@ -14,14 +14,18 @@ from orchestrate import orbit
 from orchestrate.access import OSCILLATOR, REST, EventInstance, Instance, find
 from orchestrate.dynamics.attractors import attractors
 from orchestrate.dynamics.clusters import AttractorSettings
-from orchestrate.dynamics.decision import MotionDecider, count_impacts, middle_of_longest_run
+from orchestrate.dynamics.decision import (
+    MotionDecider,
+    count_impacts_from_pause,
+    middle_of_longest_run,
+)
 from orchestrate.dynamics.orbit_search import least_periods
 from orchestrate.dynamics.settled_motion import (
     IRREGULAR,
     ORBIT,
     REPEATED,
     UNDECIDED,
-    KnownStates,
+    ScaledStates,
     same_nodes,
 )
 from orchestrate.response.questions import Point
@@ -105,7 +109,7 @@ def test_impacts_are_whole_numbers_from_whatever_period_one_counts():
     assert motion.multiplicity in (2, 11)
     with Instance(find(OSCILLATOR).path) as instance:
         counts = {
-            count_impacts(instance, motion.point, state, motion.multiplicity)
+            count_impacts_from_pause(instance, motion.point, state, motion.multiplicity)
             for state in motion.states
         }
     assert counts == {round(motion.impacts_per_period * motion.multiplicity)}
@@ -164,7 +168,7 @@ def test_orbits_are_one_whatever_period_they_begin_with():
 
 def test_distances_compare_gaps_with_the_gap():
     """A gap may be a hundredth of the displacements."""
-    known = KnownStates.from_states(np.array([[1.0, 1.01, 0.0, 0.0]]), 1.0, 0.01)
+    known = ScaledStates.from_states(np.array([[1.0, 1.01, 0.0, 0.0]]), 1.0, 0.01)
     assert known.nearest([1.0, 1.011, 0.0, 0.0]) == (0, pytest.approx(0.1))
     assert known.nearest([1.001, 1.011, 0.0, 0.0]) == (0, pytest.approx(1e-3, rel=0.02))
 

@@ -12,7 +12,12 @@ from orchestrate.dynamics import attractors as module
 from orchestrate.dynamics.attractors import attractors
 from orchestrate.dynamics.clusters import AttractorSettings
 from orchestrate.dynamics.decision import MotionDecider
-from orchestrate.dynamics.global_continuation import FLOWS, FOLLOWED, Instances, match_neighbours
+from orchestrate.dynamics.global_continuation import (
+    BY_NEWTON,
+    BY_SIMULATION,
+    InstancePair,
+    match_neighbours,
+)
 from orchestrate.dynamics.settled_motion import ORBIT
 from orchestrate.response.questions import Point
 from orchestrate.running import runner
@@ -121,25 +126,37 @@ def motion(n, impacts):
 
 
 def test_attractors_that_lead_to_each_other_are_one():
-    links = {(0, 0, 1): (1, FLOWS), (0, 1, 1): (0, FLOWS)}
-    links |= {(1, 0, 0): (1, FLOWS), (1, 1, 0): (0, FLOWS)}
+    links = {(0, 0, 1): (1, BY_SIMULATION), (0, 1, 1): (0, BY_SIMULATION)}
+    links |= {(1, 0, 0): (1, BY_SIMULATION), (1, 1, 0): (0, BY_SIMULATION)}
     before, after = value((1, 1.0), (2, 1.5)), value((2, 1.5), (4, 1.5))
     assert sorted(match_neighbours(before, after, 0, links)) == [(0, 1), (1, 0)]
 
 
 def test_an_attractor_that_jumps_to_another_ends():
-    links = {(0, 0, 1): (0, FLOWS), (0, 1, 1): (0, FLOWS), (1, 0, 0): (0, FLOWS)}
+    links = {
+        (0, 0, 1): (0, BY_SIMULATION),
+        (0, 1, 1): (0, BY_SIMULATION),
+        (1, 0, 0): (0, BY_SIMULATION),
+    }
     assert match_neighbours(value((1, 1.0), (2, 1.5)), value((1, 1.0)), 0, links) == [(0, 0)]
 
 
 def test_an_orbit_that_is_followed_is_one_though_its_state_leads_elsewhere():
-    links = {(0, 0, 1): (1, FOLLOWED), (1, 0, 0): (0, FLOWS), (1, 1, 0): (0, FLOWS)}
+    links = {
+        (0, 0, 1): (1, BY_NEWTON),
+        (1, 0, 0): (0, BY_SIMULATION),
+        (1, 1, 0): (0, BY_SIMULATION),
+    }
     found = match_neighbours(value((2, 1.5)), value((1, 1.0), (2, 1.5)), 0, links)
     assert found == [(0, 1)]
 
 
 def test_neither_jump_joins_two_attractors_that_do_not_look_alike():
-    links = {(0, 0, 1): (0, FLOWS), (0, 1, 1): (0, FLOWS), (1, 0, 0): (1, FLOWS)}
+    links = {
+        (0, 0, 1): (0, BY_SIMULATION),
+        (0, 1, 1): (0, BY_SIMULATION),
+        (1, 0, 0): (1, BY_SIMULATION),
+    }
     found = match_neighbours(value((1, 1.0), (3, 2.0)), value((2, 1.5)), 0, links)
     assert found == [(1, 0)]
 
@@ -163,7 +180,7 @@ def test_chattering_that_gains_an_impact_on_the_way_is_there_once():
 
 def test_an_orbit_that_is_followed_has_the_impacts_that_the_fmu_runs_through():
     points = [Point(CHATTERING, Excitation.nondimensional(eta, CHATTERING)) for eta in GAINS]
-    with Instances(find(OSCILLATOR).path) as instances:
+    with InstancePair(find(OSCILLATOR).path) as instances:
         before, after = (MotionDecider(*instances, point, AttractorSettings()) for point in points)
         motion, _ = before.decide(REST)
         followed = after.continue_orbit(motion)

@@ -11,9 +11,9 @@ from orchestrate.dynamics.long_runs import (
     ENDED,
     STEADY,
     UNDECIDED,
-    another_start,
-    long_run,
     parts_agree,
+    perturbed_start,
+    run_until_steady,
 )
 from orchestrate.dynamics.lyapunov import Exponent
 from orchestrate.response.questions import Point
@@ -65,15 +65,15 @@ def test_what_a_run_is_told_by_its_parts(monkeypatch, means, outcome, value, fol
     def parts_of(instance, point, start, periods, parts):
         return [Exponent(next(left) + next(noise), 1e-3) for _ in range(parts)], start
 
-    monkeypatch.setattr(long_runs, "follow_parts", parts_of)
-    found = long_run(None, POINT, REST, 1000, 10, 3)
+    monkeypatch.setattr(long_runs, "exponents_of_parts", parts_of)
+    found = run_until_steady(None, POINT, REST, 1000, 10, 3)
     assert found.outcome == outcome and found.periods == 1000 * followed
     assert found.exponent.value == pytest.approx(value, abs=2e-3)
 
 
 def test_another_start_is_near_and_the_masses_do_not_overlap():
     start = (0.3, 0.30001, -0.2, 0.4)
-    others = [another_start(POINT, start, [7, k]) for k in range(50)]
+    others = [perturbed_start(POINT, start, [7, k]) for k in range(50)]
     assert len(set(others)) == 50
     for other in others:
         assert other[1] >= other[0]
@@ -85,8 +85,8 @@ def test_the_exponent_of_a_chaotic_response_does_not_depend_on_its_start(exporte
     with Instance(find(OSCILLATOR).path) as plain:
         settled = respond(plain, *POINT, REST, 500, 1, 1e-2).end
     with EventInstance(find(OSCILLATOR).path) as instance:
-        start = another_start(POINT, settled, [1])
-        found = long_run(instance, POINT, start, 1500, 6, 2)
+        start = perturbed_start(POINT, settled, [1])
+        found = run_until_steady(instance, POINT, start, 1500, 6, 2)
     assert found.outcome == STEADY
     value, error = found.exponent
     assert 0.0 < error < 0.01
@@ -101,6 +101,6 @@ def test_a_transient_that_ends_after_tens_of_thousands_of_periods(exported):
     with Instance(find(OSCILLATOR).path) as plain:
         settled = respond(plain, *point, REST, 20_000, 48, 1e-6).end
     with EventInstance(find(OSCILLATOR).path) as instance:
-        found = long_run(instance, point, settled, 10_000, 10, 3)
+        found = run_until_steady(instance, point, settled, 10_000, 10, 3)
     assert found.outcome == ENDED
     assert 0.0 < found.exponent.value < 0.02

@@ -22,13 +22,13 @@ from orchestrate.dynamics.lyapunov import (
     CHAOTIC,
     NEUTRAL,
     PERIODIC,
-    fewest_impacts,
+    classify_exponents,
     largest_exponent,
     lyapunov,
-    verdict,
+    min_impacts,
 )
 from orchestrate.dynamics.lyapunov_growth import scaled_products
-from orchestrate.dynamics.variational import monodromy, period
+from orchestrate.dynamics.variational import monodromy, period_in_tau
 from orchestrate.errors import InputError
 from orchestrate.response.questions import Point
 from orchestrate.response.sweep import sweep
@@ -66,7 +66,7 @@ def settled(instance, point, periods):
 def test_of_a_periodic_response_it_is_that_of_its_multipliers(instances, structure, eta):
     plain, eventful = instances
     point = Point(structure, Excitation.nondimensional(eta, structure))
-    start, span = settled(plain, point, 1500), period(eta)
+    start, span = settled(plain, point, 1500), period_in_tau(eta)
     impacts = follow_impacts(eventful, point, start, 400)
     exponent, error = largest_exponent(impacts, 400 * span, point)
     first = np.searchsorted(impacts.time, span)
@@ -75,7 +75,7 @@ def test_of_a_periodic_response_it_is_that_of_its_multipliers(instances, structu
     multiplier = np.abs(np.linalg.eigvals(monodromy(one, point))).max()
     assert exponent == pytest.approx(math.log(multiplier) / span, abs=5e-4)
     assert 0.0 < error < 5e-4
-    assert verdict(exponent, error, 1e-3) == PERIODIC
+    assert classify_exponents(exponent, error, 1e-3) == PERIODIC
 
 
 @pytest.mark.parametrize(
@@ -84,7 +84,7 @@ def test_of_a_periodic_response_it_is_that_of_its_multipliers(instances, structu
 def test_it_agrees_with_two_neighbours_of_the_fmu(instances, eta, expected):
     plain, eventful = instances
     point, periods = Point(PAPER, Excitation.nondimensional(eta, PAPER)), 400
-    start, span = settled(plain, point, 3000), period(eta)
+    start, span = settled(plain, point, 3000), period_in_tau(eta)
     impacts = follow_impacts(eventful, point, start, periods)
     exponent, error = largest_exponent(impacts, periods * span, point)
     here, growth = start, 0.0
@@ -104,7 +104,7 @@ def test_it_agrees_with_two_neighbours_of_the_fmu(instances, eta, expected):
         if shift[1] < shift[0] and here[1] - here[0] < 2 * scale:
             shift = -shift  # the neighbour on the side that is free
     assert growth / (periods * span) == pytest.approx(exponent, abs=3e-3 + 5 * error)
-    assert verdict(exponent, error, math.log(10.0) / (periods * span)) == expected
+    assert classify_exponents(exponent, error, math.log(10.0) / (periods * span)) == expected
 
 
 @pytest.mark.usefixtures("exported")
@@ -130,7 +130,7 @@ def test_too_few_impacts_are_no_uncertainty():
     with pytest.raises(InputError, match=r"at least 16 impacts \(periods >= 32\)"):
         lyapunov(PAPER, eta=4.0, transient=2000, periods=20)
     assert lyapunov(PAPER, eta=4.0, transient=2000, periods=40).standard_error > 0.0
-    assert fewest_impacts(5) == 10
+    assert min_impacts(5) == 10
 
 
 @pytest.mark.usefixtures("exported")
@@ -168,8 +168,8 @@ def test_units_do_not_matter():
 def test_verdicts():
     exponent, error = [0.1, -0.1, 0.1, 0.001, -np.inf], [0.01, 0.01, 0.05, 1e-6, np.nan]
     expected = [CHAOTIC, PERIODIC, NEUTRAL, NEUTRAL, PERIODIC]
-    assert verdict(exponent, error, 0.01).tolist() == expected
-    assert verdict(0.1, 0.05, 0.01, sigmas=1.0) == CHAOTIC
+    assert classify_exponents(exponent, error, 0.01).tolist() == expected
+    assert classify_exponents(0.1, 0.05, 0.01, sigmas=1.0) == CHAOTIC
 
 
 def test_products_of_matrices():

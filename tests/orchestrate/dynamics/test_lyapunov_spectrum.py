@@ -13,11 +13,11 @@ import orchestrate
 from orchestrate.access import OSCILLATOR, REST, STATE, EventInstance, Instance, begin, find
 from orchestrate.dynamics.following import follow_impacts
 from orchestrate.dynamics.lyapunov_spectrum import (
-    compound,
+    compound_matrices,
     kaplan_yorke_dimension,
     lyapunov_spectrum,
 )
-from orchestrate.dynamics.variational import impact_matrices, monodromy, period
+from orchestrate.dynamics.variational import impact_matrices, monodromy, period_in_tau
 from orchestrate.response.questions import Point
 from orchestrate.structures import Excitation, Structure
 
@@ -44,8 +44,8 @@ def followed(exported):
 def test_volumes_are_carried_by_products_as_by_their_factors(seed, order):
     """Cauchy and Binet: the compound of a product is the product of the compounds."""
     one, two = np.random.default_rng(seed).uniform(-2.0, 2.0, (2, 4, 4))
-    product = compound((two @ one)[None], order)[0]
-    separate = compound(two[None], order)[0] @ compound(one[None], order)[0]
+    product = compound_matrices((two @ one)[None], order)[0]
+    separate = compound_matrices(two[None], order)[0] @ compound_matrices(one[None], order)[0]
     np.testing.assert_allclose(product, separate, atol=1e-9)
 
 
@@ -56,7 +56,7 @@ def test_volumes_are_carried_by_products_as_by_their_factors(seed, order):
 def test_their_sum_is_the_mean_divergence(exported, structure, eta):
     """Of the flow -2 (D1 + D2), and at each impact 2 log e; the exponents do not know of it."""
     found = orchestrate.lyapunov(structure, eta=[eta], periods=1500, spectrum=True, progress=False)
-    impacts = float(found.impacts_per_period[0]) / period(eta)
+    impacts = float(found.impacts_per_period[0]) / period_in_tau(eta)
     divergence = -2.0 * (structure.D1 + structure.D2) + 2.0 * impacts * math.log(structure.e)
     assert float(found.exponents[0].sum()) == pytest.approx(divergence, abs=1e-3)
     assert float(found.exponents[0, 0]) == float(found.exponent[0])
@@ -66,7 +66,7 @@ def test_their_sum_is_the_mean_divergence(exported, structure, eta):
 def test_a_qr_method_gives_the_same(followed):
     """Benettin's method, one impact after the other, in chaotic motion."""
     impacts, point = followed(make(), 0.8, 300, 600)
-    end = 600 * period(0.8)
+    end = 600 * period_in_tau(0.8)
     found = lyapunov_spectrum(impacts, end, point, 40, 8)
     frame, sums = np.eye(4), np.zeros(4)
     for matrix in impact_matrices(impacts, end, point):
@@ -80,8 +80,8 @@ def test_of_a_periodic_response_they_are_those_of_its_multipliers(followed):
     impacts, point = followed(make(), 1.047, 1500, 1)
     multipliers = np.abs(np.linalg.eigvals(monodromy(impacts, point)))
     long, _ = followed(make(), 1.047, 1500, 600)
-    found = lyapunov_spectrum(long, 600 * period(1.047), point, 40, 8)
-    expected = np.sort(np.log(multipliers))[::-1] / period(1.047)
+    found = lyapunov_spectrum(long, 600 * period_in_tau(1.047), point, 40, 8)
+    expected = np.sort(np.log(multipliers))[::-1] / period_in_tau(1.047)
     np.testing.assert_allclose(found.exponents, expected, atol=1e-3)
     assert found.dimension == 0.0
 

@@ -18,7 +18,7 @@ from orchestrate import InputError, Structure
 from orchestrate.access import OSCILLATOR, Instance, begin
 from orchestrate.dynamics import manifolds
 from orchestrate.dynamics.curve_growth import CurveGrower, CurvePoint, GrowthSettings
-from orchestrate.response.questions import point
+from orchestrate.response.questions import make_point
 
 from .single_impact import GAP, RATE, SingleImpact
 
@@ -187,19 +187,19 @@ def test_images_of_its_points_lie_on_it():
         data = curve()
         part = data.sel(side="-")
         numbers = np.flatnonzero((part.iterate.values > 1.0) & (part.iterate.values < 4.0))[::9]
-        box = point(PAPER, {"eta": 3.0})
+        box = make_point(PAPER, {"eta": 3.0})
         for i in numbers:
             begin(instance, *box, part.state.values[i])
             instance.step(0.0, 2.0 * box.excitation.period)
             image = np.array(instance.get("x1", "x2", "v1", "v2"))
             s = float(part.iterate[i]) + 1.0
-            sides[i] = np.abs(image - job.point_at(instance, saddle, -1.0)(s).state).max()
+            sides[i] = np.abs(image - job.point_function(instance, saddle, -1.0)(s).state).max()
     assert len(sides) > 5 and max(sides.values()) < 1e-8
 
 
 def job_fields():
     start = orchestrate.orbit(PAPER, eta=3.0, **QUIET)
-    found = manifolds.from_result(start)
+    found = manifolds.guess_from_result(start)
     numbers = {"length": 2.0, "spacing": 0.005, "angle": 0.2, "distance": 1e-5, "most": 100}
     names = {"name": "manifold", "structure": PAPER, "excitation": (("eta", 3.0),)}
     return {**names, "box_acceleration": 0.0, "start": found, "period": 1, **numbers}

@@ -273,8 +273,10 @@ class OneImpactMore:
 @pytest.mark.parametrize(("part", "same"), [(1e-8, True), (1e-4, False)])
 def test_an_impact_that_grazes_by_rounding_decides_nothing(monkeypatch, part, same):
     """Where a flight just grazes, the FMU has an impact there or none by the last bits."""
-    check = orbits.run_in_fmu
+    check = orbits.check_orbit_in_fmu
     monkeypatch.setattr(
-        orbits, "run_in_fmu", lambda instance, *rest: check(OneImpactMore(instance, part), *rest)
+        orbits,
+        "check_orbit_in_fmu",
+        lambda instance, *rest: check(OneImpactMore(instance, part), *rest),
     )
     assert bool(orbit(PAPER, eta=1.5).fmu_same_impacts) == same

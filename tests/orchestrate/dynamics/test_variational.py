@@ -24,7 +24,7 @@ from orchestrate.access import (
 from orchestrate.dynamics.closed_form import ClosedForm
 from orchestrate.dynamics.following import follow_impacts
 from orchestrate.dynamics.lyapunov import decay_rate
-from orchestrate.dynamics.variational import contact_times, monodromy, period
+from orchestrate.dynamics.variational import contact_durations_after, monodromy, period_in_tau
 from orchestrate.response.questions import Point
 from orchestrate.structures import Excitation, Structure
 
@@ -86,10 +86,10 @@ def test_monodromy_equals_differences_of_the_fmu(instances, structure, eta):
 def test_releases_are_those_of_the_fmu(instances, structure, eta):
     plain, eventful = instances
     point = Point(structure, Excitation.nondimensional(eta, structure))
-    span = period(eta)
+    span = period_in_tau(eta)
     impacts = follow_impacts(eventful, point, REST, 4)
     ends = np.append(impacts.time[1:], 4 * span)
-    found = contact_times(impacts, ends, point)
+    found = contact_durations_after(impacts, ends, point)
     for stick in np.flatnonzero(impacts.sticks):
         release = impacts.time[stick] + found[stick]
         touching = []
@@ -116,7 +116,7 @@ def test_contacts_shorter_than_a_look_are_seen(instances, eta):
     structure, start = ALIKE[0], (0.01, 0.01, -0.5, -0.5)
     point = Point(structure, Excitation.nondimensional(eta, structure))
     one = Impacts(np.zeros(1), np.array([start]), np.zeros(1), np.ones(1, dtype=bool))
-    found = contact_times(one, np.array([20.0]), point).item()
+    found = contact_durations_after(one, np.array([20.0]), point).item()
     assert 0.01 < found < 20.0 / 64.0
     touching = []
     for tau in (found - 1e-9, found + 1e-9):

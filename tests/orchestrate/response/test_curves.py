@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from orchestrate.access import OSCILLATOR, REST, EventInstance, begin, find
-from orchestrate.response.curves import CONTACT, FLIGHT, SEQUENCE, trace
+from orchestrate.response.curves import CONTACT, FLIGHT, SEQUENCE, simulate_curve
 from orchestrate.response.questions import Point
 from orchestrate.structures import Excitation, Structure
 
@@ -18,7 +18,7 @@ pytestmark = pytest.mark.usefixtures("exported")
 
 def curve(structure, eta, transient, periods, points):
     point = Point(structure, Excitation.nondimensional(eta, structure))
-    return trace(find(OSCILLATOR).path, point, REST, transient, periods, points)
+    return simulate_curve(find(OSCILLATOR).path, point, REST, transient, periods, points)
 
 
 def test_a_curve_has_both_sides_of_each_impact():

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from orchestrate.access import OSCILLATOR, EventInstance, Instance, find
 from orchestrate.dynamics.continuation import NoConvergenceError
 from orchestrate.dynamics.families import Setting
-from orchestrate.dynamics.guesses import from_state
+from orchestrate.dynamics.guesses import guess_from_state
 from orchestrate.dynamics.orbit_search import least_periods, solve_orbit, why_no_motion
 from orchestrate.dynamics.turning_points import stroboscopic_states
 from orchestrate.response.multiplicity import (
@@ -16,11 +16,11 @@ from orchestrate.response.multiplicity import (
     MIN_RELATIVE_GAP,
     REPEATED,
     UNDECIDED,
-    decide,
+    decide_multiplicity,
+    find_repetition,
     multiplicity,
-    repetition,
     scale_states,
-    spread_of,
+    spread_over_returns,
 )
 from orchestrate.response.questions import Point
 from orchestrate.response.respond import respond
@@ -163,7 +163,7 @@ def test_nothing_depends_on_the_amplitude(seed, power):
     scale = 2.0**power
     once = scale_states(samples, 1.7, 0.3)
     np.testing.assert_array_equal(scale_states(scale * samples, 1.7, scale * 0.3), once)
-    assert repetition(once, 1e3).deviation == np.abs(np.diff(once[20:], axis=0)).max()
+    assert find_repetition(once, 1e3).deviation == np.abs(np.diff(once[20:], axis=0)).max()
 
 
 def test_masses_at_rest_are_no_obstacle():
@@ -213,29 +213,29 @@ def doubling(multiplier, count=200, width=0.0):
 def test_what_has_died_or_dies_fast_has_repeated(orbit, more, multiplier):
     samples = repeat(orbit, 8 * len(orbit) + more + 40)
     rest = 1e-3 * np.abs(orbit).max() * multiplier ** np.arange(len(samples))
-    n, decided = decide(scale_states(samples + rest[:, None]), TOLERANCE)
+    n, decided = decide_multiplicity(scale_states(samples + rest[:, None]), TOLERANCE)
     assert n == len(orbit)
     assert decided == REPEATED
 
 
 @pytest.mark.parametrize("multiplier", [0.5, 0.9, 0.97])
 def test_a_stable_response_next_to_a_period_doubling_is_none_of_two_periods(multiplier):
-    assert decide(doubling(multiplier), TOLERANCE) == (1, REPEATED)
+    assert decide_multiplicity(doubling(multiplier), TOLERANCE) == (1, REPEATED)
 
 
 @pytest.mark.parametrize("multiplier", [0.99, 0.995, 0.999, 0.9999])
 def test_while_the_deviation_is_larger_than_the_tolerance_it_is_undecided(multiplier):
     states = doubling(multiplier, 100)
-    assert repetition(states, TOLERANCE).multiplicity == 2  # the tolerance alone says so
-    n, decided = decide(states, TOLERANCE)
+    assert find_repetition(states, TOLERANCE).multiplicity == 2  # the tolerance alone says so
+    n, decided = decide_multiplicity(states, TOLERANCE)
     assert decided == UNDECIDED or n == 1
 
 
 @pytest.mark.parametrize("width", [1e-7, 1e-5, 1e-3, 0.1])
 def test_the_tolerance_does_not_hide_a_narrow_period_doubling(width):
     states = doubling(0.8, width=width)
-    assert repetition(states, TOLERANCE).multiplicity == (1 if width < 0.01 else 2)
-    assert decide(states, TOLERANCE) == (2, REPEATED)
+    assert find_repetition(states, TOLERANCE).multiplicity == (1 if width < 0.01 else 2)
+    assert decide_multiplicity(states, TOLERANCE) == (2, REPEATED)
 
 
 @pytest.mark.parametrize("angle", [0.117, 0.291, GOLDEN])
@@ -243,8 +243,8 @@ def test_a_deviation_that_dies_while_it_turns_round_repeats_after_one_period(ang
     def spiral(n, multiplier):
         return 0.1 * multiplier**n * np.cos(2.0 * np.pi * angle * n)
 
-    assert decide(states_of(lambda n: spiral(n, 0.9)), TOLERANCE) == (1, REPEATED)
-    n, decided = decide(states_of(lambda n: spiral(n, 0.99)), TOLERANCE)
+    assert decide_multiplicity(states_of(lambda n: spiral(n, 0.9)), TOLERANCE) == (1, REPEATED)
+    n, decided = decide_multiplicity(states_of(lambda n: spiral(n, 0.99)), TOLERANCE)
     assert (n, decided) in [(1, REPEATED), (1, UNDECIDED)]
 
 
@@ -252,8 +252,8 @@ def test_a_deviation_that_dies_while_it_turns_round_repeats_after_one_period(ang
 def test_the_spread_is_that_of_states_a_multiple_of_n_periods_apart(n, more, seed):
     runs = np.random.default_rng(seed).uniform(-1.0, 1.0, (2, 6, n + more))
     expected = [max(np.ptp(run[:, k::n], axis=1).max() for k in range(n)) for run in runs]
-    assert spread_of(runs, n).tolist() == expected
-    assert float(spread_of(runs[0], n)) == expected[0]
+    assert spread_over_returns(runs, n).tolist() == expected
+    assert float(spread_over_returns(runs[0], n)) == expected[0]
 
 
 @given(st.floats(0.0, 1.0), st.floats(0.05, 0.45))
@@ -263,19 +263,23 @@ def test_a_torus_has_repeated_after_no_number_of_periods(phase, angle):
         return 0.3 * np.cos(2.0 * np.pi * (angle * n + phase))
 
     exact = min(abs(angle * n - round(angle * n)) for n in range(1, 51)) < 1e-4
-    assert exact or decide(states_of(torus), TOLERANCE).decided != REPEATED
+    assert exact or decide_multiplicity(states_of(torus), TOLERANCE).decided != REPEATED
 
 
 def test_what_leaves_an_unstable_orbit_is_undecided():
-    assert decide(states_of(lambda n: 1e-9 * 1.08**n), TOLERANCE) == (1, UNDECIDED)
+    assert decide_multiplicity(states_of(lambda n: 1e-9 * 1.08**n), TOLERANCE) == (1, UNDECIDED)
 
 
 def test_noise_narrower_than_the_tolerance_is_undecided_and_wider_irregular():
     noise = np.random.default_rng(3).uniform(-1.0, 1.0, (30, 200))
-    narrow = [decide(states_of(lambda n, row=row: 1e-3 * row), TOLERANCE) for row in noise]
+    narrow = [
+        decide_multiplicity(states_of(lambda n, row=row: 1e-3 * row), TOLERANCE) for row in noise
+    ]
     assert {found.multiplicity for found in narrow} == {1}
     assert sum(found.decided == UNDECIDED for found in narrow) >= 28  # chance may look like dying
-    wide = {decide(states_of(lambda n, row=row: 0.2 * row), TOLERANCE) for row in noise}
+    wide = {
+        decide_multiplicity(states_of(lambda n, row=row: 0.2 * row), TOLERANCE) for row in noise
+    }
     assert wide == {(0, IRREGULAR)}
 
 
@@ -290,7 +294,7 @@ def newton(instance, point, state, periods):
     setting = Setting(point.structure, numbers, ("frequency",), limits)
     values = np.array([excitation.frequency])
     try:
-        guess = from_state(instance, point, setting.form(values), np.array(state), periods)
+        guess = guess_from_state(instance, point, setting.form(values), np.array(state), periods)
         family, root = solve_orbit(setting, guess, values)
     except NoConvergenceError:
         return None

@@ -12,14 +12,20 @@ from hypothesis import strategies as st
 
 from orchestrate.checks import checked_integer
 from orchestrate.errors import InputError
-from orchestrate.response.questions import numbers, one_point, series, series_arguments, states
+from orchestrate.response.questions import (
+    checked_numbers,
+    checked_point,
+    checked_states,
+    make_series,
+    series_arguments,
+)
 from orchestrate.structures import Structure
 
 OWN = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=0.9, e=0.6)
 
 
 def along(structure=OWN, eta=None, frequency=None, amplitude=None, over=None, values=None):
-    return series(**series_arguments(structure, eta, frequency, amplitude, over, values))
+    return make_series(**series_arguments(structure, eta, frequency, amplitude, over, values))
 
 
 def test_eta_is_a_frequency_and_an_amplitude():
@@ -110,9 +116,9 @@ def test_what_is_no_question_is_one_line(asked, text):
 
 def test_a_single_excitation_is_no_list():
     with pytest.raises(InputError, match="eta: 2 values; expected one number"):
-        one_point(OWN, [1.0, 2.0], None, None)
+        checked_point(OWN, [1.0, 2.0], None, None)
     with pytest.raises(InputError, match="structure = None: expected a Structure"):
-        one_point(None, 1.0, None, None)
+        checked_point(None, 1.0, None, None)
 
 
 @pytest.mark.parametrize(
@@ -128,13 +134,13 @@ def test_a_single_excitation_is_no_list():
 )
 def test_states_that_cannot_be(state, structure):
     with pytest.raises(InputError, match="start.*expected x"):
-        states("start", state, structure)
+        checked_states("start", state, structure)
 
 
 def test_a_dataset_is_no_state():
     """It is not printed whole: a message is one line."""
     with pytest.raises(InputError, match="^start = a dataset: expected x1, x2[^\n]*$"):
-        states("start", xr.Dataset({"x1": 0.0}), Structure())
+        checked_states("start", xr.Dataset({"x1": 0.0}), Structure())
 
 
 @pytest.mark.parametrize("given", [0, 1.0, True, None, "7", 10**7])
@@ -145,9 +151,9 @@ def test_whole_numbers(given):
 
 
 def test_numbers_of_any_kind():
-    assert numbers("eta", np.float32(0.5)) == 0.5
-    assert numbers("eta", range(1, 3)) == (1.0, 2.0)
-    assert numbers("values", None) is None
+    assert checked_numbers("eta", np.float32(0.5)) == 0.5
+    assert checked_numbers("eta", range(1, 3)) == (1.0, 2.0)
+    assert checked_numbers("values", None) is None
 
 
 def test_the_call_is_one_that_can_be_made_again(exported):

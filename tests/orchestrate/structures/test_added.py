@@ -14,7 +14,7 @@ from orchestrate.cli.options import QUANTITIES
 from orchestrate.figures.labels import symbol, title_from_attributes
 from orchestrate.structures import PARAMETERS, write
 from orchestrate.structures.ranges import ADDED, OF_LENGTH, STRUCTURE
-from orchestrate.structures.structure import Added, Varied
+from orchestrate.structures.structure import LaterKeywords, ValueListKeywords
 
 HALVES = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0}
 BONDED = {"mass": 2.0, "f": 50.0, "thicknesses": (3.0, 2.0)}
@@ -28,8 +28,8 @@ FORMS = [
 def test_what_a_type_checker_knows_is_what_the_table_has():
     fields = [field.name for field in dataclasses.fields(Structure)]
     assert fields == [*STRUCTURE, "bonded"]
-    assert typing.get_type_hints(Added) == dict.fromkeys(ADDED, float)
-    assert sorted(Varied.__annotations__) == sorted(PARAMETERS)
+    assert typing.get_type_hints(LaterKeywords) == dict.fromkeys(ADDED, float)
+    assert sorted(ValueListKeywords.__annotations__) == sorted(PARAMETERS)
 
 
 @pytest.mark.parametrize("name", ADDED)
