@@ -162,8 +162,10 @@ def channels_of(
     ------
     InputError
     """
-    places = chosen(table, columns)
-    time, taken = None, taken_text(table, places, columns)
+    known = named_channels(table) if columns is None else {}
+    places = known or channel_places(table, columns)
+    by_order = ", by their order: no name is known" if columns is None and not known else ""
+    time, taken = None, taken_text(table, places) + by_order
     if "time" in places:
         column = table.columns[places.pop("time")]
         label = label_of(table, column)
@@ -178,11 +180,11 @@ def channels_of(
     return time, values, taken
 
 
-def taken_text(table: Columns, places: Mapping[str, int], columns: object) -> str:
-    """Return a text that says which column was taken for what, and if by nothing but its order."""
-    parts = [f'{WORDS.get(name, name)} "{table.columns[i].name}"' for name, i in places.items()]
-    by_order = columns is None and not known_places(table)
-    return ", ".join(parts) + (", by their order: no name is known" if by_order else "")
+def taken_text(table: Columns, places: Mapping[str, int]) -> str:
+    """Return a text that says which column was taken for what."""
+    return ", ".join(
+        f'{WORDS.get(name, name)} "{table.columns[i].name}"' for name, i in places.items()
+    )
 
 
 def label_of(table: Columns, column: Column) -> str:
@@ -200,38 +202,59 @@ def scaled(table: Columns, column: Column, factor: float) -> Floats:
     return column.values if factor == 1.0 else factor * column.values
 
 
-def chosen(
+def channel_places(
     table: Columns, columns: Mapping[str, str | int] | Sequence[str | int] | None
 ) -> dict[str, int]:
-    """Return the column index of each channel and of the time, by name.
+    """Return the column index of each channel and of the time, as asked for or by their order.
 
-    By what is given, else by their names, else by their order: time, box, mass 1, mass 2.
+    The order is time, base, face 1, face 2; without time where the file says the sampling rate.
     """
     wanted = (*(() if table.sample_rate else ("time",)), *CHANNELS)
     if columns is None:
-        if known := known_places(table):
-            return known
         if len(table.columns) > len(wanted):
             names = ", ".join(column.name for column in table.columns[:8])
             text = "expected columns=, which of them are time and channels"
             raise InputError(f"{table.path}: {len(table.columns)} columns {names}; {text}")
         return dict(zip(wanted, range(len(table.columns)), strict=False))
-    if not isinstance(columns, Mapping):
-        if isinstance(columns, str) or len(columns) > len(wanted):
-            raise InputError(f"columns = {columns!r}: expected {', '.join(wanted)} in that order")
-        columns = dict(zip(wanted, columns, strict=False))
-    unknown = set(columns) - {"time", *CHANNELS}
-    if unknown:
-        names = ", ".join(("time", *CHANNELS))
-        raise InputError(f"columns: {sorted(unknown)[0]!r}; expected names of {names}")
-    places = {name: place_of(table, wish) for name, wish in columns.items()}
+    places = places_asked_for(table, columns, wanted, ("time", *CHANNELS))
     if "time" in wanted and "time" not in places:
         named = [i for i, one in enumerate(table.columns) if one.name.lower() in NAMES["time"]]
         places["time"] = (named or [0])[0]
     return places
 
 
-def known_places(table: Columns) -> dict[str, int]:
+def places_asked_for(
+    table: Columns,
+    columns: Mapping[str, str | int] | Sequence[str | int],
+    order: Sequence[str],
+    names: Sequence[str],
+) -> dict[str, int]:
+    """Return the column index of each quantity that a caller asks for, by the quantity's name.
+
+    Parameters
+    ----------
+    table : Columns
+    columns : mapping or sequence
+        Which column each quantity is in, by name or number.
+    order : sequence of str
+        Quantities that a sequence of columns stands for, one by one.
+    names : sequence of str
+        All quantities that a mapping may ask for.
+
+    Raises
+    ------
+    InputError
+    """
+    if not isinstance(columns, Mapping):
+        if isinstance(columns, str) or len(columns) > len(order):
+            raise InputError(f"columns = {columns!r}: expected {', '.join(order)} in that order")
+        columns = dict(zip(order, columns, strict=False))
+    if unknown := sorted(set(columns) - set(names)):
+        raise InputError(f"columns: {unknown[0]!r}; expected names of {', '.join(names)}")
+    return {name: place_of(table, wish) for name, wish in columns.items()}
+
+
+def named_channels(table: Columns) -> dict[str, int]:
     """Return the column index of each channel and the time by usual names; empty if no channel."""
     known = named_places(table, NAMES)
     return known if set(known) & set(CHANNELS) else {}

@@ -20,8 +20,9 @@ from .columns import (
     factor_of,
     label_of,
     named_places,
-    place_of,
+    places_asked_for,
     plain_unit,
+    taken_text,
 )
 from .record_csv import read_csv
 from .record_files import check_file, kind_of
@@ -59,21 +60,24 @@ def names_of_face(number: str) -> dict[str, tuple[str, ...]]:
 NAMES = {  # what a curve's columns are, and how files call them
     "frequency": ("f", "hz", "freq", "frequenz", "frequency"),
     "level": (
-        *("input", "drive", "excitation", "shaker", "table", "box", "boxacceleration"),
-        *(
-            "boxamplitude",
-            "basis",
-            "base",
-            "baseacceleration",
-            "baseamplitude",
-            "baselevel",
-            "level",
-        ),
+        "input",
+        "drive",
+        "excitation",
+        "shaker",
+        "table",
+        "box",
+        "boxacceleration",
+        "boxamplitude",
+        "basis",
+        "base",
+        "baseacceleration",
+        "baseamplitude",
+        "baselevel",
+        "level",
     ),
     **names_of_face("1"),
     **names_of_face("2"),
 }
-EXPECTED = ", ".join(NAMES)
 
 
 def read_curve(
@@ -144,22 +148,20 @@ def read_curve(
         raise InputError(f"{path}: expected columns of text (.csv, .txt, .tsv, .asc, .dat)")
     check_file(path)
     table = read_csv(path, gaps=True)
-    places = chosen_places(table, columns)
+    places = curve_places(table, columns)
     made = curve_columns(table, places, unit, level)
     words = {"title": f"Resonance curve {path.name}", "source": path.name}
-    words["columns"] = ", ".join(
-        f'{name} "{table.columns[place].name}"' for name, place in places.items()
-    )
+    words["columns"] = taken_text(table, places)
     try:
         return made_curve(made, relative, direction, words)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
 
 
-def chosen_places(
+def curve_places(
     table: Columns, columns: Mapping[str, str | int] | Sequence[str | int] | None
 ) -> dict[str, int]:
-    """Return the column index of each thing that a curve has, by name.
+    """Return the column index of each quantity of a curve, as asked for or by usual names.
 
     Raises
     ------
@@ -168,13 +170,7 @@ def chosen_places(
     if columns is None:
         places = named_places(table, NAMES)
     else:
-        if not isinstance(columns, Mapping):
-            if isinstance(columns, str) or len(columns) > len(NAMES):
-                raise InputError(f"columns = {columns!r}: expected {EXPECTED} in that order")
-            columns = dict(zip(NAMES, columns, strict=False))
-        if unknown := sorted(set(columns) - set(NAMES)):
-            raise InputError(f"columns: {unknown[0]!r}; expected names of {EXPECTED}")
-        places = {name: place_of(table, wish) for name, wish in columns.items()}
+        places = places_asked_for(table, columns, tuple(NAMES), tuple(NAMES))
     lacking = [] if "frequency" in places else ["frequency"]
     lacking += [] if {"amplitude1", "amplitude2"} & set(places) else ["amplitude1"]
     if lacking:
