@@ -49,6 +49,12 @@ what it gives:
   not described    the beam, its clamp or the sensors do something else
   undecided        this record does not tell; the report says which one would
   and for each record a report to read, print and sign (.html), the answers (.nc), a picture"""
+LINES = {  # attributes of a verdict that are printed below it, and what stands before them
+    "reason": "decided by",
+    "simulated": "simulated records",
+    "settle": "to settle it",
+    "record_columns": "columns",
+}
 CHANNELS = ("time", "box_acceleration", "acceleration1", "acceleration2")
 
 
@@ -244,8 +250,6 @@ def print_verdict(path: Path, verdict: xr.Dataset) -> None:
 
     said = verdict_of(verdict)
     print(f"{path}: {said.word} {said.sentence}")
-    columns = ("record_columns", "columns")
-    simulated = ("simulated", "simulated records")
-    for name, words in (("reason", "decided by"), simulated, ("settle", "to settle it"), columns):
+    for name, label in LINES.items():
         if verdict.attrs.get(name):
-            print(f"  {words}: {verdict.attrs[name]}")
+            print(f"  {label}: {verdict.attrs[name]}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, ClassVar, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,7 +42,6 @@ SETTLE_CYCLES = (30, 200)  # fewest and most cycles before
 USUAL_FLOOR = 0.01  # of order 1, where none is given: what a shaker makes of order 2
 COARSE_POINTS, COARSE_SAMPLES = 30, 7.0  # most points of a coarse search, samples in a period
 HALF_POWER = 0.5**0.5
-REPLICATES, SEED = 100, 20_241  # of the simulated scatter
 
 
 @dataclass(frozen=True)
@@ -255,6 +254,7 @@ class CurveEvidence(Evidence):
         Whether the orders are those of the motion relative to the base.
     """
 
+    has_floor: ClassVar[bool] = False
     with_phase: NDArray[np.bool_] = None  # type: ignore[assignment]
     relative_motion: bool = False
 
@@ -306,20 +306,3 @@ class CurveEvidence(Evidence):
     def unbounded_residuals(self) -> Floats:
         """Return the residuals of a motion without bounds."""
         return super().unbounded_residuals()[:, self.present]
-
-
-def scatter_changes(residuals: Floats) -> list[Floats]:
-    """Simulate the scatter of a curve's points, and return the residuals' changes by it.
-
-    A curve has no floor between its orders. Its scatter is what differs from one frequency to the
-    next, of each sensor and order: the second differences of the residuals, of which white noise of
-    variance 1 makes 6.
-
-    Parameters
-    ----------
-    residuals : ndarray, shape (sensors, rows, windows)
-    """
-    differences = np.diff(residuals, n=2, axis=-1)
-    size = np.sqrt(np.mean(differences**2, axis=-1, keepdims=True) / 6.0)
-    rng = np.random.default_rng(SEED)
-    return [size * rng.standard_normal(residuals.shape) for _ in range(REPLICATES)]

@@ -137,11 +137,12 @@ class DetectJob(SearchJob):
         """Refine and compare the fits; where it is close, to simulated records too."""
         table = super().finish(previous, player)
         results = Results.from_table(self, table)
-        ratios, inputs = np.full((2, SIMULATED), np.nan), bootstrap_inputs(results)
-        searched = bool(np.isfinite(inputs[-1].covariance).all())  # where the word hangs on it
-        if searched and findings_from_results(results).is_close:
-            made = bootstrap(*inputs, player)
-            ratios = np.stack([made.sound, made.delaminated])
+        ratios = np.full((2, SIMULATED), np.nan)
+        if findings_from_results(results).is_close:
+            *inputs, delaminated = bootstrap_inputs(results)
+            if np.isfinite(delaminated.covariance).all():  # it was searched
+                made = bootstrap(*inputs, delaminated, player)
+                ratios = np.stack([made.sound, made.delaminated])
         return {**table, "end_bootstrap": ratios[np.newaxis]}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:

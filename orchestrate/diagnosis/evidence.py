@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,8 +76,11 @@ class Evidence:
         The base's acceleration, from the first sample on.
     relative : tuple of float
         Errors that a good model may have, see ``MODEL_ERROR``.
+    has_floor : bool
+        Whether the noise between the orders was measured: not in a resonance curve.
     """
 
+    has_floor: ClassVar[bool] = True
     orders: RecordOrders
     pieces: Pieces
     relative: tuple[float, ...] = MODEL_ERROR
@@ -300,12 +303,14 @@ class Evidence:
 
     def order_residuals(self, computed: Complexes) -> Floats:
         """Return computed less measured orders, over the errors; shape (sensors, 4, windows)."""
-        wanted1 = np.stack([self.first_order(row, one) for row, one in enumerate(computed[:, 0])])
-        first = (computed[:, 0] - wanted1) / self.error[:, 0]
+        measured_first = np.stack(
+            [self.first_order(row, one) for row, one in enumerate(computed[:, 0])]
+        )
+        first = (computed[:, 0] - measured_first) / self.error[:, 0]
         noise = self.noise[:, None, None]  # adds to both sizes alike
-        size, wanted = np.abs(computed[:, 1:]), np.abs(self.measured[:, 1:])
-        higher = (np.sqrt(size**2 + noise**2) - wanted) / self.error[:, 1:]
-        found = np.concatenate([first.real[:, None], first.imag[:, None], higher], axis=1)
-        resolved = np.isfinite(wanted[:, [0, 0, 0, 1]]) | (np.arange(4) < 2)[:, None]
-        found = np.where(np.isfinite(found), found, np.where(resolved, UNBOUNDED_RESIDUAL, 0.0))
-        return np.clip(found, -UNBOUNDED_RESIDUAL, UNBOUNDED_RESIDUAL)
+        size, measured_size = np.abs(computed[:, 1:]), np.abs(self.measured[:, 1:])
+        higher = (np.sqrt(size**2 + noise**2) - measured_size) / self.error[:, 1:]
+        raw = np.concatenate([first.real[:, None], first.imag[:, None], higher], axis=1)
+        resolved = np.isfinite(measured_size[:, [0, 0, 0, 1]]) | (np.arange(4) < 2)[:, None]
+        whole = np.where(np.isfinite(raw), raw, np.where(resolved, UNBOUNDED_RESIDUAL, 0.0))
+        return np.clip(whole, -UNBOUNDED_RESIDUAL, UNBOUNDED_RESIDUAL)

@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..access import Player
-from ..laboratory.analysis.channels import BOX
-from .errors import noise_of_samples, with_base_noise
+from .errors import motions_under_base_noise
 from .evidence import Evidence
 from .hypotheses import Hypothesis
 from .orders import Complexes
 
 Floats = NDArray[np.float64]
-Values = Mapping[str, float]
 SIMULATED = 200  # records of each hypothesis
 BASE_REPLICATES = 20  # motions under more noise of the base; each serves several records
 # Parts of the record over which what a fit misses changes. Chosen on 23 beams of the campaign on
@@ -80,7 +77,10 @@ class Simulation:
         motion = fitted.hypothesis.displacements(values, evidence, player)
         computed = evidence.fitted_orders(motion)
         missed = evidence.order_residuals(computed)
-        by_base = base_noise_changes(evidence, (fitted.hypothesis, values, player), computed, rng)
+        fit = fitted.hypothesis, values, player
+        moved = motions_under_base_noise(evidence, fit, BASE_REPLICATES, rng)
+        shifted = [evidence.order_residuals(evidence.fitted_orders(one)) for one in moved]
+        by_base = np.stack(shifted) - missed
         picked = rng.integers(0, len(by_base), SIMULATED)
         signs = rng.choice([-1.0, 1.0], (SIMULATED, 1, 1, 1))
         noise = signs * by_base[picked] + sensor_noise_changes(evidence, computed, rng)
@@ -88,24 +88,6 @@ class Simulation:
         smooth = smooth_functions(missed.shape[-1], rng)[:, np.newaxis, np.newaxis]
         changes = -missed - noise + beyond * smooth * missed
         return cls(fitted, motion, changes.reshape(SIMULATED, -1))
-
-
-def base_noise_changes(
-    evidence: Evidence,
-    fit: tuple[Hypothesis, Values, Player | None],
-    computed: Complexes,
-    rng: np.random.Generator,
-) -> Floats:
-    """Return how residuals change where the base moves with more noise of its floor's size."""
-    hypothesis, values, player = fit
-    size = noise_of_samples(evidence.orders)[BOX]
-    here = evidence.order_residuals(computed)
-    found = []
-    for _ in range(BASE_REPLICATES):
-        noisy = with_base_noise(evidence, size * rng.standard_normal(evidence.samples))
-        motion = hypothesis.displacements(values, noisy, player)
-        found.append(evidence.order_residuals(evidence.fitted_orders(motion)) - here)
-    return np.stack(found)
 
 
 def sensor_noise_changes(
