@@ -72,14 +72,15 @@ class Bootstrap:
         return int(above.sum()), int(below.sum())
 
     def sentence(self) -> str:
-        """Say how many of the simulated records look as the measured one does."""
+        """Return sentences on how many of the simulated records look as the measured one does."""
         above, below = (str(number or "none") for number in self.alike)
         count, (odds, error) = len(self.sound), self.odds_with_error()
         ends = " to ".join(f"{odds * math.exp(sign * error):.2g}" for sign in (-1.0, 1.0))
         return (
-            f"of {count} simulated records of the best sound model {above} looked as delaminated "
-            f"as this one, and of {count} of the delaminated model {below} as sound: if one of the "
-            f"two is the truth, the odds of delaminated are {odds:.2g} ({ends}) to 1"
+            f"Of {count} simulated records of the best sound model, {above} looked as delaminated "
+            f"as this record. Of {count} simulated records of the delaminated model, {below} "
+            "looked as sound as this record. If one of the two models is true, the odds of "
+            f"delaminated are {odds:.2g} ({ends}) to 1."
         )
 
     def odds_with_error(self) -> tuple[float, float]:

@@ -24,6 +24,7 @@ DESCRIBES_FACES_APART = 4.0  # the same where two faces are seen to move apart
 CERTAIN = 0.9  # share of the resampled records in which the ratio has to hold
 RESAMPLED, BLOCKS, SEED = 1000, 20, 7
 CLOSE = 1.25  # a factor: a quantity so near to its border may lie on the other side of it
+MISFIT_MEANING = "A misfit of 1 is as far as noise and the usual error of a good model explain."
 UNSURE = (0.02, 0.98)  # shares of resampled records between which the ratio is not sure
 
 
@@ -133,38 +134,43 @@ class Findings:
         return NOT_DESCRIBED
 
     def reason(self) -> str:
-        """Return a sentence that says by which numbers the verdict was decided."""
-        size = f"order 2 is up to {100.0 * self.order2:.2g} % of order 1"
-        signs = f"{size}, {self.excess:.2g} times its detection threshold"
+        """Return sentences that say by which numbers the verdict was decided."""
+        sentences = [
+            f"Order 2 is up to {digits(100.0 * self.order2)} % of order 1, "
+            f"{digits(self.excess)} times the size from which it counts as seen."
+        ]
         if self.sensors > 1:
-            signs += f"; the two faces differ by {self.apart:.2g} times their threshold"
+            apart = f"{digits(self.apart)} times the difference from which it counts as seen"
+            sentences.append(f"The two faces differ by {apart}.")
         if math.isfinite(self.bursts):
-            signs += f"; bursts once a period have {self.bursts:.2g} times the power that counts"
-        if not self.seen:
-            sound = f"the best sound model ({self.sound}) misses by {self.sound_misfit:.2g}"
-            return f"{signs}; {sound}{self.heard_only()}"
-        fits = (
-            f"the {self.delaminated} model misses the record by {self.delaminated_misfit:.2g}, "
-            f"the best sound one ({self.sound}) by {self.sound_misfit:.2g}"
-        )
-        decided = f"{self.ratio:.3g} times as much, where {self.deciding_ratio:g} decides"
-        return f"{signs}; {fits}: {decided}{self.imperfection()}"
+            power = f"{digits(self.bursts)} times the power from which they count as impacts"
+            sentences.append(f"Bursts once a period have {power}.")
+        sound = f"best sound model ({self.sound})"
+        if self.seen:
+            sentences.append(
+                f"The misfit of the {self.delaminated} model is {digits(self.delaminated_misfit)}, "
+                f"that of the {sound} is {digits(self.sound_misfit)}: {self.ratio:.3g} times as "
+                f"large, where {self.deciding_ratio:g} times is enough to decide."
+            )
+        else:
+            sentences.append(f"The misfit of the {sound} is {digits(self.sound_misfit)}.")
+        return " ".join([*sentences, MISFIT_MEANING, *self.heard_only(), *self.imperfection()])
 
-    def heard_only(self) -> str:
-        """Return the words for impacts that move the sensor too little for order 2."""
-        if not self.heard:
-            return ""
-        return ", but something strikes once a period: faces away from the sensor, or a loose part"
+    def heard_only(self) -> list[str]:
+        """Return a sentence on impacts that move the sensor too little for order 2, if any."""
+        if self.seen or not self.heard:
+            return []
+        return ["Something strikes once a period: faces away from the sensor, or a loose part."]
 
-    def imperfection(self) -> str:
-        """Return the words for a verdict by a model that describes the record only so well."""
+    def imperfection(self) -> list[str]:
+        """Return a sentence on a model that decides but describes the record poorly, if it does."""
         described = self.ratio >= RATIO and self.delaminated_misfit <= DELAMINATED_DESCRIBES
         if self.verdict() != DELAMINATED or described:
-            return ""
-        return (
-            "; what decides is that the faces move apart: two masses describe this structure only "
-            "so well, and their numbers say little about it"
-        )
+            return []
+        return [
+            "What decides is that the faces move apart: two masses describe this structure only "
+            "so well, and their numbers say little about it."
+        ]
 
     def next_measurement(self) -> str:
         """Recommend, in a sentence, the measurement that would decide or confirm the verdict."""
@@ -172,8 +178,8 @@ class Findings:
         return {
             DELAMINATED: "A sweep in the other direction and another level should give the same "
             "frequencies of the halves; a free clamp or a loose part would not.",
-            NOT_SEEN: f"A higher level than {self.high:.3g} m/s2: faces that are pressed together "
-            "open above a threshold only, and below it no record tells them from bonded ones.",
+            NOT_SEEN: "A sweep at a higher level: faces that are pressed together open above a "
+            "threshold only, and below it no record tells them from bonded ones.",
             NOT_DESCRIBED: "Sweeps up and down at two levels after the clamp is tightened and "
             "loose parts are taken away: what is seen is neither a sound beam nor this one.",
             UNDECIDED: f"Sweeps up and down at twice the level, with {other}.",
@@ -182,13 +188,24 @@ class Findings:
     def seen_up_to(self) -> str:
         """Describe the range that was measured, and the smallest opening detectable in it."""
         text = (
-            f"up to {self.high:.3g} m/s2 from {self.first:.3g} to {self.last:.3g} Hz; faces at the "
-            f"sensor that part by {1e6 * self.smallest:.2g} micrometres would have been seen at "
+            f"up to {self.high:.3g} m/s\u00b2 from {self.first:.3g} to {self.last:.3g} Hz; faces at "
+            f"the sensor that part by {digits(1e6 * self.smallest)} \u00b5m would have been seen at "
             "every frequency; away from the sensor an opening may be larger"
         )
         if math.isnan(self.bursts):
             text += "; the record is sampled too slowly for the bursts of impacts"
         return text
+
+
+def digits(value: float) -> str:
+    """Format a number with two significant digits, without an exponent.
+
+    Examples
+    --------
+    >>> digits(0.1234), digits(113.0)
+    ('0.12', '110')
+    """
+    return f"{float(f'{value:.2g}'):.10g}"
 
 
 def deciding_ratio(apart: float) -> float:

@@ -32,8 +32,11 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ..running.options import Running
+    from .orders import OrderWindows
+    from .search_job import RecordData
 
 TRUTHS = ("sound", "delaminated")  # of simulated records
+ONE_DIRECTION = 0.5  # of the range of frequencies, from first to last: a sweep in one direction
 ODDS_FROM = {0: "blocks of the record", 1: "simulated records"}
 ASSUMED = (
     "the masses of both halves have the ratio of the guess",
@@ -84,11 +87,12 @@ def detect(
         samples in the shortest
         period), ``smallest_opening`` of faces at a sensor that would be seen at every frequency,
         in m; the range in which the structure moves enough (``level_low``, ``level_high`` in m/s2,
-        ``frequency_low``, ``frequency_high`` in Hz); ``order2`` and its
+        ``frequency_low``, ``frequency_high`` in Hz); of the whole record ``sample_rate``,
+        ``record_duration``, ``sweep_low`` and ``sweep_high``; ``order2`` and its
         ``order2_threshold`` over ``window``. Over ``hypothesis``: ``misfit``, ``evaluations``,
         ``minima``, ``value`` and ``standard_error`` of its parameters, ``misfit_at`` and the
         ``fitted`` orders over ``window``, beside what is ``measured``. Attributes ``reason``,
-        ``settle``, ``simulated``, ``seen_up_to`` and ``assumed``.
+        ``settle``, ``simulated``, ``seen_up_to``, ``assumed`` and ``direction`` of the sweep.
 
     Raises
     ------
@@ -151,6 +155,7 @@ class DetectJob(SearchJob):
 
         results = Results.from_table(self, table)
         findings, even = findings_from_results(results), results.even
+        windows = cached_orders(self.data).windows
         simulated = Bootstrap.from_row(findings.ratio, table["end_bootstrap"][0])
         every, coordinates = results.comparison()
         scalars = {
@@ -170,6 +175,7 @@ class DetectJob(SearchJob):
             "level_high": variable((), findings.high, "m/s2", "highest level of the base"),
             "frequency_low": variable((), findings.first, "Hz", "lowest frequency"),
             "frequency_high": variable((), findings.last, "Hz", "highest frequency"),
+            **record_variables(windows, self.data),
             "order2": variable("window", even.ratio, "1", "order 2 over order 1"),
             "order2_threshold": variable("window", even.threshold, "1", "size that counts as seen"),
         }
@@ -184,7 +190,28 @@ class DetectJob(SearchJob):
             simulated=simulated.sentence() if simulated else "",
             seen_up_to=findings.seen_up_to(),
             assumed="; ".join(ASSUMED),
+            direction=sweep_direction(windows.frequency),
         )
+
+
+def record_variables(windows: OrderWindows, data: RecordData) -> dict[str, Variable]:
+    """Return sampling rate, duration, and the frequencies over which the base moves as a sine."""
+    rate, count = data.sample_rate, len(data.channels[0])
+    low, high = float(windows.frequency.min()), float(windows.frequency.max())
+    return {
+        "sample_rate": variable((), rate, "Hz", "sampling rate of the record"),
+        "record_duration": variable((), (count - 1) / rate, "s", "duration of the record"),
+        "sweep_low": variable((), low, "Hz", "lowest frequency of the base's sine"),
+        "sweep_high": variable((), high, "Hz", "highest frequency of the base's sine"),
+    }
+
+
+def sweep_direction(frequency: NDArray[np.float64]) -> str:
+    """Return in which direction the frequency of a sweep goes: up, down, or up and down."""
+    covered = (frequency[-1] - frequency[0]) / max(float(np.ptp(frequency)), 1e-9)
+    if abs(covered) < ONE_DIRECTION:
+        return "up and down"
+    return "up" if covered > 0.0 else "down"
 
 
 def odds_variables(
@@ -195,7 +222,7 @@ def odds_variables(
     if simulated is not None:
         odds, error = simulated.odds_with_error()
         alike = np.array(simulated.alike) / SIMULATED
-    shares = "share of simulated records on the measured one's other side: sound, delaminated"
+    shares = "share of sound records that look as delaminated, of delaminated ones as sound"
     words = "ratio of misfits in simulated records"
     return {
         "odds": variable((), odds, "1", "odds of delaminated against sound"),

@@ -35,7 +35,7 @@ REPORTED = {  # units and long names
     "cube": ("1/m2", "stiffness that goes with the cube of the displacement"),
     "friction": ("m/s2", "dry friction over the mass"),
     "stop": ("1", "stiffness of a stop over that of the spring"),
-    "position": ("m", "where the stop is met"),
+    "position": ("m", "displacement in the stop's direction from which it pushes"),
 }
 FREE = tuple(REPORTED)[:6]  # of a delaminated structure
 Values = Mapping[str, float]
@@ -178,10 +178,13 @@ class DryFriction(Sound):
         return replace(super().single_mass(values, evidence), friction=friction, slow=slow)
 
 
-class StopOnOneSide(Sound):
-    """A bonded structure with a stop on one side: a clamp that rattles, a cable that slackens."""
+class PositiveStop(Sound):
+    """A bonded structure with a stop in the positive direction of the sensor.
 
-    name = "bonded, with a stop on one side"
+    Such as a clamp that rattles, or a cable that slackens.
+    """
+
+    name = "bonded, with a stop in the positive direction"
     extra = {"stop": (-0.8, 5.0), "position": (-1.0, 1.0)}
     side: ClassVar[float] = 1.0
 
@@ -202,10 +205,10 @@ class StopOnOneSide(Sound):
         return replace(linear, stop=values["stop"], position=position, side=self.side)
 
 
-class StopOnOtherSide(StopOnOneSide):
-    """A bonded structure with a stop on the other side."""
+class NegativeStop(PositiveStop):
+    """A bonded structure with a stop in the negative direction of the sensor."""
 
-    name = "bonded, with a stop on the other side"
+    name = "bonded, with a stop in the negative direction"
     side = -1.0
 
 
@@ -329,4 +332,4 @@ class DelaminatedWithClearance(Delaminated):
         return found
 
 
-SOUND = (Bonded(), NonlinearSpring(), DryFriction(), StopOnOneSide(), StopOnOtherSide())
+SOUND = (Bonded(), NonlinearSpring(), DryFriction(), PositiveStop(), NegativeStop())

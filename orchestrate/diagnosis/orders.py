@@ -16,6 +16,7 @@ from ..constants import TURN
 from ..errors import InputError
 from ..laboratory.analysis.channels import BOX, Channels
 from ..laboratory.analysis.orders import EDGE, NYQUIST, Window, measured_phase, window
+from ..laboratory.record import channel_label
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -221,11 +222,12 @@ def checked_channels(record: xr.Dataset) -> Channels:
     """
     channels = readings(record)
     if len(channels.names) < 2:
-        text = "expected acceleration1, acceleration2 or both beside box_acceleration"
-        raise InputError(f"record: no acceleration of the structure; {text}")
+        text = "expected acceleration1, acceleration2 or both beside the base's"
+        raise InputError(f"record: no acceleration of a face; {text}")
     for name, values in zip(channels.names, channels.values, strict=True):
         if not np.ptp(values) > 0.0:
-            raise InputError(f"{name}: does not move; expected the reading of an accelerometer")
+            text = "does not move; expected the reading of an accelerometer"
+            raise InputError(f"{channel_label(name)}: {text}")
     return channels
 
 
@@ -287,7 +289,8 @@ def sine_windows(channels: Channels) -> tuple[OrderWindows, Complexes]:
     usable = [one for one in usable if one.frequency < NYQUIST * channels.sample_rate]
     if len(usable) < MIN_WINDOWS:
         text = f"{EXPECTED}, of {MIN_WINDOWS * MIN_PERIODS / 2:g} periods or more"
-        raise InputError(f"{BOX}: no sine of moving frequency in {channels.duration:.4g} s; {text}")
+        lacking = f"no sine of moving frequency in {channels.duration:.4g} s"
+        raise InputError(f"{channel_label(BOX)}: {lacking}; {text}")
     row = channels.names.index(BOX)
     solutions = [
         referred_to_base(channels.box, one, least_squares_matrix(one, channels.sample_rate))
@@ -304,7 +307,7 @@ def sine_windows(channels: Channels) -> tuple[OrderWindows, Complexes]:
     good = sine & (level >= MIN_LEVEL * np.median(level))
     if good.sum() < max(MIN_WINDOWS, 0.5 * len(good)):
         text = f"no sine in {np.sum(~sine)} of {len(good)} windows"
-        raise InputError(f"{BOX}: {text}; {EXPECTED}")
+        raise InputError(f"{channel_label(BOX)}: {text}; {EXPECTED}")
     kept = np.flatnonzero(good)
     windows = assembled_windows(channels, [usable[i] for i in kept], [solutions[i] for i in kept])
     return windows, amplitude[:, :, kept]

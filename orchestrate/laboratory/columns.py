@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..constants import GRAVITY, TURN
 from ..errors import InputError
-from .record import CHANNELS
+from .record import CHANNELS, SHORT_NAMES
 
 Floats = NDArray[np.float64]
 INCH = 0.0254
@@ -52,7 +52,6 @@ NAMES = {  # as files call them; letters and digits alone, small
     "acceleration1": ("acceleration1", "mass1", "a1", "acc1", "accel1", "face1", "beam", "face"),
     "acceleration2": ("acceleration2", "mass2", "a2", "acc2", "accel2", "face2"),
 }
-WORDS = {"box_acceleration": "base", "acceleration1": "face 1", "acceleration2": "face 2"}
 HEADING = re.compile(r"^(?P<name>.*?)[\s_]*[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
 
 
@@ -139,7 +138,8 @@ def factor_of(label: str, unit: str, known: Mapping[str, float]) -> float:
         usual = ("g", "mg", "ms", "rad/s", "deg")
         names = ", ".join(list(known)[:1] + [name for name in usual if name in known])
         text = f"unit = {unit!r}" if unit else "no unit"
-        raise InputError(f"{label}: {text}; expected one such as {names}: say unit=")
+        remedy = "give it by unit=" if known is ACCELERATIONS else "mend it in the file"
+        raise InputError(f"{label}: {text}; expected one such as {names}: {remedy}")
     return known[plain_unit(unit)]
 
 
@@ -147,8 +147,11 @@ def channels_of(
     table: Columns,
     columns: Mapping[str, str | int] | Sequence[str | int] | None,
     unit: str | None,
-) -> tuple[Floats | None, dict[str, Floats], str]:
-    """Return times in s, None without them, channels in m/s2 by name, and which columns they are.
+) -> tuple[Floats | None, dict[str, Floats], dict[str, str]]:
+    """Return times in s, None without them, channels in m/s2 by name, and how they were read.
+
+    How they were read are attributes of a record: ``columns``, which column was taken for what;
+    ``unit`` of the accelerations; and ``unit_in_file``, where ``unit`` was taken in its place.
 
     Parameters
     ----------
@@ -165,7 +168,7 @@ def channels_of(
     known = named_channels(table) if columns is None else {}
     places = known or channel_places(table, columns)
     by_order = ", by their order: no name is known" if columns is None and not known else ""
-    time, taken = None, taken_text(table, places) + by_order
+    time, read_as = None, {"columns": taken_text(table, places) + by_order}
     if "time" in places:
         column = table.columns[places.pop("time")]
         label = label_of(table, column)
@@ -177,13 +180,25 @@ def channels_of(
         column = table.columns[place]
         own = column.unit if unit is None else unit
         values[name] = scaled(table, column, factor_of(label_of(table, column), own, ACCELERATIONS))
-    return time, values, taken
+    channels = [table.columns[place] for place in places.values()]
+    return time, values, read_as | unit_attributes(channels, unit)
+
+
+def unit_attributes(channels: Sequence[Column], unit: str | None) -> dict[str, str]:
+    """Return a record's attributes on its unit: the one used, and the file's own if it differs."""
+    own = ", ".join(dict.fromkeys(column.unit for column in channels if column.unit))
+    if unit is None:
+        return {"unit": own}
+    differs = any(
+        column.unit and plain_unit(column.unit) != plain_unit(unit) for column in channels
+    )
+    return {"unit": unit, "unit_in_file": own} if differs else {"unit": unit}
 
 
 def taken_text(table: Columns, places: Mapping[str, int]) -> str:
     """Return a text that says which column was taken for what."""
     return ", ".join(
-        f'{WORDS.get(name, name)} "{table.columns[i].name}"' for name, i in places.items()
+        f'{SHORT_NAMES.get(name, name)} "{table.columns[i].name}"' for name, i in places.items()
     )
 
 

@@ -22,6 +22,7 @@ CHANNELS = {  # long names
     "acceleration1": "acceleration of mass 1 in space",
     "acceleration2": "acceleration of mass 2 in space",
 }
+SHORT_NAMES = {"box_acceleration": "base", "acceleration1": "face 1", "acceleration2": "face 2"}
 FEWEST = 4
 UNEVEN = 0.05  # largest distance of a time from equal steps, parts of a step
 PLAUSIBLE = (0.05, 2e5)  # largest absolute values that accelerometers read in tests, m/s2
@@ -184,4 +185,10 @@ def warn_if_implausible(name: str, values: Floats) -> None:
         text = f"a mean of {mean:.3g} m/s2, as gravity has in g: are these numbers in g"
     else:
         return
-    warnings.warn(f"{name}: {text}? expected m/s2", UserWarning, stacklevel=5)
+    text = f"{channel_label(name)}: {text}? expected m/s2"
+    warnings.warn(text, UserWarning, stacklevel=5)
+
+
+def channel_label(name: str) -> str:
+    """Return a channel's name as people say it and as it is in Python: base (box_acceleration)."""
+    return f"{SHORT_NAMES[name]} ({name})"

@@ -64,7 +64,9 @@ def read_record(
     Returns
     -------
     xarray.Dataset
-        As :func:`orchestrate.record` makes it.
+        As :func:`orchestrate.record` makes it. Attributes say how it was read: ``columns``, which
+        column was taken for what; ``unit``, that of the accelerations; ``unit_in_file``, what the
+        file says where ``unit`` was taken in its place.
 
     Raises
     ------
@@ -100,11 +102,12 @@ def read_record(
         table = readers[kind](path)
     if sample_rate is not None:
         table = replace(table, sample_rate=sample_rate)
-    time, values, taken = channels_of(table, columns, unit)
+    time, values, read_as = channels_of(table, columns, unit)
     if time is None and table.sample_rate is None:
         raise InputError(f"{path}: no column of times; expected one, or sample_rate=")
     words = {"title": f"Record {path.name}", "source": path.name, **table.attributes}
-    words |= {"columns": taken} if kind != "netcdf" else {}
+    if kind != "netcdf" or unit is not None:  # it says how it was read the first time
+        words |= read_as
     try:
         return checked_record(time, values, table.sample_rate, words, first_row=table.first_row)
     except InputError as error:

@@ -353,7 +353,7 @@ def acceleration_factor(name: str, unit: str, frequency: Floats, level: Floats) 
             return np.asarray(units[plain] * (TURN * frequency) ** power)
     text = f"unit = {unit!r}" if unit else "no unit"
     names = "m/s2, g, mm/s, m, mm, um, or 1 for a transmissibility"
-    raise InputError(f"{name}: {text}; expected one such as {names}: say unit=")
+    raise InputError(f"{name}: {text}; expected one such as {names}: give it by unit=")
 
 
 def lagging_phases(first: Floats, phase: Floats) -> tuple[Floats, str]:

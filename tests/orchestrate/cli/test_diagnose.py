@@ -39,11 +39,11 @@ def sine(tmp_path):
         (["FILE"], ["--structure: nothing given", "guess of the beam"]),
         (["lost.csv", "--structure", GUESS], ["lost.csv", "expected a file to read"]),
         (["FILE", "--structure", "lost.toml"], ["lost.toml"]),
-        (["FILE", "--structure", GUESS, "--columns", "0"], ["--columns 0", "acceleration1"]),
+        (["FILE", "--structure", GUESS, "--columns", "0"], ["--columns 0", "time, base, face 1"]),
         (["FILE", "--structure", GUESS, "--columns", "0,1,9"], ["9"]),
         (
             ["FILE", "--structure", GUESS, "--columns", "0,1"],
-            ["no acceleration1 in time", "base", "--columns"],
+            ["no acceleration of a face in time", "base", "--columns"],
         ),
         (["FILE", "FILE", "--structure", GUESS, "--other", "FILE"], ["--other: of one beam"]),
         (["FILE", "--structure", GUESS, "--set", "f1=-3"], ["f1 = -3"]),
