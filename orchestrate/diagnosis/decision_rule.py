@@ -145,15 +145,14 @@ class Findings:
         if math.isfinite(self.bursts):
             power = f"{digits(self.bursts)} times the power from which they count as impacts"
             sentences.append(f"Bursts once a period have {power}.")
-        sound = f"best sound model ({self.sound})"
+        misfit = (
+            f'The best sound model, "{self.sound}", has a misfit of {digits(self.sound_misfit)}'
+        )
         if self.seen:
-            sentences.append(
-                f"The misfit of the {self.delaminated} model is {digits(self.delaminated_misfit)}, "
-                f"that of the {sound} is {digits(self.sound_misfit)}: {self.ratio:.3g} times as "
-                f"large, where {self.deciding_ratio:g} times is enough to decide."
-            )
-        else:
-            sentences.append(f"The misfit of the {sound} is {digits(self.sound_misfit)}.")
+            other = f'the model "{self.delaminated}" has {digits(self.delaminated_misfit)}'
+            enough = f"{self.deciding_ratio:g} times is enough to decide"
+            misfit += f", {other}: that is {self.ratio:.3g} times as large, where {enough}"
+        sentences.append(f"{misfit}.")
         return " ".join([*sentences, MISFIT_MEANING, *self.heard_only(), *self.imperfection()])
 
     def heard_only(self) -> list[str]:
@@ -187,10 +186,11 @@ class Findings:
 
     def seen_up_to(self) -> str:
         """Describe the range that was measured, and the smallest opening detectable in it."""
+        opening = f"{digits(1e6 * self.smallest)} \u00b5m"
         text = (
-            f"up to {self.high:.3g} m/s\u00b2 from {self.first:.3g} to {self.last:.3g} Hz; faces at "
-            f"the sensor that part by {digits(1e6 * self.smallest)} \u00b5m would have been seen at "
-            "every frequency; away from the sensor an opening may be larger"
+            f"up to {self.high:.3g} m/s\u00b2 from {self.first:.3g} to {self.last:.3g} Hz; "
+            f"faces at the sensor that part by {opening} would have been seen at every frequency; "
+            "away from the sensor an opening may be larger"
         )
         if math.isnan(self.bursts):
             text += "; the record is sampled too slowly for the bursts of impacts"

@@ -28,8 +28,8 @@ WORTH = (
 )
 NAMES_OF_CHANNELS = (
     "Base is what the beam is fastened to, the shaker's table or a clamp; its acceleration is "
-    "called box_acceleration in Python and in files of this package. Face 1 and face 2 are the two halves' "
-    "outer faces, on which sensor 1 and sensor 2 are: acceleration1 and acceleration2."
+    "called box_acceleration in Python and in files of this package. Face 1 and face 2 are the "
+    "outer faces of both halves, with sensor 1 and sensor 2: acceleration1 and acceleration2."
 )
 BEST = 3  # hypotheses in the table of parameters
 
@@ -129,7 +129,7 @@ def measured_record(answer: xr.Dataset) -> Section | None:
         ("file of the guess", words.get("guess_file", "")),
         ("command that made it", words.get("command", "")),
     ]
-    known = [row for row in rows if row[1] and MISSING not in row[1]]
+    known = [row for row in rows if row[1]]
     if not known:
         return None
     return Section("The record", [NAMES_OF_CHANNELS], tables=[Table(("what", "value"), known)])
@@ -164,8 +164,11 @@ def frequencies_text(answer: xr.Dataset, low: float, high: float) -> str:
 
 def level_text(answer: xr.Dataset) -> str:
     """Format the range of the base's levels in the units that were asked for."""
+    ends = [number(answer, name) for name in ("level_low", "level_high")]
+    if not all(map(math.isfinite, ends)):
+        return ""
     felt, unit = scale_of(answer, "m/s2")
-    low, high = (text_of(number(answer, f"level_{end}") / felt) for end in ("low", "high"))
+    low, high = (text_of(end / felt) for end in ends)
     return f"{low} to {high} {unit.replace('m/s2', 'm/s²')} (peak)"
 
 
