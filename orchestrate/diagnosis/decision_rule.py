@@ -30,7 +30,7 @@ UNSURE = (0.02, 0.98)  # shares of resampled records between which the ratio is 
 
 @dataclass(frozen=True)
 class Findings:
-    """Quantities that the decision rule needs.
+    """Hold the quantities that the decision rule needs.
 
     Attributes
     ----------
@@ -79,18 +79,18 @@ class Findings:
         return self.sound_misfit / self.delaminated_misfit
 
     @property
-    def seen(self) -> bool:
+    def is_opening_seen(self) -> bool:
         """Whether order 2, or two faces that move differently, exceed their thresholds."""
         return self.excess > 1.0 or self.apart > 1.0
 
     @property
-    def heard(self) -> bool:
+    def is_impact_heard(self) -> bool:
         """Whether bursts once a period, as of impacts, exceed their threshold."""
         return self.bursts > 1.0
 
     @property
     def deciding_ratio(self) -> float:
-        """Ratio of misfits that decides."""
+        """Ratio of misfits from which the delaminated model is taken for the better one."""
         return deciding_ratio(self.apart)
 
     @property
@@ -100,18 +100,18 @@ class Findings:
 
     @property
     def is_close(self) -> bool:
-        """Whether the word hangs on a number near its border, or on a part of the record."""
-        if self.seen and UNSURE[0] < self.share < UNSURE[1]:
+        """Whether the verdict hangs on a number near its border, or on a part of the record."""
+        if self.is_opening_seen and UNSURE[0] < self.share < UNSURE[1]:
             return True
         names = ("excess", "apart", "bursts", "sound_misfit", "delaminated_misfit")
         return any(
-            self.moved(name, factor).verdict() != self.verdict()
+            self.with_number_scaled(name, factor).verdict() != self.verdict()
             for name in names
             for factor in (CLOSE, 1.0 / CLOSE)
         )
 
-    def moved(self, name: str, factor: float) -> Findings:
-        """Return the findings with one number multiplied; the whole record shares its ratio."""
+    def with_number_scaled(self, name: str, factor: float) -> Findings:
+        """Return the findings with one number multiplied by a factor."""
         made = replace(self, **{name: getattr(self, name) * factor})
         if made.ratio == self.ratio and made.deciding_ratio == self.deciding_ratio:
             return made
@@ -123,9 +123,9 @@ class Findings:
         describes = DESCRIBES_FACES_APART if self.apart > 1.0 else DELAMINATED_DESCRIBES
         delaminated = self.delaminated_misfit <= describes
         better = delaminated and self.ratio >= self.deciding_ratio
-        if not self.seen:
+        if not self.is_opening_seen:
             if sound:
-                return UNDECIDED if self.heard else NOT_SEEN
+                return UNDECIDED if self.is_impact_heard else NOT_SEEN
             return UNDECIDED if better else NOT_DESCRIBED
         if better:
             return DELAMINATED if self.share >= CERTAIN else UNDECIDED
@@ -148,7 +148,7 @@ class Findings:
         misfit = (
             f'The best sound model, "{self.sound}", has a misfit of {digits(self.sound_misfit)}'
         )
-        if self.seen:
+        if self.is_opening_seen:
             other = f'the model "{self.delaminated}" has {digits(self.delaminated_misfit)}'
             enough = f"{self.deciding_ratio:g} times is enough to decide"
             misfit += f", {other}: that is {self.ratio:.3g} times as large, where {enough}"
@@ -157,7 +157,7 @@ class Findings:
 
     def heard_only(self) -> list[str]:
         """Return a sentence on impacts that move the sensor too little for order 2, if any."""
-        if self.seen or not self.heard:
+        if self.is_opening_seen or not self.is_impact_heard:
             return []
         return ["Something strikes once a period: faces away from the sensor, or a loose part."]
 
@@ -209,7 +209,7 @@ def digits(value: float) -> str:
 
 
 def deciding_ratio(apart: float) -> float:
-    """Return the ratio of misfits that decides, by two faces' difference over its threshold."""
+    """Return the ratio of misfits that decides: a smaller one where two faces move differently."""
     return RATIO_OF_FACES_APART if apart > 1.0 else RATIO
 
 

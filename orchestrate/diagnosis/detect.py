@@ -138,7 +138,7 @@ class DetectJob(SearchJob):
     """Fit all hypotheses to a record and decide which verdict they give."""
 
     def finish(self, previous: Table, player: Player) -> Table:
-        """Refine and compare the fits; where it is close, to simulated records too."""
+        """Refine the fits; where the verdict is close, simulate records and fit them too."""
         table = super().finish(previous, player)
         results = Results.from_table(self, table)
         ratios = np.full((2, SIMULATED), np.nan)
@@ -217,11 +217,11 @@ def sweep_direction(frequency: NDArray[np.float64]) -> str:
 def odds_variables(
     findings: Findings, simulated: Bootstrap | None, ratios: NDArray[np.float64]
 ) -> dict[str, Variable]:
-    """Return the odds, what they were found by, and the ratios in simulated records."""
+    """Return the odds, how they were found, and the ratios of misfits in simulated records."""
     odds, error, alike = findings.odds, math.nan, np.full(2, math.nan)
     if simulated is not None:
         odds, error = simulated.odds_with_error()
-        alike = np.array(simulated.alike) / SIMULATED
+        alike = np.array(simulated.lookalikes) / SIMULATED
     shares = "share of sound records that look as delaminated, of delaminated ones as sound"
     words = "ratio of misfits in simulated records"
     return {
@@ -234,7 +234,7 @@ def odds_variables(
 
 
 def bootstrap_inputs(results: Results) -> tuple[Evidence, Evidence, list[Fitted], Fitted]:
-    """Return evidence, all sound fits and the better delaminated one, for their simulation."""
+    """Return the arguments of the bootstrap: evidence, all sound fits, best delaminated fit."""
     job, evidence, made = results.job, results.job.evidence, []
     for position, hypothesis in enumerate(job.hypotheses):
         names = list(hypothesis.bounds(evidence))

@@ -67,7 +67,7 @@ NOISE_FACTOR = 1.3  # squares over those that noise makes: less of them has no o
 
 @dataclass(frozen=True)
 class Estimate:
-    """Fitted numbers with their covariance, and the standard deviations by each cause.
+    """Hold fitted numbers with their covariance, and the standard deviations by each cause.
 
     Attributes
     ----------
@@ -94,7 +94,7 @@ def estimate(search: Search, values: Mapping[str, float]) -> Estimate:
         At the minimum that was found.
     """
     here, bounds = dict(values), search.hypothesis.bounds(search.evidence)
-    model = regression(search, here)
+    model = linear_model_around(search, here)
     moved = model.damped_minima(bounds, here)[0]
     before, after = (misfit(search.residuals(one)) for one in (here, moved))
     allowed = MAX_INCREASE if search.hypothesis.is_rugged else 1.0
@@ -102,7 +102,7 @@ def estimate(search: Search, values: Mapping[str, float]) -> Estimate:
     lifted = chosen if search.evidence.has_floor else with_shared_damping(chosen)
     if lifted == chosen:
         return estimate_with_covariances(search, chosen, model)
-    found = estimate_with_covariances(search, chosen, regression(search, lifted))
+    found = estimate_with_covariances(search, chosen, linear_model_around(search, lifted))
     # what is linear in the damping ratios themselves, as errors of the logarithms that were fitted
     scale = np.array(
         [math.exp(lifted[n] - chosen[n]) if n.startswith("log_") else 1.0 for n in chosen]
@@ -110,8 +110,8 @@ def estimate(search: Search, values: Mapping[str, float]) -> Estimate:
     return replace(found, covariance=found.covariance * np.outer(scale, scale))
 
 
-def regression(search: Search, values: Mapping[str, float]) -> LinearModel:
-    """Return the linear model of the residuals around these values, over a cloud."""
+def linear_model_around(search: Search, values: Mapping[str, float]) -> LinearModel:
+    """Fit a linear model to the residuals at a cloud of points around these values."""
     bounds = search.hypothesis.bounds(search.evidence)
     steps = np.diag([difference_step(search, name) ** 2 for name in values])
     first = LinearModel.from_cloud(search.residuals, bounds, values, 0.1 * steps)
@@ -121,7 +121,7 @@ def regression(search: Search, values: Mapping[str, float]) -> LinearModel:
 
 
 def with_shared_damping(values: Mapping[str, float]) -> dict[str, float]:
-    """Return the numbers with a damping ratio that is nearly 0 raised at the other one's cost.
+    """Raise a damping ratio that is nearly 0, and lower the other one by as much.
 
     Only the sum of both is well known, and residuals are linear in the ratios themselves: around a
     logarithm that has run away, differences tell nothing of what the ratio may be.
@@ -138,7 +138,7 @@ def with_shared_damping(values: Mapping[str, float]) -> dict[str, float]:
 def estimate_with_covariances(
     search: Search, values: dict[str, float], model: LinearModel
 ) -> Estimate:
-    """Return the numbers with their covariances by noise, by blocks and by discrepancy."""
+    """Compute the covariances of fitted numbers by noise, by blocks and by discrepancy."""
     count, rows, influence = len(values), model.weighted_slopes, model.influence
     residuals = search.residuals(values)
     if search.evidence.has_floor:
@@ -193,7 +193,7 @@ def squares_beyond_noise(residuals: Floats, changes: list[Floats]) -> float:
 
 
 def simulated_noise_changes(search: Search, values: Mapping[str, float]) -> list[Floats]:
-    """Simulate noise of base and sensors, and return the residuals' changes for each replicate."""
+    """Simulate noise of base and sensors; return the change of the residuals in each replicate."""
     evidence, rng = search.evidence, np.random.default_rng(SEED)
     sizes, names = noise_of_samples(evidence.orders), evidence.orders.sensors
     motion = search.hypothesis.displacements(values, evidence, search.player)
@@ -211,7 +211,7 @@ def simulated_noise_changes(search: Search, values: Mapping[str, float]) -> list
 
 
 def scatter_changes(residuals: Floats) -> list[Floats]:
-    """Simulate the scatter of a curve's points, and return the residuals' changes by it.
+    """Simulate the scatter of a curve's points; return the change of the residuals each time.
 
     A curve has no floor between its orders. Its scatter is what differs from one frequency to the
     next, of each sensor and order: the second differences of the residuals, of which white noise of
@@ -261,7 +261,7 @@ def with_base_noise(evidence: Evidence, noise: Floats) -> Evidence:
 
 
 def noise_of_samples(orders: RecordOrders) -> dict[str, float]:
-    """Return, by channel, the standard deviation of white noise that has its floor, m/s2."""
+    """Return the standard deviation of white noise that makes each channel's floor, m/s2."""
     squares = [np.sum(np.abs(s[:, len(ORDERS) :]) ** 2, axis=0) for s in orders.windows.solutions]
     share = math.sqrt(float(np.nanmean(squares)))
     return {

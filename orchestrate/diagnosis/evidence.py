@@ -67,7 +67,7 @@ def cut_to_resonance(orders: RecordOrders) -> tuple[Channels, float]:
 
 @dataclass(frozen=True)
 class Evidence:
-    """Orders of a record, their errors, and the input of the motions that are compared with them.
+    """Hold a record's orders with their errors, and the input of motions compared with them.
 
     Attributes
     ----------
@@ -146,14 +146,14 @@ class Evidence:
 
     @cached_property
     def used_windows(self) -> NDArray[np.intp]:
-        """Numbers of the windows that are fitted: those after the start-up."""
+        """Indices of the windows that are fitted: those after the start-up."""
         time = self.orders.windows.time - self.orders.channels.time[0]
         skipped = min(START_UP, 0.1 * self.orders.channels.duration)
         return np.flatnonzero(time > skipped)
 
     @cached_property
     def windows(self) -> OrderWindows:
-        """Windows that are fitted, with the orders that are fitted."""
+        """Windows that are fitted, reduced to the orders that are fitted."""
         return self.orders.windows.select(self.used_windows, len(FITTED_ORDERS))
 
     @cached_property
@@ -284,15 +284,15 @@ class Evidence:
         return gain, float(np.clip(DELAY_DEVIATION * solution[1], -MAX_DELAY, MAX_DELAY))
 
     def first_order(self, row: int, computed: Complexes) -> Complexes:
-        """Return the measured order 1 of a sensor, to be compared with this computed one."""
+        """Return a sensor's measured order 1, with which the computed one is compared."""
         return np.asarray(self.measured[row, 0])
 
     def unbounded_residuals(self) -> Floats:
-        """Return the residuals of a motion without bounds."""
+        """Return the residuals that stand for a motion that grows without bounds."""
         return np.full((len(self.masses), 4, len(self.used_windows)), UNBOUNDED_RESIDUAL)
 
     def residuals(self, motion: Floats) -> Floats:
-        """Return a motion's orders less the measured ones, over the errors.
+        """Return the differences of a motion's orders from the measured ones, over the errors.
 
         The shape is (sensors, 4, windows): order 1 as two numbers, then the sizes of orders 2 and
         3; 0 where an order is not resolved.

@@ -70,7 +70,7 @@ class Hypothesis(ABC):
 
     @abstractmethod
     def displacements(self, values: Values, evidence: Evidence, player: Player | None) -> Floats:
-        """Compute the motion relative to the measured base, shape (1 or 2, samples), m."""
+        """Compute the motion of one or two masses relative to the measured base, m."""
 
     @abstractmethod
     def reported(self, values: Values, evidence: Evidence) -> dict[str, float]:
@@ -189,7 +189,7 @@ class PositiveStop(Sound):
     side: ClassVar[float] = 1.0
 
     def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
-        """Return starts with a weak and a stiff stop, met early and late."""
+        """Return starts with weak and stiff stops that the mass meets early or late."""
         found = []
         for stop in (-0.3, 0.1, 0.5):
             for position in (0.0, 0.3):

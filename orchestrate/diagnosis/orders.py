@@ -43,7 +43,7 @@ EXPECTED = "not described by this method: expected a swept or stepped sine"
 
 @dataclass(frozen=True)
 class OrderWindows:
-    """Windows of a record, and the least squares that give the orders in them.
+    """Hold the windows of a record, and the least squares that give the orders in them.
 
     Attributes
     ----------
@@ -138,7 +138,7 @@ class OrderWindows:
 
 @dataclass(frozen=True)
 class RecordOrders:
-    """Orders of a record's channels, with the floor between the orders.
+    """Hold the orders of a record's channels, with the floor between the orders.
 
     Attributes
     ----------
@@ -197,8 +197,8 @@ def record_orders(record: xr.Dataset) -> RecordOrders:
     return channel_orders(checked_channels(record))
 
 
-def readings(record: xr.Dataset) -> Channels:
-    """Return the channels of a record that sensors have read.
+def sensor_channels(record: xr.Dataset) -> Channels:
+    """Return the channels of a record, and refuse a simulation that no sensor has read.
 
     Raises
     ------
@@ -214,13 +214,13 @@ def readings(record: xr.Dataset) -> Channels:
 
 
 def checked_channels(record: xr.Dataset) -> Channels:
-    """Check that a record has the base's channel and one of the structure's, and return them.
+    """Check that a record has the base's acceleration and a face's, and return the channels.
 
     Raises
     ------
     InputError
     """
-    channels = readings(record)
+    channels = sensor_channels(record)
     if len(channels.names) < 2:
         text = "expected acceleration1, acceleration2 or both beside the base's"
         raise InputError(f"record: no acceleration of a face; {text}")
@@ -341,7 +341,7 @@ def median_sweep_rate(phase: Floats, channels: Channels) -> float:
 def assembled_windows(
     channels: Channels, windows: list[Window], solutions: list[Complexes]
 ) -> OrderWindows:
-    """Collect windows and their least-squares matrices in one object."""
+    """Collect single windows and their least-squares matrices in one object."""
     return OrderWindows(
         np.array([one.time for one in windows]),
         np.array([one.frequency for one in windows]),

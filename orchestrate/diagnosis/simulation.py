@@ -27,7 +27,7 @@ DIGITS = 7  # of numbers at which motions are computed: the same on every proces
 
 @dataclass(frozen=True)
 class Fitted:
-    """A hypothesis at its minimum.
+    """Hold the numbers of a hypothesis at its minimum, with misfit and covariance.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ def rounded(value: float) -> float:
 
 @dataclass(frozen=True)
 class Simulation:
-    """Records of one hypothesis, as changes of their residuals from those of the measured one.
+    """Hold simulated records of one hypothesis, as changes of the residuals of the measured one.
 
     Attributes
     ----------
@@ -71,7 +71,7 @@ class Simulation:
     def from_fit(
         cls, evidence: Evidence, fitted: Fitted, player: Player | None, seed: int
     ) -> Simulation:
-        """Simulate records of a fit."""
+        """Simulate records of a fit: its motion with noise and with what the fit misses."""
         rng = np.random.default_rng([SEED, seed])
         values = {name: rounded(value) for name, value in fitted.values.items()}
         motion = fitted.hypothesis.displacements(values, evidence, player)
@@ -93,7 +93,7 @@ class Simulation:
 def sensor_noise_changes(
     evidence: Evidence, computed: Complexes, rng: np.random.Generator
 ) -> Floats:
-    """Return how residuals change by noise of the sensors, of their floor's size.
+    """Simulate noise of the sensors, as large as their floor; return the changes of residuals.
 
     Windows overlap by a half: neighbours share half of their noise.
     """
@@ -110,7 +110,7 @@ def sensor_noise_changes(
 
 
 def share_beyond_noise(missed: Floats, noise: Floats) -> float:
-    """Return the size of what a fit misses beyond noise, as a part of what it misses."""
+    """Return which part of a fit's residuals is beyond noise, by root mean squares."""
     squares, by_noise = float(np.mean(missed**2)), float(np.mean(noise**2))
     return math.sqrt(max(1.0 - by_noise / max(squares, 1e-300), 0.0))
 

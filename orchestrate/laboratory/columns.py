@@ -57,7 +57,7 @@ HEADING = re.compile(r"^(?P<name>.*?)[\s_]*[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a file: its name, unit and numbers.
+    """Hold a column of a file: its name, unit and numbers.
 
     Attributes
     ----------
@@ -74,7 +74,7 @@ class Column:
 
 @dataclass(frozen=True)
 class Columns:
-    """All columns of a file.
+    """Hold all columns of a file.
 
     Attributes
     ----------
@@ -122,12 +122,12 @@ def plain_unit(text: str) -> str:
 
 
 def is_unit(text: str) -> bool:
-    """Return whether a text is a unit of what a record or a resonance curve has in its columns."""
+    """Return whether a text is a unit that columns of records or resonance curves may have."""
     known = (ACCELERATIONS, TIMES, SPEEDS, LENGTHS, FREQUENCIES, ANGLES, RATIOS)
     return any(plain_unit(text) in units for units in known)
 
 
-def factor_of(label: str, unit: str, known: Mapping[str, float]) -> float:
+def si_factor(label: str, unit: str, known: Mapping[str, float]) -> float:
     """Return the factor that converts a unit to SI.
 
     Raises
@@ -143,12 +143,12 @@ def factor_of(label: str, unit: str, known: Mapping[str, float]) -> float:
     return known[plain_unit(unit)]
 
 
-def channels_of(
+def converted_channels(
     table: Columns,
     columns: Mapping[str, str | int] | Sequence[str | int] | None,
     unit: str | None,
 ) -> tuple[Floats | None, dict[str, Floats], dict[str, str]]:
-    """Return times in s, None without them, channels in m/s2 by name, and how they were read.
+    """Convert a file's columns: return times in s or None, channels in m/s2, how they were read.
 
     How they were read are attributes of a record: ``columns``, which column was taken for what;
     ``unit`` of the accelerations; and ``unit_in_file``, where ``unit`` was taken in its place.
@@ -165,21 +165,23 @@ def channels_of(
     ------
     InputError
     """
-    known = named_channels(table) if columns is None else {}
+    known = channels_by_name(table) if columns is None else {}
     places = known or channel_places(table, columns)
     by_order = ", by their order: no name is known" if columns is None and not known else ""
     time, read_as = None, {"columns": taken_text(table, places) + by_order}
     if "time" in places:
         column = table.columns[places.pop("time")]
-        label = label_of(table, column)
-        time = scaled(table, column, factor_of(label, column.unit or "s", TIMES))
+        label = column_label(table, column)
+        time = scaled_values(table, column, si_factor(label, column.unit or "s", TIMES))
     if not places:
         raise InputError(f"{table.path}: no channel; expected one of {', '.join(CHANNELS)}")
     values = {}
     for name, place in places.items():
         column = table.columns[place]
         own = column.unit if unit is None else unit
-        values[name] = scaled(table, column, factor_of(label_of(table, column), own, ACCELERATIONS))
+        values[name] = scaled_values(
+            table, column, si_factor(column_label(table, column), own, ACCELERATIONS)
+        )
     channels = [table.columns[place] for place in places.values()]
     return time, values, read_as | unit_attributes(channels, unit)
 
@@ -202,18 +204,20 @@ def taken_text(table: Columns, places: Mapping[str, int]) -> str:
     )
 
 
-def label_of(table: Columns, column: Column) -> str:
-    """Return file and column as a text for messages."""
+def column_label(table: Columns, column: Column) -> str:
+    """Return the names of file and column as a text for messages."""
     return f'{table.path}, column "{column.name}"'
 
 
-def scaled(table: Columns, column: Column, factor: float) -> Floats:
-    """Return a column in SI; raise with the row where something is not a number."""
+def scaled_values(table: Columns, column: Column, factor: float) -> Floats:
+    """Return a column's values times a factor; raise with the row where one is not a number."""
     wrong = np.flatnonzero(~np.isfinite(column.values))
     if len(wrong):
         row, value = wrong[0] + table.first_row, column.values[wrong[0]]
         more = f" and {len(wrong) - 1} more" if len(wrong) > 1 else ""
-        raise InputError(f"{label_of(table, column)}, row {row}: {value}{more}; expected numbers")
+        raise InputError(
+            f"{column_label(table, column)}, row {row}: {value}{more}; expected numbers"
+        )
     return column.values if factor == 1.0 else factor * column.values
 
 
@@ -266,17 +270,17 @@ def places_asked_for(
         columns = dict(zip(order, columns, strict=False))
     if unknown := sorted(set(columns) - set(names)):
         raise InputError(f"columns: {unknown[0]!r}; expected names of {', '.join(names)}")
-    return {name: place_of(table, wish) for name, wish in columns.items()}
+    return {name: column_index(table, wish) for name, wish in columns.items()}
 
 
-def named_channels(table: Columns) -> dict[str, int]:
-    """Return the column index of each channel and the time by usual names; empty if no channel."""
-    known = named_places(table, NAMES)
+def channels_by_name(table: Columns) -> dict[str, int]:
+    """Return the column index of time and channels by their usual names; empty if no channel."""
+    known = places_by_name(table, NAMES)
     return known if set(known) & set(CHANNELS) else {}
 
 
-def named_places(table: Columns, names: Mapping[str, Sequence[str]]) -> dict[str, int]:
-    """Return the column index of each of these things by the names that files give them."""
+def places_by_name(table: Columns, names: Mapping[str, Sequence[str]]) -> dict[str, int]:
+    """Return the column index of each quantity whose usual names are among the headings."""
     plain = [re.sub(r"[\W_]", "", column.name.lower()) for column in table.columns]
     return {
         name: plain.index(one)
@@ -286,7 +290,7 @@ def named_places(table: Columns, names: Mapping[str, Sequence[str]]) -> dict[str
     }
 
 
-def place_of(table: Columns, wish: str | int) -> int:
+def column_index(table: Columns, wish: str | int) -> int:
     """Return the index of a column that is asked for by name or number."""
     names = [column.name for column in table.columns]
     if wish in names:

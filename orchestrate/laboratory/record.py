@@ -94,15 +94,15 @@ def checked_record(
     attributes: Mapping[str, Any],
     first_row: int = 0,
 ) -> xr.Dataset:
-    """Make a record; messages count its rows from ``first_row``; see :func:`record`."""
+    """Make a record as :func:`record` does, with rows in messages counted from ``first_row``."""
     import xarray as xr
 
-    values = {name: numbers(name, one, first_row) for name, one in channels.items()}
+    values = {name: checked_numbers(name, one, first_row) for name, one in channels.items()}
     if not values:
         raise InputError(f"record: no channel given; expected one of {', '.join(CHANNELS)}")
     rate = None if sample_rate is None else checked(HERTZ, "sample_rate", sample_rate)
     if time is not None:
-        times = numbers("time", time, first_row)
+        times = checked_numbers("time", time, first_row)
     elif rate is not None:
         times = np.arange(len(next(iter(values.values())))) / rate
     else:
@@ -121,8 +121,8 @@ def checked_record(
     )
 
 
-def numbers(name: str, given: Any, first_row: int = 0) -> Floats:
-    """Return a column as floats; raise with the row where one is not finite.
+def checked_numbers(name: str, given: Any, first_row: int = 0) -> Floats:
+    """Return a list as an array of floats; raise with the row where one is not finite.
 
     Raises
     ------
