@@ -32,8 +32,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ..running.options import Running
-    from .orders import OrderWindows
-    from .search_job import RecordData
+    from .orders import RecordOrders
 
 TRUTHS = ("sound", "delaminated")  # of simulated records
 ONE_DIRECTION = 0.5  # of the range of frequencies, from first to last: a sweep in one direction
@@ -143,9 +142,9 @@ class DetectJob(SearchJob):
         results = Results.from_table(self, table)
         ratios = np.full((2, SIMULATED), np.nan)
         if findings_from_results(results).is_close:
-            *inputs, delaminated = bootstrap_inputs(results)
+            evidence, coarse, sound, delaminated = bootstrap_inputs(results)
             if np.isfinite(delaminated.covariance).all():  # it was searched
-                made = bootstrap(*inputs, delaminated, player)
+                made = bootstrap(evidence, coarse, sound, delaminated, player)
                 ratios = np.stack([made.sound, made.delaminated])
         return {**table, "end_bootstrap": ratios[np.newaxis]}
 
@@ -155,7 +154,7 @@ class DetectJob(SearchJob):
 
         results = Results.from_table(self, table)
         findings, even = findings_from_results(results), results.even
-        windows = cached_orders(self.data).windows
+        whole = cached_orders(self.data)
         simulated = Bootstrap.from_row(findings.ratio, table["end_bootstrap"][0])
         every, coordinates = results.comparison()
         scalars = {
@@ -175,7 +174,7 @@ class DetectJob(SearchJob):
             "level_high": variable((), findings.high, "m/s2", "highest level of the base"),
             "frequency_low": variable((), findings.first, "Hz", "lowest frequency"),
             "frequency_high": variable((), findings.last, "Hz", "highest frequency"),
-            **record_variables(windows, self.data),
+            **record_variables(whole),
             "order2": variable("window", even.ratio, "1", "order 2 over order 1"),
             "order2_threshold": variable("window", even.threshold, "1", "size that counts as seen"),
         }
@@ -190,13 +189,14 @@ class DetectJob(SearchJob):
             simulated=simulated.sentence() if simulated else "",
             seen_up_to=findings.seen_up_to(),
             assumed="; ".join(ASSUMED),
-            direction=sweep_direction(windows.frequency),
+            direction=sweep_direction(whole.windows.frequency),
         )
 
 
-def record_variables(windows: OrderWindows, data: RecordData) -> dict[str, Variable]:
+def record_variables(orders: RecordOrders) -> dict[str, Variable]:
     """Return sampling rate, duration, and the frequencies over which the base moves as a sine."""
-    rate, count = data.sample_rate, len(data.channels[0])
+    channels, windows = orders.channels, orders.windows
+    rate, count = channels.sample_rate, len(channels.time)
     low, high = float(windows.frequency.min()), float(windows.frequency.max())
     return {
         "sample_rate": variable((), rate, "Hz", "sampling rate of the record"),

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import InputError
 from ..laboratory.analysis.channels import Channels, attributes, checked_number
 from ..laboratory.analysis.orders import fit_windows
-from ..laboratory.sensors import Sensor, measure, sensors_of
+from ..laboratory.sensors import Sensor, measure, sensor_by_channel
 from ..laboratory.shake import shake
 from ..laboratory.swept_sine import SweptSine
 from ..response.labels import variable, yes_or_no
@@ -183,7 +183,7 @@ def plan_test(
         raise InputError("structure: bonded; expected a guess of the delaminated one")
     f = checked_frequencies(frequencies)
     wanted = checked_levels(levels)
-    sensors = sensors_of(sensor)
+    sensors = sensor_by_channel(sensor)
     limit = checked_number("threshold", threshold, 1e-3, 1e6)
     noise = checked_noise(sensors, checked_number("periods", periods, 2.0, 1e4), gain_error)
     if running.get("store") is not None:
