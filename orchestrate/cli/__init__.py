@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import logging
 import re
+import shlex
 import sys
 import warnings
 from collections.abc import Collection, Iterator, Sequence
@@ -153,6 +154,7 @@ def carry_out(arguments: Sequence[str]) -> int:
         store.STARTED.clear()
         store.FINISHED.clear()
     chosen = make_parser(arguments).parse_args(join_negative_values(arguments))
+    chosen.command_line = f"{program_name()} {shlex.join(arguments)}"
     try:
         with warnings_as_lines():
             chosen.run(chosen)
@@ -170,8 +172,25 @@ def carry_out(arguments: Sequence[str]) -> int:
         if chosen.debug:
             raise
         hint = " (--force or --keep-stale)" if isinstance(error, StaleError) else ""
-        print_error(f"error: {error}{hint}")
+        print_error(f"error: {with_option_names(str(error), chosen)}{hint}")
         return MISTAKE if isinstance(error, InputError) else FAILURE
+
+
+def with_option_names(message: str, chosen: argparse.Namespace) -> str:
+    """Return a message in which keywords without a value are options: ``--unit`` for ``unit=``.
+
+    Examples
+    --------
+    >>> chosen = argparse.Namespace(sample_rate=None, columns=None)
+    >>> with_option_names("expected columns=, sample_rate= or e=, not columns=3", chosen)
+    'expected --columns, --sample-rate or e=, not columns=3'
+    """
+
+    def option(keyword: re.Match[str]) -> str:
+        name = keyword["name"]
+        return f"--{name.replace('_', '-')}" if name in vars(chosen) else keyword[0]
+
+    return re.sub(r"(?<![\w-])(?P<name>[a-z_]\w*)=(?=[\s,;:.)]|$)", option, message)
 
 
 def interrupted(ended: KeyboardInterrupt) -> int:

@@ -25,6 +25,7 @@ from .output import (
     export_formats,
     print_units_note,
     record_units,
+    unit_note,
     units_ending,
     with_ending,
 )
@@ -142,6 +143,9 @@ def run(arguments: argparse.Namespace) -> None:
     check_output(arguments.output)
     paths = paths_of(arguments)
     records = {label: part_of(arguments, path) for label, path in paths.items()}
+    for label, record in records.items():
+        if note := unit_note(record.attrs):
+            print(f"{paths[label]}: {note}")
     warn_without_sensor(arguments, records)
     units = record_units(arguments)
     for name in names:

@@ -24,6 +24,7 @@ from .output import (
     export_formats,
     record_units,
     running_of,
+    unit_note,
     units_ending,
     with_ending,
 )
@@ -40,8 +41,9 @@ EXAMPLES = """  {program} diagnose record.csv --structure beam.toml
 
 what it needs:
   a record of a swept sine over the beam's resonance: the acceleration of its base (the shaker's
-  table, the clamp) and of one face of the beam, or of both faces; and a guess of the beam in a
-  file, within some 10 %: masses of both halves and their natural frequencies, see 'quantities'.
+  table, the clamp; in Python and in files of this package box_acceleration) and of one face of
+  the beam, or of both faces (acceleration1, acceleration2); and a guess of the beam in a file,
+  within some 10 %: masses of both halves and their natural frequencies, see 'quantities'.
   Several records are of several beams, and give a verdict each.
 what it gives:
   delaminated      the faces part and strike each other
@@ -49,7 +51,19 @@ what it gives:
   not described    the beam, its clamp or the sensors do something else
   undecided        this record does not tell; the report says which one would
   and for each record a report to read, print and sign (.html), the answers (.nc), a picture"""
-CHANNELS = ("time", "box_acceleration", "acceleration1", "acceleration2")
+LINES = {  # attributes of a verdict that are printed below it, and what stands before them
+    "reason": "decided by",
+    "simulated": "simulated records",
+    "settle": "to settle it",
+    "record_columns": "columns",
+    "record_unit_note": "unit",
+}
+CHANNELS = {  # in the order of --columns, and what they are called towards the user
+    "time": "time",
+    "box_acceleration": "base",
+    "acceleration1": "face 1",
+    "acceleration2": "face 2",
+}
 
 
 def add_parser(commands: Commands) -> None:
@@ -161,7 +175,7 @@ def read(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
     if "acceleration1" not in record and "acceleration2" not in record:
         taken = record.attrs.get("columns", "no columns")
         text = "expected a face's beside the base's, such as --columns 0,1,2 or Time,Table,Beam"
-        raise InputError(f"{path}: no acceleration1 in {taken}; {text}")
+        raise InputError(f"{path}: no acceleration of a face in {taken}; {text}")
     return record
 
 
@@ -175,9 +189,10 @@ def columns_of(arguments: argparse.Namespace) -> dict[str, str | int] | None:
     if arguments.columns is None:
         return None
     texts = [text.strip() for text in arguments.columns.split(",")]
-    names = CHANNELS[arguments.sample_rate is not None :]
+    names = list(CHANNELS)[arguments.sample_rate is not None :]
     if not 2 <= len(texts) <= len(names) or not all(texts):
-        expected = f"expected columns of {', '.join(names)}, the last one if it is there"
+        words = ", ".join(CHANNELS[name] for name in names)
+        expected = f"expected columns of {words}, the last one if it is there"
         raise InputError(f"--columns {arguments.columns}: {expected}")
     numbers = (int(text) if text.isdecimal() else text for text in texts)
     return dict(zip(names, numbers, strict=False))
@@ -189,21 +204,39 @@ def verdicts_of(
     names: Mapping[Path, str],
     guess: Structure,
 ) -> dict[Path, xr.Dataset]:
-    """Compute the verdict on each record, or take it from disk."""
+    """Compute the verdict on each record, or take it from disk; store where it comes from too."""
     from .. import detect_all
+    from ..running.store import write_netcdf
 
     named = {names[path]: record for path, record in records.items()}
     running = running_of(arguments, arguments.output)
     verdicts = detect_all(named, guess, **running)
-    return {
-        path: verdicts[name].assign_attrs(
-            record_file=path.name,
-            record_sha256=checksum(path),
-            record_columns=records[path].attrs.get("columns", ""),
-            guess_file=str(arguments.structure),
-        )
-        for path, name in names.items()
+    described = {}
+    for path, name in names.items():
+        verdict = verdicts[name]
+        words = origin_attributes(arguments, path, records[path])
+        words["title"] = f"Verdict on {path.name}: {verdict.verdict.item()}"
+        described[path] = verdict.assign_attrs(words)
+        if not words.items() <= verdict.attrs.items():
+            write_netcdf(described[path], arguments.output / f"{name}.nc")
+    return described
+
+
+def origin_attributes(
+    arguments: argparse.Namespace, path: Path, record: xr.Dataset
+) -> dict[str, str]:
+    """Return a verdict's attributes on its record, the guess's file and the command."""
+    words = {
+        "record_file": path.name,
+        "record_sha256": checksum(path),
+        "record_columns": record.attrs.get("columns", ""),
+        "record_unit": record.attrs.get("unit", ""),
+        "record_unit_note": unit_note(record.attrs),
+        "sensors": record.attrs.get("sensors", ""),
+        "guess_file": str(arguments.structure),
+        "command": getattr(arguments, "command_line", ""),
     }
+    return {name: text for name, text in words.items() if text}
 
 
 def signs_of(record: xr.Dataset, others: list[xr.Dataset], guess: Structure) -> xr.Dataset:
@@ -244,8 +277,6 @@ def print_verdict(path: Path, verdict: xr.Dataset) -> None:
 
     said = verdict_of(verdict)
     print(f"{path}: {said.word} {said.sentence}")
-    columns = ("record_columns", "columns")
-    simulated = ("simulated", "simulated records")
-    for name, words in (("reason", "decided by"), simulated, ("settle", "to settle it"), columns):
+    for name, label in LINES.items():
         if verdict.attrs.get(name):
-            print(f"  {words}: {verdict.attrs[name]}")
+            print(f"  {label}: {verdict.attrs[name]}")

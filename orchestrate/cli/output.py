@@ -119,6 +119,13 @@ def record_units(arguments: argparse.Namespace) -> Units:
     return units_option(arguments).completed(Units(acceleration=own))
 
 
+def unit_note(attributes: Mapping[Any, Any]) -> str:
+    """Return a line that says that ``--unit`` was taken in place of a file's unit; or nothing."""
+    own = attributes.get("unit_in_file", "")
+    used = attributes.get("unit", "")
+    return f"--unit {used} was used, although the file says {own}" if own else ""
+
+
 def refuse_units(arguments: argparse.Namespace, reason: str) -> None:
     """Refuse ``--units`` of a command that shows nothing in units.
 

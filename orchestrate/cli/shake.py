@@ -19,7 +19,7 @@ from .grammar import (
     whole_number_of,
 )
 from .options import Commands, add_beside, add_structure, option_name, options, structure_of
-from .output import add_results, add_units
+from .output import add_results, add_units, unit_note
 from .question import carry_out_beside
 
 if TYPE_CHECKING:
@@ -155,6 +155,8 @@ def recorded(arguments: argparse.Namespace) -> Sampled:
         columns = {"box_acceleration": int(column) if column.isdecimal() else column}
     scale = None if arguments.scale is None else number_of("--scale", arguments.scale)
     record = read_record(arguments.record, unit=arguments.unit, columns=columns, scale=scale)
+    if note := unit_note(record.attrs):
+        print(f"{arguments.record}: {note}")
     return Sampled.from_record(record)
 
 

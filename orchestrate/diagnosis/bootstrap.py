@@ -43,7 +43,7 @@ RESAMPLES = 200  # of simulated ratios, for the error of the odds
 
 @dataclass(frozen=True)
 class Bootstrap:
-    """Ratios of misfits in simulated records, beside the measured one.
+    """Hold the ratios of misfits of simulated records, beside that of the measured record.
 
     Attributes
     ----------
@@ -63,8 +63,8 @@ class Bootstrap:
         return cls(observed, *ratios) if np.isfinite(ratios).all() else None
 
     @property
-    def alike(self) -> tuple[int, int]:
-        """Number of records of the sound fit that look as delaminated as the measured one.
+    def lookalikes(self) -> tuple[int, int]:
+        """Count the simulated sound records that look as delaminated as the measured record.
 
         And of those of the delaminated fit that look as sound.
         """
@@ -72,14 +72,15 @@ class Bootstrap:
         return int(above.sum()), int(below.sum())
 
     def sentence(self) -> str:
-        """Say how many of the simulated records look as the measured one does."""
-        above, below = (str(number or "none") for number in self.alike)
+        """Return sentences on how many of the simulated records look as the measured one does."""
+        above, below = (str(number or "none") for number in self.lookalikes)
         count, (odds, error) = len(self.sound), self.odds_with_error()
         ends = " to ".join(f"{odds * math.exp(sign * error):.2g}" for sign in (-1.0, 1.0))
         return (
-            f"of {count} simulated records of the best sound model {above} looked as delaminated "
-            f"as this one, and of {count} of the delaminated model {below} as sound: if one of the "
-            f"two is the truth, the odds of delaminated are {odds:.2g} ({ends}) to 1"
+            f"Of {count} simulated records of the best sound model, {above} looked as delaminated "
+            f"as this record. Of {count} simulated records of the delaminated model, {below} "
+            "looked as sound as this record. If one of the two models is true, the odds of "
+            f"delaminated are {odds:.2g} ({ends}) to 1."
         )
 
     def odds_with_error(self) -> tuple[float, float]:
@@ -101,7 +102,7 @@ class Bootstrap:
 
 
 def log_odds(at: float, logs: Sequence[Floats], scale: float) -> float:
-    """Return the difference of two log densities at a place."""
+    """Return the logarithm of the odds of two densities at one value, from samples of both."""
     over, under = (log_density(at, one, scale) for one in logs)
     return over - under
 

@@ -63,7 +63,7 @@ def burst_excess(channels: Channels, highest: float) -> float:
 
 
 def high_band(channels: Channels, row: int, edge: float) -> Floats:
-    """Return a channel above a frequency in Hz, without delay."""
+    """High-pass a channel above a frequency in Hz, without delaying it."""
     from scipy.signal import butter, sosfiltfilt
 
     sections = butter(4, edge, "highpass", fs=channels.sample_rate, output="sos")
@@ -71,7 +71,7 @@ def high_band(channels: Channels, row: int, edge: float) -> Floats:
 
 
 def one_sided_rise(signal: Floats, phase: Floats, part: slice, width: int) -> float:
-    """Return the largest mean power of the even part over that of noise, where it is one-sided."""
+    """Return how far bursts on one side of the stroke rise over noise, as a ratio of powers."""
     from scipy.signal import resample_poly
 
     later = np.interp(phase[part] + math.pi, phase, np.arange(len(phase)))
@@ -86,7 +86,7 @@ def one_sided_rise(signal: Floats, phase: Floats, part: slice, width: int) -> fl
 
 
 def mean_power(signal: Floats, width: int) -> Floats:
-    """Return the mean square in intervals of so many samples that overlap by half."""
+    """Return the mean square of a signal in intervals of ``width`` samples that overlap by half."""
     total = np.concatenate([[0.0], np.cumsum(signal**2)])
     starts = np.arange(0, len(signal) - width + 1, max(width // 2, 1))
     return np.asarray((total[starts + width] - total[starts]) / width)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, ClassVar, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,12 +42,11 @@ SETTLE_CYCLES = (30, 200)  # fewest and most cycles before
 USUAL_FLOOR = 0.01  # of order 1, where none is given: what a shaker makes of order 2
 COARSE_POINTS, COARSE_SAMPLES = 30, 7.0  # most points of a coarse search, samples in a period
 HALF_POWER = 0.5**0.5
-REPLICATES, SEED = 100, 20_241  # of the simulated scatter
 
 
 @dataclass(frozen=True)
 class CurveData:
-    """A resonance curve as plain tuples, in the order in which its frequencies are played.
+    """Hold a resonance curve as plain tuples, in the order in which its frequencies are played.
 
     Attributes
     ----------
@@ -100,18 +99,18 @@ class CurveData:
             level=tuple(inside.level.values.tolist()),
             sensors=tuple(str(name) for name in inside.channel.values),
             amplitude=tuple(
-                tuple(plain(row) for row in rows)
+                tuple(none_for_nan(row) for row in rows)
                 for rows in inside.amplitude.transpose("channel", "order", "frequency").values
             ),
-            phase=tuple(plain(row) for row in inside.phase.values),
-            floor=tuple(plain(row) for row in inside.floor.values),
+            phase=tuple(none_for_nan(row) for row in inside.phase.values),
+            floor=tuple(none_for_nan(row) for row in inside.floor.values),
             relative=inside.attrs.get("relative", "false") == "true",
             damping=float(f"{min([width, *guessed]):.2g}"),
         )
 
     @property
     def settle_cycles(self) -> int:
-        """Cycles after which a step between two frequencies is forgotten."""
+        """Number of cycles after which the motion has settled at a new frequency."""
         cycles = -math.log(SETTLED) / (2.0 * math.pi * self.damping)
         return round(min(max(cycles, SETTLE_CYCLES[0]), SETTLE_CYCLES[1]))
 
@@ -131,18 +130,19 @@ class CurveData:
         )
 
     def select(self, points: NDArray[np.intp]) -> CurveData:
-        """Return the curve with some of its points."""
+        """Return the curve with only the points of these indices."""
 
-        def some(row: tuple[Kind, ...]) -> tuple[Kind, ...]:
+        def at_points(row: tuple[Kind, ...]) -> tuple[Kind, ...]:
+            """Return the elements of a row at these points."""
             return tuple(row[i] for i in points)
 
         return replace(
             self,
-            frequency=some(self.frequency),
-            level=some(self.level),
-            amplitude=tuple(tuple(some(row) for row in rows) for rows in self.amplitude),
-            phase=tuple(some(row) for row in self.phase),
-            floor=tuple(some(row) for row in self.floor),
+            frequency=at_points(self.frequency),
+            level=at_points(self.level),
+            amplitude=tuple(tuple(at_points(row) for row in rows) for rows in self.amplitude),
+            phase=tuple(at_points(row) for row in self.phase),
+            floor=tuple(at_points(row) for row in self.floor),
         )
 
 
@@ -169,8 +169,8 @@ def check_curve(curve: xr.Dataset) -> None:
         raise InputError("resonance curve: order 1 or its level is not finite; expected numbers")
 
 
-def plain(row: Floats) -> Numbers:
-    """Return numbers as a tuple with None in place of NaN, which is not equal to itself."""
+def none_for_nan(row: Floats) -> Numbers:
+    """Return numbers as a tuple with None for NaN, which would not be equal to itself."""
     return tuple(value if math.isfinite(value) else None for value in row.tolist())
 
 
@@ -189,7 +189,7 @@ def half_power_damping(curve: xr.Dataset) -> float:
 
 
 def curve_evidence(data: CurveData, settle: int, samples_per_period: float) -> CurveEvidence:
-    """Return the evidence of a curve under the stepped sine that it is the settled end of.
+    """Build the evidence of a curve: its orders, and the stepped sine under which it was measured.
 
     Parameters
     ----------
@@ -233,7 +233,7 @@ def curve_evidence(data: CurveData, settle: int, samples_per_period: float) -> C
 
 
 def settled_windows(channels: Channels, sine: SteppedSine) -> OrderWindows:
-    """Return the windows where each frequency has settled; the first is played twice."""
+    """Return the windows of a stepped sine in which the motion has settled, one a frequency."""
     phase = sine.phase(channels.time)
     found = list(dwells(channels, sine, phase))[1:]
     solutions = [
@@ -255,6 +255,7 @@ class CurveEvidence(Evidence):
         Whether the orders are those of the motion relative to the base.
     """
 
+    has_floor: ClassVar[bool] = False
     with_phase: NDArray[np.bool_] = None  # type: ignore[assignment]
     relative_motion: bool = False
 
@@ -288,7 +289,7 @@ class CurveEvidence(Evidence):
 
     @cached_property
     def present(self) -> NDArray[np.bool_]:
-        """Which rows of the residuals are measured at all, shape (4,): the others are left out."""
+        """Mask of the rows of residuals that were measured, shape (4,); the others are left out."""
         found = np.ones(4, dtype=bool)
         found[1] = self.with_phase.any()
         found[2:] = np.isfinite(self.measured[:, 1:]).any(axis=(0, 2))
@@ -300,26 +301,9 @@ class CurveEvidence(Evidence):
         return np.where(known, size, np.abs(size) * np.exp(1j * np.angle(computed)))
 
     def order_residuals(self, computed: Complexes) -> Floats:
-        """Return computed less measured orders, over the errors: the rows that are measured."""
+        """Return computed less measured orders, over the errors, in the rows that were measured."""
         return super().order_residuals(computed)[:, self.present]
 
     def unbounded_residuals(self) -> Floats:
-        """Return the residuals of a motion without bounds."""
+        """Return the residuals that stand for a motion that grows without bounds."""
         return super().unbounded_residuals()[:, self.present]
-
-
-def scatter_changes(residuals: Floats) -> list[Floats]:
-    """Simulate the scatter of a curve's points, and return the residuals' changes by it.
-
-    A curve has no floor between its orders. Its scatter is what differs from one frequency to the
-    next, of each sensor and order: the second differences of the residuals, of which white noise of
-    variance 1 makes 6.
-
-    Parameters
-    ----------
-    residuals : ndarray, shape (sensors, rows, windows)
-    """
-    differences = np.diff(residuals, n=2, axis=-1)
-    size = np.sqrt(np.mean(differences**2, axis=-1, keepdims=True) / 6.0)
-    rng = np.random.default_rng(SEED)
-    return [size * rng.standard_normal(residuals.shape) for _ in range(REPLICATES)]

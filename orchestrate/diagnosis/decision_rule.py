@@ -24,12 +24,13 @@ DESCRIBES_FACES_APART = 4.0  # the same where two faces are seen to move apart
 CERTAIN = 0.9  # share of the resampled records in which the ratio has to hold
 RESAMPLED, BLOCKS, SEED = 1000, 20, 7
 CLOSE = 1.25  # a factor: a quantity so near to its border may lie on the other side of it
+MISFIT_MEANING = "A misfit of 1 is as far as noise and the usual error of a good model explain."
 UNSURE = (0.02, 0.98)  # shares of resampled records between which the ratio is not sure
 
 
 @dataclass(frozen=True)
 class Findings:
-    """Quantities that the decision rule needs.
+    """Hold the quantities that the decision rule needs.
 
     Attributes
     ----------
@@ -78,18 +79,18 @@ class Findings:
         return self.sound_misfit / self.delaminated_misfit
 
     @property
-    def seen(self) -> bool:
+    def is_opening_seen(self) -> bool:
         """Whether order 2, or two faces that move differently, exceed their thresholds."""
         return self.excess > 1.0 or self.apart > 1.0
 
     @property
-    def heard(self) -> bool:
+    def is_impact_heard(self) -> bool:
         """Whether bursts once a period, as of impacts, exceed their threshold."""
         return self.bursts > 1.0
 
     @property
     def deciding_ratio(self) -> float:
-        """Ratio of misfits that decides."""
+        """Ratio of misfits from which the delaminated model is taken for the better one."""
         return deciding_ratio(self.apart)
 
     @property
@@ -99,18 +100,18 @@ class Findings:
 
     @property
     def is_close(self) -> bool:
-        """Whether the word hangs on a number near its border, or on a part of the record."""
-        if self.seen and UNSURE[0] < self.share < UNSURE[1]:
+        """Whether the verdict hangs on a number near its border, or on a part of the record."""
+        if self.is_opening_seen and UNSURE[0] < self.share < UNSURE[1]:
             return True
         names = ("excess", "apart", "bursts", "sound_misfit", "delaminated_misfit")
         return any(
-            self.moved(name, factor).verdict() != self.verdict()
+            self.with_number_scaled(name, factor).verdict() != self.verdict()
             for name in names
             for factor in (CLOSE, 1.0 / CLOSE)
         )
 
-    def moved(self, name: str, factor: float) -> Findings:
-        """Return the findings with one number multiplied; the whole record shares its ratio."""
+    def with_number_scaled(self, name: str, factor: float) -> Findings:
+        """Return the findings with one number multiplied by a factor."""
         made = replace(self, **{name: getattr(self, name) * factor})
         if made.ratio == self.ratio and made.deciding_ratio == self.deciding_ratio:
             return made
@@ -122,9 +123,9 @@ class Findings:
         describes = DESCRIBES_FACES_APART if self.apart > 1.0 else DELAMINATED_DESCRIBES
         delaminated = self.delaminated_misfit <= describes
         better = delaminated and self.ratio >= self.deciding_ratio
-        if not self.seen:
+        if not self.is_opening_seen:
             if sound:
-                return UNDECIDED if self.heard else NOT_SEEN
+                return UNDECIDED if self.is_impact_heard else NOT_SEEN
             return UNDECIDED if better else NOT_DESCRIBED
         if better:
             return DELAMINATED if self.share >= CERTAIN else UNDECIDED
@@ -133,38 +134,42 @@ class Findings:
         return NOT_DESCRIBED
 
     def reason(self) -> str:
-        """Return a sentence that says by which numbers the verdict was decided."""
-        size = f"order 2 is up to {100.0 * self.order2:.2g} % of order 1"
-        signs = f"{size}, {self.excess:.2g} times its detection threshold"
+        """Return sentences that say by which numbers the verdict was decided."""
+        sentences = [
+            f"Order 2 is up to {digits(100.0 * self.order2)} % of order 1, "
+            f"{digits(self.excess)} times the size from which it counts as seen."
+        ]
         if self.sensors > 1:
-            signs += f"; the two faces differ by {self.apart:.2g} times their threshold"
+            apart = f"{digits(self.apart)} times the difference from which it counts as seen"
+            sentences.append(f"The two faces differ by {apart}.")
         if math.isfinite(self.bursts):
-            signs += f"; bursts once a period have {self.bursts:.2g} times the power that counts"
-        if not self.seen:
-            sound = f"the best sound model ({self.sound}) misses by {self.sound_misfit:.2g}"
-            return f"{signs}; {sound}{self.heard_only()}"
-        fits = (
-            f"the {self.delaminated} model misses the record by {self.delaminated_misfit:.2g}, "
-            f"the best sound one ({self.sound}) by {self.sound_misfit:.2g}"
+            power = f"{digits(self.bursts)} times the power from which they count as impacts"
+            sentences.append(f"Bursts once a period have {power}.")
+        misfit = (
+            f'The best sound model, "{self.sound}", has a misfit of {digits(self.sound_misfit)}'
         )
-        decided = f"{self.ratio:.3g} times as much, where {self.deciding_ratio:g} decides"
-        return f"{signs}; {fits}: {decided}{self.imperfection()}"
+        if self.is_opening_seen:
+            other = f'the model "{self.delaminated}" has {digits(self.delaminated_misfit)}'
+            enough = f"{self.deciding_ratio:g} times is enough to decide"
+            misfit += f", {other}: that is {self.ratio:.3g} times as large, where {enough}"
+        sentences.append(f"{misfit}.")
+        return " ".join([*sentences, MISFIT_MEANING, *self.heard_only(), *self.imperfection()])
 
-    def heard_only(self) -> str:
-        """Return the words for impacts that move the sensor too little for order 2."""
-        if not self.heard:
-            return ""
-        return ", but something strikes once a period: faces away from the sensor, or a loose part"
+    def heard_only(self) -> list[str]:
+        """Return a sentence on impacts that move the sensor too little for order 2, if any."""
+        if self.is_opening_seen or not self.is_impact_heard:
+            return []
+        return ["Something strikes once a period: faces away from the sensor, or a loose part."]
 
-    def imperfection(self) -> str:
-        """Return the words for a verdict by a model that describes the record only so well."""
+    def imperfection(self) -> list[str]:
+        """Return a sentence on a model that decides but describes the record poorly, if it does."""
         described = self.ratio >= RATIO and self.delaminated_misfit <= DELAMINATED_DESCRIBES
         if self.verdict() != DELAMINATED or described:
-            return ""
-        return (
-            "; what decides is that the faces move apart: two masses describe this structure only "
-            "so well, and their numbers say little about it"
-        )
+            return []
+        return [
+            "What decides is that the faces move apart: two masses describe this structure only "
+            "so well, and their numbers say little about it."
+        ]
 
     def next_measurement(self) -> str:
         """Recommend, in a sentence, the measurement that would decide or confirm the verdict."""
@@ -172,8 +177,8 @@ class Findings:
         return {
             DELAMINATED: "A sweep in the other direction and another level should give the same "
             "frequencies of the halves; a free clamp or a loose part would not.",
-            NOT_SEEN: f"A higher level than {self.high:.3g} m/s2: faces that are pressed together "
-            "open above a threshold only, and below it no record tells them from bonded ones.",
+            NOT_SEEN: "A sweep at a higher level: faces that are pressed together open above a "
+            "threshold only, and below it no record tells them from bonded ones.",
             NOT_DESCRIBED: "Sweeps up and down at two levels after the clamp is tightened and "
             "loose parts are taken away: what is seen is neither a sound beam nor this one.",
             UNDECIDED: f"Sweeps up and down at twice the level, with {other}.",
@@ -181,18 +186,30 @@ class Findings:
 
     def seen_up_to(self) -> str:
         """Describe the range that was measured, and the smallest opening detectable in it."""
+        opening = f"{digits(1e6 * self.smallest)} \u00b5m"
         text = (
-            f"up to {self.high:.3g} m/s2 from {self.first:.3g} to {self.last:.3g} Hz; faces at the "
-            f"sensor that part by {1e6 * self.smallest:.2g} micrometres would have been seen at "
-            "every frequency; away from the sensor an opening may be larger"
+            f"up to {self.high:.3g} m/s\u00b2 from {self.first:.3g} to {self.last:.3g} Hz; "
+            f"faces at the sensor that part by {opening} would have been seen at every frequency; "
+            "away from the sensor an opening may be larger"
         )
         if math.isnan(self.bursts):
             text += "; the record is sampled too slowly for the bursts of impacts"
         return text
 
 
+def digits(value: float) -> str:
+    """Format a number with two significant digits, without an exponent.
+
+    Examples
+    --------
+    >>> digits(0.1234), digits(113.0)
+    ('0.12', '110')
+    """
+    return f"{float(f'{value:.2g}'):.10g}"
+
+
 def deciding_ratio(apart: float) -> float:
-    """Return the ratio of misfits that decides, by two faces' difference over its threshold."""
+    """Return the ratio of misfits that decides: a smaller one where two faces move differently."""
     return RATIO_OF_FACES_APART if apart > 1.0 else RATIO
 
 

@@ -32,8 +32,10 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ..running.options import Running
+    from .orders import RecordOrders
 
 TRUTHS = ("sound", "delaminated")  # of simulated records
+ONE_DIRECTION = 0.5  # of the range of frequencies, from first to last: a sweep in one direction
 ODDS_FROM = {0: "blocks of the record", 1: "simulated records"}
 ASSUMED = (
     "the masses of both halves have the ratio of the guess",
@@ -84,11 +86,12 @@ def detect(
         samples in the shortest
         period), ``smallest_opening`` of faces at a sensor that would be seen at every frequency,
         in m; the range in which the structure moves enough (``level_low``, ``level_high`` in m/s2,
-        ``frequency_low``, ``frequency_high`` in Hz); ``order2`` and its
+        ``frequency_low``, ``frequency_high`` in Hz); of the whole record ``sample_rate``,
+        ``record_duration``, ``sweep_low`` and ``sweep_high``; ``order2`` and its
         ``order2_threshold`` over ``window``. Over ``hypothesis``: ``misfit``, ``evaluations``,
         ``minima``, ``value`` and ``standard_error`` of its parameters, ``misfit_at`` and the
         ``fitted`` orders over ``window``, beside what is ``measured``. Attributes ``reason``,
-        ``settle``, ``simulated``, ``seen_up_to`` and ``assumed``.
+        ``settle``, ``simulated``, ``seen_up_to``, ``assumed`` and ``direction`` of the sweep.
 
     Raises
     ------
@@ -134,14 +137,15 @@ class DetectJob(SearchJob):
     """Fit all hypotheses to a record and decide which verdict they give."""
 
     def finish(self, previous: Table, player: Player) -> Table:
-        """Refine and compare the fits; where it is close, to simulated records too."""
+        """Refine the fits; where the verdict is close, simulate records and fit them too."""
         table = super().finish(previous, player)
         results = Results.from_table(self, table)
-        ratios, inputs = np.full((2, SIMULATED), np.nan), bootstrap_inputs(results)
-        searched = bool(np.isfinite(inputs[-1].covariance).all())  # where the word hangs on it
-        if searched and findings_from_results(results).is_close:
-            made = bootstrap(*inputs, player)
-            ratios = np.stack([made.sound, made.delaminated])
+        ratios = np.full((2, SIMULATED), np.nan)
+        if findings_from_results(results).is_close:
+            evidence, coarse, sound, delaminated = bootstrap_inputs(results)
+            if np.isfinite(delaminated.covariance).all():  # it was searched
+                made = bootstrap(evidence, coarse, sound, delaminated, player)
+                ratios = np.stack([made.sound, made.delaminated])
         return {**table, "end_bootstrap": ratios[np.newaxis]}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
@@ -150,6 +154,7 @@ class DetectJob(SearchJob):
 
         results = Results.from_table(self, table)
         findings, even = findings_from_results(results), results.even
+        whole = cached_orders(self.data)
         simulated = Bootstrap.from_row(findings.ratio, table["end_bootstrap"][0])
         every, coordinates = results.comparison()
         scalars = {
@@ -169,6 +174,7 @@ class DetectJob(SearchJob):
             "level_high": variable((), findings.high, "m/s2", "highest level of the base"),
             "frequency_low": variable((), findings.first, "Hz", "lowest frequency"),
             "frequency_high": variable((), findings.last, "Hz", "highest frequency"),
+            **record_variables(whole),
             "order2": variable("window", even.ratio, "1", "order 2 over order 1"),
             "order2_threshold": variable("window", even.threshold, "1", "size that counts as seen"),
         }
@@ -183,18 +189,40 @@ class DetectJob(SearchJob):
             simulated=simulated.sentence() if simulated else "",
             seen_up_to=findings.seen_up_to(),
             assumed="; ".join(ASSUMED),
+            direction=sweep_direction(whole.windows.frequency),
         )
+
+
+def record_variables(orders: RecordOrders) -> dict[str, Variable]:
+    """Return sampling rate, duration, and the frequencies over which the base moves as a sine."""
+    channels, windows = orders.channels, orders.windows
+    rate, count = channels.sample_rate, len(channels.time)
+    low, high = float(windows.frequency.min()), float(windows.frequency.max())
+    return {
+        "sample_rate": variable((), rate, "Hz", "sampling rate of the record"),
+        "record_duration": variable((), (count - 1) / rate, "s", "duration of the record"),
+        "sweep_low": variable((), low, "Hz", "lowest frequency of the base's sine"),
+        "sweep_high": variable((), high, "Hz", "highest frequency of the base's sine"),
+    }
+
+
+def sweep_direction(frequency: NDArray[np.float64]) -> str:
+    """Return in which direction the frequency of a sweep goes: up, down, or up and down."""
+    covered = (frequency[-1] - frequency[0]) / max(float(np.ptp(frequency)), 1e-9)
+    if abs(covered) < ONE_DIRECTION:
+        return "up and down"
+    return "up" if covered > 0.0 else "down"
 
 
 def odds_variables(
     findings: Findings, simulated: Bootstrap | None, ratios: NDArray[np.float64]
 ) -> dict[str, Variable]:
-    """Return the odds, what they were found by, and the ratios in simulated records."""
+    """Return the odds, how they were found, and the ratios of misfits in simulated records."""
     odds, error, alike = findings.odds, math.nan, np.full(2, math.nan)
     if simulated is not None:
         odds, error = simulated.odds_with_error()
-        alike = np.array(simulated.alike) / SIMULATED
-    shares = "share of simulated records on the measured one's other side: sound, delaminated"
+        alike = np.array(simulated.lookalikes) / SIMULATED
+    shares = "share of sound records that look as delaminated, of delaminated ones as sound"
     words = "ratio of misfits in simulated records"
     return {
         "odds": variable((), odds, "1", "odds of delaminated against sound"),
@@ -206,7 +234,7 @@ def odds_variables(
 
 
 def bootstrap_inputs(results: Results) -> tuple[Evidence, Evidence, list[Fitted], Fitted]:
-    """Return evidence, all sound fits and the better delaminated one, for their simulation."""
+    """Return the arguments of the bootstrap: evidence, all sound fits, best delaminated fit."""
     job, evidence, made = results.job, results.job.evidence, []
     for position, hypothesis in enumerate(job.hypotheses):
         names = list(hypothesis.bounds(evidence))

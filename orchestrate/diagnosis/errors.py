@@ -26,7 +26,7 @@ it is 20 to 100 times too small.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -35,7 +35,6 @@ from numpy.typing import NDArray
 
 from ..laboratory.analysis.channels import BOX
 from ..laboratory.sampled import Sampled
-from .curve_evidence import CurveEvidence, scatter_changes
 from .evidence import Evidence
 from .fitting import Search, difference_step
 from .linear import LinearModel
@@ -43,10 +42,13 @@ from .misfit import misfit, soft_squares
 from .orders import ORDERS
 
 if TYPE_CHECKING:
+    from ..access import Player
+    from .hypotheses import Hypothesis
     from .orders import RecordOrders
 
 Floats = NDArray[np.float64]
-REPLICATES = 16
+REPLICATES = 16  # motions under more noise of the base
+CURVE_REPLICATES = 100  # of the simulated scatter of a curve's points
 MAX_INCREASE = 1.05  # misfit after the last step over that before: more is a step too far
 BLOCKS = 20  # of windows
 SEED = 20_241
@@ -65,7 +67,7 @@ NOISE_FACTOR = 1.3  # squares over those that noise makes: less of them has no o
 
 @dataclass(frozen=True)
 class Estimate:
-    """Fitted numbers with their covariance, and the standard deviations by each cause.
+    """Hold fitted numbers with their covariance, and the standard deviations by each cause.
 
     Attributes
     ----------
@@ -92,15 +94,15 @@ def estimate(search: Search, values: Mapping[str, float]) -> Estimate:
         At the minimum that was found.
     """
     here, bounds = dict(values), search.hypothesis.bounds(search.evidence)
-    model = regression(search, here)
+    model = linear_model_around(search, here)
     moved = model.damped_minima(bounds, here)[0]
     before, after = (misfit(search.residuals(one)) for one in (here, moved))
     allowed = MAX_INCREASE if search.hypothesis.is_rugged else 1.0
     chosen = moved if after <= allowed * before else here
-    lifted = with_shared_damping(chosen) if isinstance(search.evidence, CurveEvidence) else chosen
+    lifted = chosen if search.evidence.has_floor else with_shared_damping(chosen)
     if lifted == chosen:
         return estimate_with_covariances(search, chosen, model)
-    found = estimate_with_covariances(search, chosen, regression(search, lifted))
+    found = estimate_with_covariances(search, chosen, linear_model_around(search, lifted))
     # what is linear in the damping ratios themselves, as errors of the logarithms that were fitted
     scale = np.array(
         [math.exp(lifted[n] - chosen[n]) if n.startswith("log_") else 1.0 for n in chosen]
@@ -108,8 +110,8 @@ def estimate(search: Search, values: Mapping[str, float]) -> Estimate:
     return replace(found, covariance=found.covariance * np.outer(scale, scale))
 
 
-def regression(search: Search, values: Mapping[str, float]) -> LinearModel:
-    """Return the linear model of the residuals around these values, over a cloud."""
+def linear_model_around(search: Search, values: Mapping[str, float]) -> LinearModel:
+    """Fit a linear model to the residuals at a cloud of points around these values."""
     bounds = search.hypothesis.bounds(search.evidence)
     steps = np.diag([difference_step(search, name) ** 2 for name in values])
     first = LinearModel.from_cloud(search.residuals, bounds, values, 0.1 * steps)
@@ -119,7 +121,7 @@ def regression(search: Search, values: Mapping[str, float]) -> LinearModel:
 
 
 def with_shared_damping(values: Mapping[str, float]) -> dict[str, float]:
-    """Return the numbers with a damping ratio that is nearly 0 raised at the other one's cost.
+    """Raise a damping ratio that is nearly 0, and lower the other one by as much.
 
     Only the sum of both is well known, and residuals are linear in the ratios themselves: around a
     logarithm that has run away, differences tell nothing of what the ratio may be.
@@ -136,13 +138,13 @@ def with_shared_damping(values: Mapping[str, float]) -> dict[str, float]:
 def estimate_with_covariances(
     search: Search, values: dict[str, float], model: LinearModel
 ) -> Estimate:
-    """Return the numbers with their covariances by noise, by blocks and by discrepancy."""
+    """Compute the covariances of fitted numbers by noise, by blocks and by discrepancy."""
     count, rows, influence = len(values), model.weighted_slopes, model.influence
     residuals = search.residuals(values)
-    if isinstance(search.evidence, CurveEvidence):
-        changes = scatter_changes(residuals)
-    else:
+    if search.evidence.has_floor:
         changes = simulated_noise_changes(search, values)
+    else:
+        changes = scatter_changes(residuals)
     moved = np.stack([rows.T @ change.ravel() for change in changes])
     bumps = model.scatter @ rows
     by_noise = influence @ (moved.T @ moved / len(moved)) @ influence.T
@@ -153,7 +155,7 @@ def estimate_with_covariances(
     small = len(sums) / max(len(sums) - count, 1)
     by_blocks = small * influence @ (sums.T @ sums) @ influence.T
     beyond = squares_beyond_noise(residuals, changes)
-    known = CURVE_CALIBRATION if isinstance(search.evidence, CurveEvidence) else CALIBRATION
+    known = CALIBRATION if search.evidence.has_floor else CURVE_CALIBRATION
     measured = np.diag([known.get(name, 1.0) for name in values])
     by_noise, by_blocks = (measured @ one @ measured for one in (by_noise, by_blocks))
     hidden = contact_covariance(values, beyond / residuals.size) - HIDDEN_SHARE * beyond * influence
@@ -191,24 +193,64 @@ def squares_beyond_noise(residuals: Floats, changes: list[Floats]) -> float:
 
 
 def simulated_noise_changes(search: Search, values: Mapping[str, float]) -> list[Floats]:
-    """Simulate noise of base and sensors, and return the residuals' changes for each replicate."""
+    """Simulate noise of base and sensors; return the change of the residuals in each replicate."""
     evidence, rng = search.evidence, np.random.default_rng(SEED)
-    sizes = noise_of_samples(evidence.orders)
-    hypothesis, found = search.hypothesis, []
-    here = evidence.orders_of_motion(hypothesis.displacements(values, evidence, search.player))
-    base = evidence.order_residuals(evidence.corrected_for_sensors(here))
-    for _ in range(REPLICATES):
-        again = with_base_noise(evidence, sizes[BOX] * rng.standard_normal(evidence.samples))
-        computed = again.orders_of_motion(hypothesis.displacements(values, again, search.player))
+    sizes, names = noise_of_samples(evidence.orders), evidence.orders.sensors
+    motion = search.hypothesis.displacements(values, evidence, search.player)
+    base = evidence.order_residuals(evidence.fitted_orders(motion))
+    fit = search.hypothesis, values, search.player
+    changes = []
+    for moved in motions_under_base_noise(evidence, fit, REPLICATES, rng):
         search.evaluations += 1
-        names = evidence.orders.sensors
         channels = [sizes[name] * rng.standard_normal(evidence.samples) for name in names]
         read = evidence.windows.amplitudes(np.stack(channels))
         # noise of what is read counts the other way: as if the motion had moved by less
-        found.append(
-            evidence.order_residuals(evidence.corrected_for_sensors(computed - read)) - base
-        )
-    return found
+        computed = evidence.corrected_for_sensors(evidence.orders_of_motion(moved) - read)
+        changes.append(evidence.order_residuals(computed) - base)
+    return changes
+
+
+def scatter_changes(residuals: Floats) -> list[Floats]:
+    """Simulate the scatter of a curve's points; return the change of the residuals each time.
+
+    A curve has no floor between its orders. Its scatter is what differs from one frequency to the
+    next, of each sensor and order: the second differences of the residuals, of which white noise of
+    variance 1 makes 6.
+
+    Parameters
+    ----------
+    residuals : ndarray, shape (sensors, rows, windows)
+    """
+    differences = np.diff(residuals, n=2, axis=-1)
+    size = np.sqrt(np.mean(differences**2, axis=-1, keepdims=True) / 6.0)
+    rng = np.random.default_rng(SEED)
+    return [size * rng.standard_normal(residuals.shape) for _ in range(CURVE_REPLICATES)]
+
+
+def motions_under_base_noise(
+    evidence: Evidence,
+    fit: tuple[Hypothesis, Mapping[str, float], Player | None],
+    count: int,
+    rng: np.random.Generator,
+) -> Iterator[Floats]:
+    """Yield motions of a fit while the base moves with more noise, of the size of its floor.
+
+    Noise is drawn when a motion is asked for: what a caller draws between two motions comes between
+    them in the generator's sequence.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    fit : tuple
+        Hypothesis, its values, and a player for hypotheses that need the FMU.
+    count : int
+    rng : numpy.random.Generator
+    """
+    hypothesis, values, player = fit
+    size = noise_of_samples(evidence.orders)[BOX]
+    for _ in range(count):
+        noisy = with_base_noise(evidence, size * rng.standard_normal(evidence.samples))
+        yield hypothesis.displacements(values, noisy, player)
 
 
 def with_base_noise(evidence: Evidence, noise: Floats) -> Evidence:
@@ -219,7 +261,7 @@ def with_base_noise(evidence: Evidence, noise: Floats) -> Evidence:
 
 
 def noise_of_samples(orders: RecordOrders) -> dict[str, float]:
-    """Return, by channel, the standard deviation of white noise that has its floor, m/s2."""
+    """Return the standard deviation of white noise that makes each channel's floor, m/s2."""
     squares = [np.sum(np.abs(s[:, len(ORDERS) :]) ** 2, axis=0) for s in orders.windows.solutions]
     share = math.sqrt(float(np.nanmean(squares)))
     return {

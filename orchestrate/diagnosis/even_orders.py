@@ -26,7 +26,7 @@ ORDER_2_OF_OPENING = 0.14
 
 @dataclass(frozen=True)
 class EvenOrders:
-    """Order 2 beyond what a linear structure makes of the base's, with the threshold for detection.
+    """Hold order 2 beyond what a linear structure makes of the base's, with its threshold.
 
     Attributes
     ----------
@@ -52,14 +52,14 @@ class EvenOrders:
         return float(self.ratio[np.nanargmax(self.ratio / self.threshold)])
 
     @property
-    def seen(self) -> bool:
+    def is_order_2_seen(self) -> bool:
         """Whether order 2 exceeds its threshold in any window."""
         return self.excess > 1.0
 
     @property
     def is_opening_seen(self) -> bool:
         """Whether order 2 or the difference of two faces exceeds its threshold."""
-        return self.seen or self.moved_apart > 1.0
+        return self.is_order_2_seen or self.moved_apart > 1.0
 
     @property
     def moved_apart(self) -> float:
@@ -76,9 +76,12 @@ def even_orders(evidence: Evidence, bonded: Complexes) -> EvenOrders:
     bonded : ndarray, shape (sensors, 3, windows)
         Orders that the best linear structure would show under the same base.
     """
-    power = averaged(np.nan_to_num(np.abs(evidence.measured[:, 1] - bonded[:, 1]) ** 2))
+    power = average_over_windows(np.nan_to_num(np.abs(evidence.measured[:, 1] - bonded[:, 1]) ** 2))
     size, threshold = size_of_order_1(evidence), thresholds(evidence)
-    excess = np.sqrt(np.maximum(power - averaged(floor_of_orders(evidence) ** 2), 0.0)) / size
+    excess = (
+        np.sqrt(np.maximum(power - average_over_windows(floor_of_orders(evidence) ** 2), 0.0))
+        / size
+    )
     quiet = np.isnan(threshold)
     excess[quiet] = np.nan
     chosen = np.argmax(np.nan_to_num(excess / threshold), axis=0)
@@ -93,7 +96,7 @@ def thresholds(evidence: Evidence) -> Floats:
     """
     size, floor = size_of_order_1(evidence), floor_of_orders(evidence)
     noise = NOISE_FACTOR * evidence.noise[:, np.newaxis] / size
-    between = FLOOR_FACTOR * np.sqrt(averaged(floor**2)) / size
+    between = FLOOR_FACTOR * np.sqrt(average_over_windows(floor**2)) / size
     found = np.maximum(np.maximum(noise, between), MIN_RATIO)
     quiet = size < MIN_RESPONSE * evidence.size.max(axis=1, keepdims=True)
     return np.asarray(np.where(quiet, np.nan, found))
@@ -113,7 +116,7 @@ def smallest_openings(evidence: Evidence, m1: float, m2: float) -> Floats:
 
 def size_of_order_1(evidence: Evidence) -> Floats:
     """Return the root mean square of order 1 over neighbouring windows, by sensor, m/s2."""
-    return np.sqrt(averaged(np.abs(evidence.measured[:, 0]) ** 2))
+    return np.sqrt(average_over_windows(np.abs(evidence.measured[:, 0]) ** 2))
 
 
 def floor_of_orders(evidence: Evidence) -> Floats:
@@ -122,7 +125,7 @@ def floor_of_orders(evidence: Evidence) -> Floats:
     return np.asarray(evidence.orders.floor[rows][:, evidence.used_windows])
 
 
-def averaged(values: Floats) -> Floats:
+def average_over_windows(values: Floats) -> Floats:
     """Return each sensor's values averaged over neighbouring windows."""
     return np.stack([moving_average(row, AVERAGED_WINDOWS) for row in values])
 
@@ -153,8 +156,10 @@ def sensor_difference(evidence: Evidence, threshold: Floats) -> Floats:
     gain, delay = np.linalg.lstsq(real, np.concatenate([one[0].real, one[0].imag]), rcond=None)[0]
     size, seen = size_of_order_1(evidence)[0], np.fmax.reduce(threshold, axis=0)
     both = np.nan_to_num(one[:2] - (gain + np.outer((1.0, 2.0), slope) * delay) * other[:2])
-    first, second = np.sqrt(averaged(np.abs(both) ** 2)) / size
-    order2 = np.sqrt(averaged(np.nan_to_num(np.abs(evidence.measured[:, 1])) ** 2)).max(axis=0)
+    first, second = np.sqrt(average_over_windows(np.abs(both) ** 2)) / size
+    order2 = np.sqrt(average_over_windows(np.nan_to_num(np.abs(evidence.measured[:, 1])) ** 2)).max(
+        axis=0
+    )
     return np.asarray(
         np.maximum(
             first / np.maximum(seen, MIN_DIFFERENCE),

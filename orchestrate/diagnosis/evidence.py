@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,7 +67,7 @@ def cut_to_resonance(orders: RecordOrders) -> tuple[Channels, float]:
 
 @dataclass(frozen=True)
 class Evidence:
-    """Orders of a record, their errors, and the input of the motions that are compared with them.
+    """Hold a record's orders with their errors, and the input of motions compared with them.
 
     Attributes
     ----------
@@ -76,8 +76,11 @@ class Evidence:
         The base's acceleration, from the first sample on.
     relative : tuple of float
         Errors that a good model may have, see ``MODEL_ERROR``.
+    has_floor : bool
+        Whether the noise between the orders was measured: not in a resonance curve.
     """
 
+    has_floor: ClassVar[bool] = True
     orders: RecordOrders
     pieces: Pieces
     relative: tuple[float, ...] = MODEL_ERROR
@@ -143,14 +146,14 @@ class Evidence:
 
     @cached_property
     def used_windows(self) -> NDArray[np.intp]:
-        """Numbers of the windows that are fitted: those after the start-up."""
+        """Indices of the windows that are fitted: those after the start-up."""
         time = self.orders.windows.time - self.orders.channels.time[0]
         skipped = min(START_UP, 0.1 * self.orders.channels.duration)
         return np.flatnonzero(time > skipped)
 
     @cached_property
     def windows(self) -> OrderWindows:
-        """Windows that are fitted, with the orders that are fitted."""
+        """Windows that are fitted, reduced to the orders that are fitted."""
         return self.orders.windows.select(self.used_windows, len(FITTED_ORDERS))
 
     @cached_property
@@ -281,15 +284,15 @@ class Evidence:
         return gain, float(np.clip(DELAY_DEVIATION * solution[1], -MAX_DELAY, MAX_DELAY))
 
     def first_order(self, row: int, computed: Complexes) -> Complexes:
-        """Return the measured order 1 of a sensor, to be compared with this computed one."""
+        """Return a sensor's measured order 1, with which the computed one is compared."""
         return np.asarray(self.measured[row, 0])
 
     def unbounded_residuals(self) -> Floats:
-        """Return the residuals of a motion without bounds."""
+        """Return the residuals that stand for a motion that grows without bounds."""
         return np.full((len(self.masses), 4, len(self.used_windows)), UNBOUNDED_RESIDUAL)
 
     def residuals(self, motion: Floats) -> Floats:
-        """Return a motion's orders less the measured ones, over the errors.
+        """Return the differences of a motion's orders from the measured ones, over the errors.
 
         The shape is (sensors, 4, windows): order 1 as two numbers, then the sizes of orders 2 and
         3; 0 where an order is not resolved.
@@ -300,12 +303,14 @@ class Evidence:
 
     def order_residuals(self, computed: Complexes) -> Floats:
         """Return computed less measured orders, over the errors; shape (sensors, 4, windows)."""
-        wanted1 = np.stack([self.first_order(row, one) for row, one in enumerate(computed[:, 0])])
-        first = (computed[:, 0] - wanted1) / self.error[:, 0]
+        measured_first = np.stack(
+            [self.first_order(row, one) for row, one in enumerate(computed[:, 0])]
+        )
+        first = (computed[:, 0] - measured_first) / self.error[:, 0]
         noise = self.noise[:, None, None]  # adds to both sizes alike
-        size, wanted = np.abs(computed[:, 1:]), np.abs(self.measured[:, 1:])
-        higher = (np.sqrt(size**2 + noise**2) - wanted) / self.error[:, 1:]
-        found = np.concatenate([first.real[:, None], first.imag[:, None], higher], axis=1)
-        resolved = np.isfinite(wanted[:, [0, 0, 0, 1]]) | (np.arange(4) < 2)[:, None]
-        found = np.where(np.isfinite(found), found, np.where(resolved, UNBOUNDED_RESIDUAL, 0.0))
-        return np.clip(found, -UNBOUNDED_RESIDUAL, UNBOUNDED_RESIDUAL)
+        size, measured_size = np.abs(computed[:, 1:]), np.abs(self.measured[:, 1:])
+        higher = (np.sqrt(size**2 + noise**2) - measured_size) / self.error[:, 1:]
+        raw = np.concatenate([first.real[:, None], first.imag[:, None], higher], axis=1)
+        resolved = np.isfinite(measured_size[:, [0, 0, 0, 1]]) | (np.arange(4) < 2)[:, None]
+        whole = np.where(np.isfinite(raw), raw, np.where(resolved, UNBOUNDED_RESIDUAL, 0.0))
+        return np.clip(whole, -UNBOUNDED_RESIDUAL, UNBOUNDED_RESIDUAL)

@@ -228,7 +228,7 @@ class FitJob(SearchJob):
 
 @dataclass(frozen=True)
 class Results:
-    """Results of a search job as arrays, one row a hypothesis.
+    """Hold the results of a search job as arrays, one row a hypothesis.
 
     Attributes
     ----------

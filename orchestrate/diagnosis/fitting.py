@@ -30,7 +30,7 @@ SAME_MISFIT = 0.03  # relative difference of misfits below which two minima coun
 
 @dataclass(frozen=True)
 class Solution:
-    """A minimum of the misfit of a hypothesis.
+    """Hold a minimum of the misfit of a hypothesis: its numbers and its misfit.
 
     Attributes
     ----------
@@ -182,7 +182,7 @@ class Search:
 
 
 def difference_step(search: Search, name: str) -> float:
-    """Return the step of a number for finite differences."""
+    """Return the step by which a number is changed for finite differences."""
     return STEPS[name] * (search.evidence.resonance if name in ("f", "common") else 1.0)
 
 

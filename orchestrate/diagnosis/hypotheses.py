@@ -35,7 +35,7 @@ REPORTED = {  # units and long names
     "cube": ("1/m2", "stiffness that goes with the cube of the displacement"),
     "friction": ("m/s2", "dry friction over the mass"),
     "stop": ("1", "stiffness of a stop over that of the spring"),
-    "position": ("m", "where the stop is met"),
+    "position": ("m", "displacement in the stop's direction from which it pushes"),
 }
 FREE = tuple(REPORTED)[:6]  # of a delaminated structure
 Values = Mapping[str, float]
@@ -70,7 +70,7 @@ class Hypothesis(ABC):
 
     @abstractmethod
     def displacements(self, values: Values, evidence: Evidence, player: Player | None) -> Floats:
-        """Compute the motion relative to the measured base, shape (1 or 2, samples), m."""
+        """Compute the motion of one or two masses relative to the measured base, m."""
 
     @abstractmethod
     def reported(self, values: Values, evidence: Evidence) -> dict[str, float]:
@@ -178,15 +178,18 @@ class DryFriction(Sound):
         return replace(super().single_mass(values, evidence), friction=friction, slow=slow)
 
 
-class StopOnOneSide(Sound):
-    """A bonded structure with a stop on one side: a clamp that rattles, a cable that slackens."""
+class PositiveStop(Sound):
+    """A bonded structure with a stop in the positive direction of the sensor.
 
-    name = "bonded, with a stop on one side"
+    Such as a clamp that rattles, or a cable that slackens.
+    """
+
+    name = "bonded, with a stop in the positive direction"
     extra = {"stop": (-0.8, 5.0), "position": (-1.0, 1.0)}
     side: ClassVar[float] = 1.0
 
     def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
-        """Return starts with a weak and a stiff stop, met early and late."""
+        """Return starts with weak and stiff stops that the mass meets early or late."""
         found = []
         for stop in (-0.3, 0.1, 0.5):
             for position in (0.0, 0.3):
@@ -202,10 +205,10 @@ class StopOnOneSide(Sound):
         return replace(linear, stop=values["stop"], position=position, side=self.side)
 
 
-class StopOnOtherSide(StopOnOneSide):
-    """A bonded structure with a stop on the other side."""
+class NegativeStop(PositiveStop):
+    """A bonded structure with a stop in the negative direction of the sensor."""
 
-    name = "bonded, with a stop on the other side"
+    name = "bonded, with a stop in the negative direction"
     side = -1.0
 
 
@@ -329,4 +332,4 @@ class DelaminatedWithClearance(Delaminated):
         return found
 
 
-SOUND = (Bonded(), NonlinearSpring(), DryFriction(), StopOnOneSide(), StopOnOtherSide())
+SOUND = (Bonded(), NonlinearSpring(), DryFriction(), PositiveStop(), NegativeStop())

@@ -24,7 +24,7 @@ DAMPINGS = (0.0, 0.01, 0.1, 1.0)
 
 @dataclass(frozen=True)
 class LinearModel:
-    """Linear regression of the residuals: ``residuals + slopes (values - here)``.
+    """Hold a linear model of the residuals: ``residuals + slopes (values - here)``.
 
     Attributes
     ----------
@@ -109,7 +109,7 @@ class LinearModel:
         return -np.linalg.pinv(scaled, hermitian=True, rcond=1e-9) / np.outer(size, size)
 
     def cloud_covariance(self) -> Floats:
-        """Return the covariance of a cloud in which the squares grow by ``CLOUD_GROWTH``."""
+        """Return the covariance of a cloud over which squares grow by ``CLOUD_GROWTH``."""
         squares = float(np.sum(self.residuals.ravel() ** 2))
         return np.asarray(-self.influence * CLOUD_GROWTH * squares / len(self.influence))
 

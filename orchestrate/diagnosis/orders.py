@@ -16,6 +16,7 @@ from ..constants import TURN
 from ..errors import InputError
 from ..laboratory.analysis.channels import BOX, Channels
 from ..laboratory.analysis.orders import EDGE, NYQUIST, Window, measured_phase, window
+from ..laboratory.record import channel_label
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -42,7 +43,7 @@ EXPECTED = "not described by this method: expected a swept or stepped sine"
 
 @dataclass(frozen=True)
 class OrderWindows:
-    """Windows of a record, and the least squares that give the orders in them.
+    """Hold the windows of a record, and the least squares that give the orders in them.
 
     Attributes
     ----------
@@ -137,7 +138,7 @@ class OrderWindows:
 
 @dataclass(frozen=True)
 class RecordOrders:
-    """Orders of a record's channels, with the floor between the orders.
+    """Hold the orders of a record's channels, with the floor between the orders.
 
     Attributes
     ----------
@@ -196,8 +197,8 @@ def record_orders(record: xr.Dataset) -> RecordOrders:
     return channel_orders(checked_channels(record))
 
 
-def readings(record: xr.Dataset) -> Channels:
-    """Return the channels of a record that sensors have read.
+def sensor_channels(record: xr.Dataset) -> Channels:
+    """Return the channels of a record, and refuse a simulation that no sensor has read.
 
     Raises
     ------
@@ -213,19 +214,20 @@ def readings(record: xr.Dataset) -> Channels:
 
 
 def checked_channels(record: xr.Dataset) -> Channels:
-    """Check that a record has the base's channel and one of the structure's, and return them.
+    """Check that a record has the base's acceleration and a face's, and return the channels.
 
     Raises
     ------
     InputError
     """
-    channels = readings(record)
+    channels = sensor_channels(record)
     if len(channels.names) < 2:
-        text = "expected acceleration1, acceleration2 or both beside box_acceleration"
-        raise InputError(f"record: no acceleration of the structure; {text}")
+        text = "expected acceleration1, acceleration2 or both beside the base's"
+        raise InputError(f"record: no acceleration of a face; {text}")
     for name, values in zip(channels.names, channels.values, strict=True):
         if not np.ptp(values) > 0.0:
-            raise InputError(f"{name}: does not move; expected the reading of an accelerometer")
+            text = "does not move; expected the reading of an accelerometer"
+            raise InputError(f"{channel_label(name)}: {text}")
     return channels
 
 
@@ -287,7 +289,8 @@ def sine_windows(channels: Channels) -> tuple[OrderWindows, Complexes]:
     usable = [one for one in usable if one.frequency < NYQUIST * channels.sample_rate]
     if len(usable) < MIN_WINDOWS:
         text = f"{EXPECTED}, of {MIN_WINDOWS * MIN_PERIODS / 2:g} periods or more"
-        raise InputError(f"{BOX}: no sine of moving frequency in {channels.duration:.4g} s; {text}")
+        lacking = f"no sine of moving frequency in {channels.duration:.4g} s"
+        raise InputError(f"{channel_label(BOX)}: {lacking}; {text}")
     row = channels.names.index(BOX)
     solutions = [
         referred_to_base(channels.box, one, least_squares_matrix(one, channels.sample_rate))
@@ -304,7 +307,7 @@ def sine_windows(channels: Channels) -> tuple[OrderWindows, Complexes]:
     good = sine & (level >= MIN_LEVEL * np.median(level))
     if good.sum() < max(MIN_WINDOWS, 0.5 * len(good)):
         text = f"no sine in {np.sum(~sine)} of {len(good)} windows"
-        raise InputError(f"{BOX}: {text}; {EXPECTED}")
+        raise InputError(f"{channel_label(BOX)}: {text}; {EXPECTED}")
     kept = np.flatnonzero(good)
     windows = assembled_windows(channels, [usable[i] for i in kept], [solutions[i] for i in kept])
     return windows, amplitude[:, :, kept]
@@ -338,7 +341,7 @@ def median_sweep_rate(phase: Floats, channels: Channels) -> float:
 def assembled_windows(
     channels: Channels, windows: list[Window], solutions: list[Complexes]
 ) -> OrderWindows:
-    """Collect windows and their least-squares matrices in one object."""
+    """Collect single windows and their least-squares matrices in one object."""
     return OrderWindows(
         np.array([one.time for one in windows]),
         np.array([one.frequency for one in windows]),

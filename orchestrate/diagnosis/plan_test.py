@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import InputError
 from ..laboratory.analysis.channels import Channels, attributes, checked_number
 from ..laboratory.analysis.orders import fit_windows
-from ..laboratory.sensors import Sensor, measure, sensors_of
+from ..laboratory.sensors import Sensor, measure, sensor_by_channel
 from ..laboratory.shake import shake
 from ..laboratory.swept_sine import SweptSine
 from ..response.labels import variable, yes_or_no
@@ -39,7 +39,7 @@ BOX = "box_acceleration"
 
 @dataclass(frozen=True)
 class Sweep:
-    """Orders of a computed sweep over the frequency.
+    """Hold the orders of a computed sweep over the frequency.
 
     Attributes
     ----------
@@ -73,7 +73,7 @@ class Sweep:
 
 @dataclass(frozen=True)
 class Noise:
-    """Noise and gain errors that sensors add to an order in a window.
+    """Describe the noise and gain errors that sensors add to an order in a window.
 
     Attributes
     ----------
@@ -183,7 +183,7 @@ def plan_test(
         raise InputError("structure: bonded; expected a guess of the delaminated one")
     f = checked_frequencies(frequencies)
     wanted = checked_levels(levels)
-    sensors = sensors_of(sensor)
+    sensors = sensor_by_channel(sensor)
     limit = checked_number("threshold", threshold, 1e-3, 1e6)
     noise = checked_noise(sensors, checked_number("periods", periods, 2.0, 1e4), gain_error)
     if running.get("store") is not None:
@@ -238,7 +238,7 @@ class SweepComputation:
         sweeps = [
             highest
             if part == 1.0
-            else self.simulated_sweep(with_split(self.structure, part), highest.level)
+            else self.simulated_sweep(scale_split(self.structure, part), highest.level)
             for part in SPLITS
         ]
         return np.array(
@@ -269,7 +269,7 @@ class SweepComputation:
         both = Channels(channels.time, rate, (BOX, *names, "sound"), rows, channels.title)
         windows, amplitudes, _ = fit_windows(both, ORDERS, None, self.noise.periods, 0.5)
         at = np.array([window.frequency for window in windows])
-        found = interpolated(f, at, amplitudes[1:])
+        found = interpolate_amplitudes(f, at, amplitudes[1:])
         sound = np.zeros_like(found[:-1])
         sound[:, 0] = found[-1, 0]
         gaps = [largest_gap(history, both.time[one.part]) for one in windows]
@@ -277,7 +277,7 @@ class SweepComputation:
         return Sweep(found[:-1], sound, np.interp(f, at, gaps), peak, level)
 
 
-def interpolated(frequency: Floats, at: Floats, amplitudes: Floats) -> Floats:
+def interpolate_amplitudes(frequency: Floats, at: Floats, amplitudes: Floats) -> Floats:
     """Interpolate the windows' amplitudes linearly at other frequencies."""
     flat = amplitudes.reshape(-1, len(at))
     return np.array([np.interp(frequency, at, row) for row in flat]).reshape(
@@ -290,7 +290,7 @@ def largest_gap(history: xr.Dataset, times: Floats) -> float:
     return float(history.x_rel.sel(time=slice(times[0], times[-1])).max())
 
 
-def with_split(structure: Structure, part: float) -> Structure:
+def scale_split(structure: Structure, part: float) -> Structure:
     """Scale the difference between a structure's halves, with the same bonded form."""
     share = structure.m1 / (structure.m1 + structure.m2)
     k, d = structure.k1 + structure.k2, structure.d1 + structure.d2
@@ -382,7 +382,7 @@ def plan_dataset(
             "closing_force": variable(over, kept, "N", "preload above which the faces stay shut"),
             "threshold": variable((), limit, "1", f"difference that counts, in {unit}"),
             "smallest_split": variable("level", splits, "1", split),
-            **thresholds(test, sweeps, limit, higher, opening),
+            **smallest_detectable(test, sweeps, limit, higher, opening),
         },
         {
             "level": variable("level", levels, "m/s2", "peak acceleration of the box"),
@@ -393,7 +393,7 @@ def plan_dataset(
     return answer.assign(recommended_sweep(test, answer))
 
 
-def thresholds(
+def smallest_detectable(
     test: SweepComputation, sweeps: Sequence[Sweep], limit: float, higher: Floats, opening: Floats
 ) -> dict[str, Any]:
     """Return the smallest levels and openings that count, and where sensors overload.
@@ -424,7 +424,7 @@ def thresholds(
 
 
 def smallest_splits(levels: Floats, limit: float, distances: Floats) -> Floats:
-    """Return the smallest part of the guess's split that counts at each level, or infinity.
+    """Return the smallest part of the guess's split that shows at each level; infinity if none.
 
     Between the computed splits the distance is a power of the split; below the smallest one it is
     taken to be proportional to it.

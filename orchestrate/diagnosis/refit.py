@@ -27,7 +27,7 @@ DESCENTS = (1.0, 1.0, 1.0, 0.3, 0.3)  # sizes of the clouds on the way to the ot
 
 @dataclass(frozen=True)
 class SimulatedEvidence(Evidence):
-    """A record's evidence with simulated orders in place of the measured ones.
+    """Hold a record's evidence with simulated orders in place of the measured ones.
 
     Numbers that are relative to the record's resonance and displacement keep their meaning.
 
@@ -61,7 +61,7 @@ class SimulatedEvidence(Evidence):
 
 @dataclass(frozen=True)
 class LinearFit:
-    """A hypothesis's residuals around some numbers, for fits to records near the measured one.
+    """Hold a hypothesis's residuals as a linear model, for fits to records near the measured one.
 
     Attributes
     ----------
@@ -94,13 +94,15 @@ class LinearFit:
         ends = np.array([bounds[name] for name in here]).T
         low, high = np.maximum(-reach, ends[0] - now), np.minimum(reach, ends[1] - now)
         motion = search.hypothesis.displacements(here, search.evidence, search.player)
-        columns, estimator = sensor_columns(search.evidence, search.evidence.fitted_orders(motion))
+        columns, estimator = sensor_error_columns(
+            search.evidence, search.evidence.fitted_orders(motion)
+        )
         residuals = search.evidence.residuals(motion).ravel()
         slopes = model.slopes.reshape(len(residuals), -1)
         return cls(residuals, slopes, low, high, columns, estimator)
 
     def misfits(self, changes: Floats) -> Floats:
-        """Fit to records whose residuals differ by these changes; return the misfits.
+        """Fit the linear model to records whose residuals are changed; return their misfits.
 
         Parameters
         ----------
@@ -130,8 +132,8 @@ def mean_square(residuals: Floats) -> Floats:
     return np.asarray(soft_squares(residuals).mean(axis=-1))
 
 
-def sensor_columns(evidence: Evidence, computed: Complexes) -> tuple[Floats, Floats]:
-    """Return what gains and delays change in the residuals, and how they follow from residuals.
+def sensor_error_columns(evidence: Evidence, computed: Complexes) -> tuple[Floats, Floats]:
+    """Return how gains and delays change the residuals, and how they are fitted to them.
 
     As :meth:`.Evidence.sensor_error` has it: by order 1 alone, with a prior.
     """
@@ -159,11 +161,11 @@ def sensor_columns(evidence: Evidence, computed: Complexes) -> tuple[Floats, Flo
 def linear_fit(evidence: Evidence, fitted: Fitted, player: Player) -> LinearFit:
     """Return a hypothesis linearised around its fit to the record."""
     search = Search(fitted.hypothesis, evidence, player)
-    return LinearFit.from_search(search, fitted.values, cloud_of(search, fitted))
+    return LinearFit.from_search(search, fitted.values, cloud_covariance_of_fit(search, fitted))
 
 
-def cloud_of(search: Search, fitted: Fitted) -> Floats:
-    """Return the covariance of a cloud: the fit's own deviations, or steps of differences."""
+def cloud_covariance_of_fit(search: Search, fitted: Fitted) -> Floats:
+    """Return the covariance of a cloud around a fit: the fit's own, or steps of differences."""
     steps = np.array([difference_step(search, name) for name in fitted.values])
     own = np.sqrt(np.maximum(np.diag(fitted.covariance), 0.1 * steps**2))
     sizes = np.where(np.isfinite(own), own, steps)
@@ -192,15 +194,18 @@ def nearest_fit(
         starts += [bonded_like(fitted, bonded, whole)]
     found = min((descend(near, one, fitted) for one in starts), key=lambda one: one.misfit)
     search = Search(fitted.hypothesis, whole, player)
-    return LinearFit.from_search(search, found.values, cloud_of(search, fitted))
+    return LinearFit.from_search(search, found.values, cloud_covariance_of_fit(search, fitted))
 
 
 def descend(search: Search, start: Values, fitted: Fitted) -> Solution:
-    """Go downhill by regressions over clouds, whose numbers are rounded at each step.
+    """Lower the misfit by regressions over clouds of points; round the numbers at each step.
 
     So the way is the same on every processor, which a search that goes by last bits is not.
     """
-    bounds, cloud = search.hypothesis.bounds(search.evidence), cloud_of(search, fitted)
+    bounds, cloud = (
+        search.hypothesis.bounds(search.evidence),
+        cloud_covariance_of_fit(search, fitted),
+    )
     (here,) = search.rank_starts([start])
     for number, size in enumerate(DESCENTS):
         values = {name: rounded(value) for name, value in here.values.items()}

@@ -36,7 +36,7 @@ GAUSSIAN_KURTOSIS = 3.0  # kurtosis
 
 @dataclass(frozen=True)
 class Curve:
-    """The response over the box along a frequency that goes one way.
+    """Hold the response over the base's motion along a frequency that only rises or falls.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class ResponseSigns:
-    """Signs of the rows of a record.
+    """Hold the signs of the responses of a record.
 
     Attributes
     ----------
@@ -154,7 +154,7 @@ def signs_of_orders(channels: Channels, periods: float) -> ResponseSigns:
 
 
 def mean_of_known(power: Floats) -> Floats:
-    """Average over the windows that have a value; NaN where none has."""
+    """Average each row over the windows that have a value; NaN where none has."""
     known = np.isfinite(power)
     with np.errstate(invalid="ignore"):
         return np.asarray(np.where(known, power, 0.0).sum(axis=-1) / known.sum(axis=-1))
@@ -240,12 +240,12 @@ def spectra(channels: Channels) -> tuple[Floats, Floats, Floats, Floats]:
 
 
 def excited_lines(frequency: Floats, box: Floats) -> NDArray[np.bool_]:
-    """Return which lines the box excites, as a mask."""
+    """Return a mask of the lines of a spectrum that the base excites."""
     return np.asarray((box >= EXCITED * box.max()) & (frequency > 0.0))
 
 
 def noise_lines(frequency: Floats, rate: float) -> NDArray[np.bool_]:
-    """Return which lines are taken for noise, as a mask."""
+    """Return a mask of the lines of a spectrum that are taken for noise."""
     low, high = NOISE_LINES
     return np.asarray((frequency >= low * rate) & (frequency <= high * rate))
 

@@ -54,7 +54,7 @@ MAX_SOLUTIONS, MAX_NUMBERS, MAX_MINIMA = 4, 6, 8
 
 @dataclass(frozen=True)
 class RecordData:
-    """Channels of a record as plain tuples, the form in which a job keeps them.
+    """Hold the channels of a record as plain tuples, the form in which a job keeps them.
 
     Attributes
     ----------
@@ -105,7 +105,7 @@ def cached_orders(data: RecordData) -> RecordOrders:
 
 @lru_cache(maxsize=2)
 def cached_coarse_evidence(data: RecordData | CurveData) -> Evidence:
-    """Return the evidence for a coarse search: a third of the time per motion, or less."""
+    """Return the evidence for a coarse search, with which a motion takes a third of the time."""
     return data.coarse_evidence()
 
 
@@ -311,7 +311,8 @@ class SearchJob(Job):
         hypothesis = search.hypothesis
         assert isinstance(hypothesis, Delaminated)
 
-        def cost(solution: Solution) -> float:
+        def penalised_misfit(solution: Solution) -> float:
+            """Return the misfit, raised by the distance of f1 and f2 from the guess."""
             made = hypothesis.structure_from_values(solution.values, self.evidence)
             off = (
                 math.log(made.get(f) / self.guess.get(f)) / GUESS_DEVIATION for f in ("f1", "f2")
@@ -320,7 +321,7 @@ class SearchJob(Job):
                 1.0 + GUESS_WEIGHT * min(sum(one**2 for one in off), MAX_GUESS_SQUARES)
             )
 
-        return sorted(solutions, key=cost)
+        return sorted(solutions, key=penalised_misfit)
 
     def search_with_clearance(
         self, plain: dict[str, Any], player: Player, worth: bool

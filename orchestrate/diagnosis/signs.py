@@ -16,7 +16,7 @@ from ..response.labels import flags, variable
 from ..structures import Structure
 from .drive_signs import drive_signs, is_drive_run
 from .indicators import INDICATORS
-from .orders import readings
+from .orders import sensor_channels
 from .response_signs import (
     MAX_EDGE,
     ResponseSigns,
@@ -109,7 +109,7 @@ def signs(
         return signs_of_drive_run(record, others)
     length = checked_number("periods", periods, 2.0, 1e4)
     count = checked_integer("seeds", seeds, 1, 1000)
-    every = [readings(one) for one in (record, *others)]
+    every = [sensor_channels(one) for one in (record, *others)]
     names = checked_responses(every)
     edge = None if high_band is None else checked_band(high_band, every[0].sample_rate)
     level = None if noise is None else checked_number("noise", noise, 0.0, math.inf, "m/s2", True)
@@ -196,7 +196,7 @@ def sound_structure(
 def all_signs(
     own: Sequence[ResponseSigns], channels: int
 ) -> tuple[dict[str, Floats], dict[str, Floats]]:
-    """Return values and floors of all signs, those that compare included; NaN where unknown."""
+    """Return values and noise floors of all signs, including those that compare records."""
     first = own[0]
     rows = len(first.noise)
     values, floors = dict(first.values), dict(first.floors)

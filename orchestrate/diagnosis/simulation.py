@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..access import Player
-from ..laboratory.analysis.channels import BOX
-from .errors import noise_of_samples, with_base_noise
+from .errors import motions_under_base_noise
 from .evidence import Evidence
 from .hypotheses import Hypothesis
 from .orders import Complexes
 
 Floats = NDArray[np.float64]
-Values = Mapping[str, float]
 SIMULATED = 200  # records of each hypothesis
 BASE_REPLICATES = 20  # motions under more noise of the base; each serves several records
 # Parts of the record over which what a fit misses changes. Chosen on 23 beams of the campaign on
@@ -30,7 +27,7 @@ DIGITS = 7  # of numbers at which motions are computed: the same on every proces
 
 @dataclass(frozen=True)
 class Fitted:
-    """A hypothesis at its minimum.
+    """Hold the numbers of a hypothesis at its minimum, with misfit and covariance.
 
     Attributes
     ----------
@@ -54,7 +51,7 @@ def rounded(value: float) -> float:
 
 @dataclass(frozen=True)
 class Simulation:
-    """Records of one hypothesis, as changes of their residuals from those of the measured one.
+    """Hold simulated records of one hypothesis, as changes of the residuals of the measured one.
 
     Attributes
     ----------
@@ -74,13 +71,16 @@ class Simulation:
     def from_fit(
         cls, evidence: Evidence, fitted: Fitted, player: Player | None, seed: int
     ) -> Simulation:
-        """Simulate records of a fit."""
+        """Simulate records of a fit: its motion with noise and with what the fit misses."""
         rng = np.random.default_rng([SEED, seed])
         values = {name: rounded(value) for name, value in fitted.values.items()}
         motion = fitted.hypothesis.displacements(values, evidence, player)
         computed = evidence.fitted_orders(motion)
         missed = evidence.order_residuals(computed)
-        by_base = base_noise_changes(evidence, (fitted.hypothesis, values, player), computed, rng)
+        fit = fitted.hypothesis, values, player
+        moved = motions_under_base_noise(evidence, fit, BASE_REPLICATES, rng)
+        shifted = [evidence.order_residuals(evidence.fitted_orders(one)) for one in moved]
+        by_base = np.stack(shifted) - missed
         picked = rng.integers(0, len(by_base), SIMULATED)
         signs = rng.choice([-1.0, 1.0], (SIMULATED, 1, 1, 1))
         noise = signs * by_base[picked] + sensor_noise_changes(evidence, computed, rng)
@@ -90,28 +90,10 @@ class Simulation:
         return cls(fitted, motion, changes.reshape(SIMULATED, -1))
 
 
-def base_noise_changes(
-    evidence: Evidence,
-    fit: tuple[Hypothesis, Values, Player | None],
-    computed: Complexes,
-    rng: np.random.Generator,
-) -> Floats:
-    """Return how residuals change where the base moves with more noise of its floor's size."""
-    hypothesis, values, player = fit
-    size = noise_of_samples(evidence.orders)[BOX]
-    here = evidence.order_residuals(computed)
-    found = []
-    for _ in range(BASE_REPLICATES):
-        noisy = with_base_noise(evidence, size * rng.standard_normal(evidence.samples))
-        motion = hypothesis.displacements(values, noisy, player)
-        found.append(evidence.order_residuals(evidence.fitted_orders(motion)) - here)
-    return np.stack(found)
-
-
 def sensor_noise_changes(
     evidence: Evidence, computed: Complexes, rng: np.random.Generator
 ) -> Floats:
-    """Return how residuals change by noise of the sensors, of their floor's size.
+    """Simulate noise of the sensors, as large as their floor; return the changes of residuals.
 
     Windows overlap by a half: neighbours share half of their noise.
     """
@@ -128,7 +110,7 @@ def sensor_noise_changes(
 
 
 def share_beyond_noise(missed: Floats, noise: Floats) -> float:
-    """Return the size of what a fit misses beyond noise, as a part of what it misses."""
+    """Return which part of a fit's residuals is beyond noise, by root mean squares."""
     squares, by_noise = float(np.mean(missed**2)), float(np.mean(noise**2))
     return math.sqrt(max(1.0 - by_noise / max(squares, 1e-300), 0.0))
 

@@ -32,7 +32,7 @@ MAX_STEP_ANGLE = 0.12
 
 @dataclass(frozen=True)
 class SingleMass:
-    """The parameters of a single mass on a nonlinear spring, see the equation above.
+    """Hold the parameters of a single mass on a nonlinear spring, see the equation above.
 
     Attributes
     ----------
@@ -96,13 +96,14 @@ def run_function() -> Any:
     run.argtypes = [c_void_p, c_void_p, c_ssize_t, c_double, c_int, c_double, c_void_p]
     run.restype = c_ssize_t
 
-    def call(numbers: tuple[float, ...], cubics: Floats, *rest: Any) -> int:
+    def run_compiled(numbers: tuple[float, ...], cubics: Floats, *rest: Any) -> int:
+        """Integrate as :func:`run_in_python` does; return how many cubics were done."""
         *settings, out = rest
         array = np.array(numbers)
         arguments = array.ctypes.data, cubics.ctypes.data, len(cubics), *settings
         return int(run(*arguments, out.ctypes.data))
 
-    return call
+    return run_compiled
 
 
 def run_in_python(
@@ -112,6 +113,7 @@ def run_in_python(
     stiffness, damping, square, cube, friction, slow, stop, position, side = numbers
 
     def acceleration(base: float, x: float, v: float) -> float:
+        """Return the mass's acceleration relative to the base, m/s2."""
         beyond = side * x - position
         spring = x + square * x * x + cube * x * x * x
         if beyond > 0.0:

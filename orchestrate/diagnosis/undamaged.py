@@ -20,7 +20,7 @@ FIRST_DAMPING = (0.003, 0.02, 0.1)  # ratios that the search for the nearest osc
 
 @dataclass(frozen=True)
 class SoundStructure:
-    """A bonded structure, as a linear oscillator: both masses move as one.
+    """Describe a bonded structure as a linear oscillator: both masses move as one.
 
     Attributes
     ----------
@@ -59,19 +59,23 @@ class SoundStructure:
         peak = float(frequency[int(np.abs(response).max(axis=0).argmax())])
         measured = channels.responses()[1]
 
-        def of_response(logs: Floats) -> Floats:
+        def response_residuals(logs: Floats) -> Floats:
+            """Return the residuals of the transmissibility for logarithms of f and zeta."""
             rest = (transmissibility(frequency, *np.exp(logs)) - response).ravel()
             return np.concatenate([rest.real, rest.imag])
 
-        def of_record(logs: Floats) -> Floats:
+        def record_residuals(logs: Floats) -> Floats:
+            """Return the residuals of the acceleration over time for these logarithms."""
             return np.asarray((cls(*np.exp(logs)).acceleration(channels) - measured).ravel())
 
         low, high = math.log(0.2 * frequency[0]), math.log(5.0 * frequency[-1])
         bounds = ([low, math.log(1e-4)], [high, math.log(0.9)])
         starts = [(math.log(peak), math.log(ratio)) for ratio in FIRST_DAMPING]
-        fits = [least_squares(of_response, start, bounds=bounds) for start in starts]
+        fits = [least_squares(response_residuals, start, bounds=bounds) for start in starts]
         best = min(fits, key=lambda fitted: float(fitted.cost))
-        f, zeta = np.exp(least_squares(of_record, best.x, bounds=bounds, x_scale=(0.01, 1.0)).x)
+        f, zeta = np.exp(
+            least_squares(record_residuals, best.x, bounds=bounds, x_scale=(0.01, 1.0)).x
+        )
         return cls(float(f), float(zeta))
 
     def acceleration(self, channels: Channels) -> Floats:

@@ -167,13 +167,15 @@ def further_jumps(data: xr.Dataset) -> list[tuple[str, float, bool]]:
     """Return direction and voltage of each further jump, and whether it is sure."""
     if "further_decided" not in data:
         return []
-    return [
-        (str(way), float(at.further_jumps if sure else at.further_held), sure)
-        for way in data.jump.values
-        for at in (data.sel(jump=way, order=place) for place in data.order.values)
-        if at.further_decided.item()
-        for sure in (at.further_decided.item() != "undecided",)
-    ]
+    jumps = []
+    for direction in data.jump.values:
+        for order in data.order.values:
+            at = data.sel(jump=direction, order=order)
+            if decision := at.further_decided.item():
+                sure = decision != "undecided"
+                voltage = float(at.further_jumps if sure else at.further_held)
+                jumps.append((str(direction), voltage, sure))
+    return jumps
 
 
 def format_jumps(name: str, data: xr.Dataset) -> str:

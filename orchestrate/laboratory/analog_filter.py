@@ -27,7 +27,7 @@ NEAR = 1.0
 
 @dataclass(frozen=True)
 class Cells:
-    """A signal as polynomials, one per cell of time; the cells follow each other without gaps.
+    """Hold a signal as polynomials, one per cell of time; cells follow each other without gaps.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class Cells:
 
 @dataclass(frozen=True)
 class AnalogFilter:
-    """A filter whose output follows no step at once: more poles than zeros, no pole twice.
+    """Describe an analogue filter by simple poles and their residues: more poles than zeros.
 
     Attributes
     ----------
@@ -102,12 +102,12 @@ class AnalogFilter:
 
         inside = (impulse_times >= times[0]) & (impulse_times <= times[-1])
         hits, strengths = impulse_times[inside], impulses[inside]
-        hit_steps = steps_of(hits, times)
+        hit_steps = step_indices(hits, times)
         gains = self._gains(cells, times)
         output = np.zeros(len(times))
         for pole, residue, gain in zip(self.poles, self.residues, gains, strict=True):
             felt = strengths * np.exp(pole * (times[hit_steps + 1] - hits))
-            gain += sums(hit_steps, felt, len(gain))
+            gain += sum_by_step(hit_steps, felt, len(gain))
             decay = np.exp(pole * (times[-1] - times[0]) / (len(times) - 1))
             output[1:] += (residue * lfilter([1.0], [1.0, -decay], gain)).real
         return output
@@ -117,37 +117,37 @@ class AnalogFilter:
         found = np.zeros((len(self.poles), len(times) - 1), dtype=complex)
         for part in blocks(len(cells.starts)):
             starts, ends = cells.starts[part], cells.ends[part]
-            steps = steps_of(ends, times)
+            steps = step_indices(ends, times)
             lengths, left = ends - starts, times[steps + 1] - ends
             count = cells.derivatives.shape[1]
             moments = cells.derivatives[part] * lengths[:, None] ** np.arange(1, count + 1)
-            few, which = alike(lengths, (times[-1] - times[0]) / (len(times) - 1))
+            few, which = distinct_lengths(lengths, (times[-1] - times[0]) / (len(times) - 1))
             for row, pole in zip(found, self.poles, strict=True):
                 weights = phi_functions(pole * few, count)[:, which]
                 gained = np.einsum("nk,kn->n", moments, weights) * np.exp(pole * left)
-                row[steps[0] : steps[-1] + 1] += sums(steps - steps[0], gained)
+                row[steps[0] : steps[-1] + 1] += sum_by_step(steps - steps[0], gained)
         return found
 
 
 def blocks(count: int) -> Iterator[slice]:
-    """Yield slices that divide a long array into blocks."""
+    """Yield slices that divide an array of ``count`` elements into blocks."""
     for begin in range(0, count, BLOCK):
         yield slice(begin, min(begin + BLOCK, count))
 
 
-def alike(lengths: Floats, step: float) -> tuple[Floats, NDArray[np.int_]]:
+def distinct_lengths(lengths: Floats, step: float) -> tuple[Floats, NDArray[np.int_]]:
     """Return the distinct lengths (equal to 1e-12 of a step), and each one's index among them."""
     whole, which = np.unique(np.round(lengths / (1e-12 * step)), return_inverse=True)
     return whole * (1e-12 * step), which
 
 
-def steps_of(moments: Floats, times: Floats) -> NDArray[np.int_]:
+def step_indices(moments: Floats, times: Floats) -> NDArray[np.int_]:
     """Return for each moment the index of the step of ``times`` that contains it, ends included."""
     found: NDArray[np.int_] = np.searchsorted(times, moments, side="left") - 1
     return np.clip(found, 0, len(times) - 2)
 
 
-def sums(steps: NDArray[np.int_], values: Complexes, count: int = 0) -> Complexes:
+def sum_by_step(steps: NDArray[np.int_], values: Complexes, count: int = 0) -> Complexes:
     """Sum complex values by the index of their step; return ``count`` sums or more."""
     real = np.bincount(steps, values.real, count)
     found: Complexes = real + 1j * np.bincount(steps, values.imag, count)
@@ -180,7 +180,7 @@ def phi_functions(z: Complexes, count: int) -> Complexes:
 
 
 def recurrence_up(z: Complexes, count: int) -> Complexes:
-    """Compute them by ``phi_k = (phi_(k-1) - 1/(k-1)!)/z``: for large z, where nothing cancels."""
+    """Compute ``phi_k(z)`` from ``phi_(k-1)``: for large z, where nothing cancels."""
     found = np.empty((count, len(z)), dtype=complex)
     last = np.exp(z)
     for k in range(1, count + 1):
@@ -189,7 +189,7 @@ def recurrence_up(z: Complexes, count: int) -> Complexes:
 
 
 def recurrence_down(z: Complexes, count: int, largest: float) -> Complexes:
-    """Compute them by ``phi_(k-1) = z phi_k + 1/(k-1)!`` from the Taylor series of the last one.
+    """Compute ``phi_k(z)`` from ``phi_(k+1)``, the last one by its Taylor series: for small z.
 
     The series begins so high that its terms fall from the first on.
     """

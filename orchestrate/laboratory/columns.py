@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..constants import GRAVITY, TURN
 from ..errors import InputError
-from .record import CHANNELS
+from .record import CHANNELS, SHORT_NAMES
 
 Floats = NDArray[np.float64]
 INCH = 0.0254
@@ -52,13 +52,12 @@ NAMES = {  # as files call them; letters and digits alone, small
     "acceleration1": ("acceleration1", "mass1", "a1", "acc1", "accel1", "face1", "beam", "face"),
     "acceleration2": ("acceleration2", "mass2", "a2", "acc2", "accel2", "face2"),
 }
-WORDS = {"box_acceleration": "base", "acceleration1": "face 1", "acceleration2": "face 2"}
 HEADING = re.compile(r"^(?P<name>.*?)[\s_]*[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
 
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a file: its name, unit and numbers.
+    """Hold a column of a file: its name, unit and numbers.
 
     Attributes
     ----------
@@ -75,7 +74,7 @@ class Column:
 
 @dataclass(frozen=True)
 class Columns:
-    """All columns of a file.
+    """Hold all columns of a file.
 
     Attributes
     ----------
@@ -123,12 +122,12 @@ def plain_unit(text: str) -> str:
 
 
 def is_unit(text: str) -> bool:
-    """Return whether a text is a unit of what a record or a resonance curve has in its columns."""
+    """Return whether a text is a unit that columns of records or resonance curves may have."""
     known = (ACCELERATIONS, TIMES, SPEEDS, LENGTHS, FREQUENCIES, ANGLES, RATIOS)
     return any(plain_unit(text) in units for units in known)
 
 
-def factor_of(label: str, unit: str, known: Mapping[str, float]) -> float:
+def si_factor(label: str, unit: str, known: Mapping[str, float]) -> float:
     """Return the factor that converts a unit to SI.
 
     Raises
@@ -139,16 +138,20 @@ def factor_of(label: str, unit: str, known: Mapping[str, float]) -> float:
         usual = ("g", "mg", "ms", "rad/s", "deg")
         names = ", ".join(list(known)[:1] + [name for name in usual if name in known])
         text = f"unit = {unit!r}" if unit else "no unit"
-        raise InputError(f"{label}: {text}; expected one such as {names}: say unit=")
+        remedy = "give it by unit=" if known is ACCELERATIONS else "mend it in the file"
+        raise InputError(f"{label}: {text}; expected one such as {names}: {remedy}")
     return known[plain_unit(unit)]
 
 
-def channels_of(
+def converted_channels(
     table: Columns,
     columns: Mapping[str, str | int] | Sequence[str | int] | None,
     unit: str | None,
-) -> tuple[Floats | None, dict[str, Floats], str]:
-    """Return times in s, None without them, channels in m/s2 by name, and which columns they are.
+) -> tuple[Floats | None, dict[str, Floats], dict[str, str]]:
+    """Convert a file's columns: return times in s or None, channels in m/s2, how they were read.
+
+    How they were read are attributes of a record: ``columns``, which column was taken for what;
+    ``unit`` of the accelerations; and ``unit_in_file``, where ``unit`` was taken in its place.
 
     Parameters
     ----------
@@ -162,83 +165,122 @@ def channels_of(
     ------
     InputError
     """
-    places = chosen(table, columns)
-    time, taken = None, taken_text(table, places, columns)
+    known = channels_by_name(table) if columns is None else {}
+    places = known or channel_places(table, columns)
+    by_order = ", by their order: no name is known" if columns is None and not known else ""
+    time, read_as = None, {"columns": taken_text(table, places) + by_order}
     if "time" in places:
         column = table.columns[places.pop("time")]
-        label = label_of(table, column)
-        time = scaled(table, column, factor_of(label, column.unit or "s", TIMES))
+        label = column_label(table, column)
+        time = scaled_values(table, column, si_factor(label, column.unit or "s", TIMES))
     if not places:
         raise InputError(f"{table.path}: no channel; expected one of {', '.join(CHANNELS)}")
     values = {}
     for name, place in places.items():
         column = table.columns[place]
         own = column.unit if unit is None else unit
-        values[name] = scaled(table, column, factor_of(label_of(table, column), own, ACCELERATIONS))
-    return time, values, taken
+        values[name] = scaled_values(
+            table, column, si_factor(column_label(table, column), own, ACCELERATIONS)
+        )
+    channels = [table.columns[place] for place in places.values()]
+    return time, values, read_as | unit_attributes(channels, unit)
 
 
-def taken_text(table: Columns, places: Mapping[str, int], columns: object) -> str:
-    """Return a text that says which column was taken for what, and if by nothing but its order."""
-    parts = [f'{WORDS.get(name, name)} "{table.columns[i].name}"' for name, i in places.items()]
-    by_order = columns is None and not known_places(table)
-    return ", ".join(parts) + (", by their order: no name is known" if by_order else "")
+def unit_attributes(channels: Sequence[Column], unit: str | None) -> dict[str, str]:
+    """Return a record's attributes on its unit: the one used, and the file's own if it differs."""
+    own = ", ".join(dict.fromkeys(column.unit for column in channels if column.unit))
+    if unit is None:
+        return {"unit": own}
+    differs = any(
+        column.unit and plain_unit(column.unit) != plain_unit(unit) for column in channels
+    )
+    return {"unit": unit, "unit_in_file": own} if differs else {"unit": unit}
 
 
-def label_of(table: Columns, column: Column) -> str:
-    """Return file and column as a text for messages."""
+def taken_text(table: Columns, places: Mapping[str, int]) -> str:
+    """Return a text that says which column was taken for what."""
+    return ", ".join(
+        f'{SHORT_NAMES.get(name, name)} "{table.columns[i].name}"' for name, i in places.items()
+    )
+
+
+def column_label(table: Columns, column: Column) -> str:
+    """Return the names of file and column as a text for messages."""
     return f'{table.path}, column "{column.name}"'
 
 
-def scaled(table: Columns, column: Column, factor: float) -> Floats:
-    """Return a column in SI; raise with the row where something is not a number."""
+def scaled_values(table: Columns, column: Column, factor: float) -> Floats:
+    """Return a column's values times a factor; raise with the row where one is not a number."""
     wrong = np.flatnonzero(~np.isfinite(column.values))
     if len(wrong):
         row, value = wrong[0] + table.first_row, column.values[wrong[0]]
         more = f" and {len(wrong) - 1} more" if len(wrong) > 1 else ""
-        raise InputError(f"{label_of(table, column)}, row {row}: {value}{more}; expected numbers")
+        raise InputError(
+            f"{column_label(table, column)}, row {row}: {value}{more}; expected numbers"
+        )
     return column.values if factor == 1.0 else factor * column.values
 
 
-def chosen(
+def channel_places(
     table: Columns, columns: Mapping[str, str | int] | Sequence[str | int] | None
 ) -> dict[str, int]:
-    """Return the column index of each channel and of the time, by name.
+    """Return the column index of each channel and of the time, as asked for or by their order.
 
-    By what is given, else by their names, else by their order: time, box, mass 1, mass 2.
+    The order is time, base, face 1, face 2; without time where the file says the sampling rate.
     """
     wanted = (*(() if table.sample_rate else ("time",)), *CHANNELS)
     if columns is None:
-        if known := known_places(table):
-            return known
         if len(table.columns) > len(wanted):
             names = ", ".join(column.name for column in table.columns[:8])
             text = "expected columns=, which of them are time and channels"
             raise InputError(f"{table.path}: {len(table.columns)} columns {names}; {text}")
         return dict(zip(wanted, range(len(table.columns)), strict=False))
-    if not isinstance(columns, Mapping):
-        if isinstance(columns, str) or len(columns) > len(wanted):
-            raise InputError(f"columns = {columns!r}: expected {', '.join(wanted)} in that order")
-        columns = dict(zip(wanted, columns, strict=False))
-    unknown = set(columns) - {"time", *CHANNELS}
-    if unknown:
-        names = ", ".join(("time", *CHANNELS))
-        raise InputError(f"columns: {sorted(unknown)[0]!r}; expected names of {names}")
-    places = {name: place_of(table, wish) for name, wish in columns.items()}
+    places = places_asked_for(table, columns, wanted, ("time", *CHANNELS))
     if "time" in wanted and "time" not in places:
         named = [i for i, one in enumerate(table.columns) if one.name.lower() in NAMES["time"]]
         places["time"] = (named or [0])[0]
     return places
 
 
-def known_places(table: Columns) -> dict[str, int]:
-    """Return the column index of each channel and the time by usual names; empty if no channel."""
-    known = named_places(table, NAMES)
+def places_asked_for(
+    table: Columns,
+    columns: Mapping[str, str | int] | Sequence[str | int],
+    order: Sequence[str],
+    names: Sequence[str],
+) -> dict[str, int]:
+    """Return the column index of each quantity that a caller asks for, by the quantity's name.
+
+    Parameters
+    ----------
+    table : Columns
+    columns : mapping or sequence
+        Which column each quantity is in, by name or number.
+    order : sequence of str
+        Quantities that a sequence of columns stands for, one by one.
+    names : sequence of str
+        All quantities that a mapping may ask for.
+
+    Raises
+    ------
+    InputError
+    """
+    if not isinstance(columns, Mapping):
+        if isinstance(columns, str) or len(columns) > len(order):
+            raise InputError(f"columns = {columns!r}: expected {', '.join(order)} in that order")
+        columns = dict(zip(order, columns, strict=False))
+    if unknown := sorted(set(columns) - set(names)):
+        raise InputError(f"columns: {unknown[0]!r}; expected names of {', '.join(names)}")
+    return {name: column_index(table, wish) for name, wish in columns.items()}
+
+
+def channels_by_name(table: Columns) -> dict[str, int]:
+    """Return the column index of time and channels by their usual names; empty if no channel."""
+    known = places_by_name(table, NAMES)
     return known if set(known) & set(CHANNELS) else {}
 
 
-def named_places(table: Columns, names: Mapping[str, Sequence[str]]) -> dict[str, int]:
-    """Return the column index of each of these things by the names that files give them."""
+def places_by_name(table: Columns, names: Mapping[str, Sequence[str]]) -> dict[str, int]:
+    """Return the column index of each quantity whose usual names are among the headings."""
     plain = [re.sub(r"[\W_]", "", column.name.lower()) for column in table.columns]
     return {
         name: plain.index(one)
@@ -248,7 +290,7 @@ def named_places(table: Columns, names: Mapping[str, Sequence[str]]) -> dict[str
     }
 
 
-def place_of(table: Columns, wish: str | int) -> int:
+def column_index(table: Columns, wish: str | int) -> int:
     """Return the index of a column that is asked for by name or number."""
     names = [column.name for column in table.columns]
     if wish in names:

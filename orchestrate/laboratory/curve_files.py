@@ -17,14 +17,15 @@ from .columns import (
     RATIOS,
     Column,
     Columns,
-    factor_of,
-    label_of,
-    named_places,
-    place_of,
+    column_label,
+    places_asked_for,
+    places_by_name,
     plain_unit,
+    si_factor,
+    taken_text,
 )
 from .record_csv import read_csv
-from .record_files import check_file, kind_of
+from .record_files import check_file, file_kind
 from .resonance_curve import CurveColumns, acceleration_factor, made_curve
 from .signals import LEVEL, checked
 
@@ -38,7 +39,7 @@ MOST_DEGREES = 7.0  # a phase without a unit that goes beyond it, 2 pi and some,
 
 
 def names_of_face(number: str) -> dict[str, tuple[str, ...]]:
-    """Return how files name the columns of a face: letters and digits alone, small."""
+    """Return the names that files give to the columns of a face, in small letters and digits."""
     words = AMPLITUDES + RATIO_NAMES
     plain = words if number == "1" else ()  # a face that has no number is the first
     first = tuple(f"{word}{number}" for word in words)
@@ -59,21 +60,24 @@ def names_of_face(number: str) -> dict[str, tuple[str, ...]]:
 NAMES = {  # what a curve's columns are, and how files call them
     "frequency": ("f", "hz", "freq", "frequenz", "frequency"),
     "level": (
-        *("input", "drive", "excitation", "shaker", "table", "box", "boxacceleration"),
-        *(
-            "boxamplitude",
-            "basis",
-            "base",
-            "baseacceleration",
-            "baseamplitude",
-            "baselevel",
-            "level",
-        ),
+        "input",
+        "drive",
+        "excitation",
+        "shaker",
+        "table",
+        "box",
+        "boxacceleration",
+        "boxamplitude",
+        "basis",
+        "base",
+        "baseacceleration",
+        "baseamplitude",
+        "baselevel",
+        "level",
     ),
     **names_of_face("1"),
     **names_of_face("2"),
 }
-EXPECTED = ", ".join(NAMES)
 
 
 def read_curve(
@@ -140,41 +144,33 @@ def read_curve(
     'frequency "frequency", amplitude1 "face 1"'
     """
     path = Path(path)
-    if kind_of(path) != "csv":
+    if file_kind(path) != "csv":
         raise InputError(f"{path}: expected columns of text (.csv, .txt, .tsv, .asc, .dat)")
     check_file(path)
     table = read_csv(path, gaps=True)
-    places = chosen_places(table, columns)
+    places = curve_places(table, columns)
     made = curve_columns(table, places, unit, level)
     words = {"title": f"Resonance curve {path.name}", "source": path.name}
-    words["columns"] = ", ".join(
-        f'{name} "{table.columns[place].name}"' for name, place in places.items()
-    )
+    words["columns"] = taken_text(table, places)
     try:
         return made_curve(made, relative, direction, words)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
 
 
-def chosen_places(
+def curve_places(
     table: Columns, columns: Mapping[str, str | int] | Sequence[str | int] | None
 ) -> dict[str, int]:
-    """Return the column index of each thing that a curve has, by name.
+    """Return the column index of each quantity of a curve, as asked for or by usual names.
 
     Raises
     ------
     InputError
     """
     if columns is None:
-        places = named_places(table, NAMES)
+        places = places_by_name(table, NAMES)
     else:
-        if not isinstance(columns, Mapping):
-            if isinstance(columns, str) or len(columns) > len(NAMES):
-                raise InputError(f"columns = {columns!r}: expected {EXPECTED} in that order")
-            columns = dict(zip(NAMES, columns, strict=False))
-        if unknown := sorted(set(columns) - set(NAMES)):
-            raise InputError(f"columns: {unknown[0]!r}; expected names of {EXPECTED}")
-        places = {name: place_of(table, wish) for name, wish in columns.items()}
+        places = places_asked_for(table, columns, tuple(NAMES), tuple(NAMES))
     lacking = [] if "frequency" in places else ["frequency"]
     lacking += [] if {"amplitude1", "amplitude2"} & set(places) else ["amplitude1"]
     if lacking:
@@ -200,17 +196,17 @@ def curve_columns(
     floors = {name: at.get(name.replace("amplitude", "floor")) for name in faces}
     return CurveColumns(
         frequency=frequency,
-        level=level_of(table, at.get("level"), unit, level, frequency),
-        amplitudes={name: orders_of(name, at) for name in faces},
-        phases={name: phase_of(table, one) for name, one in phases.items() if one},
+        level=base_level(table, at.get("level"), unit, level, frequency),
+        amplitudes={name: face_orders(name, at) for name in faces},
+        phases={name: phase_in_rad(table, one) for name, one in phases.items() if one},
         floors={name: one.values for name, one in floors.items() if one},
         units={name: unit or at[name].unit for name in faces},
         first_row=table.first_row,
     )
 
 
-def orders_of(name: str, at: Mapping[str, Column]) -> Floats:
-    """Return orders 1, 2, 3 of a face in the unit of the file, NaN where there is no column.
+def face_orders(name: str, at: Mapping[str, Column]) -> Floats:
+    """Return orders 1, 2, 3 of a face in the file's unit, NaN where there is no column.
 
     Raises
     ------
@@ -226,10 +222,10 @@ def orders_of(name: str, at: Mapping[str, Column]) -> Floats:
     return np.stack([missing if one is None else one.values for one in columns])
 
 
-def level_of(
+def base_level(
     table: Columns, column: Column | None, unit: str | None, level: float | None, frequency: Floats
 ) -> Floats | float:
-    """Return the peak acceleration of the base, m/s2: of its column or the number given.
+    """Return the peak acceleration of the base, m/s2, from its column or from the given number.
 
     Raises
     ------
@@ -244,19 +240,19 @@ def level_of(
     if column is None:
         return float(checked(LEVEL, "level", level))
     own = column.unit or (unit if unit and plain_unit(unit) not in RATIOS else "")
-    label = label_of(table, column)
+    label = column_label(table, column)
     ratio = plain_unit(own) in RATIOS  # of a level there is none
     factor = acceleration_factor(label, "" if ratio else own, frequency, frequency)
     return np.asarray(factor * column.values)
 
 
-def phase_of(table: Columns, column: Column) -> Floats:
-    """Return a phase in rad."""
+def phase_in_rad(table: Columns, column: Column) -> Floats:
+    """Convert a column of phases to rad; without a unit, large numbers are in degrees."""
     degrees = np.nanmax(np.abs(column.values), initial=0.0) > MOST_DEGREES
     return scaled_column(table, column, "deg" if degrees else "rad", ANGLES)
 
 
 def scaled_column(table: Columns, column: Column, usual: str, known: Mapping[str, float]) -> Floats:
-    """Return a column in SI, NaN where there is no number; without a unit it has the usual one."""
-    factor = factor_of(label_of(table, column), column.unit or usual, known)
+    """Convert a column to SI by its own unit, or by the usual one where it has none."""
+    factor = si_factor(column_label(table, column), column.unit or usual, known)
     return factor * column.values

@@ -106,14 +106,14 @@ class Pieces:
         return Pieces(nodes, total, self.error + other.error)
 
 
-def divided(first: float, last: float, longest: float) -> Floats:
-    """Return nodes of equal pieces that are at most ``longest``."""
+def equal_nodes(first: float, last: float, longest: float) -> Floats:
+    """Divide an interval into equal pieces not longer than ``longest``; return their ends."""
     count = max(1, math.ceil((last - first) / longest))
     return first + (last - first) * np.arange(count + 1) / count
 
 
 def subdivided(nodes: Floats, parts: NDArray[np.int_]) -> Floats:
-    """Return the nodes of pieces with each piece cut into equal parts.
+    """Cut each piece between two nodes into equal parts; return all nodes.
 
     Examples
     --------

@@ -107,15 +107,15 @@ class Random(ExcitationSignal):
         count = next_fast(max(math.ceil(self.duration / longest), 4 * len(lines)))
         step = self.duration / count
 
-        def at(shift: float, weights: Any = 1.0) -> NDArray[np.float64]:
-            """Return the signal a fixed shift after each node."""
+        def signal_at(shift: float, weights: Any = 1.0) -> NDArray[np.float64]:
+            """Return the signal at a fixed time after each node."""
             return np.fft.irfft(weights * lines * np.exp(1j * omega * shift), count) * count
 
-        values = np.stack([at(point * step) for point in POINTS], axis=1)
+        values = np.stack([signal_at(point * step) for point in POINTS], axis=1)
         # between the nodes a trigonometric polynomial of degree n rises by no more than
         # 1/cos(pi n/N) above N equally spaced values (Ehlich and Zeller, Math. Z. 86, 1964)
         rise = 1.0 / math.cos(math.pi * (len(lines) - 1) / count)
-        error = step**4 * np.abs(at(0.0, omega**4)).max() * rise / ERROR
+        error = step**4 * np.abs(signal_at(0.0, omega**4)).max() * rise / ERROR
         nodes = self.duration * np.arange(count + 1) / count
         return Pieces.from_values(nodes, values, float(error))
 

@@ -31,7 +31,7 @@ ORDER = 7  # derivatives of an acceleration kept: the next is below SHORT^7/7! =
 
 @dataclass(frozen=True)
 class Motion:
-    """A stored motion of the structure as arrays, with the parameters of its equations.
+    """Hold a stored motion of the structure as arrays, with the parameters of its equations.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class Motion:
 
     @classmethod
     def from_history(cls, history: xr.Dataset, structure: Structure, pieces: Pieces) -> Motion:
-        """Make it from a result of :func:`.shake.shake`."""
+        """Take the motion from a result of :func:`.shake.shake`."""
         begin, end = float(history.time[0]), float(history.time[-1])
         struck = history.impact_time.values
         kept = (struck > begin) & (struck <= end)  # of a part of a history others too are there
@@ -89,23 +89,23 @@ class Motion:
         box = np.zeros((ORDER, len(times)))
         box[:4] = self.pieces.taylor(times).T
         for n in range(ORDER):
-            found[n + 2] = self.pull(found[n], found[n + 1], touching) - box[n]
+            found[n + 2] = self.accelerations(found[n], found[n + 1], touching) - box[n]
         return found
 
-    def pull(self, x: Floats, v: Floats, touching: Flags) -> Floats:
-        """Compute accelerations in space (6), or the same derivatives of them, shape (2, n)."""
+    def accelerations(self, x: Floats, v: Floats, touching: Flags) -> Floats:
+        """Compute the masses' accelerations by (6), or derivatives of them, shape (2, n)."""
         s = self.structure
         one, two = s.k1 * x[0] + s.d1 * v[0], s.k2 * x[1] + s.d2 * v[1]
         both = (one + two) / (s.m1 + s.m2)
         return -np.where(touching, both, np.stack([one / s.m1, two / s.m2]))
 
     def advance(self, states: Floats, touching: Flags, times: Floats, lengths: Floats) -> Floats:
-        """Compute the states a short time later, shape (n, 4), by Taylor series."""
+        """Compute the states a given time later, shape (n, 4), by Taylor series."""
         series = self.derivatives(states, touching, times)
         return np.concatenate([taylor(series, lengths), taylor(series[1:], lengths)]).T
 
-    def parts_of(self, length: float) -> int:
-        """Return into how many equal steps the Taylor series divide a length of time."""
+    def step_count(self, length: float) -> int:
+        """Return the number of equal steps in which Taylor series cover a length of time."""
         s = self.structure
         alone = [(s.m1, s.k1, s.d1), (s.m2, s.k2, s.d2)]
         fastest = max(max(math.sqrt(k / m), d / m) for m, k, d in alone)
@@ -125,10 +125,10 @@ class Motion:
         return np.array(found)
 
     def _release(self, begin: float, end: float) -> float:
-        """Compute the release between two moments; the first if the force falls from 0 there."""
+        """Return when the contact force first falls below 0, s; ``begin`` if it does not."""
         state = self._state_at(begin)
         touching = np.array([True])
-        mesh = np.linspace(begin, end, 1 + self.parts_of(end - begin))
+        mesh = np.linspace(begin, end, 1 + self.step_count(end - begin))
         for start, stop in zip(mesh[:-1], mesh[1:], strict=True):
             series = self.derivatives(state, touching, np.array([start]))[:, :, 0]
             root = first_fall(*self._contact_force(series), stop - start)
@@ -144,22 +144,22 @@ class Motion:
         touching = self.touching[index : index + 1]
         inside = (self.impact_times > now) & (self.impact_times <= time)
         for i in np.flatnonzero(inside):
-            mesh = np.linspace(now, self.impact_times[i], 1 + self.parts_of(float(self.times[1])))
+            mesh = np.linspace(now, self.impact_times[i], 1 + self.step_count(float(self.times[1])))
             for start, stop in zip(mesh[:-1], mesh[1:], strict=True):
                 state = self.advance(state, touching, np.array([start]), np.array([stop - start]))
-            state, touching = self.strike(state, self.impulses[[i]]), self.sticks[[i]]
+            state, touching = self.after_impulses(state, self.impulses[[i]]), self.sticks[[i]]
             now = float(self.impact_times[i])
         return state
 
-    def strike(self, states: Floats, impulses: Floats) -> Floats:
-        """Return states after impulses (15): mass 1 is pushed back, mass 2 on."""
+    def after_impulses(self, states: Floats, impulses: Floats) -> Floats:
+        """Return the states after impulses (15), which push mass 1 back and mass 2 on."""
         after = states.copy()
         after[:, 2] -= impulses / self.structure.m1
         after[:, 3] += impulses / self.structure.m2
         return after
 
     def _contact_force(self, series: Floats) -> tuple[Floats, float]:
-        """Compute the contact force's derivatives (18) from displacements; return its scale too."""
+        """Compute the contact force (18) and its derivatives, and the scale of its terms."""
         s = self.structure
         own = s.k1 * series[:-1, 0] + s.d1 * series[1:, 0]
         other = s.k2 * series[:-1, 1] + s.d2 * series[1:, 1]
@@ -168,7 +168,7 @@ class Motion:
 
 
 def taylor(series: Floats, lengths: Floats) -> Floats:
-    """Evaluate a Taylor series a short time later, shape (2, n)."""
+    """Evaluate Taylor series at given lengths of time, shape (2, n)."""
     found = np.zeros(series.shape[1:])
     for n in range(len(series) - 1, -1, -1):
         found = series[n] + found * lengths / (n + 1)
@@ -176,7 +176,7 @@ def taylor(series: Floats, lengths: Floats) -> Floats:
 
 
 def first_fall(derivatives: Floats, scale: float, length: float) -> float | None:
-    """Return the first time in [0, length] at which a Taylor series falls below 0, None without.
+    """Return the first time in [0, length] at which a Taylor series falls below 0, or None.
 
     Rounding errors of numbers of the size ``scale`` are not below 0.
     """
@@ -196,7 +196,7 @@ def first_fall(derivatives: Floats, scale: float, length: float) -> float | None
 
 @dataclass(frozen=True)
 class SmoothParts:
-    """Accelerations in space without the impulses of impacts.
+    """Hold the accelerations of box and masses in space, without the impulses of impacts.
 
     Attributes
     ----------
@@ -215,7 +215,7 @@ class SmoothParts:
 
 
 def smooth_parts(motion: Motion, sample_rate: float) -> SmoothParts:
-    """Solve the equations from sample to sample.
+    """Solve the equations of motion between the samples; return the smooth accelerations.
 
     Parameters
     ----------
@@ -224,7 +224,7 @@ def smooth_parts(motion: Motion, sample_rate: float) -> SmoothParts:
         Of the record that is made of them, Hz.
     """
     steps = math.floor(float(motion.times[-1]) * sample_rate * (1.0 + 1e-14))
-    parts = motion.parts_of(1.0 / sample_rate)
+    parts = motion.step_count(1.0 / sample_rate)
     grid = np.arange(steps * parts + 1) / (sample_rate * parts)
     grid = grid[grid <= motion.times[-1]]
     times = grid[::parts]
@@ -236,13 +236,15 @@ def smooth_parts(motion: Motion, sample_rate: float) -> SmoothParts:
     states, touching, error = propagate(motion, nodes, releases)
     box = Cells(starts, nodes[1:], motion.pieces.taylor(starts))
     series = motion.derivatives(states, touching, starts)
-    felt = np.stack([motion.pull(x, v, touching) for x, v in zip(series, series[1:], strict=False)])
+    felt = np.stack(
+        [motion.accelerations(x, v, touching) for x, v in zip(series, series[1:], strict=False)]
+    )
     one, two = (Cells(starts, nodes[1:], felt[:, i].T) for i in (0, 1))
     return SmoothParts(times, box, one, two, error)
 
 
 def propagate(motion: Motion, nodes: Floats, releases: Floats) -> tuple[Floats, Flags, float]:
-    """Return states and contact at the begin of each cell, and the distance to the samples.
+    """Integrate from sample to sample; return states, contact, and the distance to the samples.
 
     All intervals between samples at once: first their first cells, then their second ones.
     """
@@ -265,11 +267,11 @@ def propagate(motion: Motion, nodes: Floats, releases: Floats) -> tuple[Floats, 
         now = order[low:high]
         last = now - 1
         moved = motion.advance(states[last], touching[last], nodes[last], lengths[last])
-        states[now] = motion.strike(moved, impulses[now])
+        states[now] = motion.after_impulses(moved, impulses[now])
         touching[now] = (touching[last] | begins[now]) & ~ends[now]
     last = np.append(np.flatnonzero(rank == 0)[1:] - 1, count - 1)
     moved = motion.advance(states[last], touching[last], nodes[last], lengths[last])
-    moved = motion.strike(moved, impulses[last + 1])
+    moved = motion.after_impulses(moved, impulses[last + 1])
     target = np.searchsorted(motion.times, nodes[last + 1])
     exact = (target < len(motion.times)) & (
         motion.times[np.minimum(target, len(motion.times) - 1)] == nodes[last + 1]
@@ -278,7 +280,9 @@ def propagate(motion: Motion, nodes: Floats, releases: Floats) -> tuple[Floats, 
 
 
 def mismatch(motion: Motion, states: Floats, samples: NDArray[np.int_]) -> float:
-    """Return the largest difference of accelerations by states and by samples, m/s2."""
+    """Return the largest difference between accelerations by states and stored ones, m/s2."""
     difference = (states - motion.states[samples]).T.reshape(2, 2, -1)
     touching = motion.touching[samples]
-    return float(np.abs(motion.pull(difference[0], difference[1], touching)).max(initial=0.0))
+    return float(
+        np.abs(motion.accelerations(difference[0], difference[1], touching)).max(initial=0.0)
+    )

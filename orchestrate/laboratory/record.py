@@ -22,6 +22,7 @@ CHANNELS = {  # long names
     "acceleration1": "acceleration of mass 1 in space",
     "acceleration2": "acceleration of mass 2 in space",
 }
+SHORT_NAMES = {"box_acceleration": "base", "acceleration1": "face 1", "acceleration2": "face 2"}
 FEWEST = 4
 UNEVEN = 0.05  # largest distance of a time from equal steps, parts of a step
 PLAUSIBLE = (0.05, 2e5)  # largest absolute values that accelerometers read in tests, m/s2
@@ -93,15 +94,15 @@ def checked_record(
     attributes: Mapping[str, Any],
     first_row: int = 0,
 ) -> xr.Dataset:
-    """Make a record; messages count its rows from ``first_row``; see :func:`record`."""
+    """Make a record as :func:`record` does, with rows in messages counted from ``first_row``."""
     import xarray as xr
 
-    values = {name: numbers(name, one, first_row) for name, one in channels.items()}
+    values = {name: checked_numbers(name, one, first_row) for name, one in channels.items()}
     if not values:
         raise InputError(f"record: no channel given; expected one of {', '.join(CHANNELS)}")
     rate = None if sample_rate is None else checked(HERTZ, "sample_rate", sample_rate)
     if time is not None:
-        times = numbers("time", time, first_row)
+        times = checked_numbers("time", time, first_row)
     elif rate is not None:
         times = np.arange(len(next(iter(values.values())))) / rate
     else:
@@ -120,8 +121,8 @@ def checked_record(
     )
 
 
-def numbers(name: str, given: Any, first_row: int = 0) -> Floats:
-    """Return a column as floats; raise with the row where one is not finite.
+def checked_numbers(name: str, given: Any, first_row: int = 0) -> Floats:
+    """Return a list as an array of floats; raise with the row where one is not finite.
 
     Raises
     ------
@@ -184,4 +185,10 @@ def warn_if_implausible(name: str, values: Floats) -> None:
         text = f"a mean of {mean:.3g} m/s2, as gravity has in g: are these numbers in g"
     else:
         return
-    warnings.warn(f"{name}: {text}? expected m/s2", UserWarning, stacklevel=5)
+    text = f"{channel_label(name)}: {text}? expected m/s2"
+    warnings.warn(text, UserWarning, stacklevel=5)
+
+
+def channel_label(name: str) -> str:
+    """Return a channel's name as people say it and as it is in Python: base (box_acceleration)."""
+    return f"{SHORT_NAMES[name]} ({name})"

@@ -28,7 +28,7 @@ BYTE_ORDERS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
 
 @dataclass(frozen=True)
 class Dialect:
-    """How numbers are written in a text file: separator, decimal sign, first row.
+    """Describe how numbers are written in a text file: separator, decimal sign, first row.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ def read_csv(path: Path, gaps: bool = False) -> Columns:
     InputError
     """
     data = path.read_bytes()
-    text = decoded(path, data)
+    text = decode_text(path, data)
     lines = text.split("\n", MOST_HEADING + 1)[: MOST_HEADING + 1]
     if not text.strip():
         raise InputError(f"{path}: empty; expected columns of numbers")
@@ -72,14 +72,14 @@ def read_csv(path: Path, gaps: bool = False) -> Columns:
     columns = len(dialect.fields(lines[dialect.first]))
     if gaps:
         columns = max(columns, *(len(dialect.fields(line)) for line in lines[: dialect.first]), 1)
-        text = without_gaps(text, dialect, columns)
-    names = headings(lines[: dialect.first], dialect, columns)
-    values = parsed(path, text, dialect, [name for name, _ in names])
+        text = fill_gaps(text, dialect, columns)
+    names = column_headings(lines[: dialect.first], dialect, columns)
+    values = parse_numbers(path, text, dialect, [name for name, _ in names])
     made = [Column(*heading, column) for heading, column in zip(names, values.T, strict=True)]
     return Columns(str(path), made, first_row=dialect.first + 1)
 
 
-def decoded(path: Path, data: bytes) -> str:
+def decode_text(path: Path, data: bytes) -> str:
     """Decode a file's text: UTF-8, UTF-16 with its mark, or Windows' letters."""
     if b"\0" in data[:4096] and data[:2] not in BYTE_ORDERS:
         raise InputError(f"{path}: no text; expected columns of numbers")
@@ -91,7 +91,7 @@ def decoded(path: Path, data: bytes) -> str:
 
 
 def dialect_of(path: Path, lines: list[str]) -> Dialect:
-    """Detect how a file is written, from its first line of numbers that the next one is like."""
+    """Detect separator, decimal sign and first row of numbers from a file's first lines."""
     for number, line in enumerate(lines):
         for separator in SEPARATORS:
             for decimal, pattern in ((".", POINT), (",", COMMA)):
@@ -99,13 +99,13 @@ def dialect_of(path: Path, lines: list[str]) -> Dialect:
                     continue
                 dialect = Dialect(separator, decimal, number)
                 if are_numbers(dialect.fields(line), pattern, separator):
-                    return unambiguous(dialect, lines[number : number + 50])
+                    return settle_decimal_sign(dialect, lines[number : number + 50])
     text = f"no line of numbers in the first {min(len(lines), MOST_HEADING)}"
     raise InputError(f"{path}: {text}; expected columns of numbers")
 
 
 def are_numbers(fields: list[str], pattern: re.Pattern[str], separator: str) -> bool:
-    """Return whether a line is data: numbers, at least two unless nothing separates them."""
+    """Return whether the fields of a line are numbers: two or more, or one if blanks separate."""
     texts = [field.strip() for field in fields]
     full = [text for text in texts if text]
     several = len(texts) > 1 or separator == " "
@@ -113,7 +113,7 @@ def are_numbers(fields: list[str], pattern: re.Pattern[str], separator: str) -> 
     return bool(full) and several and fits and len(full) >= 0.5 * len(texts)
 
 
-def unambiguous(dialect: Dialect, lines: list[str]) -> Dialect:
+def settle_decimal_sign(dialect: Dialect, lines: list[str]) -> Dialect:
     """Choose the decimal comma if whole numbers in the first line left both readings possible."""
     if dialect.separator == "," or dialect.decimal == ",":
         return dialect
@@ -121,7 +121,7 @@ def unambiguous(dialect: Dialect, lines: list[str]) -> Dialect:
     return Dialect(dialect.separator, ",", dialect.first) if comma else dialect
 
 
-def headings(lines: list[str], dialect: Dialect, count: int) -> list[tuple[str, str]]:
+def column_headings(lines: list[str], dialect: Dialect, count: int) -> list[tuple[str, str]]:
     """Return names and units of columns from the lines above the numbers."""
     rows = [dialect.fields(line.lstrip("#%").strip(" ")) for line in lines]
     fitting = [[field.strip() for field in row] for row in rows if len(row) == count]
@@ -135,7 +135,7 @@ def headings(lines: list[str], dialect: Dialect, count: int) -> list[tuple[str, 
     return [split_heading(text) for text in fitting[-1]]
 
 
-def without_gaps(text: str, dialect: Dialect, columns: int) -> str:
+def fill_gaps(text: str, dialect: Dialect, columns: int) -> str:
     """Return a text with nan in place of each empty field of its numbers."""
     if dialect.separator == " ":
         return text
@@ -149,7 +149,7 @@ def without_gaps(text: str, dialect: Dialect, columns: int) -> str:
     return "\n".join(lines)
 
 
-def parsed(path: Path, text: str, dialect: Dialect, names: list[str]) -> NDArray[np.float64]:
+def parse_numbers(path: Path, text: str, dialect: Dialect, names: list[str]) -> NDArray[np.float64]:
     """Parse the numbers, shape (rows, columns).
 
     Raises
@@ -169,11 +169,11 @@ def parsed(path: Path, text: str, dialect: Dialect, names: list[str]) -> NDArray
     except ValueError:
         found = np.empty((0, 0))
     if found.shape[1] != len(names):
-        refuse_first(path, body, dialect, names)
+        refuse_first_bad_field(path, body, dialect, names)
     return found
 
 
-def refuse_first(path: Path, body: str, dialect: Dialect, names: list[str]) -> None:
+def refuse_first_bad_field(path: Path, body: str, dialect: Dialect, names: list[str]) -> None:
     """Raise an error that names the first field that is not a number.
 
     Raises
@@ -195,7 +195,7 @@ def refuse_first(path: Path, body: str, dialect: Dialect, names: list[str]) -> N
 
 
 def write_csv(path: Path, columns: list[Column]) -> None:
-    """Write columns with a heading ``name [unit]``, all digits that the numbers have."""
+    """Write columns as text, with headings ``name [unit]`` and all digits of the numbers."""
     with path.open("w", encoding="utf-8", newline="\n") as file:
         file.write(",".join(f"{column.name} [{column.unit}]" for column in columns) + "\n")
         rows = zip(*(column.values.tolist() for column in columns), strict=True)

@@ -15,7 +15,7 @@ import numpy as np
 from ..errors import InputError
 from ..files import check_name, write_whole
 from ..structures.ranges import Quantity
-from .columns import Column, Columns, channels_of
+from .columns import Column, Columns, converted_channels
 from .record import CHANNELS, checked_record
 from .record_csv import read_csv, write_csv
 from .record_mat import read_mat, write_mat
@@ -64,7 +64,9 @@ def read_record(
     Returns
     -------
     xarray.Dataset
-        As :func:`orchestrate.record` makes it.
+        As :func:`orchestrate.record` makes it. Attributes say how it was read: ``columns``, which
+        column was taken for what; ``unit``, that of the accelerations; ``unit_in_file``, what the
+        file says where ``unit`` was taken in its place.
 
     Raises
     ------
@@ -87,7 +89,7 @@ def read_record(
     [0.9807, 2.942, -1.9613, 0.0]
     """
     path = Path(path)
-    kind = kind_of(path)
+    kind = file_kind(path)
     check_file(path)
     if (scale is not None) != (kind == "wav"):
         text = "expected for a WAV file, and there always: m/s2 at its full scale"
@@ -100,11 +102,12 @@ def read_record(
         table = readers[kind](path)
     if sample_rate is not None:
         table = replace(table, sample_rate=sample_rate)
-    time, values, taken = channels_of(table, columns, unit)
+    time, values, read_as = converted_channels(table, columns, unit)
     if time is None and table.sample_rate is None:
         raise InputError(f"{path}: no column of times; expected one, or sample_rate=")
     words = {"title": f"Record {path.name}", "source": path.name, **table.attributes}
-    words |= {"columns": taken} if kind != "netcdf" else {}
+    if kind != "netcdf" or unit is not None:  # it says how it was read the first time
+        words |= read_as
     try:
         return checked_record(time, values, table.sample_rate, words, first_row=table.first_row)
     except InputError as error:
@@ -142,7 +145,7 @@ def write_record(data: xr.Dataset, path: str | os.PathLike[str], *, binary: bool
     True
     """
     path = Path(path)
-    kind = kind_of(path)
+    kind = file_kind(path)
     check_name(path)
     channels = [name for name in CHANNELS if name in getattr(data, "variables", {})]
     if not channels or "sample_rate" not in data.attrs:
@@ -161,7 +164,7 @@ def write_record(data: xr.Dataset, path: str | os.PathLike[str], *, binary: bool
     return write_whole(path, lambda place: data.to_netcdf(place, engine="netcdf4"))
 
 
-def kind_of(path: Path) -> str:
+def file_kind(path: Path) -> str:
     """Return the kind of a file by its ending."""
     if path.suffix.lower() not in ENDINGS:
         raise InputError(f"{path}: expected a file that ends in {', '.join(ENDINGS)}")

@@ -43,8 +43,8 @@ sys.stdout.buffer.write(answer)
 CRASHED = "its reader broke down; expected a MAT file that is whole"
 
 
-def arrays_of(path: Path) -> dict[str, NDArray[Any]]:
-    """Return the arrays of numbers and texts in a file, by name.
+def load_arrays(path: Path) -> dict[str, NDArray[Any]]:
+    """Load the arrays of numbers and texts of a MAT file by name, in a process of its own.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def arrays_of(path: Path) -> dict[str, NDArray[Any]]:
 
 def read_mat(path: Path) -> Columns:
     """Read vectors of a MAT file, and columns of matrices as ``name[0]``, ``name[1]`` ..."""
-    arrays = arrays_of(path)
+    arrays = load_arrays(path)
     units = {name.lower(): one for name, one in arrays.items()}.get("units", np.array([""]))
     unit = str(units.ravel()[0]) if units.dtype.kind == "U" and units.size else ""
     rate, columns = None, []
@@ -86,7 +86,7 @@ def read_mat(path: Path) -> Columns:
 
 
 def write_mat(path: Path, columns: list[Column], sample_rate: float) -> None:
-    """Write vectors by name, ``sample_rate`` and ``units``."""
+    """Write columns as vectors of a MAT file, with ``sample_rate`` and ``units``."""
     from scipy.io import savemat
 
     vectors: dict[str, Any] = {column.name: column.values for column in columns}

@@ -22,7 +22,7 @@ NOTE = "sample_rate = {!r}, start = {!r}"  # a heading has six digits of both
 NOTED = re.compile(r"sample_rate = (\S+), start = (\S+)")
 
 
-def library() -> ModuleType:
+def import_pyuff() -> ModuleType:
     """Import the package pyuff; raise with the remedy if it is not installed.
 
     Raises
@@ -47,12 +47,12 @@ def read_uff(path: Path) -> Columns:
     """
     if not path.read_bytes().rstrip().endswith(b"    -1"):
         raise InputError(f"{path}: no '    -1' at its end; expected a universal file that is whole")
-    pyuff = library()
+    pyuff = import_pyuff()
     try:
         file = pyuff.UFF(str(path))
         kinds = [int(kind) for kind in file.get_set_types()]
         functions = [(i, file.read_sets(i)) for i, kind in enumerate(kinds) if kind == 58]
-        return columns_of(path, kinds, functions)
+        return columns_over_time(path, kinds, functions)
     except InputError:
         raise
     except Exception as error:  # pyuff raises nothing narrower, and fields may be anything
@@ -60,8 +60,10 @@ def read_uff(path: Path) -> Columns:
         raise InputError(f"{path}: {text}; expected a universal file that is whole") from None
 
 
-def columns_of(path: Path, kinds: list[int], functions: list[tuple[int, Dataset]]) -> Columns:
-    """Return the columns of those datasets that are functions of the same times.
+def columns_over_time(
+    path: Path, kinds: list[int], functions: list[tuple[int, Dataset]]
+) -> Columns:
+    """Return the time and the columns of all datasets that are functions of the same times.
 
     Parameters
     ----------
@@ -74,7 +76,7 @@ def columns_of(path: Path, kinds: list[int], functions: list[tuple[int, Dataset]
     for i, kind in enumerate(kinds):
         if kind != 58:
             log.info("%s: dataset %d, number %d of the file, is skipped", path, kind, i)
-    used = [(i, one) for i, one in functions if of_time(path, i, one)]
+    used = [(i, one) for i, one in functions if is_over_time(path, i, one)]
     if not used:
         kinds_there = ", ".join(map(str, kinds[:8])) or "none"
         text = "expected a dataset 58 of time response"
@@ -86,11 +88,11 @@ def columns_of(path: Path, kinds: list[int], functions: list[tuple[int, Dataset]
             text = f"other times than number {number}; expected the same"
             raise InputError(f"{path}: dataset 58, number {i}: {text}")
     label = str(first.get("abscissa_axis_units_lab", "")).strip()
-    time = Column("time", "s" if label.lower() in NO_LABELS else label, times_of(first))
-    return Columns(str(path), [time, *(column_of(i, one) for i, one in used)])
+    time = Column("time", "s" if label.lower() in NO_LABELS else label, time_values(first))
+    return Columns(str(path), [time, *(column_from_dataset(i, one) for i, one in used)])
 
 
-def of_time(path: Path, number: int, one: Dataset) -> bool:
+def is_over_time(path: Path, number: int, one: Dataset) -> bool:
     """Return whether a dataset is a real function of time."""
     kind = int(one.get("abscissa_spec_data_type", TIME))
     over_time = kind == TIME or (kind == 0 and int(one.get("func_type", 0)) == TIME_RESPONSE)
@@ -100,8 +102,8 @@ def of_time(path: Path, number: int, one: Dataset) -> bool:
     return False
 
 
-def times_of(one: Dataset) -> Floats:
-    """Return the abscissa; if its step has six digits only, by the roundest rate that has them."""
+def time_values(one: Dataset) -> Floats:
+    """Return the times of a dataset, by the roundest sampling rate that its step allows."""
     if int(one["abscissa_spacing"]) != 1:
         return np.asarray(one["x"], float)
     noted = NOTED.search(str(one.get("id5", "")))
@@ -113,7 +115,7 @@ def times_of(one: Dataset) -> Floats:
 
 
 def rounded_rate(step: float) -> float:
-    """Return the number with the fewest digits whose inverse is a step, to six digits.
+    """Return the roundest sampling rate whose step is equal to this one to six digits.
 
     Examples
     --------
@@ -132,7 +134,7 @@ def rounded_rate(step: float) -> float:
 
 
 def check_whole(path: Path, number: int, one: Dataset) -> None:
-    """Check that all values that the heading announces are there.
+    """Check that a dataset has as many values as its heading announces.
 
     Raises
     ------
@@ -144,8 +146,8 @@ def check_whole(path: Path, number: int, one: Dataset) -> None:
         raise InputError(f"{path}: dataset 58, number {number}: {text}")
 
 
-def column_of(number: int, one: Dataset) -> Column:
-    """Return a dataset as a column, named by its first line, else by its node and direction."""
+def column_from_dataset(number: int, one: Dataset) -> Column:
+    """Convert a dataset to a column, named by its first line or by its node and direction."""
     name = str(one.get("id1", "")).strip()
     if name.lower() in NO_LABELS:
         name = f"{one.get('rsp_node', number)}:{one.get('rsp_dir', 0)}"
@@ -155,7 +157,7 @@ def column_of(number: int, one: Dataset) -> Column:
 
 def write_uff(path: Path, columns: list[Column], sample_rate: float, binary: bool) -> None:
     """Write columns after the first, which is the time, as datasets 58 or 58b."""
-    pyuff = library()
+    pyuff = import_pyuff()
     time, *channels = columns
     datasets = [
         pyuff.prepare_58(

@@ -117,7 +117,7 @@ def resonance_curve(
 
 @dataclass(frozen=True)
 class CurveColumns:
-    """Columns of a resonance curve before they are checked.
+    """Hold the columns of a resonance curve before they are checked.
 
     Attributes
     ----------
@@ -163,8 +163,8 @@ class CurveColumns:
         found[: len(rows)] = rows
         return found
 
-    def along(self, name: str, given: ArrayLike) -> Floats:
-        """Return one number for all frequencies or one each, shape (n,).
+    def for_each_frequency(self, name: str, given: ArrayLike) -> Floats:
+        """Return a quantity at each frequency, shape (n,), from one number or from one for each.
 
         Raises
         ------
@@ -186,10 +186,10 @@ def made_curve(
 
     if not columns.amplitudes:
         raise InputError("resonance curve: no amplitude; expected amplitude1, amplitude2 or both")
-    known = with_numbers(columns)
+    known = rows_with_numbers(columns)
     frequency = columns.frequency[known]
     check_frequencies(frequency, np.flatnonzero(known) + columns.first_row)
-    level = columns.along("level", columns.level)[known]
+    level = columns.for_each_frequency("level", columns.level)[known]
     check_positive("level", level, np.flatnonzero(known) + columns.first_row)
     faces = sorted(columns.amplitudes)
     amplitude = np.empty((len(faces), len(CURVE_ORDERS), len(frequency)))
@@ -200,11 +200,13 @@ def made_curve(
         scale = factor * np.array(CURVE_ORDERS)[:, None] ** power_of(unit)
         amplitude[number] = scale * columns.orders(name)[:, known]
         if name in columns.floors:
-            given = columns.along(f"floor of {name}", columns.floors[name])[known]
+            given = columns.for_each_frequency(f"floor of {name}", columns.floors[name])[known]
             check_positive(f"floor of {name}", given, None, least=True)
             floor[number] = factor * given
         if name in columns.phases:
-            phase[number] = columns.along(f"phase of {name}", columns.phases[name])[known]
+            phase[number] = columns.for_each_frequency(f"phase of {name}", columns.phases[name])[
+                known
+            ]
     phase, sign = lagging_phases(amplitude[:, 0], phase)
     text = "peak amplitude of orders, relative to the base" if relative else "peak amplitude"
     over = ("channel", "frequency")
@@ -251,11 +253,13 @@ def plain_numbers(name: str, given: Any, kind: type = float) -> NDArray[Any]:
         raise InputError(f"{name}: expected a list of numbers") from None
 
 
-def with_numbers(columns: CurveColumns) -> NDArray[np.bool_]:
-    """Return which rows have a frequency, a level and order 1 of each face; warn of others."""
+def rows_with_numbers(columns: CurveColumns) -> NDArray[np.bool_]:
+    """Return a mask of the rows with frequency, level and order 1 of each face; warn of others."""
     if columns.frequency.ndim != 1:
         raise InputError(f"frequency: {columns.frequency.ndim} dimensions; expected a list")
-    known = np.isfinite(columns.frequency) & np.isfinite(columns.along("level", columns.level))
+    known = np.isfinite(columns.frequency) & np.isfinite(
+        columns.for_each_frequency("level", columns.level)
+    )
     for name in columns.amplitudes:
         known &= np.isfinite(columns.orders(name)[0])
     if text := dropped_text(known, columns.first_row):
@@ -310,7 +314,7 @@ def check_positive(
 
 
 def direction_of(frequency: Floats, direction: str | None) -> str:
-    """Return the direction in which the frequencies were passed.
+    """Return the direction in which the frequencies were passed, from their order if not given.
 
     Raises
     ------
@@ -353,7 +357,7 @@ def acceleration_factor(name: str, unit: str, frequency: Floats, level: Floats) 
             return np.asarray(units[plain] * (TURN * frequency) ** power)
     text = f"unit = {unit!r}" if unit else "no unit"
     names = "m/s2, g, mm/s, m, mm, um, or 1 for a transmissibility"
-    raise InputError(f"{name}: {text}; expected one such as {names}: say unit=")
+    raise InputError(f"{name}: {text}; expected one such as {names}: give it by unit=")
 
 
 def lagging_phases(first: Floats, phase: Floats) -> tuple[Floats, str]:

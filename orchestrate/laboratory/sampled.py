@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Sampled(ExcitationSignal):
-    """An acceleration known at equal times, as an analyser's record has it.
+    """Play an acceleration that is known at equal times, as an analyser's record has it.
 
     Between the samples the natural choice of cubics: the spline through them, with two continuous
     derivatives. That is the excitation itself, so the pieces have no error.
@@ -59,7 +59,7 @@ class Sampled(ExcitationSignal):
         put(self, "duration", (len(values) - 1) / self.sample_rate)
 
     def __repr__(self) -> str:
-        """Return its make-up, since there may be millions of samples; others have another one."""
+        """Return a short text with a checksum of the samples, which may be millions."""
         values = np.array(self.acceleration)
         digest = hashlib.sha256(values.tobytes()).hexdigest()[:16]
         made = f"acceleration={len(values)} values of {digest}, sample_rate={self.sample_rate!r}"

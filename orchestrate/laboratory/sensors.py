@@ -104,7 +104,7 @@ class Sensor:
 
     @property
     def label(self) -> str:
-        """Filter and all else that changes the readings, for titles."""
+        """Short text for titles: the filter, and all else that changes the readings."""
         parts = [f"{self.kind} of order {self.order}, {self.bandwidth:g} Hz"]
         if self.noise:
             parts.append(f"noise {self.noise:g} (m/s2)/sqrt(Hz) with seed {self.seed}")
@@ -200,7 +200,7 @@ def measure(
     (5121, True)
     """
     structure = structure_of(history)
-    sensors = sensors_of(sensor)
+    sensors = sensor_by_channel(sensor)
     rate = next(iter(sensors.values())).rate
     length = float(history.time[-1] - history.time[0])
     if not 1.0 <= length * rate <= MOST_SAMPLES:
@@ -210,7 +210,7 @@ def measure(
     motion = Motion.from_history(history, structure, pieces_for(history, excitation))
     parts = smooth_parts(motion, rate)
     readings = {
-        name: sensors[name].digitised(channel(parts, motion, name, sensors[name]), number)
+        name: sensors[name].digitised(sensor_reading(parts, motion, name, sensors[name]), number)
         for number, name in enumerate(CHANNELS)
         if name in sensors
     }
@@ -225,8 +225,8 @@ def measure(
     return made.assign_attrs(reconstruction_error=parts.error)
 
 
-def channel(parts: SmoothParts, motion: Motion, name: str, sensor: Sensor) -> Floats:
-    """Compute what a sensor's filter gives on the box or on a mass, m/s2."""
+def sensor_reading(parts: SmoothParts, motion: Motion, name: str, sensor: Sensor) -> Floats:
+    """Compute what a sensor's filter reads on the box or on a mass, m/s2."""
     structure = motion.structure
     cells, jumps = {
         "box_acceleration": (parts.box, 0.0 * motion.impulses),
@@ -251,7 +251,7 @@ def pieces_for(history: xr.Dataset, excitation: ExcitationSignal | None) -> Piec
     return Sampled(acceleration=box, sample_rate=rate).pieces()
 
 
-def sensors_of(sensor: Sensor | Mapping[str, Sensor]) -> dict[str, Sensor]:
+def sensor_by_channel(sensor: Sensor | Mapping[str, Sensor]) -> dict[str, Sensor]:
     """Return the sensor of each channel, by name."""
     if isinstance(sensor, Sensor):
         return dict.fromkeys(CHANNELS, sensor)

@@ -11,7 +11,7 @@ import numpy as np
 from ..checks import checked_word
 from ..errors import InputError
 from ..structures.ranges import Quantity
-from .pieces import ERROR, Floats, Pieces, divided, phase_step
+from .pieces import ERROR, Floats, Pieces, equal_nodes, phase_step
 from .signals import LEVEL, SECONDS, ExcitationSignal, checked
 
 
@@ -84,12 +84,12 @@ class Shock(ExcitationSignal):
         return Pieces(nodes, np.where(inside[:, None], found.derivatives, 0.0), error)
 
     def _edges(self, accuracy: float) -> tuple[Floats, float]:
-        """Return where pieces begin, s after the pulse's beginning, and the error of this."""
+        """Return where the pulse's pieces begin, s after its beginning, and their error bound."""
         if self.shape == "trapezoid":
             return self.length * np.array([0.0, 0.1, 0.9]), 0.0
         if self.shape == "sawtooth":
             return np.zeros(1), 0.0
-        angles = divided(0.0, math.pi, phase_step(accuracy))
+        angles = equal_nodes(0.0, math.pi, phase_step(accuracy))
         error = self.peak * float(np.diff(angles).max()) ** 4 / ERROR
         return self.length * angles[:-1] / math.pi, error
 
@@ -97,6 +97,7 @@ class Shock(ExcitationSignal):
         """Return the pulse as a function of time."""
 
         def pulse(time: Floats) -> Floats:
+            """Return the acceleration at times inside the pulse, m/s2."""
             part = (time - self.delay) / self.length
             if self.shape == "half-sine":
                 return self.peak * np.sin(np.pi * part)

@@ -12,7 +12,7 @@ from ..checks import checked_word
 from ..constants import TURN
 from ..errors import InputError
 from ..structures.ranges import Quantity
-from .pieces import ERROR, Floats, Pieces, divided, phase_step, subdivided
+from .pieces import ERROR, Floats, Pieces, equal_nodes, phase_step, subdivided
 from .signals import (
     HERTZ,
     MOST_PIECES,
@@ -151,7 +151,7 @@ class SweptSine(ExcitationSignal):
         if end > MOST_PIECES * phase_step(accuracy):
             text = f"expected less than {MOST_PIECES * phase_step(accuracy) / TURN:.3g}"
             raise InputError(f"the sweep has {end / TURN:.3g} oscillations: {text}")
-        phases = divided(0.0, end, phase_step(accuracy))
+        phases = equal_nodes(0.0, end, phase_step(accuracy))
         nodes = self._times_of(phases)
         nodes[0], nodes[-1] = 0.0, self.duration
         nodes = np.union1d(nodes, self._corners())

@@ -35,7 +35,6 @@ def described(answer: xr.Dataset) -> list[tuple[str, str]]:
     shown = [
         ("title", "title"),
         ("record_file", "record"),
-        ("record_columns", "columns of the record"),
         ("record_sha256", "SHA-256 of the record"),
         ("guess_file", "guess"),
         ("sensors", "sensors"),

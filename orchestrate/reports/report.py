@@ -70,9 +70,11 @@ def report(
     ordered = sorted(shown, key=lambda answer: not is_verdict(answer))
     first = ordered[0]
     sections = [section for answer in ordered for section in sections_of(answer)]
+    heading = title or str(first.attrs.get("title") or question_of(first))
+    record = str(first.attrs.get("record_file", ""))
     page = Page(
-        title or str(first.attrs.get("title") or question_of(first)),
-        notes or str(first.attrs.get("record_file", "")),
+        heading,
+        notes or (record if record not in heading else ""),
         [*sections, origin(ordered)],
         verdict_of(first) if is_verdict(first) else None,
         signed=is_verdict(first),

@@ -26,6 +26,11 @@ WORTH = (
     "for anything else. Faces that are pressed together, or glued in part, may be delaminated and "
     "not open in a test."
 )
+NAMES_OF_CHANNELS = (
+    "Base is what the beam is fastened to, the shaker's table or a clamp; its acceleration is "
+    "called box_acceleration in Python and in files of this package. Face 1 and face 2 are the "
+    "outer faces of both halves, with sensor 1 and sensor 2: acceleration1 and acceleration2."
+)
 BEST = 3  # hypotheses in the table of parameters
 
 
@@ -39,13 +44,10 @@ def verdict_of(answer: xr.Dataset) -> Verdict:
 
 def range_text(answer: xr.Dataset) -> str:
     """Format the levels and frequencies that the record covers."""
-    low, high = number(answer, "frequency_low"), number(answer, "frequency_high")
     felt, unit = scale_of(answer, "m/s2")
-    turn, word = scale_of(answer, "Hz")
     level = f"{text_of(number(answer, 'level_high') / felt)} {unit.replace('m/s2', 'm/s²')}"
-    over = "Omega/omega" if word == "eta" else word
-    first, last = (text_of(end / turn, digits=4) for end in (low, high))
-    return f"up to {level} over {first} to {last} {over}"
+    ends = number(answer, "frequency_low"), number(answer, "frequency_high")
+    return f"up to {level} over {frequencies_text(answer, *ends)}"
 
 
 def delaminated(answer: xr.Dataset) -> str:
@@ -102,8 +104,72 @@ def number(answer: xr.Dataset, name: str) -> float:
 
 def verdict_sections(answer: xr.Dataset) -> list[Section]:
     """Return all sections on which a verdict rests."""
-    made = [decision(answer), fits(answer), misfits(answer), parameters(answer), assumed(answer)]
+    made = [
+        decision(answer),
+        measured_record(answer),
+        *(fits(answer), misfits(answer), parameters(answer)),
+        assumed(answer),
+    ]
     return [section for section in made if section is not None]
+
+
+def measured_record(answer: xr.Dataset) -> Section | None:
+    """Return a section on the record: sensors, unit, sampling, sweep; None where none is known."""
+    words = {str(name): str(text) for name, text in answer.attrs.items()}
+    unit = words.get("record_unit", "").replace("m/s2", "m/s²")
+    rows = [
+        ("file of the record", words.get("record_file", "")),
+        ("columns of the file", words.get("record_columns", "")),
+        ("sensors", words.get("sensors", "")),
+        ("unit of its accelerations", words.get("record_unit_note", "") or unit),
+        ("sampling rate", known_text(answer, "sample_rate", "Hz", 6)),
+        ("duration", known_text(answer, "record_duration", "s", 4)),
+        ("sweep", sweep_text(answer)),
+        ("level of the base", level_text(answer)),
+        ("file of the guess", words.get("guess_file", "")),
+        ("command that made it", words.get("command", "")),
+    ]
+    known = [row for row in rows if row[1]]
+    if not known:
+        return None
+    return Section("The record", [NAMES_OF_CHANNELS], tables=[Table(("what", "value"), known)])
+
+
+def known_text(answer: xr.Dataset, name: str, unit: str, digits: int) -> str:
+    """Format a scalar variable in its own unit; empty if the answer has none of that name."""
+    value = number(answer, name)
+    return text_of(value, unit, digits) if math.isfinite(value) else ""
+
+
+def sweep_text(answer: xr.Dataset) -> str:
+    """Format the range and direction of the sweep, and the part of it that was compared."""
+    low, high = number(answer, "sweep_low"), number(answer, "sweep_high")
+    if not math.isfinite(low + high):
+        return ""
+    direction = {"up": "upwards", "down": "downwards", "up and down": "up and down"}
+    way = direction.get(str(answer.attrs.get("direction", "")), "")
+    whole = f"{frequencies_text(answer, low, high)} {way}".rstrip()
+    if "frequency" not in answer.coords:
+        return whole
+    ends = float(answer.frequency.min()), float(answer.frequency.max())
+    return f"{whole}; compared with models: {frequencies_text(answer, *ends)}"
+
+
+def frequencies_text(answer: xr.Dataset, low: float, high: float) -> str:
+    """Format a range of frequencies in Hz in the units that were asked for."""
+    turn, word = scale_of(answer, "Hz")
+    first, last = (text_of(end / turn, digits=4) for end in (low, high))
+    return f"{first} to {last} {'Omega/omega' if word == 'eta' else word}"
+
+
+def level_text(answer: xr.Dataset) -> str:
+    """Format the range of the base's levels in the units that were asked for."""
+    ends = [number(answer, name) for name in ("level_low", "level_high")]
+    if not all(map(math.isfinite, ends)):
+        return ""
+    felt, unit = scale_of(answer, "m/s2")
+    low, high = (text_of(end / felt) for end in ends)
+    return f"{low} to {high} {unit.replace('m/s2', 'm/s²')} (peak)"
 
 
 def decision(answer: xr.Dataset) -> Section:
@@ -113,11 +179,12 @@ def decision(answer: xr.Dataset) -> Section:
     odds = number(answer, "odds")
     simulated = str(answer.attrs.get("simulated", ""))
     if simulated:
-        points.append(f"{full(simulated)} Both models were fitted to each of them.")
+        points.append(f"{full(simulated)} Both models were fitted to each simulated record.")
     elif math.isfinite(odds) and odds > 0.0:
         points.append(
-            f"Odds of the delaminated against the best sound structure: {ratio_of(odds)}, by how "
-            "often the ratio of misfits holds in records put together of blocks of this one."
+            f"The odds of the delaminated against the best sound structure are {ratio_of(odds)}. "
+            "They were counted in records put together of blocks of this one, by how often the "
+            "ratio of misfits is large enough to decide."
         )
     if settle:
         points.append(f"What would change or settle it: {full(settle)}")
@@ -163,10 +230,13 @@ def misfits(answer: xr.Dataset) -> Section | None:
     """Return a section with the misfit over frequency; None if the answer has none."""
     if "misfit_at" not in answer:
         return None
-    words = "How far each structure is from the measurement, over the frequency"
-    text = "1 is as far as the noise and the stated error of a good model allow."
+    words = "Misfit of each structure over the frequency of the excitation"
+    text = (
+        "The misfit is the distance of a structure's motion from the measured one. It is 1 where "
+        "they differ by as much as noise and the usual error of a good model explain."
+    )
     picture = Picture.from_figure(draw_misfit(answer), words)
-    return Section("Where they miss it", [text], picture=picture)
+    return Section("Where the structures differ from the measurement", [text], picture=picture)
 
 
 def hypotheses(answer: xr.Dataset) -> Table:

@@ -198,7 +198,7 @@ def test_measured_beside_simulated(ask, tmp_path, files):
     ("options", "words"),
     [
         (["lost.csv"], ["lost.csv: no such file; expected a record"]),
-        (["bench.csv"], ["bench.csv", "no unit", "unit="]),
+        (["bench.csv"], ["bench.csv", "no unit", "--unit"]),
         (["bench.csv", "--unit", "stone"], ["unit = 'stone'"]),
         (["bench.csv", "--unit", "g", "--columns", "AI 1"], ["--columns AI 1: expected CHANNEL="]),
         (["bench.csv", "--unit", "g", "--columns", "acceleration1=9"], ["no column 9"]),
@@ -241,5 +241,5 @@ def test_numbers_in_another_unit_are_noticed_in_one_line(ask, tmp_path):
     done = ask("analyse", tmp_path / "bench.csv", "--show", "psd", "--plot", "none")
     words = "no more than 0.03 m/s2: are these numbers in g, or in V? expected m/s2"
     assert done.code == 0
-    assert f"warning: acceleration1: {words}" in done.complaints
+    assert f"warning: face 1 (acceleration1): {words}" in done.complaints
     assert len(done.complaints) == 2 and "box" in done.out

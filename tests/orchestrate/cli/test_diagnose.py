@@ -39,16 +39,16 @@ def sine(tmp_path):
         (["FILE"], ["--structure: nothing given", "guess of the beam"]),
         (["lost.csv", "--structure", GUESS], ["lost.csv", "expected a file to read"]),
         (["FILE", "--structure", "lost.toml"], ["lost.toml"]),
-        (["FILE", "--structure", GUESS, "--columns", "0"], ["--columns 0", "acceleration1"]),
+        (["FILE", "--structure", GUESS, "--columns", "0"], ["--columns 0", "time, base, face 1"]),
         (["FILE", "--structure", GUESS, "--columns", "0,1,9"], ["9"]),
         (
             ["FILE", "--structure", GUESS, "--columns", "0,1"],
-            ["no acceleration1 in time", "base", "--columns"],
+            ["no acceleration of a face in time", "base", "--columns"],
         ),
         (["FILE", "FILE", "--structure", GUESS, "--other", "FILE"], ["--other: of one beam"]),
         (["FILE", "--structure", GUESS, "--set", "f1=-3"], ["f1 = -3"]),
         (["FILE", "--structure", GUESS, "--plot", "gif"], ["--plot gif"]),
-        (["FILE", "--structure", GUESS, "--unit", "furlong"], ["furlong"]),
+        (["FILE", "--structure", GUESS, "--unit", "furlong"], ["furlong", "give it by --unit"]),
     ],
 )
 def test_mistakes_are_one_line_and_nothing_is_written(ask, tmp_path, sine, options, words):
@@ -121,6 +121,39 @@ def test_each_record_has_a_page_with_its_evidence(run):
         assert hashlib.sha256((folder / f"{name}.csv").read_bytes()).hexdigest() in text
         assert re.search(r"FMU TwoMassImpactOscillator</td><td[^>]*>\{[0-9a-f-]{36}\}", text)
         assert "intact" not in text and "no certificate" in text
+        assert f"<h1>Verdict on {name}.csv: {word[:-1].lower()}</h1>" in text
+        assert text.partition("Read and signed")[2].count(word) == 1
+        assert "m/s2" not in re.sub("<td[^>]*>python.*?</td>", "", text)  # the other spelling
+
+
+def test_a_page_says_what_the_record_is_and_how_the_page_was_made(run):
+    folder, _, said = run
+    (stored,) = (path for path in folder.glob("diagnose_parted_*.nc") if "signs" not in path.stem)
+    again = io.StringIO()
+    with redirect_stdout(again):
+        assert main(["report", str(stored), "--output", str(folder), "--units", "g"]) == 0
+    for page, unit in (
+        (next(folder.glob("diagnose_parted_*.html")), "m/s²"),
+        (folder / f"report_{stored.stem}.html", "g"),
+    ):
+        text = page.read_text(encoding="utf-8")
+        cells = re.findall(r"<td[^>]*>([^<]*)</td>", text)
+        rows = dict(zip(cells, cells[1:], strict=False))
+        assert rows["file of the record"] == "parted.csv"
+        assert "acceleration1" in rows["columns of the file"]
+        assert (rows["sampling rate"], rows["unit of its accelerations"]) == ("600 Hz", "m/s²")
+        assert rows["duration"].startswith("4") and " Hz upwards" in rows["sweep"]
+        assert rows["level of the base"].endswith(f"{unit} (peak)")
+        assert (
+            "diagnose" in rows["command that made it"] and "--notes" in rows["command that made it"]
+        )
+
+
+def test_a_unit_in_place_of_the_file_s_own_is_told(ask, tmp_path, sine):
+    done = ask("analyse", sine, "--unit", "g", "--show", "psd", "--plot", "none").success()
+    assert f"{sine}: --unit g was used, although the file says m/s2" in done.out
+    done = ask("analyse", sine, "--unit", "m/s^2", "--show", "psd", "--plot", "none").success()
+    assert "although" not in done.out
 
 
 def test_numbers_are_told_where_the_record_holds_them(run):

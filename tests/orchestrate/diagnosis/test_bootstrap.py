@@ -31,12 +31,12 @@ def test_odds_are_the_ratio_of_both_densities_within_their_error(at):
     assert abs(math.log(odds) - exact) < 3.0 * error + 0.3
 
 
-def test_the_sentence_counts_the_records_on_the_other_side():
+def test_the_sentence_counts_the_records_that_look_like_the_other_kind():
     made = normal(math.exp(0.25))
-    above, below = made.alike
+    above, below = made.lookalikes
     assert above == np.sum(made.sound >= made.observed) and below > 0
-    assert f"sound model {above} looked as delaminated as this one" in made.sentence()
-    assert "sound model none looked" in normal(50.0).sentence()
+    assert f"sound model, {above} looked as delaminated as this record." in made.sentence()
+    assert "sound model, none looked" in normal(50.0).sentence()
 
 
 def test_few_simulations_exclude_nothing():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import orchestrate
-from orchestrate.diagnosis.detect import DetectJob
+from orchestrate.diagnosis.detect import DetectJob, sweep_direction
 from orchestrate.diagnosis.fit import checked_data
 from orchestrate.diagnosis.fitting import Search, Solution
 from orchestrate.diagnosis.hypotheses import FREE
@@ -59,6 +59,14 @@ def test_a_fit_is_within_its_errors_and_takes_what_is_not_free_from_the_guess():
     assert answer.correlation.shape == (4, 4)
     np.testing.assert_allclose(np.diag(answer.correlation), 1.0)
     assert answer.attrs["hypothesis"] == "delaminated" and float(answer.evaluations) > 50
+
+
+@pytest.mark.parametrize(
+    ("frequency", "direction"),
+    [([20.0, 21.0, 20.9, 30.0], "up"), ([30.0, 20.0], "down"), ([20.0, 30.0, 21.0], "up and down")],
+)
+def test_the_direction_of_a_sweep(frequency, direction):
+    assert sweep_direction(np.array(frequency)) == direction
 
 
 def test_a_fit_of_one_mass_finds_its_frequency():

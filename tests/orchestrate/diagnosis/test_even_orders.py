@@ -31,7 +31,7 @@ def two_sensors(opposite):
 def test_faces_move_apart_where_their_order_2_differs(opposite):
     evidence = two_sensors(opposite)
     even = even_orders(evidence, np.zeros_like(evidence.measured))
-    assert even.seen
+    assert even.is_order_2_seen
     assert (even.moved_apart > 1.5) if opposite else (even.moved_apart < 0.5)
 
 
@@ -52,6 +52,6 @@ def test_what_would_have_been_seen_is_not_below_an_opening_that_was_not(sensors)
     gap = float(motion.largest_gap.max())
     assert gap > 1e-5, "it opened"
     evidence = Evidence.from_record(record)
-    assert not even_orders(evidence, np.zeros_like(evidence.measured)).seen
+    assert not even_orders(evidence, np.zeros_like(evidence.measured)).is_order_2_seen
     stated = smallest_openings(evidence, halves.m1, halves.m2)
     assert gap < np.nanmax(stated) < 5.0 * gap

@@ -68,7 +68,7 @@ def test_an_order_above_the_sampling_is_missing_and_not_wrong():
 def test_a_channel_that_does_not_move_is_refused():
     sweep = orchestrate.SweptSine(acceleration=2.0, **SWEEPS["up"])
     dead = made(sweep).assign(acceleration1=lambda record: 0.0 * record.acceleration1)
-    with pytest.raises(orchestrate.InputError, match="acceleration1: does not move"):
+    with pytest.raises(orchestrate.InputError, match=r"face 1 \(acceleration1\): does not move"):
         record_orders(dead)
 
 

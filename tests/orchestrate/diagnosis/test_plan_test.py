@@ -7,7 +7,7 @@ import pytest
 
 import orchestrate
 from orchestrate.diagnosis.opening import opening_force, sweep_rate
-from orchestrate.diagnosis.plan_test import SPLITS, Noise, Sweep, smallest_splits, with_split
+from orchestrate.diagnosis.plan_test import SPLITS, Noise, Sweep, scale_split, smallest_splits
 from orchestrate.errors import InputError
 
 HALVES = orchestrate.Structure.from_halves(
@@ -42,10 +42,10 @@ def test_the_opening_force_is_that_of_the_bonded_motion(exported, hertz):
 
 def test_halves_that_move_alike_are_never_opened():
     assert opening_force(HALVES, 46.0) > 1.0
-    alike = with_split(HALVES, 0.0)
+    alike = scale_split(HALVES, 0.0)
     assert opening_force(alike, 46.0) < 1e-9
     assert alike.k1 + alike.k2 == pytest.approx(HALVES.k1 + HALVES.k2)
-    assert with_split(HALVES, 1.0).k1 == pytest.approx(HALVES.k1)
+    assert scale_split(HALVES, 1.0).k1 == pytest.approx(HALVES.k1)
 
 
 def test_the_map_grows_with_the_level_and_peaks_at_the_resonance(plan):

@@ -269,6 +269,15 @@ def lines(**changes):
     return "time [s],base [m/s2],mass 1 [m/s2]\n" + "\n".join(rows) + "\n"
 
 
+def test_a_record_says_which_unit_was_taken_in_place_of_the_file_s(tmp_path):
+    path = tmp_path / "bench.csv"
+    path.write_text(lines())
+    assert read_record(path).attrs["unit"] == "m/s2"
+    same_unit, other = (read_record(path, unit=unit).attrs for unit in ("M/S^2", "g"))
+    assert "unit_in_file" not in same_unit
+    assert (other["unit"], other["unit_in_file"]) == ("g", "m/s2")
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [

@@ -14,7 +14,7 @@ import xarray as xr
 import orchestrate
 from orchestrate.errors import InputError
 from orchestrate.reports.page import Page, Section, Table, Verdict, text_of, with_error
-from orchestrate.reports.verdict import verdict_sections
+from orchestrate.reports.verdict import measured_record, verdict_sections
 
 EVIL = "<script>alert(\"1\")</script> & 'others'"
 RATE = 1000.0
@@ -151,7 +151,7 @@ def test_a_verdict_says_what_was_guessed_and_what_each_parameter_is():
             "standard_error": (("hypothesis", "parameter"), [[0.1, np.nan], [np.nan, 0.5]]),
         },
         {
-            "hypothesis": ["bonded, with a stop on one side", "delaminated"],
+            "hypothesis": ["bonded, with a stop in the positive direction", "delaminated"],
             "parameter": ["stop", "f1"],
             "unit": ("parameter", ["1", "Hz"]),
             "meaning": ("parameter", ["stiffness of a stop", "frequency of half 1"]),
@@ -164,10 +164,35 @@ def test_a_verdict_says_what_was_guessed_and_what_each_parameter_is():
     rows = dict(row[:1] + row[1:2] for row in sections["Parameters"].tables[0].rows)
     assert rows["f1, frequency of half 1"] == "42.00 ± 0.50 Hz"
     assert "stop, stiffness of a stop" in rows
-    odds = [words for words in sections["Why"].points if words.startswith("Odds")]
+    odds = [words for words in sections["Why"].points if words.startswith("The odds")]
     assert "300 to 1" in odds[0] and "blocks" in odds[0]
     without = answer.assign_attrs(m1=float("nan"))
     assert not any("kg" in words for words in verdict_sections(without)[-1].points)
+
+
+def test_the_record_is_described_in_the_units_that_are_asked_for():
+    answer = xr.Dataset(
+        {
+            "level_low": ((), 3.9),
+            "level_high": ((), 4.0),
+            "sample_rate": ((), 1250.0),
+            "record_duration": ((), 40.0),
+            "sweep_low": ((), 20.0),
+            "sweep_high": ((), 90.0),
+        },
+        {"frequency": ("window", [30.0, 70.0])},
+        {"record_file": "a.csv", "record_unit": "m/s2", "direction": "down", "command": "diagnose"},
+    )
+    rows = dict(measured_record(orchestrate.units.with_units(answer, "g")).tables[0].rows)
+    assert rows["level of the base"] == "0.398 to 0.408 g (peak)"
+    assert rows["sweep"] == "20 to 90 Hz downwards; compared with models: 30 to 70 Hz"
+    assert (rows["sampling rate"], rows["duration"]) == ("1250 Hz", "40 s")
+    assert rows["unit of its accelerations"] == "m/s²"  # one spelling on the page
+    assert rows["command that made it"] == "diagnose" and "sensors" not in rows
+    noted = answer.assign_attrs(record_unit_note="--unit g was used, although the file says m/s2")
+    rows = dict(measured_record(noted).tables[0].rows)
+    assert "although" in rows["unit of its accelerations"]
+    assert measured_record(xr.Dataset()) is None
 
 
 def test_the_signature_is_on_the_page_of_what_it_comes_from(signs, tmp_path):
@@ -175,4 +200,6 @@ def test_the_signature_is_on_the_page_of_what_it_comes_from(signs, tmp_path):
     html = page.html()
     end = html.partition('<div class="end">')[2]
     assert "<h2>two</h2>" in end and "Read and signed" in end and "<h2>one</h2>" not in end
+    signature = end.partition("Read and signed")[2]
+    assert "Yes." in signature and "It is." in signature  # the verdict, where it is signed
     parsed(html)
