@@ -396,10 +396,10 @@ def importing_matplotlib(needed: bool) -> Iterator[None]:
 
     def prepare() -> None:
         """Import Matplotlib and draw a small figure; ignore any error."""
-        from ..figures.files import prepare
+        from ..figures.files import warm_up_matplotlib
 
         with suppress(Exception):  # it comes again where the picture is drawn
-            prepare()
+            warm_up_matplotlib()
 
     timer = threading.Timer(PREPARE_AFTER, prepare)
     if needed:

@@ -42,7 +42,7 @@ def drawing_function(
         return draw_result if is_curve(question) else None, ""
     if not is_curve(question):
         raise InputError("--overlay: one value has no picture; expected a range or a list")
-    from ..figures.overlay import why_unfit
+    from ..figures.overlay import explain_mismatch
 
     over = question.get("over") or ("eta" if "eta" in question else "frequency")
     parameters = structure.parameters()
@@ -50,7 +50,7 @@ def drawing_function(
         parameters.pop("bonded")
     branches = [read_earlier_result("--overlay", path) for path in arguments.overlay]
     for path, branch in zip(arguments.overlay, branches, strict=True):
-        why = why_unfit(branch, over, parameters)
+        why = explain_mismatch(branch, over, parameters)
         if why:
             raise InputError(f"--overlay {path}: {why}")
     return partial(draw_result, overlay=branches), f"over_{digest(*branches)}"

@@ -10,7 +10,7 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
-from ..figures.files import size_of
+from ..figures.files import png_size
 from ..files import write_whole
 from ..running.store import now
 from ..version import __version__
@@ -111,5 +111,5 @@ def entry(part: Part, picture: Path) -> dict[str, Any]:
         "method": caption.method,
         "picture": base64.b64encode(content).decode(),
         "data": [f"{name}.nc" for name in part.jobs],
-        **size_of(content),
+        **png_size(content),
     }

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from ..errors import InputError
-from ..figures.plot import plot, question_of
+from ..figures.plot import function_name, plot
 from ..units import OVER_OMEGA, as_shown, scale_of
 from .page import Picture, Section, Table, text_of
 from .verdict import verdict_sections
@@ -20,7 +20,7 @@ MOST_ROWS = 60
 
 def sections_of(answer: xr.Dataset) -> list[Section]:
     """Return the sections of an answer."""
-    kind = question_of(answer)
+    kind = function_name(answer)
     if kind == "detect":
         return verdict_sections(answer)
     if kind == "signs":
@@ -38,7 +38,7 @@ def picture_of(answer: xr.Dataset, words: str) -> Picture | None:
 
 def study_section(answer: xr.Dataset) -> Section:
     """Return a section with the picture and the numbers of an answer."""
-    title = str(answer.attrs.get("title") or question_of(answer))
+    title = str(answer.attrs.get("title") or function_name(answer))
     tables = [table for table in (scalar_table(answer), parameter_table(answer)) if table.rows]
     return Section(title, picture=picture_of(answer, title), tables=tables)
 

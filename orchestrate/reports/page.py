@@ -12,7 +12,7 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
-from ..figures.files import png_of, size_of
+from ..figures.files import png_bytes, png_size
 from ..running.store import now
 from ..version import __version__
 
@@ -37,7 +37,7 @@ class Picture:
     @classmethod
     def from_figure(cls, figure: Any, words: str) -> Picture:
         """Make a picture from a :class:`matplotlib.figure.Figure`."""
-        return cls(png_of(figure), words)
+        return cls(png_bytes(figure), words)
 
     @property
     def source(self) -> str:
@@ -47,7 +47,7 @@ class Picture:
     @property
     def size(self) -> dict[str, int]:
         """Width and height in pixels."""
-        return size_of(self.png)
+        return png_size(self.png)
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import InputError
-from ..figures.plot import question_of
+from ..figures.plot import function_name
 from ..files import write_whole
 from ..units import Units, with_units
 from .answers import sections_of
@@ -71,7 +71,7 @@ def report(
     first = ordered[0]
     sections = [section for answer in ordered for section in sections_of(answer)]
     page = Page(
-        title or str(first.attrs.get("title") or question_of(first)),
+        title or str(first.attrs.get("title") or function_name(first)),
         notes or str(first.attrs.get("record_file", "")),
         [*sections, origin(ordered)],
         verdict_of(first) if is_verdict(first) else None,
@@ -83,4 +83,4 @@ def report(
 
 def is_verdict(answer: xr.Dataset) -> bool:
     """Return whether an answer is a verdict on a beam."""
-    return question_of(answer) == "detect"
+    return function_name(answer) == "detect"

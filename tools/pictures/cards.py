@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from orchestrate.figures.style import BLACK, BLUE, RED, legend_below, panels, styled
+from orchestrate.figures.style import BLACK, BLUE, RED, legend_below, make_panels, styled
 
 SIZE = (3.8, 2.9)
 STYLES: dict[str, dict[str, Any]] = {
@@ -20,7 +20,7 @@ STYLES: dict[str, dict[str, Any]] = {
 
 def card() -> tuple[Figure, Axes]:
     """Make a figure with one panel; return both."""
-    figure, (axes,) = panels(1, 1, SIZE)
+    figure, (axes,) = make_panels(1, 1, SIZE)
     return figure, axes
 
 

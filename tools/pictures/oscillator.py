@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from orchestrate.figures.style import panels, styled
+from orchestrate.figures.style import make_panels, styled
 
 
 def sketch(width: float) -> tuple[Figure, Axes]:
@@ -76,7 +76,7 @@ def draw_example(times: np.ndarray, values: Mapping[str, np.ndarray]) -> Figure:
     values : mapping of ndarray
         ``x1``, ``x2``, ``x_rel``, ``in_contact``.
     """
-    figure, (top, bottom) = panels(2, 1, (9, 5), sharex=True)
+    figure, (top, bottom) = make_panels(2, 1, (9, 5), sharex=True)
     top.plot(times, values["x1"], label=r"$\xi_1$")
     top.plot(times, values["x2"], label=r"$\xi_2$", ls="--")
     bottom.plot(times, values["x_rel"], "k", label=r"$\xi_{Rel}$")

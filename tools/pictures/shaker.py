@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Rectangle
 
-from orchestrate.figures.style import panels, styled
+from orchestrate.figures.style import make_panels, styled
 
 from .oscillator import bare, damper, sketch, spring
 
@@ -44,7 +44,7 @@ def draw_run_up(times: np.ndarray, speed: np.ndarray, position: np.ndarray) -> F
     times, speed, position : ndarray
         s, rad/s, m.
     """
-    figure, (top, bottom) = panels(2, 1, (9, 5), sharex=True)
+    figure, (top, bottom) = make_panels(2, 1, (9, 5), sharex=True)
     top.plot(times, speed, "k", lw=1.0)
     top.set_ylabel(r"$\dot\varphi$ in rad/s")
     bottom.plot(times, 1e3 * position, "k", lw=0.6)

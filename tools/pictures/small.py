@@ -8,7 +8,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 from PIL import Image
 
-from orchestrate.figures.files import png_of
+from orchestrate.figures.files import png_bytes
 from orchestrate.files import write_whole
 
 COLOURS = 128  # more are not seen in lines and letters
@@ -16,7 +16,7 @@ COLOURS = 128  # more are not seen in lines and letters
 
 def save_small(figure: Figure, path: Path) -> None:
     """Write a figure as a PNG file with a palette."""
-    write_small(png_of(figure), path)
+    write_small(png_bytes(figure), path)
 
 
 def write_small(png: bytes, path: Path) -> None:

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from numpy.polynomial import Polynomial
 from scipy.optimize import brentq
 
-from orchestrate.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, RED, panels, styled
+from orchestrate.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, RED, make_panels, styled
 
 WAVES = ((0.5, 1.0, math.pi), (0.16, 3.0, 2.3))  # of the gap: amplitude, frequency, phase
 MEAN = 0.515
@@ -29,7 +29,7 @@ def draw_states(data: xr.Dataset) -> Figure:
     data : xarray.Dataset
         Of :func:`orchestrate.simulate`, one period with a permanent contact in it.
     """
-    figure, (gap, force) = panels(2, 1, (9.0, 4.6), sharex=True, height_ratios=(2, 1))
+    figure, (gap, force) = make_panels(2, 1, (9.0, 4.6), sharex=True, height_ratios=(2, 1))
     turns = data.periods_done.values - float(data.periods_done[0])
     gap.plot(turns, data.x_rel, color=BLACK, linewidth=1.3)
     at = np.interp(data.impact_time, data.time, turns)
@@ -75,7 +75,7 @@ def safe_bound(time: float) -> Polynomial:
 @styled
 def draw_certificate() -> Figure:
     """Draw what sampling misses, and the steps that cannot miss it."""
-    figure, (sampled, certified) = panels(1, 2, (9.6, 3.4), sharey=True)
+    figure, (sampled, certified) = make_panels(1, 2, (9.6, 3.4), sharey=True)
     time = np.linspace(0.0, 3.4, 800)
     for panel in (sampled, certified):
         panel.plot(time, derivative(time, 0), color=BLACK, linewidth=1.3, label="gap")
