@@ -19,7 +19,7 @@ from orchestrate.paper.claims import (
 )
 from orchestrate.paper.claims.claim import NO, PARTLY, YES
 from orchestrate.paper.claims.results import Results
-from orchestrate.paper.transients import changed
+from orchestrate.paper.later_responses import classify_changes
 from orchestrate.response.curves import CONTACT, FLIGHT
 
 UP = "orbit_e0.7_D0.005_up"
@@ -68,7 +68,7 @@ def ramp(damping, bump=0.0):
 def test_an_amplitude_curve_is_like_a_linear_one_or_not():
     def verdict(bump):
         data = {"ramp_bonded": ramp(0.005), "ramp_delaminated": ramp(0.008, bump)}
-        return section1.like_a_linear_one(Results(data))
+        return section1.linear_amplitudes(Results(data))
 
     plain = verdict(0.0)
     assert plain.verdict == YES and "D = 0.0080 at 1.1000 omega" in plain.value
@@ -78,7 +78,7 @@ def test_an_amplitude_curve_is_like_a_linear_one_or_not():
 def test_the_break_ends_what_is_compared():
     run = ramp(0.005)
     broken = run.assign(jumps=("jump", [6.0]))
-    speed, amplitude = section1.up_to_the_break(broken)
+    speed, amplitude = section1.ascending_branch(broken)
     assert speed.max() < run.Omega.values[270] and len(speed) == len(amplitude)
 
 
@@ -166,7 +166,7 @@ def swept(multiplicity, impacts, gaps):
 def test_what_becomes_of_responses_later():
     first = swept([1, 1, 0, 2, 1, 0], [1.0, 1.0, 1.4, 0.5, 1.0, 1.3], [1.0] * 6)
     later = swept([1, 0, 1, 2, 1, 0], [1.0, 1.2, 1.0, 1.5, 1.0, 0.9], [1.0, 1, 1, 1, 1.05, 2.0])
-    found = {name: which.tolist() for name, which in changed(first, later, 0.01).items()}
+    found = {name: which.tolist() for name, which in classify_changes(first, later, 0.01).items()}
     assert list(found.values()) == [
         [False, False, True, False, False, False],
         [False, True, False, False, False, False],
@@ -351,6 +351,6 @@ def test_the_largest_impulse_of_a_map_is_that_of_a_longer_run():
     chart = xr.Dataset({"impulse_max": impulses}, {"e": [0.5, 0.95], "eta": [1.0, 1.05]})
     run_on = along_eta([1.05], impulse_max=[55.3], verdict=[CHAOTIC])
     run_on.attrs["periods"] = 10_000
-    text = answers.strongest(chart, run_on, "e")
+    text = answers.describe_largest_impulse(chart, run_on, "e")
     assert "55.3 m_1 omega a eta^2 at most in 10000 periods of the irregular response" in text
     assert "(50.9 in those of the map)" in text and "at eta = 1.05." in text
