@@ -1,8 +1,8 @@
-"""Command line: ``python -m orchestrate COMMAND``; ``--help`` lists them."""
+"""Entry point of ``python -m orchestrate COMMAND``; ``--help`` lists the commands."""
 
 import sys
 
-from .supervisor import supervised
+from .supervisor import run_supervised
 
 
 def run() -> int:
@@ -18,7 +18,7 @@ def run() -> int:
 
 def main() -> int:
     """Run the command line in a supervised child process; return its exit code in any case."""
-    return supervised(run)
+    return run_supervised(run)
 
 
 if __name__ == "__main__":

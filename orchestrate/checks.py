@@ -1,4 +1,4 @@
-"""Checks of a user's arguments that every package shares."""
+"""Checks of integer and word arguments, for all packages."""
 
 from __future__ import annotations
 

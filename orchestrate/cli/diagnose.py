@@ -240,9 +240,9 @@ def write_files(
 
 def print_verdict(path: Path, verdict: xr.Dataset) -> None:
     """Print a record's verdict in a few lines: what it is, its reason, what would settle it."""
-    from ..reports.verdict import verdict_of
+    from ..reports.verdict import make_verdict
 
-    said = verdict_of(verdict)
+    said = make_verdict(verdict)
     print(f"{path}: {said.word} {said.sentence}")
     columns = ("record_columns", "columns")
     simulated = ("simulated", "simulated records")

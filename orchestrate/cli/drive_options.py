@@ -277,7 +277,7 @@ def without_none(values: Mapping[str, float | None]) -> dict[str, float]:
 def drive_units(arguments: argparse.Namespace) -> Units:
     """Return the display units from ``--units``; rpm by default if the motor's speed is in rpm."""
     in_rpm = arguments.no_load_rpm is not None
-    return read_units(arguments).completed(Units("rpm" if in_rpm else ""))
+    return read_units(arguments).with_defaults(Units("rpm" if in_rpm else ""))
 
 
 def with_display_units(

@@ -118,7 +118,7 @@ def read_record_units(arguments: argparse.Namespace) -> Units:
     from ..units import FACTORS, Units
 
     own = arguments.unit if arguments.unit in FACTORS["acceleration"] else ""
-    return read_units(arguments).completed(Units(acceleration=own))
+    return read_units(arguments).with_defaults(Units(acceleration=own))
 
 
 def refuse_units(arguments: argparse.Namespace, reason: str) -> None:
@@ -440,9 +440,9 @@ def export_formats(
 
 def existing_files(path: Path) -> list[Path]:
     """Return the existing files of a table that may be several: ``x.csv``, ``x.eta.csv``."""
-    from ..files import glob_name
+    from ..files import escape_glob
 
-    several = path.parent.glob(f"{glob_name(path.stem)}.*{path.suffix}")
+    several = path.parent.glob(f"{escape_glob(path.stem)}.*{path.suffix}")
     return [*([path] if path.exists() else []), *sorted(several)]
 
 

@@ -17,7 +17,7 @@ from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import Any
 
-from ..supervisor import fill_descriptors, heeded
+from ..supervisor import confirm_signal, open_missing_streams
 
 GRACE = 15.0  # s that a process has for ending on its own
 _ending = False  # whether a signal was heard
@@ -79,7 +79,7 @@ class SafeStream:
 @contextmanager
 def safe_outputs() -> Iterator[SafeStream]:
     """Replace stdout and stderr by ``SafeStream`` in a ``with`` block; yield that of stdout."""
-    fill_descriptors()
+    open_missing_streams()
     before = sys.stdout, sys.stderr
     nowhere = io.StringIO()  # in place of one that was closed
     streams = [SafeStream(stream or nowhere) for stream in before]
@@ -143,7 +143,7 @@ def raise_for_signal(number: int, _: FrameType | None) -> None:
     if _ending:
         os._exit(128 + number)
     _ending = True
-    heeded()
+    confirm_signal()
     threading.Thread(target=exit_after_grace, args=(number,), daemon=True).start()
     raise Terminated if number == signal.SIGTERM else KeyboardInterrupt
 

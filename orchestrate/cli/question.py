@@ -120,7 +120,7 @@ def asked_units(arguments: argparse.Namespace, question: Question) -> tuple[Unit
     frequency = over or next(iter(given), "eta" if "eta" in question else "Hz")
     in_g = getattr(arguments, "g", None) is not None or "acceleration_g" in keys
     asked = Units(frequency, acceleration="g" if in_g else "")
-    return asked, read_units(arguments).completed(asked)
+    return asked, read_units(arguments).with_defaults(asked)
 
 
 def excitation_keys(arguments: argparse.Namespace) -> Collection[str]:
