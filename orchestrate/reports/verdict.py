@@ -124,8 +124,8 @@ def decision_section(answer: xr.Dataset) -> Section:
         points.append(f"{make_sentence(simulated)} Both models were fitted to each of them.")
     elif math.isfinite(odds) and odds > 0.0:
         points.append(
-            f"Odds of the delaminated against the best sound structure: {format_odds(odds)}, by how "
-            "often the ratio of misfits holds in records put together of blocks of this one."
+            f"Odds of the delaminated against the best sound structure: {format_odds(odds)}, by "
+            "how often the ratio of misfits holds in records put together of blocks of this one."
         )
     if settle:
         points.append(f"What would change or settle it: {make_sentence(settle)}")

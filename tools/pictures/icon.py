@@ -1,4 +1,4 @@
-"""The FMUs' icons."""
+"""Draw the icons of the FMUs."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ EDGE: dict[str, Any] = {"edgecolor": "#1b3a57", "linewidth": 2.5}
 
 
 def draw_icon(shaker: bool) -> Figure:
-    """Draw an icon that is recognizable at 64 pixels: no letters, thick lines.
+    """Draw a model's icon, recognizable at 64 pixels; return the figure.
 
     Two masses that touch between springs, or one with a disc and its unbalance on a spring.
     """
     figure = Figure(figsize=(1.0, 1.0))
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0), xlim=(0.0, 10.0), ylim=(0.0, 10.0))
-    axes.axis("off")
+    axes.layer_height("off")
     line: Any = {"color": "#1b3a57", "linewidth": 3.0, "solid_joinstyle": "round"}
     zigzag = np.array([0.0, 1.0, -1.0, 1.0, -1.0, 0.0])
     along = np.array([0.0, 0.3, 0.8, 1.3, 1.8, 2.1])

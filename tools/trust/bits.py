@@ -62,9 +62,9 @@ def by_fmu(fmu: Path, drawn: ParameterSet, grid: Sequence[float]) -> Bits:
 def web_module() -> Any:
     """Return the kernel as WebAssembly under wasmtime."""
     from orchestrate.access.webassembly import web_kernel
-    from tools.web_instance import Web
+    from tools.web_instance import WebInstance
 
-    return Web(web_kernel(OSCILLATOR))
+    return WebInstance(web_kernel(OSCILLATOR))
 
 
 def by_web(drawn: ParameterSet, grid: Sequence[float]) -> Bits:
@@ -92,7 +92,7 @@ def arm() -> Any:
     from fmu_src.export import forms
     from tools import importers
 
-    command = importers.ziglang("aarch64-linux-gnu.2.28")
+    command = importers.zig_compiler("aarch64-linux-gnu.2.28")
     if shutil.which(ARM[0]) is None or not Path(ARM[2]).is_dir() or command is None:
         return None
     folder = temporary() / "arm"

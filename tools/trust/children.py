@@ -79,15 +79,15 @@ class Child:
         self.pid = os.fork()
         if self.pid == 0:
             live(arguments, self.files, folder, prepare, environment or {})
-        self.poll_status: FinishedCommand | None = None
+        self.finished: FinishedCommand | None = None
 
     def running(self) -> bool:
         """Return whether the command still runs."""
-        if self.poll_status is None:
+        if self.finished is None:
             pid, status = os.waitpid(self.pid, os.WNOHANG)
             if pid:
                 self._take(status)
-        return self.poll_status is None
+        return self.finished is None
 
     def send(self, number: int) -> None:
         """Send a signal to the child and to all that it has started."""
@@ -105,15 +105,15 @@ class Child:
                 self._take(status)
                 break
             time.sleep(0.002)
-        assert self.poll_status is not None
-        return self.poll_status
+        assert self.finished is not None
+        return self.finished
 
     def _take(self, status: int) -> None:
         code = os.waitstatus_to_exitcode(status)
         out, err = (path.read_text("utf-8", "replace") for path in self.files)
         for path in self.files:
             path.unlink()
-        self.poll_status = FinishedCommand(code, out, err, time.monotonic() - self.begun)
+        self.finished = FinishedCommand(code, out, err, time.monotonic() - self.begun)
 
 
 def live(

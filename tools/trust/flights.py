@@ -158,8 +158,8 @@ def deviation(flight: Flight) -> float:
     values, end = flight.values, flight.end
     state = [values[name] for name in ("x1", "v1", "x2", "v2")]
     with mp.workdps(50):
-        first, second = exact_motion.apart(values, state, mp.mpf(values["phase_start"]))
-        gap = exact_motion.gap_of(values, first, second)
+        first, second = exact_motion.free_motion(values, state, mp.mpf(values["phase_start"]))
+        gap = exact_motion.gap_signal(values, first, second)
         speed = gap.derivative()
         terms = size(first, end) + size(second, end) + abs(values["clearance"])
         if not flight.impact:

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from orchestrate.errors import InputError
-from tools.chromium import headless
+from tools.chromium import start_chromium
 
 CANARY = "window.canary = 1; document.title = 'canary'; alert(1)"
 KEPT = ("start", "direction", "over")  # texts that have to be what they are, or there is no page
@@ -154,7 +154,7 @@ def window() -> Iterator[Window]:
     if program is None or driver is None:
         raise InputError("pages are opened in Chromium: expected chromium and chromedriver")
     with tempfile.TemporaryDirectory(prefix="vibroimpact-trust-") as folder, server() as asked:
-        browser = headless(program, driver, Path(folder))
+        browser = start_chromium(program, driver, Path(folder))
         try:
             yield Window(browser, *asked)
         finally:

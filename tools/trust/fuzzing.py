@@ -22,7 +22,7 @@ COVERAGE = 400  # sequences of the build that counts branches
 def importer(fmu: Path, version: str, model: str, options: tuple[str, ...]) -> Any:
     """Compile the importer for a model, with sanitizer options in it and in the shim."""
     folder = temporary() / f"{version}-{model}-{len(options)}{options[0][2:10]}"
-    return importers.checked(version, model, fmu.parents[1], folder, options)
+    return importers.importer_with_sanitizer(version, model, fmu.parents[1], folder, options)
 
 
 class Fuzzing(Campaign):
@@ -67,6 +67,6 @@ def left_out(fmu: Path, seed: int) -> float:
         for model in MODELS:
             program = importer(fmu, version, model, ("--coverage",))
             program.run("random", seed % 2**31, COVERAGE, timeout=3600)
-            for unit in importers.units(version):
+            for unit in importers.shim_files(version):
                 importers.read_coverage(program.library.parent, unit, {}, branches)
     return 100.0 * (1.0 - sum(branches.values()) / len(branches))

@@ -39,7 +39,7 @@ def compiled(fmu: Path, name: str) -> Path:
     program = folder / name
     files = [NATIVE / f"{name}.c", importers.HERE / "importer3.c"]
     places = [f"-I{folder}", f"-I{importers.HERE}"]
-    own = [*(importers.compiler() or ["cc"]), *OPTIONS, *CALLS, *places]
+    own = [*(importers.c_compiler() or ["cc"]), *OPTIONS, *CALLS, *places]
     subprocess.run([*own, "-o", program, *files, "-ldl", "-lm"], check=True)
     return program
 
