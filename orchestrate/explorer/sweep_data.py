@@ -101,10 +101,10 @@ def read_checked(data: xr.Dataset, direction: str) -> SweepData:
     data = data.sortby(parameter)
     scale = state_scales(data, structure)
     rows = [np.stack([data[name].values for name in ("eta", "frequency", "amplitude")])]
-    for way in directions:
-        lane = data.sel(direction=way) if "direction" in data.dims else data
-        ends = lane.end_state.transpose(parameter, "coordinate").values * scale
-        rows.append(start_states(ends, parse_state(data.attrs["start"]), way))
+    for one_way in directions:
+        part = data.sel(direction=one_way) if "direction" in data.dims else data
+        ends = part.end_state.transpose(parameter, "coordinate").values * scale
+        rows.append(start_states(ends, parse_state(data.attrs["start"]), one_way))
     if any(row.dtype.kind != "f" for row in rows):
         raise TypeError("texts among the numbers")
     numbers = np.concatenate([row.ravel() for row in rows])

@@ -107,8 +107,8 @@ class ReportedMotion:
                 yield f"the FMU returns after {part} T already, not {n} T"
         if abs(self.impacts - round(self.impacts)) > 1e-9:
             yield f"{self.impacts!r} impacts in {n} T are no whole number"
-        if self.count_impacts() != TURNS * round(self.impacts):
-            count = self.count_impacts()
+        count = self.count_impacts()
+        if count != TURNS * round(self.impacts):
             yield f"{count} impacts in {TURNS} times {n} T, not {TURNS} x {self.impacts:g}"
         yield from self.orbit_problems()
 
