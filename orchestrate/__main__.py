@@ -8,9 +8,9 @@ from .supervisor import run_supervised
 def run() -> int:
     """Run the command line in this process; return its exit code, 130 after Ctrl-C."""
     try:
-        from .cli import main as carry_out
+        from .cli import main as run_command_line
 
-        return carry_out()
+        return run_command_line()
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         return 130
