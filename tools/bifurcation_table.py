@@ -136,7 +136,7 @@ def format_no_orbit(instance: EventInstance, at: xr.Dataset, eta: float) -> str:
 
 
 def format_contacts(instance: EventInstance, at: xr.Dataset, eta: float) -> str:
-    """Return a table cell with the FMU's permanent contacts in ``PERIODS``."""
+    """Return a table cell with the FMU's number of permanent contacts in ``PERIODS``."""
     advance(instance, eta, at.bifurcation_state.values[0], PERIODS)
     return f"{int(instance.get('contact_count')[0])} contacts in {PERIODS} periods"
 

@@ -74,7 +74,7 @@ def simulate_from_rest(
     scale: float = 1.0,
     rate: float | None = None,
 ) -> tuple[float, int]:
-    """Integrate from rest; return the processor seconds and the number of impacts.
+    """Integrate the structure from rest; return processor seconds and number of impacts.
 
     Parameters
     ----------

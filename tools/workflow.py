@@ -49,7 +49,7 @@ def last_commit() -> str:
 
 
 def replace_action(step: dict[str, Any], clone: Path, matrix: dict[str, str], commit: str) -> None:
-    """Do in a step what its marketplace action would do, such as a checkout."""
+    """Do here what a step's marketplace action would do, such as a checkout."""
     action, given = step["uses"].split("@")[0], step.get("with", {})
     if action == "actions/checkout":
         subprocess.run(["git", "clone", "-q", str(ROOT), str(clone)], check=True)

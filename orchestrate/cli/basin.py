@@ -10,7 +10,7 @@ import orchestrate
 
 from ..units import range_text
 from .grammar import parse_plane_side, parse_state
-from .options import Commands, read_excitation, read_structure_options
+from .options import Commands, read_question
 from .question import answer_question, draw_result, print_attractors
 
 if TYPE_CHECKING:
@@ -45,9 +45,7 @@ def add_parser(commands: Commands) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Run ``basin``: compute which attractor each start of a plane leads to; print, store, draw."""
-    structure = read_structure_options(arguments)
-    excitation = read_excitation(arguments, structure, si=True, one=True)
-    question = {**excitation, **arguments.question.keywords(arguments)}
+    structure, question = read_question(arguments)
     answer_question(arguments, structure, question, print_result, draw_result)
 
 

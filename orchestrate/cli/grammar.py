@@ -124,7 +124,7 @@ def parse_rates(option: str, text: str, one: bool = False) -> tuple[float, ...]:
 
 
 def parse_orders(option: str, text: str) -> float | tuple[float, ...]:
-    """Parse ``N`` (orders 1 to N) or a list of orders such as ``0.5,1,2``."""
+    """Parse ``N`` or a list of orders such as ``0.5,1,2``; return the number or the list."""
     orders = parse(option, text, "a whole number, or 0.5,1,2", lambda part: parse_floats(part, ","))
     return orders if "," in text else orders[0]
 

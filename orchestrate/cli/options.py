@@ -192,7 +192,7 @@ class FunctionOptions:
     def add(
         self, name: str, reader: Callable[[str, Any], Any] | None = None, **details: Any
     ) -> None:
-        """Add an option for an argument, by ``add_argument``'s keywords and a text reader."""
+        """Add an option for a function's argument; ``reader`` parses its text."""
         self.readers[name] = reader
         self.group.add_argument(option_name(name), **details)
 
@@ -462,6 +462,13 @@ def read_excitation(
     return {"frequency": frequencies, "amplitude": held}
 
 
+def read_question(arguments: argparse.Namespace) -> tuple[Structure, dict[str, Any]]:
+    """Return the structure, and all keywords of a public function at one frequency."""
+    structure = read_structure_options(arguments)
+    excitation = read_excitation(arguments, structure, si=True, one=True)
+    return structure, {**excitation, **arguments.question.keywords(arguments)}
+
+
 def excitation_from_file(arguments: argparse.Namespace) -> dict[str, Any] | None:
     """Return frequency and amplitude from the structure's TOML file, or None; set ``--phase``."""
     from ..structures.files import read
@@ -504,7 +511,7 @@ def join_option_names(names: Any, joint: str = ", ") -> str:
 
 
 def apply_to_each(change: Callable[[float], float], values: float | tuple[float, ...]) -> Any:
-    """Apply a function to one number, or to each number of a tuple."""
+    """Return a function's value for one number, or a tuple of values for a tuple."""
     return tuple(map(change, values)) if isinstance(values, tuple) else change(values)
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from ..units import scale_of
 from .grammar import parse_state
-from .options import Commands, read_excitation, read_structure_options
+from .options import Commands, read_question
 from .question import answer_question, draw_result
 
 if TYPE_CHECKING:
@@ -35,9 +35,7 @@ def add_parser(commands: Commands) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Run ``poincare``: compute a section at a phase, at impacts or at releases; print, draw."""
-    structure = read_structure_options(arguments)
-    excitation = read_excitation(arguments, structure, si=True, one=True)
-    question = {**excitation, **arguments.question.keywords(arguments)}
+    structure, question = read_question(arguments)
     answer_question(arguments, structure, question, print_result, draw_result)
 
 

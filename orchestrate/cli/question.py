@@ -112,7 +112,7 @@ def answer_question(
 
 
 def asked_units(arguments: argparse.Namespace, question: Question) -> tuple[Units, Units]:
-    """Return units of the options given, and the display units for the result, as two ``Units``."""
+    """Return the units of the frequency options given, and the units to display, as ``Units``."""
     over = UNIT_OF_OPTION.get(str(getattr(arguments, "over", "")), "")
     given = [unit for name, unit in UNIT_OF_OPTION.items() if getattr(arguments, name, None)]
     keys = excitation_keys(arguments) if "frequency" in question and not given else ()
@@ -137,7 +137,7 @@ def answer_with_bonded(
     question: Question,
     print_result: Callable[[xr.Dataset], None],
 ) -> None:
-    """Do :func:`answer_question`; with ``--beside`` for the bonded structure first."""
+    """Call :func:`answer_question`; with ``--beside`` also for the bonded structure, drawn in."""
     if not arguments.beside:
         answer_question(arguments, structure, question, print_result, draw_result)
         return
@@ -269,7 +269,7 @@ def clearance_notes(structure: Structure, question: Question, shown: xr.Dataset)
 
 
 def threshold_over_level(structure: Structure, box: Mapping[str, Any]) -> float:
-    """Return the smallest ratio of threshold to the box's level over all that is asked for."""
+    """Return the smallest ratio of contact threshold to excitation level, of all points asked."""
     import orchestrate
 
     frequency = box["eta"] * structure.omega if "eta" in box else box["frequency"]

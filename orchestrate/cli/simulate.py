@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from ..units import text_of
 from .grammar import parse_state
-from .options import Commands, add_beside_option, read_excitation, read_structure_options
+from .options import Commands, add_beside_option, read_question
 from .question import answer_with_bonded
 
 if TYPE_CHECKING:
@@ -31,9 +31,7 @@ def add_parser(commands: Commands) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Run ``simulate``: compute time histories; print, store and draw them."""
-    structure = read_structure_options(arguments)
-    excitation = read_excitation(arguments, structure, si=True, one=True)
-    question = {**excitation, **arguments.question.keywords(arguments)}
+    structure, question = read_question(arguments)
     answer_with_bonded(arguments, structure, question, print_result)
 
 

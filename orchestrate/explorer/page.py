@@ -158,7 +158,7 @@ def template_environment() -> jinja2.Environment:
 
 
 def content_security_policy(style: str, script: str) -> str:
-    """Return the page's policy for the browser: its own script and workers, no network."""
+    """Return the page's Content-Security-Policy: own script and workers, no network."""
     return "; ".join(
         (
             "default-src 'none'",

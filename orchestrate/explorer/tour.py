@@ -30,7 +30,7 @@ PRESSED: dict[str, Any] = {
 
 @dataclass(frozen=True)
 class View:
-    """One view of the tour: a structure, a frequency, and where its motion starts.
+    """A motion shown by the tour: its structure, frequency, start state and diagram range.
 
     Attributes
     ----------

@@ -35,7 +35,7 @@ ALIKE = ({"eta", "frequency"}, {"level", "amplitude"})  # names of what is one a
 
 
 def explain_mismatch(branch: xr.Dataset, over: str, parameters: Mapping[str, Any]) -> str:
-    """Return why a dataset is no branch of this structure over this parameter; else empty.
+    """Return a text on why a dataset is no branch of this structure and parameter; else "".
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def explain_mismatch(branch: xr.Dataset, over: str, parameters: Mapping[str, Any
 
 
 def explain_other_excitation(branch: xr.Dataset, data: xr.Dataset, over: str) -> str:
-    """Return why a branch has another excitation than the responses; empty if the same.
+    """Return a text on why a branch has another excitation than the responses; else "".
 
     The box's amplitude does not matter where everything grows with it, as without a clearance.
     """

@@ -89,7 +89,7 @@ def format_jumps(data: xr.Dataset) -> str:
 
 
 def repeats_after(data: xr.Dataset) -> int:
-    """Return after how many revolutions impact losses repeat best; 1 without impacts."""
+    """Return the number of revolutions after which impact losses repeat best; 1 without any."""
     angle = np.maximum.accumulate(np.abs(data.angle.values))
     turns = ((angle - angle[0]) // TURN).astype(int)
     first = np.unique(turns, return_index=True)[1]

@@ -39,7 +39,7 @@ class AxisValues(NamedTuple):
 
 
 def varied_dimension(data: xr.DataArray) -> str:
-    """Return the dimension of an array besides direction and structure."""
+    """Return the name of an array's dimension besides direction and structure."""
     (name,) = (str(name) for name in data.dims if name not in ("direction", "structure"))
     return name
 

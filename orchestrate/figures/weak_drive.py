@@ -260,7 +260,7 @@ def running_mean(values: np.ndarray, count: int = IMPACT_REVOLUTIONS) -> np.ndar
 
 
 def draw_impacts(axes: Axes, data: xr.Dataset, direction: str) -> None:
-    """Draw the impacts of each revolution over speed, and their running mean."""
+    """Draw the impacts per revolution over the speed in one direction, and their running mean."""
     speed, count = data.speed.values, data.impacts.values
     colour, style = (
         (COLOURS["delaminated"], "-") if direction == "there" else (COLOUR_OF_RETURN, "--")

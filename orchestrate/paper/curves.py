@@ -109,7 +109,7 @@ class CurvesJob(Job):
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[tuple[int, Panel]], previous: Table | None
     ) -> Table:
-        """Settle and trace one panel; return its points as arrays."""
+        """Settle and trace one panel's response; return its times, states and kinds of state."""
         ((index, panel),) = items
         panel = self.settle_panel(fmus[OSCILLATOR], panel)
         settings = self.skip, self.keep, self.points
@@ -123,7 +123,7 @@ class CurvesJob(Job):
         }
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return all curves' points one after the other, each with its panel's number."""
+        """Return a dataset of all curves' points, one after the other, with their panel numbers."""
         import xarray as xr
 
         time = "non-dimensional time from the first period shown"

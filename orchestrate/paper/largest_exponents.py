@@ -47,7 +47,7 @@ NUMBERS = {
 
 
 class Candidate(NamedTuple):
-    """A response that may have its region's largest exponent: point, start, exponent.
+    """A response that may have its region's largest Lyapunov exponent: point, start, exponent.
 
     Attributes
     ----------

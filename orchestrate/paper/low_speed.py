@@ -70,7 +70,7 @@ class LowSpeedJob(Job):
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
     ) -> Table:
-        """Simulate some motions; return their counts."""
+        """Simulate some motions; return how many impacts of each kind they have."""
         with EventInstance(fmus[OSCILLATOR]) as instance:
             return {"rows": np.array([self.count_events(instance, point) for point in items])}
 

@@ -43,7 +43,7 @@ SECOND_REGION = (2.60, 2.65, 2.69, 2.737, 2.83, 2.92, 3.05, 3.17, 3.30, 3.49, 3.
 
 @dataclass(frozen=True)
 class Part:
-    """A part of the report: its picture and the jobs whose results it shows.
+    """A part of the report: its name, its picture, and the jobs whose results it shows.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Plan:
-    """Jobs by name in an order that respects their needs, and parts by name."""
+    """All jobs of the paper's reproduction, in the order of their needs, and its report's parts."""
 
     jobs: dict[str, Job]
     parts: dict[str, Part]
@@ -76,7 +76,7 @@ class Plan:
         return [job for job in self.jobs.values() if job.name in wanted]
 
     def choose(self, names: Sequence[str] | None) -> list[Part]:
-        """Return parts by their names, all by default; raise for unknown names.
+        """Return the report's parts with these names, all by default; raise for unknown names.
 
         Raises
         ------

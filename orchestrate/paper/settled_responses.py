@@ -46,7 +46,7 @@ class SettledJob(OnwardQuestion):
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Followed], previous: Table | None
     ) -> Table:
-        """Run some responses until they repeat; return features and end states."""
+        """Run some of a sweep's responses until they repeat; return features and end states."""
         rows, ends, contacts = [], [], []
         with Instance(fmus[OSCILLATOR]) as instance:
             for item in items:

@@ -29,7 +29,7 @@ def result_sections(answer: xr.Dataset) -> list[Section]:
 
 
 def draw_result(answer: xr.Dataset, words: str) -> Picture | None:
-    """Draw the picture of a result; None if there is no picture of its kind."""
+    """Return the picture of a result for the page; None if there is none of its kind."""
     try:
         return Picture.from_figure(plot(answer), words)
     except InputError:

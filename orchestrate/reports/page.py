@@ -110,7 +110,7 @@ class Verdict:
 
 @dataclass(frozen=True)
 class Page:
-    """A report with all that its HTML shows.
+    """A report page: title, metadata, verdict, sections, and whether it has room to sign.
 
     Attributes
     ----------
@@ -147,7 +147,7 @@ class Page:
 
 
 def content_security_policy(style: str) -> str:
-    """Return the page's policy for the browser: own pictures and style, nothing else."""
+    """Return the page's Content-Security-Policy: own pictures and style, nothing else."""
     digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
     allowed = f"default-src 'none'; style-src 'sha256-{digest}'; img-src data:"
     return f"{allowed}; base-uri 'none'; form-action 'none'"

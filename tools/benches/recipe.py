@@ -320,7 +320,7 @@ def draw_sensor(rng: np.random.Generator, noise: float, bandwidth: float) -> Sen
 
 
 def draw_guess(rng: np.random.Generator, own: Specimen, off: float) -> Structure:
-    """Draw a guess: masses and frequencies off by some per cent, damping by up to 2.
+    """Draw a guess: true masses and frequencies with relative errors, damping by up to 2.
 
     Of a sound beam the guess has two halves a little apart, as one who asks has to assume.
     """

@@ -94,7 +94,7 @@ def draw_verdicts(
         trace.plot(milliseconds, part.box_acceleration, color=GREY, lw=1.2, label="base")
         trace.plot(milliseconds, part.acceleration1, color=colour, lw=1.5, label="sensor")
         trace.set(ylabel="acceleration in m/s²", xlim=(0.0, 1e3 * span))
-        word.layer_height("off")
+        word.axis("off")
         middle: Any = {"ha": "center", "va": "center", "transform": word.transAxes}
         word.text(0.5, 0.62, "verdict:", fontsize=9, color=BLACK, **middle)
         word.text(0.5, 0.42, "\n".join(verdict.rsplit(" ", 1)), fontsize=14, color=colour, **middle)

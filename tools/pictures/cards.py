@@ -26,7 +26,7 @@ def make_card() -> tuple[Figure, Axes]:
 
 @styled
 def draw_resonance(curves: xr.Dataset) -> Figure:
-    """Draw the amplitude of mass 1 over rising frequency, bonded and delaminated.
+    """Draw mass 1's amplitude over rising frequency as a card; return the figure.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def draw_resonance(curves: xr.Dataset) -> Figure:
 
 @styled
 def draw_orbits(diagram: xr.Dataset) -> Figure:
-    """Draw an orbit diagram without its impacts.
+    """Draw an orbit diagram without its impacts as a card; return the figure.
 
     Parameters
     ----------

@@ -35,5 +35,5 @@ def draw_block() -> Figure:
     axes.annotate("", (8.1, 0.5), (7.3, 0.5), arrowprops={**arrow, "color": RED, "ls": "--"})
     axes.text(8.2, 0.5, "impact (clock)", va="center", fontsize=8, color=RED)
     axes.set(xlim=(-1.1, 11.9), ylim=(0.0, 4.4))
-    axes.layer_height("off")
+    axes.axis("off")
     return figure

@@ -18,7 +18,7 @@ def draw_icon(shaker: bool) -> Figure:
     """
     figure = Figure(figsize=(1.0, 1.0))
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0), xlim=(0.0, 10.0), ylim=(0.0, 10.0))
-    axes.layer_height("off")
+    axes.axis("off")
     line: Any = {"color": "#1b3a57", "linewidth": 3.0, "solid_joinstyle": "round"}
     zigzag = np.array([0.0, 1.0, -1.0, 1.0, -1.0, 0.0])
     along = np.array([0.0, 0.3, 0.8, 1.3, 1.8, 2.1])

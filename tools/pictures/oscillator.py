@@ -22,7 +22,7 @@ def hide_frame(axes: Axes, xlim: tuple[float, float], ylim: tuple[float, float])
     """Set equal scales and limits, and hide the frame of the axes."""
     axes.set(xlim=xlim, ylim=ylim)
     axes.set_aspect("equal")
-    axes.layer_height("off")
+    axes.axis("off")
 
 
 def draw_spring(axes: Axes, x: float, y: float, length: float) -> None:

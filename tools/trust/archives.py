@@ -150,7 +150,7 @@ def write_deep_xml(fmu: Path, place: Path, chance: random.Random) -> None:
 
 
 def write_damaged(fmu: Path, place: Path, chance: random.Random) -> None:
-    """Write an FMU that is cut short or has bytes changed."""
+    """Write a copy of an FMU that is cut short or has bytes changed."""
     data = bytearray(fmu.read_bytes())
     if chance.random() < 0.4:
         place.write_bytes(data[: chance.randrange(len(data))])

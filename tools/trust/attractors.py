@@ -18,6 +18,7 @@ from orchestrate.access import EventInstance, Instance, begin
 from orchestrate.errors import InputError
 from orchestrate.structures import Excitation, Structure
 
+from ..benches.recipe import draw_log_uniform
 from .campaign import BatchOutcome, Campaign
 
 STARTS = 16  # random ones at each of two neighbouring frequencies
@@ -49,11 +50,6 @@ def draw(rng: np.random.Generator) -> DrawnStructure:
     e, eta = float(rng.uniform(0.02, 0.95)), float(rng.uniform(0.3, 4.0))
     structure = Structure.nondimensional(mu=mu, kappa=kappa, D1=one, D2=two, e=e)
     return DrawnStructure(structure, (eta, NEIGHBOUR * eta))
-
-
-def draw_log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
-    """Draw a number between two bounds, uniformly in its logarithm."""
-    return float(np.exp(rng.uniform(math.log(low), math.log(high))))
 
 
 class ReportedMotion:
@@ -97,7 +93,7 @@ class ReportedMotion:
         return float(max(abs(np.array([x1, x2, v1, v2])).max() / size, abs(x2 - x1) / gap))
 
     def problems(self) -> Iterator[str]:
-        """Yield texts on what is wrong with the reported attractor."""
+        """Yield a text for each way in which the FMU contradicts the reported attractor."""
         n = self.periods
         closes = self.distance(self.states[n], self.states[0])
         if closes > RETURNS:

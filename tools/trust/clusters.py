@@ -71,7 +71,7 @@ class DaskNodes:
         return pid
 
     def kill(self, pid: int) -> None:
-        """Kill a process by SIGKILL."""
+        """Kill the scheduler's or a worker's process by SIGKILL."""
         if pid in self.pids:
             self.pids.remove(pid)
             with suppress(ProcessLookupError):
@@ -79,7 +79,7 @@ class DaskNodes:
             os.waitpid(pid, 0)
 
     def close(self) -> None:
-        """End all processes."""
+        """End the scheduler's and all workers' processes."""
         for pid in list(self.pids):
             self.kill(pid)
 

@@ -41,7 +41,7 @@ def make_table(rows: Sequence[Sequence[Any]]) -> pd.DataFrame:
 
 
 def table_lines(rows: Sequence[Sequence[Any]]) -> list[str]:
-    """Return the Markdown lines of all tables."""
+    """Return the Markdown lines of all tables for the ledger's page."""
     table = make_table(rows)
     return [
         *verdict_lines(table),
@@ -61,7 +61,7 @@ def verdict_lines(table: pd.DataFrame) -> list[str]:
     found = [f"| beam | {head} | wrong |", "|---" * (len(VERDICTS) + 2) + "|"]
     for kind, own in table.groupby("kind", sort=True):
         counts = [int((own.verdict == verdict).sum()) for verdict in VERDICTS]
-        cells = [str(kind), *map(str, counts), str(int((own.problems != "").sum()))]
+        cells = [str(kind), *map(str, counts), str(int((own.wrong != "").sum()))]
         found.append(f"| {' | '.join(cells)} |")
     return found
 
@@ -74,7 +74,7 @@ def target_lines(table: pd.DataFrame) -> list[str]:
     calm = nonlinear[nonlinear.verdict == DELAMINATED]
     errors = np.abs(compliant[["f1 error", "f2 error"]].astype(float).to_numpy().ravel())
     errors = 100.0 * errors[np.isfinite(errors)]
-    wrong, undecided = (compliant.problems != "").sum(), (compliant.verdict == UNDECIDED).sum()
+    wrong, undecided = (compliant.wrong != "").sum(), (compliant.verdict == UNDECIDED).sum()
     found = [
         "At 1 to 5 % noise, where the record was not refused:",
         "",
@@ -184,7 +184,7 @@ def groups_by_setup(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
 
 
 def rows_within(table: pd.DataFrame, name: str, low: float, high: float) -> pd.DataFrame:
-    """Return the rows with a number in an interval."""
+    """Return a table's rows in which the column ``name`` lies in an interval."""
     values = table[name].astype(float)
     return table[(values >= low) & (values < high)]
 
@@ -217,7 +217,7 @@ def has_both(table: pd.DataFrame) -> bool:
 
 
 def draw_panel(panel: Any, name: str, table: pd.DataFrame) -> None:
-    """Draw one group: a curve per sign, the detector as a point with 95 % intervals."""
+    """Draw one group of rows: a ROC curve per sign, the detector as a point with intervals."""
     opened, sound = table[table.opened == 1], table[table.delaminated == 0]
     for sign, (label, colour) in SIGNS.items():
         found = sign_curve(table, sign)

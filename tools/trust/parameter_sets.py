@@ -54,12 +54,12 @@ def draw_power_of_ten(rng: np.random.Generator, low: float, high: float) -> floa
 
 
 def draw_one_of(rng: np.random.Generator, *choices: float) -> float:
-    """Draw one of several numbers."""
+    """Return one of several numbers, drawn at random."""
     return choices[int(rng.integers(len(choices)))]
 
 
 def draw_sign(rng: np.random.Generator) -> float:
-    """Draw -1 or 1."""
+    """Return -1 or 1, drawn at random."""
     return draw_one_of(rng, -1.0, 1.0)
 
 
@@ -90,7 +90,7 @@ def draw_ordinary(rng: np.random.Generator) -> Values:
 
 
 def make_nearly_equal(rng: np.random.Generator, values: Values) -> None:
-    """Change to oscillators that differ in the last digits, with almost lossless impacts."""
+    """Change values to nearly equal oscillators with almost lossless impacts."""
     differs = [
         draw_one_of(rng, 0.0, 1.0) * draw_sign(rng) * draw_power_of_ten(rng, -17.0, -2.0)
         for _ in range(2)
@@ -104,7 +104,7 @@ def make_nearly_equal(rng: np.random.Generator, values: Values) -> None:
 
 
 def make_subnormal(rng: np.random.Generator, values: Values) -> None:
-    """Change a damping, a drive or a frequency to a subnormal number or nearly so."""
+    """Change some dampings, drive values or starts to subnormal numbers or nearly so."""
     for name in ("d1", "d2", "box_amplitude", "box_frequency", "x2_start", "v2_start"):
         if rng.random() < 0.4:
             values[name] = draw_one_of(rng, 5e-324, 1e-310, draw_power_of_ten(rng, -323.0, -20.0))
@@ -112,14 +112,14 @@ def make_subnormal(rng: np.random.Generator, values: Values) -> None:
 
 
 def make_any_start_size(rng: np.random.Generator, values: Values) -> None:
-    """Change to starts far below and far above the box's motion."""
+    """Change start values to sizes far below and far above the box's motion."""
     for name in ("x1_start", "x2_start", "v1_start", "v2_start"):
         values[name] *= draw_one_of(rng, 0.0, 1.0, 1.0) * draw_power_of_ten(rng, -150.0, 60.0)
     values["x1_start"], values["x2_start"] = sorted((values["x1_start"], values["x2_start"]))
 
 
 def make_small_start(rng: np.random.Generator, values: Values) -> None:
-    """Change to a start nearly at rest on the boundary, under an ordinary drive."""
+    """Change start values to nearly rest with closed gap, under an ordinary drive."""
     values["x1_start"] = values["x2_start"] = draw_one_of(rng, 0.0, 1.0) * draw_power_of_ten(
         rng, -20.0, 0.0
     )
@@ -131,7 +131,7 @@ def make_small_start(rng: np.random.Generator, values: Values) -> None:
 
 
 def make_large_gamma(rng: np.random.Generator, values: Values) -> None:
-    """Change to a gamma of one and unequal masses: impacts that nearly stick."""
+    """Change values to a gamma of up to one and unequal masses: impacts that nearly stick."""
     values["gamma"] = draw_one_of(rng, 1.0, 0.99, 0.5)
     values["m2"] = draw_one_of(rng, 25.0, 0.04, 1000.0, 0.001)
     values["k2"] = values["m2"] * draw_power_of_ten(rng, -1.0, 1.0)
@@ -139,7 +139,7 @@ def make_large_gamma(rng: np.random.Generator, values: Values) -> None:
 
 
 def make_overdamped(rng: np.random.Generator, values: Values) -> None:
-    """Change to dampers about and far beyond critical."""
+    """Change the dampers to about and far beyond critical."""
     for name, mass, stiffness in (("d1", "m1", "k1"), ("d2", "m2", "k2")):
         critical = 2.0 * math.sqrt(values[mass] * values[stiffness])
         factor = 1.0 + draw_sign(rng) * draw_power_of_ten(rng, -16.0, -3.0)
@@ -151,7 +151,7 @@ def make_overdamped(rng: np.random.Generator, values: Values) -> None:
 
 
 def make_resonant(rng: np.random.Generator, values: Values) -> None:
-    """Change to a drive at or next to a natural frequency, with little or no damping."""
+    """Change the drive to or next to a natural frequency, with little or no damping."""
     together = math.sqrt((values["k1"] + values["k2"]) / (values["m1"] + values["m2"]))
     natural = draw_one_of(rng, *natural_frequencies(values), together)
     beside = draw_one_of(rng, 0.0, 1.0) * draw_sign(rng) * draw_power_of_ten(rng, -17.0, -3.0)
@@ -164,11 +164,11 @@ def make_resonant(rng: np.random.Generator, values: Values) -> None:
 
 
 def make_late_start(rng: np.random.Generator, values: Values) -> None:
-    """Change to a late start time."""
+    """Change the start time to a late one."""
 
 
 def make_cubic_input(rng: np.random.Generator, values: Values) -> None:
-    """Change to box accelerations given as cubics, over many scales."""
+    """Change the box accelerations to cubics of many scales."""
     for name in ("box_acceleration", "box_jerk", "box_snap", "box_crackle"):
         values[name] = (
             draw_one_of(rng, 0.0, 1.0) * draw_sign(rng) * draw_power_of_ten(rng, -12.0, 2.0)
@@ -179,7 +179,7 @@ def make_cubic_input(rng: np.random.Generator, values: Values) -> None:
 
 
 def make_long_chattering(rng: np.random.Generator, values: Values) -> None:
-    """Change to long chattering: constant push, little loss in impacts, small gamma."""
+    """Change values for long chattering: constant push, little loss in impacts, small gamma."""
     values["k2"] = values["m2"] * draw_power_of_ten(rng, -0.5, 0.5)
     values["box_acceleration"] = draw_sign(rng) * draw_power_of_ten(rng, -2.0, 2.0)
     values["e"] = 1.0 - draw_power_of_ten(rng, -3.0, 0.0)
@@ -187,7 +187,7 @@ def make_long_chattering(rng: np.random.Generator, values: Values) -> None:
 
 
 def make_far_drive(rng: np.random.Generator, values: Values) -> None:
-    """Change to a drive far from the natural frequencies."""
+    """Change the drive's frequency to far from the natural frequencies."""
     values["box_frequency"] = draw_one_of(
         rng, draw_power_of_ten(rng, 0.5, 3.0), draw_power_of_ten(rng, -12.0, -1.0)
     )
@@ -197,7 +197,7 @@ def make_far_drive(rng: np.random.Generator, values: Values) -> None:
 
 
 def make_any_scale(rng: np.random.Generator, values: Values) -> None:
-    """Change to masses and stiffnesses over decades, from watches to ships."""
+    """Change masses and stiffnesses to scales over decades, from watches to ships."""
     mass, stiffness = draw_power_of_ten(rng, -9.0, 9.0), draw_power_of_ten(rng, -9.0, 9.0)
     rate = math.sqrt(stiffness / mass)
     for name in ("m1", "m2"):

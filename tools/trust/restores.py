@@ -37,7 +37,7 @@ Values = dict[str, float]
 
 @dataclass(frozen=True)
 class InputCourse:
-    """An undisturbed run: start values, then inputs to be set and times to step to."""
+    """A run to be compared: start values, then inputs to set and times to step to."""
 
     model: str
     values: Values
@@ -143,7 +143,7 @@ def read_outputs(instance: Instance, names: Sequence[str]) -> Bits:
 
 
 def wander(rng: random.Random, instance: Instance, course: InputCourse, time: float) -> None:
-    """Change inputs, step or start another run: what a restore must undo."""
+    """Change an instance's inputs, step it or start another run: what a restore must undo."""
     try:
         if rng.random() < 0.1:
             instance.reset()
@@ -195,7 +195,7 @@ def advance_disturbed(
 def restore_in_memory(
     rng: random.Random, instance: Instance, course: InputCourse, time: float
 ) -> None:
-    """Save a state in memory, wander, and restore it."""
+    """Save a state in memory, change the instance's motion at random, and restore the state."""
     get, _, _, put, free = instance.state_calls()
     state = instance.call(get)
     try:
@@ -212,7 +212,7 @@ def restore_elsewhere(
     course: InputCourse,
     time: float,
 ) -> Instance:
-    """Save, wander and restore: in the same instance, or serialised in another."""
+    """Save a state, change the motion, and restore: here, or serialised in another instance."""
     if rng.random() < 0.4:
         restore_in_memory(rng, instance, course, time)
         return instance
@@ -315,7 +315,7 @@ class RestoreCampaign(Campaign):
         rows: Sequence[Bits],
         kinds: Sequence[tuple[type, str]],
     ) -> tuple[int, str]:
-        """Compare a course in a pool of instances; return restores, and what is wrong ("")."""
+        """Run a course with restores, compare bits; return the number of restores and a problem."""
         rng = random.Random(f"{seed} {number} {kinds[0][1]}")
         with ExitStack() as stack:
             pool = [stack.enter_context(k(fmu_path(course.model, form))) for k, form in kinds]

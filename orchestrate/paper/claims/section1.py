@@ -27,7 +27,7 @@ DEVICES = 2 * 1.9  # kg, exciter and counter mass
     "numbers of the shipped set",
     "density of the wood",
 )
-def beam_mass(results: Results) -> Finding:
+def check_beam_mass(results: Results) -> Finding:
     """Check unbalance and total mass of the set ``beam`` against the paper's beam."""
     structure, drive = Structure.from_file(BEAM), Drive.from_file(BEAM)
     low, high = (VOLUME * density + DEVICES for density in RAMIN)
@@ -47,7 +47,7 @@ def beam_mass(results: Results) -> Finding:
     "a break",
     "averaged theory of the set beam: folds of the voltage over the speed",
 )
-def sommerfeld(results: Results) -> Finding:
+def check_sommerfeld(results: Results) -> Finding:
     """Check whether the averaged theory of the set ``beam`` has folds at its resonance."""
     structure, drive = Structure.from_file(BEAM), Drive.from_file(BEAM)
     folds = averaged.folds(structure, drive)
@@ -112,7 +112,7 @@ def ascending_branch(run: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
     "10 % of the amplitude, at every speed up to the break",
     full=True,
 )
-def linear_amplitudes(results: Results) -> Finding:
+def check_linear_amplitudes(results: Results) -> Finding:
     """Check how well linear oscillators fit both structures' amplitudes (Figure 2(a))."""
     text, worst, tops = [], {}, {}
     for kind in ("bonded", "delaminated"):
@@ -139,7 +139,7 @@ def linear_amplitudes(results: Results) -> Finding:
     "up-sweep, multiplicity and impacts; settled responses",
     full=True,
 )
-def impacts_by_steps(results: Results) -> Finding:
+def check_impacts_by_steps(results: Results) -> Finding:
     """Check how impacts per period change up to resonance and after it (Figure 2(b))."""
     up = results.up("elastic")
     peak = float(up.xi_rel_max.idxmax())
@@ -166,7 +166,7 @@ def impacts_by_steps(results: Results) -> Finding:
     "spectra of bonded and delaminated structure",
     "a factor of 100",
 )
-def spectra_change(results: Results) -> Finding:
+def check_spectra_change(results: Results) -> Finding:
     """Check spectral lines above the excitation at resonance (Figure 3)."""
     shown = results.get("spectra").acceleration.sel(mass=1).isel(eta=0)
     above = shown.where(shown.order > 1.5, drop=True)

@@ -62,7 +62,7 @@ def solution(frequency: float, damping: float) -> Callable[[np.ndarray], np.ndar
 
 
 @register_misprint("(3)", "xi = x/a eta^2")
-def scale(results: Results) -> Finding:
+def check_scale(results: Results) -> Finding:
     """Check (3): whether xi is x/a eta^2 or x/(a eta^2), by the steady amplitude."""
     steady = 1.0 / math.hypot(1.0 - ETA**2, 2.0 * D * ETA)  # amplitude of (6), unit forcing
     x_over_a = ETA**2 * steady  # of m x'' + d x' + k x = m a Omega^2 sin(Omega t)
@@ -71,7 +71,7 @@ def scale(results: Results) -> Finding:
 
 
 @register_misprint("(10)", "cos kappa_i tau, e^(-D tau)")
-def free_part(results: Results) -> Finding:
+def check_free_part(results: Results) -> Finding:
     """Check whether (10) has kappa_i or nu_i of (11), by the residual of (6)."""
     nu = math.sqrt(STIFFNESS - D * D)
     printed, right = residual(solution(STIFFNESS, D)), residual(solution(nu, D))
@@ -79,7 +79,7 @@ def free_part(results: Results) -> Finding:
 
 
 @register_misprint("(12)", "xi_2 - xi_1 unequal 0")
-def one_sided(results: Results) -> Finding:
+def check_one_sided(results: Results) -> Finding:
     """Check (12): whether the gap is unequal to 0 or larger than 0."""
     data = results.get("figure5")
     flying = data.kind.values == FLIGHT
@@ -91,7 +91,7 @@ def one_sided(results: Results) -> Finding:
 
 
 @register_misprint("(15)", "(1 + e) mu/(1 + mu) in the second line")
-def momentum(results: Results) -> Finding:
+def check_momentum(results: Results) -> Finding:
     """Check (15): the factor of its second line, by conservation of momentum."""
     e, mu, v1, v2 = 0.7, 0.5, 0.8, -0.4
     part = (1.0 + e) / (1.0 + mu) * (v1 - v2)
@@ -112,7 +112,7 @@ def momentum(results: Results) -> Finding:
     "the FMU's impacts after one kick, for e from 0.01 to 1 and gamma from 1e-3 to 1e-9",
     "ratios of times 1e-6; counts one impact",
 )
-def chattering(results: Results) -> Finding:
+def check_chattering(results: Results) -> Finding:
     """Check (16): whether impacts are infinitely many with intervals that tend to zero."""
     data = results.get("chattering")
     every = data.e.values.tolist()
@@ -158,7 +158,7 @@ def is_endless(rows: xr.Dataset, e: float) -> bool:
 
 
 @register_misprint("(17)", "contact follows by the velocity alone")
-def pulling(results: Results) -> Finding:
+def check_pulling(results: Results) -> Finding:
     """Check (17): whether slow impacts would stick although the contact force pulls."""
     data = results.get("low_speed")
     slow, pulled, sticking = (int(data[name].sum()) for name in ("slow", "pulled", "sticking"))
@@ -171,7 +171,7 @@ def pulling(results: Results) -> Finding:
 
 
 @register_misprint("(20)", "initial conditions of the (k+i)th state")
-def next_state(results: Results) -> Finding:
+def check_next_state(results: Results) -> Finding:
     """Check (20): the gap velocity with which the state after contact begins."""
     data = results.get("figure5")
     kind, state = data.kind.values, data.state.values
@@ -191,7 +191,7 @@ def next_state(results: Results) -> Finding:
 
 
 @register_misprint("(22)", "T = eta/2 pi")
-def period(results: Results) -> Finding:
+def check_period(results: Results) -> Finding:
     """Check (22): whether the excitation's period is eta/2 pi or 2 pi/eta."""
 
     def change(span: float) -> float:

@@ -37,7 +37,7 @@ FEW = 0.01  # share of the frequencies
     "only then",
     "the FMU from rest: impacts in 2,000 periods at eta = 1.3",
 )
-def only_equal(results: Results) -> Finding:
+def check_only_equal(results: Results) -> Finding:
     """Check whether only equal oscillators vibrate without influencing each other."""
     data = results.get("low_speed")
     alike = data.isel(motion=np.abs(data.kappa.values - data.mu.values) < 1e-12)
@@ -59,7 +59,7 @@ def only_equal(results: Results) -> Finding:
 @register_claim(
     "3", "natural frequencies of both subsystems", "1 and 1.095, about 10 % apart", "(7)", NUMBER
 )
-def detuning(results: Results) -> Finding:
+def check_detuning(results: Results) -> Finding:
     """Check the natural frequencies of both halves (7)."""
     case = CASES["elastic"]
     second = (case.kappa / case.mu) ** 0.5
@@ -76,7 +76,7 @@ def detuning(results: Results) -> Finding:
     "map over (eta, kappa): the largest impulse, which a test has to see",
     "10 % of the least",
 )
-def most_unfavourable(results: Results) -> Finding:
+def check_most_unfavourable(results: Results) -> Finding:
     """Check whether impulses are smallest at the paper's detuning."""
     largest = results.get("map_kappa").impulse_max.max("eta")
     own = CASES["elastic"].kappa
@@ -97,7 +97,7 @@ def most_unfavourable(results: Results) -> Finding:
     "three states",
     "Figure 5's data",
 )
-def three_states(results: Results) -> Finding:
+def check_three_states(results: Results) -> Finding:
     """Check whether Figure 5's response has all three states."""
     kinds = results.get("figure5").kind.values
     steady = results.impact_statistics("elastic").sel(eta=0.4, method="nearest")
@@ -116,7 +116,7 @@ def three_states(results: Results) -> Finding:
     "two loops",
     "Figure 5's data: crossings of each curve with itself",
 )
-def two_loops(results: Results) -> Finding:
+def check_two_loops(results: Results) -> Finding:
     """Check that Figure 5(a)'s phase curves close and how often they cross themselves."""
     data = results.get("figure5")
     state = data.state.values
@@ -138,7 +138,7 @@ def two_loops(results: Results) -> Finding:
     "Figure 5's data: jumps of the velocity, and the gap there",
     "1e-6 of the largest gap and velocity",
 )
-def many_loops(results: Results) -> Finding:
+def check_many_loops(results: Results) -> Finding:
     """Check number, begin and end of the loops in Figure 5(b)'s relative motion."""
     data = results.get("figure5")
     state, kinds, tau = data.state.values, data.kind.values, data.tau.values
@@ -170,7 +170,7 @@ def many_loops(results: Results) -> Finding:
     "Figure 5's data; short sweeps with other gamma",
     "1 % of T; one step of the sweep",
 )
-def gamma_scale(results: Results) -> Finding:
+def check_gamma_scale(results: Results) -> Finding:
     """Check where the paper's gamma would end chattering at eta = 0.4, beside the FMU."""
     data = results.get("figure5")
     tau, state = data.tau.values, data.state.values
@@ -201,7 +201,7 @@ def gamma_scale(results: Results) -> Finding:
     "others at 1 % of the frequencies up to the end of the window T, and beyond it",
     full=True,
 )
-def enough_periods(results: Results) -> Finding:
+def check_enough_periods(results: Results) -> Finding:
     """Check whether 500 periods of transient suffice, by running responses on."""
     up, end = results.up("elastic"), results.upper_limit("elastic", "T/1", 2.0).value
     later, latest = (
@@ -224,7 +224,7 @@ def enough_periods(results: Results) -> Finding:
 
 
 def first_sample(up: xr.Dataset, later: xr.Dataset) -> int:
-    """Return the number of the period at which a later run's samples begin."""
+    """Return the number of the excitation period at which a later run's samples begin."""
     done = int(up.attrs["transient"]) + up.sizes["sample"]
     return done + int(later.attrs["transient"]) + 1
 
@@ -260,7 +260,7 @@ def crossings(x: np.ndarray, y: np.ndarray) -> int:
     LIMIT,
     full=True,
 )
-def contact_limit(results: Results) -> Finding:
+def check_contact_limit(results: Results) -> Finding:
     """Check the frequency up to which permanent contact occurs."""
     up, gammas = results.up("elastic"), results.get("gamma").last_contact.sel(case="elastic").values
     low, high = upper_edge(up, up.permanent_contact.values == 1, 0.40)
@@ -280,7 +280,7 @@ def contact_limit(results: Results) -> Finding:
 @register_claim(
     "3.1", "T-periodic below", "0.43", "up-sweep, multiplicity 1; branch", LIMIT, full=True
 )
-def periodic_limit(results: Results) -> Finding:
+def check_periodic_limit(results: Results) -> Finding:
     """Check the frequency up to which responses are T-periodic."""
     up = results.up("elastic")
     near = between(up, 0.415, 0.45)
@@ -301,7 +301,7 @@ def periodic_limit(results: Results) -> Finding:
 @register_claim(
     "3.1", "permanent contact vanishes for all larger eta", "none", "up-sweep", full=True
 )
-def no_contact_above(results: Results) -> Finding:
+def check_no_contact_above(results: Results) -> Finding:
     """Check that no permanent contact occurs at larger frequencies."""
     up = results.up("elastic")
     part = between(up, 0.43, 8.0)
@@ -327,7 +327,7 @@ def no_contact_above(results: Results) -> Finding:
     "up-sweep: longest window of each; exact limits of one-impact orbits",
     full=True,
 )
-def windows_in_order(results: Results) -> Finding:
+def check_windows_in_order(results: Results) -> Finding:
     """Check that windows nT with one impact follow each other in order."""
     up = results.up("elastic")
     windows = [window(up, n) for n in range(1, 5)]
@@ -349,7 +349,7 @@ def windows_in_order(results: Results) -> Finding:
 @register_claim(
     "3.1", "one impact in a response period at the relative peaks", "one", "Figure 7's data"
 )
-def one_impact_at_peaks(results: Results) -> Finding:
+def check_one_impact_at_peaks(results: Results) -> Finding:
     """Check that Figure 7's responses have one impact per response period."""
     data = results.get("figure7")
     counts = []
@@ -372,7 +372,7 @@ def one_impact_at_peaks(results: Results) -> Finding:
     "settled responses above 1.37",
     full=True,
 )
-def one_impact_everywhere(results: Results) -> Finding:
+def check_one_impact_everywhere(results: Results) -> Finding:
     """Check that all periodic responses above eta = 1.37 have one impact."""
     settled = between(results.settled("elastic"), 1.37, 8.0)
     up = between(results.up("elastic"), 1.37, 8.0)
@@ -400,7 +400,7 @@ def one_impact_everywhere(results: Results) -> Finding:
     "impact by impact",
     "0.01 T",
 )
-def impact_distance(results: Results) -> Finding:
+def check_impact_distance(results: Results) -> Finding:
     """Check that impacts at the windows' peaks are n periods apart."""
     up, steady = results.up("elastic"), results.impact_statistics("elastic")
     texts, parts = [], []
@@ -422,7 +422,7 @@ def impact_distance(results: Results) -> Finding:
     "no numbers",
     "found in the sweep",
 )
-def relative_peaks(results: Results) -> Finding:
+def check_relative_peaks(results: Results) -> Finding:
     """Check the frequencies of the relative peaks in the windows."""
     data = results.get("figure7")
     text = ", ".join(f"{n}T: {float(eta):.3f}" for n, eta in enumerate(data.eta, 1))
@@ -444,7 +444,7 @@ def relative_peaks(results: Results) -> Finding:
     "up-sweep",
     full=True,
 )
-def other_regions(results: Results) -> Finding:
+def check_other_regions(results: Results) -> Finding:
     """Check that irregular regions lie between the further windows."""
     up = results.up("elastic")
     edges = [

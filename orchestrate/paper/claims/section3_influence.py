@@ -35,7 +35,7 @@ DECADE, RESEMBLES = 10.0, 0.1
 
 
 @register_claim("3.2", "the first irregular region ends", "1.37", BRANCH, LIMIT, full=True)
-def first_region_ends(results: Results) -> Finding:
+def check_first_region_ends(results: Results) -> Finding:
     """Check the frequency at which the first irregular region ends."""
     up, down = results.up("elastic"), results.down("elastic")
     on_way_down = lower_edge(down, is_orbit(down, 1, 1), 2.0)
@@ -50,7 +50,7 @@ def first_region_ends(results: Results) -> Finding:
 
 
 @register_claim("3.2", "impacts during one T decrease with eta", "decreasing", SWEEP)
-def impacts_decrease(results: Results) -> Finding:
+def check_impacts_decrease(results: Results) -> Finding:
     """Check that impacts of T-periodic responses decrease with eta up to 0.9."""
     part = between(results.up("elastic"), 0.43, 0.9)
     counts = impacts_in_response(part)[part.multiplicity.values == 1]
@@ -68,7 +68,7 @@ def impacts_decrease(results: Results) -> Finding:
     "settled responses; largest Lyapunov exponents",
     full=True,
 )
-def alternation(results: Results) -> Finding:
+def check_alternation(results: Results) -> Finding:
     """Check that T-periodic windows and irregular regions alternate from 0.43 to 0.89."""
     settled = between(results.settled("elastic"), 0.43, 0.89)
     counts = np.round(settled.impacts_per_period.values).astype(int)
@@ -94,7 +94,7 @@ register_limit(
 
 
 @register_claim("3.2", "two impacts during one T up to", "1.07", BRANCH, LIMIT, full=True)
-def two_impacts_up_to(results: Results) -> Finding:
+def check_two_impacts_up_to(results: Results) -> Finding:
     """Check the frequency up to which T-periodic responses have two impacts."""
     up, limit = results.up("elastic"), results.upper_limit("elastic", "T/2", 1.0)
     after = results.upper_limit("elastic", "T/1", 1.065)
@@ -118,7 +118,7 @@ register_limit(
 
 
 @register_claim("3.2", "place of the peak", "1.045", "up-sweep", NUMBER)
-def peak_frequency(results: Results) -> Finding:
+def check_peak_frequency(results: Results) -> Finding:
     """Check the frequency of the largest gap, up and down."""
     up, down = results.up("elastic").xi_rel_max, results.down("elastic").xi_rel_max
     others = int(results.get("attractors").number.sel(eta=1.045, method="nearest")) - 1
@@ -137,7 +137,7 @@ def peak_frequency(results: Results) -> Finding:
     "none",
     "up-sweep: extrema of the largest gap within 0.01",
 )
-def no_influence(results: Results) -> Finding:
+def check_no_influence(results: Results) -> Finding:
     """Check that the largest gap has no extremum at the halves' natural frequencies."""
     gaps = results.up("elastic").xi_rel_max
     texts, parts = [], []
@@ -160,7 +160,7 @@ def no_influence(results: Results) -> Finding:
     LIMIT,
     full=True,
 )
-def irregular_again(results: Results) -> Finding:
+def check_irregular_again(results: Results) -> Finding:
     """Check the frequency above the peak at which T-periodic responses end."""
     up = results.up("elastic")
     edges = upper_edge(up, up.multiplicity.values == 1, 1.05)
@@ -174,7 +174,7 @@ def irregular_again(results: Results) -> Finding:
     "up-sweep: stroboscopic samples",
     "95 %",
 )
-def nearly_2t(results: Results) -> Finding:
+def check_nearly_2t(results: Results) -> Finding:
     """Check how nearly responses between 1.07 and 1.37 repeat after 2T."""
     part = between(results.up("elastic"), 1.07, 1.367)
     samples = part.xi_rel.values
@@ -194,7 +194,7 @@ def nearly_2t(results: Results) -> Finding:
     "random starts, run on until they repeat; up- against down-sweep",
     full=True,
 )
-def non_unique(results: Results) -> Finding:
+def check_non_unique(results: Results) -> Finding:
     """Check at which frequencies between 1.07 and 1.37 several attractors exist."""
     data = between(results.get("attractors"), 1.07, 1.37)
     several = data.eta.values[data.number.values > 1]
@@ -264,7 +264,7 @@ def second_region(results: Results, printed: str, upper: bool) -> Finding:
 @register_claim(
     "3.2", "impacts in 1.07-1.37 are distributed irregularly", "so", "settled responses", full=True
 )
-def irregular_impacts(results: Results) -> Finding:
+def check_irregular_impacts(results: Results) -> Finding:
     """Check whether responses between 1.07 and 1.37 are irregular."""
     settled = between(results.settled("elastic"), 1.07, 1.367)
     n = settled.multiplicity.values
@@ -288,7 +288,7 @@ register_limit("3.2", "the second irregular region ends", "3.77", second_region,
     "all frequencies",
     full=True,
 )
-def one_impact_beside(results: Results) -> Finding:
+def check_one_impact_beside(results: Results) -> Finding:
     """Check that responses beside the second irregular region have one impact."""
     text, parts = [], []
     for n, low, high in ((1, 1.37, 2.61), (2, 3.77, 4.74)):
@@ -309,7 +309,7 @@ def one_impact_beside(results: Results) -> Finding:
     "chaotic: three standard errors above zero",
     full=True,
 )
-def chaos(results: Results) -> Finding:
+def check_chaos(results: Results) -> Finding:
     """Check whether irregular regions are quasi-periodic rather than chaotic, by region."""
     text, parts = [], []
     for region in results.regions("elastic"):
@@ -354,7 +354,7 @@ def chaos(results: Results) -> Finding:
     "none elsewhere",
     full=True,
 )
-def irregularities(results: Results) -> Finding:
+def check_irregularities(results: Results) -> Finding:
     """Count irregular responses between windows nT and (n+1)T, and elsewhere.
 
     Irregular are responses that do not repeat; of those how many are chaotic for sure.
@@ -392,7 +392,7 @@ def irregularities(results: Results) -> Finding:
     "so",
     "up-sweep: impacts of responses of the same multiplicity",
 )
-def hidden_impacts(results: Results) -> Finding:
+def check_hidden_impacts(results: Results) -> Finding:
     """Check that responses which look alike in the diagram differ in their impacts."""
     up = results.up("elastic")
     counts = impacts_in_response(up)[up.multiplicity.values == 1]
@@ -407,7 +407,7 @@ def hidden_impacts(results: Results) -> Finding:
 @register_claim(
     "3.2", "impulses are extremal near the absolute peak", "1.045", "impact by impact", "0.01"
 )
-def impulse_peak(results: Results) -> Finding:
+def check_impulse_peak(results: Results) -> Finding:
     """Check that impulses are largest near the absolute peak."""
     speed = results.impact_statistics("elastic").closing_max
     eta = float(speed.idxmax())
@@ -424,7 +424,7 @@ def impulse_peak(results: Results) -> Finding:
     "at the relative peaks",
     "a factor of ten from each to the next",
 )
-def decay(results: Results) -> Finding:
+def check_decay(results: Results) -> Finding:
     """Check by which factors gap and velocity fall from peak to peak."""
     up, steady = results.up("elastic"), results.impact_statistics("elastic")
     etas = [float(up.xi_rel_max.idxmax())] + [
@@ -457,7 +457,7 @@ def decay(results: Results) -> Finding:
     "up-sweep: amplitudes against (10) of both masses as one",
     "10 % at each of the peaks beyond the main one, and at 8.0",
 )
-def single_oscillator(results: Results) -> Finding:
+def check_single_oscillator(results: Results) -> Finding:
     """Check how near amplitudes at high eta are to both masses as one oscillator."""
     up, case = results.up("elastic"), CASES["elastic"]
     stiffness = (1.0 + case.kappa) / (1.0 + case.mu)

@@ -92,7 +92,7 @@ register_claim("4.1", "T-periodic below 1.08", "all", SWEEP, full=True)(
 @register_claim(
     "4.1", "0.48 to 0.85: impacts diminish from seven to two", "7 to 2", SWEEP, full=True
 )
-def seven_to_two(results: Results) -> Finding:
+def check_seven_to_two(results: Results) -> Finding:
     """Check that impacts of T-periodic responses fall from seven to two from 0.48 on."""
     counts = impacts_in_response(between(results.up("damped"), 0.48, 0.85))
     steps = list(dict.fromkeys(counts.tolist()))
@@ -106,7 +106,7 @@ def seven_to_two(results: Results) -> Finding:
 
 
 @register_claim("4.1", "two impacts from", "0.85", BRANCH, LIMIT, full=True)
-def two_impacts_from(results: Results) -> Finding:
+def check_two_impacts_from(results: Results) -> Finding:
     """Check the frequency from which responses have two impacts."""
     up, down, exponents = (
         results.up("damped"),
@@ -164,7 +164,7 @@ register_limit(
 @register_claim(
     "4.1", "non-unique solutions in 1.11-1.33", "found", "up- against down-sweep", full=True
 )
-def non_unique(results: Results) -> Finding:
+def check_non_unique(results: Results) -> Finding:
     """Check at which frequencies up- and down-sweep differ."""
     up, down = results.up("damped"), results.down("damped")
     differ = up.eta.values[
@@ -193,7 +193,7 @@ register_claim("4.1", "above 1.33 as for D = 0.005", "the same", SWEEP, full=Tru
     "map over (eta, D) from rest",
     full=True,
 )
-def more_damping(results: Results) -> Finding:
+def check_more_damping(results: Results) -> Finding:
     """Check whether more damping leaves T-periodic responses with one impact at 1.11-1.33."""
     data = results.get("map_D").sel(eta=slice(1.11, 1.33))
     periodic = (data.multiplicity == 1).all("eta").values
@@ -216,7 +216,7 @@ def more_damping(results: Results) -> Finding:
 
 
 @register_claim("4.1", "only the first irregular region is eliminated", "so", SWEEP, full=True)
-def only_first_eliminated(results: Results) -> Finding:
+def check_only_first_eliminated(results: Results) -> Finding:
     """Check that damping removes the first irregular region and not the second."""
     text, parts = [], []
     for low, high, expected in ((0.48, 1.37, 0.0), (2.61, 3.77, 0.2)):
@@ -262,7 +262,7 @@ register_claim(
 @register_claim(
     "4.2", "the range of permanent contact is enlarged", "larger", "up-sweeps", full=True
 )
-def more_contact(results: Results) -> Finding:
+def check_more_contact(results: Results) -> Finding:
     """Compare the ranges of permanent contact for e = 0.7 and 0.3."""
     ends = [
         upper_edge(up := results.up(case), up.permanent_contact.values == 1, 0.40)[0]
@@ -282,7 +282,7 @@ def more_contact(results: Results) -> Finding:
     "branches: exact limits of both cases",
     "10 % and 2 %",
 )
-def only_lower(results: Results) -> Finding:
+def check_only_lower(results: Results) -> Finding:
     """Check how far the windows' limits differ between e = 0.7 and 0.3."""
     text, moved = [], []
     for orbit, inside in (("T, contact", 0.4), ("T/2", 1.05)):

@@ -49,7 +49,7 @@ def compare_with_elastic(results: Results, case: str) -> tuple[float, float, str
     HOW,
     "0.01 in eta",
 )
-def both_at_peak(results: Results) -> Finding:
+def check_both_at_peak(results: Results) -> Finding:
     """Check that amplitudes of both masses and impulses are largest at the main peak."""
     text, parts, kept = [], [], []
     for case in CASES:
@@ -72,7 +72,7 @@ def both_at_peak(results: Results) -> Finding:
 @register_claim(
     "5", "T-periodic motion with two impacts at all three peaks (Figure 12)", "two", HOW
 )
-def two_impacts_each(results: Results) -> Finding:
+def check_two_impacts_each(results: Results) -> Finding:
     """Check that responses at the peaks have two impacts per period."""
     counts = [
         float(
@@ -95,7 +95,7 @@ def two_impacts_each(results: Results) -> Finding:
     HOW,
     "a factor of 10^0.5",
 )
-def damping_lowers(results: Results) -> Finding:
+def check_damping_lowers(results: Results) -> Finding:
     """Check that damping lowers impulses and amplitudes, case (b) over (a)."""
     impulse, size, text = compare_with_elastic(results, "damped")
     return check_parts([impulse < 1 / SAME_ORDER, size < 1 / SAME_ORDER], text)
@@ -108,7 +108,7 @@ def damping_lowers(results: Results) -> Finding:
     HOW,
     "a factor of 10^0.5",
 )
-def restitution_minor(results: Results) -> Finding:
+def check_restitution_minor(results: Results) -> Finding:
     """Check that restitution changes impulses little, case (c) over (a)."""
     impulse, _, text = compare_with_elastic(results, "plastic")
     return check_parts([1 / SAME_ORDER < impulse < SAME_ORDER], text)
