@@ -58,7 +58,7 @@ def event_functions(structure: Structure) -> tuple[Event, Event]:
 def state_after_event(
     y: np.ndarray, touching: bool, structure: Structure, scale: float
 ) -> np.ndarray:
-    """Return the state after an impact (15) or a release, and whether the masses touch."""
+    """Return the state after an event: masses parted by restitution (15), or together."""
     mu, creep = structure.mu, CREEP * scale * structure.omega
     mean = (y[1] + mu * y[3]) / (1.0 + mu)
     parting = 0.0 if touching else max(structure.restitution(y[1] - y[3]) * (y[1] - y[3]), creep)

@@ -85,7 +85,7 @@ def mark_attractors(plane: Axes, data: xr.Dataset) -> None:
 
 
 def gap_from_states(data: xr.Dataset, columns: dict[str, np.ndarray]) -> np.ndarray:
-    """Return the gap between the faces, m, of states given by columns of a dataset."""
+    """Return the gap between the faces, m, of states given as a dict of coordinate arrays."""
     clearance = 0.0 if data.attrs.get("bonded") else float(data.attrs.get("clearance", 0.0))
     gap: np.ndarray = columns["x2"] - columns["x1"] + clearance
     return gap

@@ -116,7 +116,7 @@ def title_from_attributes(data: xr.Dataset, shown_elsewhere: Iterable[str] = ())
 
 
 def gap_name(data: xr.Dataset) -> str:
-    """Return the gap's axis label; with a clearance it is not ``x2 - x1`` alone."""
+    """Return the gap's name for an axis label; with a clearance it is not ``x2 - x1`` alone."""
     return "gap" if data.attrs.get("clearance") else "gap $x_2 - x_1$"
 
 
@@ -216,7 +216,7 @@ def paper_ratios(known: Mapping[str, float]) -> dict[str, float]:
 
 
 def is_in_si(known: Mapping[str, float]) -> bool:
-    """Return whether a structure's omega differs from the paper's 1 rad/s."""
+    """Return whether a structure's omega, from its parameters, differs from the paper's 1 rad/s."""
     return paper_ratios(known).get("omega", 1.0) != 1.0
 
 

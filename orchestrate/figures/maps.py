@@ -74,7 +74,7 @@ def draw(*maps: xr.Dataset, title: str = "") -> Figure:
 
 
 def draw_map(plane: Axes, data: xr.DataArray, x: np.ndarray, y: np.ndarray) -> None:
-    """Draw one map with its colour bar; axes in equal ratios become logarithmic."""
+    """Draw one map with its colour bar; a y axis in equal ratios becomes logarithmic."""
     values, shades = colour_scale(str(data.name), data.values)
     picture = plane.pcolormesh(x, y, values, rasterized=True, **shades)
     bar = plane.figure.colorbar(picture, ax=plane)

@@ -32,7 +32,7 @@ def origin_section(answers: Sequence[xr.Dataset]) -> Section:
 
 
 def describe_origin(answer: xr.Dataset) -> list[tuple[str, str]]:
-    """Return a dict of texts on a result's origin, from its attributes."""
+    """Return pairs of a name and a text on a result's origin, from its attributes."""
     attributes = {str(name): str(text) for name, text in answer.attrs.items()}
     shown = [
         ("title", "title"),

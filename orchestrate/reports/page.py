@@ -52,7 +52,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class Table:
-    """A table of texts: heading, column titles and rows.
+    """A table of texts: column titles, rows, highlighted rows and a caption.
 
     Attributes
     ----------

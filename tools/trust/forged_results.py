@@ -167,7 +167,7 @@ def run_server() -> Iterator[tuple[str, list[str]]]:
     asked: list[str] = []
 
     class Handler(http.server.BaseHTTPRequestHandler):
-        """Handler that records each requested path and answers 404."""
+        """Handler that records each requested path and answers "no content"."""
 
         def do_GET(self) -> None:
             """Record the requested path and answer."""

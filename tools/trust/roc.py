@@ -36,7 +36,7 @@ class RocCurve(NamedTuple):
 
 
 def compute_curve(numbers: ArrayLike, is_positive: ArrayLike) -> RocCurve:
-    """Compute the receiver operating characteristic of a number that signs a positive.
+    """Compute the ROC curve of numbers whose large values shall mean a positive case.
 
     Parameters
     ----------
