@@ -141,10 +141,10 @@ class Supervisor:
         listened = [self.reader, wake_reader]
         while (status := self.poll_status()) is None:
             for number in select.select(listened, [], [], POLL)[0]:
-                said = os.read(number, 64)
+                message = os.read(number, 64)
                 if number == self.reader:
-                    self.words += said
-                    if not said:
+                    self.words += message
+                    if not message:
                         listened.remove(number)
             self.handle_signals()
         with contextlib.suppress(BlockingIOError):  # what it said at last
@@ -216,9 +216,9 @@ def print_line(line: str) -> None:
 
 def descendants(pid: int) -> Iterator[int]:
     """Yield the process ids of all descendants of a process (Linux only, else none)."""
-    for place in Path(f"/proc/{pid}/task").glob("*/children"):
+    for path in Path(f"/proc/{pid}/task").glob("*/children"):
         with contextlib.suppress(OSError):
-            for child in map(int, place.read_text().split()):
+            for child in map(int, path.read_text().split()):
                 yield child
                 yield from descendants(child)
 

@@ -93,9 +93,9 @@ def orbits_near(answer: xr.Dataset, at: xr.Dataset, eta: float) -> list[xr.Datas
     place, value = float(at.bifurcation_place), float(at.bifurcation_value)
     count = answer.sizes["point"]
     orbits = []
-    for way in (-1, 1):
-        first = int(np.floor(place) if way < 0 else np.ceil(place))
-        numbers = [i for i in range(first, first + NEIGHBOURS * way, way) if 0 <= i < count]
+    for step in (-1, 1):
+        first = int(np.floor(place) if step < 0 else np.ceil(place))
+        numbers = [i for i in range(first, first + NEIGHBOURS * step, step) if 0 <= i < count]
         near = [i for i in numbers if (answer.eta.values[i] - value) * (eta - value) > 0.0]
         for i in sorted(near, key=lambda i: abs(float(answer.eta[i]) - eta)):
             one = correct_orbit(answer.isel(point=i), eta)
@@ -210,7 +210,7 @@ def main() -> None:
     page = DOCS / "bifurcation_tables.md"
     text = replace_part(page.read_text("utf-8"), "table", branch_table(answer))
     text = replace_part(text, "windows", window_table())
-    write_whole(page, lambda place: place.write_text(text, "utf-8"))
+    write_whole(page, lambda path: path.write_text(text, "utf-8"))
     responses = sweep(PAPER, eta=FIGURE_6)
     save_small(orbit_diagram.draw(responses, overlay=list(answer.values())), DOCS / "branches.png")
     save_small(borders_figure.draw(*border_curves(answer)), DOCS / "borders.png")

@@ -82,10 +82,10 @@ def fill_page(text: str, found: Mapping[str, Any]) -> str:
 def main(folder: str) -> None:
     """Write results from a folder into the manual's pages on the paper's claims."""
     shutil.copyfile(Path(folder) / "claims.json", CLAIMS)
-    found = json.loads(CLAIMS.read_text("utf-8"))
-    for place in PAGES:
-        text = fill_page(place.read_text("utf-8"), found)
-        write_whole(place, lambda file, text=text: file.write_text(text, "utf-8"))
+    results = json.loads(CLAIMS.read_text("utf-8"))
+    for path in PAGES:
+        text = fill_page(path.read_text("utf-8"), results)
+        write_whole(path, lambda file, text=text: file.write_text(text, "utf-8"))
 
 
 if __name__ == "__main__":

@@ -101,10 +101,10 @@ def simulate_from_rest(
         motion, event = (contact, pressed) if touching else (flight, gap)
         grid = None if rate is None else np.arange(np.ceil(t * rate), end * rate) / rate
         tolerances = {"rtol": 1e-8, "atol": 1e-10 * scale}
-        found = solve_ivp(motion, (t, end), y, events=event, t_eval=grid, **tolerances)
-        if not found.t_events[0].size:
+        solution = solve_ivp(motion, (t, end), y, events=event, t_eval=grid, **tolerances)
+        if not solution.t_events[0].size:
             break
-        t, y = found.t_events[0][0], found.y_events[0][0].copy()
+        t, y = solution.t_events[0][0], solution.y_events[0][0].copy()
         impacts += not touching
         slow = structure.restitution(y[1] - y[3]) * (y[1] - y[3]) < SLOW * scale * structure.omega
         touching = not touching and slow and pressed(t, y) < 0.0

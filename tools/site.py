@@ -93,14 +93,14 @@ class Site:
         """Return whether an address of a page exists in the folder, or is elsewhere."""
         if urlsplit(address).scheme or address.startswith("//"):
             return True
-        file, place = urldefrag(address)
+        file, anchor = urldefrag(address)
         target = (path.parent / unquote(urlsplit(file).path)).resolve() if file else path
         if target not in self.pages:
             return target.is_file()
         return (
-            not place
+            not anchor
             or target.name == "explore.html"
-            or unquote(place) in self.pages[target].places
+            or unquote(anchor) in self.pages[target].places
         )
 
 

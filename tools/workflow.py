@@ -50,17 +50,17 @@ def last_commit() -> str:
 
 def replace_action(step: dict[str, Any], clone: Path, matrix: dict[str, str], commit: str) -> None:
     """Do here what a step's marketplace action would do, such as a checkout."""
-    action, given = step["uses"].split("@")[0], step.get("with", {})
+    action, inputs = step["uses"].split("@")[0], step.get("with", {})
     if action == "actions/checkout":
         subprocess.run(["git", "clone", "-q", str(ROOT), str(clone)], check=True)
         subprocess.run(["git", "-C", str(clone), "checkout", "-q", commit], check=True)
     elif action == "actions/setup-python":
-        version = fill_matrix(given["python-version"], matrix)
+        version = fill_matrix(inputs["python-version"], matrix)
         subprocess.run([find_python(version), "-m", "venv", str(clone / ".venv")], check=True)
     elif action == "actions/upload-artifact":
-        shutil.copytree(clone / given["path"], clone.parent / given["name"], dirs_exist_ok=True)
+        shutil.copytree(clone / inputs["path"], clone.parent / inputs["name"], dirs_exist_ok=True)
     elif action == "actions/download-artifact":
-        shutil.copytree(clone.parent / given["name"], clone / given["path"], dirs_exist_ok=True)
+        shutil.copytree(clone.parent / inputs["name"], clone / inputs["path"], dirs_exist_ok=True)
 
 
 def run_job(
@@ -90,14 +90,14 @@ def main() -> None:
     parser.add_argument("--python", default="3.12", help="where the job has a matrix of them")
     parser.add_argument("--tag", default="v0.0.0", help="that a release is made of")
     parser.add_argument("--folder", type=Path, help="kept; else a temporary one")
-    given = parser.parse_args()
-    text = (ROOT / ".github" / "workflows" / given.workflow).read_text(encoding="utf-8")
+    options = parser.parse_args()
+    text = (ROOT / ".github" / "workflows" / options.workflow).read_text(encoding="utf-8")
     jobs, commit = yaml.safe_load(text)["jobs"], last_commit()
-    folder = given.folder or Path(tempfile.mkdtemp(prefix="workflow-"))
-    for name in given.jobs:
+    folder = options.folder or Path(tempfile.mkdtemp(prefix="workflow-"))
+    for name in options.jobs:
         print(f"== {name}, in {folder / name}", flush=True)
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        run_job(jobs[name]["steps"], folder / name, {"python": given.python}, commit, given.tag)
+        run_job(jobs[name]["steps"], folder / name, {"python": options.python}, commit, options.tag)
     print("all steps passed")
 
 

@@ -100,8 +100,8 @@ def add_parser(commands: Commands) -> None:
     add_units_option(parser)
     add_file_options(parser, store=False)
     option = parser.add_argument_group("results").add_argument
-    place = "folder of the results (default: results)"
-    option("--output", type=Path, default=Path("results"), metavar="FOLDER", help=place)
+    folder_help = "folder of the results (default: results)"
+    option("--output", type=Path, default=Path("results"), metavar="FOLDER", help=folder_help)
 
 
 def add_reading_options(parser: argparse.ArgumentParser) -> None:
@@ -153,8 +153,8 @@ def run(arguments: argparse.Namespace) -> None:
         print_result(name, shown)
         print_units_note(arguments, *shown.values())
         read = {label: str(path) for label, path in paths.items()}
-        told = digest(read, settings[name], *record_options(arguments))
-        stem = f"analyse_{name}_{arguments.record.stem}_{told}"
+        digits = digest(read, settings[name], *record_options(arguments))
+        stem = f"analyse_{name}_{arguments.record.stem}_{digits}"
         place = arguments.output / f"{stem}.nc"
         write_files(place, results, shown, formats, plots, units_ending(arguments))
 
@@ -180,13 +180,13 @@ def keywords_by_analysis(
 ) -> dict[str, dict[str, Any]]:
     """Return a dict of keywords for each analysis; raise for an option that none of them takes."""
     owned = {option for one in ANALYSES.values() for option in one.options}
-    given = {option for option in owned if getattr(arguments, option) is not None}
-    for option in sorted(given):
+    chosen = {option for option in owned if getattr(arguments, option) is not None}
+    for option in sorted(chosen):
         owners = [name for name, one in ANALYSES.items() if option in one.options]
         if not set(owners) & set(names):
             raise InputError(f"--{option}: expected with --show {' or '.join(owners)} alone")
     settings = {
-        name: {o: getattr(arguments, o) for o in ANALYSES[name].options if o in given}
+        name: {o: getattr(arguments, o) for o in ANALYSES[name].options if o in chosen}
         for name in names
     }
     if arguments.orders is not None and "orders" in names:
@@ -381,10 +381,10 @@ def psd_lines(data: xr.Dataset) -> Iterator[str]:
 def order_lines(data: xr.Dataset) -> Iterator[str]:
     """Yield a line per channel: each order's largest amplitude and its frequency."""
     for name, part in iterate_channels(data, box=False):
-        peaks, (felt, unit) = [], scale_of(data, "m/s2")
+        peaks, (unit_size, unit) = [], scale_of(data, "m/s2")
         for order in map(float, part.order.values):
             peak = at_maximum(part.amplitude.sel(order=order))
-            size = f"{float(peak) / felt:.4g}"
+            size = f"{float(peak) / unit_size:.4g}"
             peaks.append(f"order {order:g} {size} at {format_frequency(data, peak)}")
         yield f"{name}: largest amplitudes in {unit}: {', '.join(peaks)}"
 

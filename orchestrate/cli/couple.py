@@ -335,15 +335,15 @@ def format_jump(
 def format_further_jumps(at: xr.Dataset) -> list[str]:
     """Return a list of texts on a direction's further jumps, decided and undecided ones."""
     texts = []
-    for place in at.order.values if "further_decided" in at else ():
-        one = at.sel(order=place)
-        decided, jump = str(one.further_decided.item()), at.jump.item()
-        held, error = float(one.further_held), float(one.further_error)
+    for order in at.order.values if "further_decided" in at else ():
+        jump_at = at.sel(order=order)
+        decided, jump = str(jump_at.further_decided.item()), at.jump.item()
+        held, error = float(jump_at.further_held), float(jump_at.further_error)
         if decided == "undecided":
             ends = f"between {held - error:.5g} and {held + error:.5g} V"
             texts.append(f"a further jump {jump} undecided {ends}: a longer --hold may tell")
         elif decided:
-            text = f"a further jump {jump} at {float(one.further_jumps):.4f} V"
+            text = f"a further jump {jump} at {float(jump_at.further_jumps):.4f} V"
             lost = f": the motion is lost at {held:.4f} +- {error:.4f} V"
             texts.append(f"{text}, {decided}{lost if math.isfinite(held) else ''}")
     return texts

@@ -227,12 +227,12 @@ def write_files(
 
     folder, units = open_folder(arguments.output), read_record_units(arguments)
     for ending, answer in answers.items():
-        place = folder / f"{stem}{ending}.nc"
+        path = folder / f"{stem}{ending}.nc"
         if ending:  # the verdict is stored already
-            write_netcdf(answer, place)
-        shown, named = with_units(answer, units), with_ending(place, units_ending(arguments))
+            write_netcdf(answer, path)
+        shown, named = with_units(answer, units), with_ending(path, units_ending(arguments))
         pictures = draw_picture(named, plots, True, partial(plot, shown))
-        for file in (place, *export_formats(shown, named, formats, fresh=True), *pictures):
+        for file in (path, *export_formats(shown, named, formats, fresh=True), *pictures):
             print(file)
     page, notes = folder / f"{stem}.html", arguments.notes
     print(report(*answers.values(), output=page, notes=notes, units=units))
@@ -242,8 +242,8 @@ def print_verdict(path: Path, verdict: xr.Dataset) -> None:
     """Print a record's verdict in a few lines: what it is, its reason, what would settle it."""
     from ..reports.verdict import make_verdict
 
-    said = make_verdict(verdict)
-    print(f"{path}: {said.word} {said.sentence}")
+    shown = make_verdict(verdict)
+    print(f"{path}: {shown.word} {shown.sentence}")
     columns = ("record_columns", "columns")
     simulated = ("simulated", "simulated records")
     for name, words in (("reason", "decided by"), simulated, ("settle", "to settle it"), columns):

@@ -26,8 +26,8 @@ def add_parser(commands: Commands) -> None:
     option = parser.add_argument_group("page").add_argument
     branches = "NetCDF file of branches over eta, drawn over the diagram"
     option("--branches", type=Path, metavar="FILE", help=branches)
-    place = "the page (default: %(default)s)"
-    option("--output", type=Path, default=Path("explorer.html"), metavar="FILE", help=place)
+    output_help = "the page (default: %(default)s)"
+    option("--output", type=Path, default=Path("explorer.html"), metavar="FILE", help=output_help)
     add_units_option(parser)
     option("--no-open", action="store_true", help="only write it")
     folder = "where the compiled kernel is looked for and put"

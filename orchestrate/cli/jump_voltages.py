@@ -58,8 +58,8 @@ def run(arguments: argparse.Namespace) -> None:
         **times_in_seconds(arguments, structure, "settle", "step"),
     }
     draw = partial(draw_result, name=Path(arguments.drive).stem, ends=ends)
-    tell = partial(print_result, directions=("up",) if arguments.one_way else ("up", "down"))
-    answer_both_structures(arguments, structure, drive, question, draw, tell)
+    print_table = partial(print_result, directions=("up",) if arguments.one_way else ("up", "down"))
+    answer_both_structures(arguments, structure, drive, question, draw, print_table)
 
 
 def draw_result(data: xr.Dataset, name: str, ends: tuple[float, float]) -> Any:

@@ -39,8 +39,10 @@ def run(arguments: argparse.Namespace) -> None:
     """Run ``manifold``: trace the unstable manifold of a saddle; print, store and draw it."""
     structure = read_structure_options(arguments)
     question = arguments.question.keywords(arguments)
-    given = frequency_option(arguments) is not None or read_amplitude(arguments) is not None
-    if given or question["start"] is None:
+    has_excitation = (
+        frequency_option(arguments) is not None or read_amplitude(arguments) is not None
+    )
+    if has_excitation or question["start"] is None:
         question |= read_excitation(arguments, structure, si=True, one=True)
     answer_question(arguments, structure, question, print_result, draw_result)
 

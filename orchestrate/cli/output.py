@@ -80,8 +80,8 @@ def add_running_options(
     own = "own FMU (default: the one of the present sources)"
     more: dict[str, Any] = {"action": "append"} if several else {}
     option("--fmu", type=Path, metavar="FILE", help=own + "; may be repeated" * several, **more)
-    place = "where FMUs are looked for and exported to"
-    option("--build-folder", type=Path, metavar="FOLDER", help=place)
+    build_help = "where FMUs are looked for and exported to"
+    option("--build-folder", type=Path, metavar="FOLDER", help=build_help)
 
 
 def add_file_options(parser: argparse.ArgumentParser, store: bool = True) -> None:
@@ -429,9 +429,9 @@ def export_formats(
     """
     from ..running.formats import write
 
-    places = [result.with_suffix(f".{ending}") for ending in formats if ending != "nc"]
+    paths = [result.with_suffix(f".{ending}") for ending in formats if ending != "nc"]
     files: list[Path] = []
-    for path in places:
+    for path in paths:
         files += (
             sorted(write(data, path)) if fresh or not existing_files(path) else existing_files(path)
         )

@@ -23,8 +23,8 @@ def add_parser(commands: Commands) -> None:
     option("--title", default="", metavar="WORDS", help="by default that of the first result")
     option("--notes", default="", metavar="WORDS", help="below the title: what, who, when")
     add_units_option(parser)
-    place = "folder of the page (default: results)"
-    option("--output", type=Path, default=Path("results"), metavar="FOLDER", help=place)
+    folder_help = "folder of the page (default: results)"
+    option("--output", type=Path, default=Path("results"), metavar="FOLDER", help=folder_help)
 
 
 def run(arguments: argparse.Namespace) -> None:

@@ -165,12 +165,12 @@ def read_record_excitation(arguments: argparse.Namespace) -> Sampled:
 
 def excitation_kind(arguments: argparse.Namespace) -> str:
     """Return which kind of excitation is chosen; raise for options of another kind."""
-    given = [name for name in KINDS if getattr(arguments, name) is not None]
-    if len(given) != 1:
-        told = join_option_names((name.replace("_", "-") for name in given), " and ") or "nothing"
+    chosen = [name for name in KINDS if getattr(arguments, name) is not None]
+    if len(chosen) != 1:
+        words = join_option_names((name.replace("_", "-") for name in chosen), " and ") or "nothing"
         names = join_option_names(name.replace("_", "-") for name in KINDS)
-        raise InputError(f"excitation: {told} given; expected one of {names}")
-    (kind,) = given
+        raise InputError(f"excitation: {words} given; expected one of {names}")
+    (kind,) = chosen
     for name, owner in OF_KINDS.items():
         if getattr(arguments, name) is not None and owner != kind:
             option, kinds = (word.replace("_", "-") for word in (name, owner))
@@ -193,23 +193,23 @@ def read_level(arguments: argparse.Namespace) -> Any:
     """Return the peak acceleration, m/s2: a number, or a profile over frequency."""
     from ..constants import GRAVITY
 
-    given = [name for name in ("g", "acceleration") if getattr(arguments, name) is not None]
-    if len(given) != 1:
-        told = join_option_names(given, " and ") or "nothing"
-        raise InputError(f"level: {told} given; expected one of --g and --acceleration")
-    text, unit = getattr(arguments, given[0]), GRAVITY if given[0] == "g" else 1.0
+    chosen = [name for name in ("g", "acceleration") if getattr(arguments, name) is not None]
+    if len(chosen) != 1:
+        words = join_option_names(chosen, " and ") or "nothing"
+        raise InputError(f"level: {words} given; expected one of --g and --acceleration")
+    text, unit = getattr(arguments, chosen[0]), GRAVITY if chosen[0] == "g" else 1.0
     if ":" not in text:
-        return unit * positive_number(f"--{given[0]}", text)
-    return tuple((f, unit * value) for f, value in parse_breakpoints(f"--{given[0]}", text))
+        return unit * positive_number(f"--{chosen[0]}", text)
+    return tuple((f, unit * value) for f, value in parse_breakpoints(f"--{chosen[0]}", text))
 
 
 def print_result(data: xr.Dataset) -> None:
     """Print a record's largest accelerations and gap, and its impacts."""
     names = ("box_acceleration", "a1_abs", "a2_abs")
     factor, unit = scale_of(data, "m/s2")
-    felt = [float(abs(data[name]).max()) / factor for name in names]
+    accelerations = [float(abs(data[name]).max()) / factor for name in names]
     text = "largest accelerations: box {:.4g}, masses 1 and 2 between impacts {:.4g} and {:.4g} {}"
-    print(text.format(*felt, unit))
+    print(text.format(*accelerations, unit))
     print(f"largest gap {text_of(data, data.x_rel.max(), 'm', '.4g')}")
     over = float(data.transient_time)
     print(f"the start is forgotten after {over:.3g} s where the motion is linear")

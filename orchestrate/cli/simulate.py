@@ -39,8 +39,10 @@ def print_result(data: xr.Dataset) -> None:
     """Print a simulation's largest displacements, gap and accelerations, and its impacts."""
     reach = [text_of(data, abs(data[n]).max(), "m") for n in ("x1", "x2", "x_rel")]
     print("largest |x1| {}, |x2| {}, gap {}".format(*reach))
-    felt = [text_of(data, abs(data[name]).max(), "m/s2", ".4g") for name in ("a1_abs", "a2_abs")]
-    print("largest acceleration between impacts {} and {}".format(*felt))
+    accelerations = [
+        text_of(data, abs(data[name]).max(), "m/s2", ".4g") for name in ("a1_abs", "a2_abs")
+    ]
+    print("largest acceleration between impacts {} and {}".format(*accelerations))
     count = data.sizes["impact"]
     if not count:
         print("no impacts")

@@ -77,9 +77,9 @@ def print_result(data: xr.Dataset) -> None:
     gap = text_of(data, top.xi_rel_max * top.amplitude * top.eta**2, "m", ".4g")
     print(f"largest gap: xi_Rel = {float(top.xi_rel_max):.6g}, {gap}, at {where}")
     for mass in (1, 2):
-        far = text_of(data, data[f"x{mass}_max"].max(), "m", ".4g")
-        felt = text_of(data, data[f"a{mass}_max"].max(), "m/s2", ".4g")
-        print(f"mass {mass}: largest displacement {far}, acceleration {felt}")
+        displacement = text_of(data, data[f"x{mass}_max"].max(), "m", ".4g")
+        acceleration = text_of(data, data[f"a{mass}_max"].max(), "m/s2", ".4g")
+        print(f"mass {mass}: largest displacement {displacement}, acceleration {acceleration}")
     decided = data.multiplicity_decided
     periodic = int(has_flag(decided, "repeated").sum())
     print(f"periodic: {periodic} of {decided.size} responses")

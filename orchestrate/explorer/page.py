@@ -109,7 +109,7 @@ def explore(
         "shaker": web_kernel(SHAKER, build_folder),
     }
     text = render_page(chosen, branch_json(branches), kernels)
-    return write_whole(path, lambda place: place.write_text(text, encoding="utf-8"))
+    return write_whole(path, lambda target: target.write_text(text, encoding="utf-8"))
 
 
 def first_bytes(path: Path) -> bytes:

@@ -167,13 +167,13 @@ def excitation_level(data: xr.Dataset, structure: Structure) -> tuple[str, float
 
 def sweep_settings(data: xr.Dataset) -> dict[str, float]:
     """Return transient, samples and tolerance of a sweep; raise if they are out of range."""
-    found = {name: float(data.attrs[name]) for name in SETTINGS}
-    transient, samples, tolerance = found.values()
+    settings = {name: float(data.attrs[name]) for name in SETTINGS}
+    transient, samples, tolerance = settings.values()
     if not (transient.is_integer() and samples.is_integer() and transient >= 0 and samples >= 1):
         raise ValueError(f"transient = {transient}, samples = {samples}")
     if not (0.0 < tolerance < math.inf and transient + samples <= MOST_PERIODS):
         raise ValueError(f"tolerance = {tolerance}, {transient + samples} periods")
-    return found
+    return settings
 
 
 def check_sweep(data: xr.Dataset) -> str:
@@ -196,10 +196,10 @@ def check_sweep(data: xr.Dataset) -> str:
 
 def parse_state(text: Any) -> NDArray[np.float64]:
     """Parse an attribute such as ``[0, 0, 0, 1]`` into four numbers."""
-    found = np.array([float(part) for part in str(text).strip("[]").split(",")])
-    if found.shape != (4,):
+    state = np.array([float(part) for part in str(text).strip("[]").split(",")])
+    if state.shape != (4,):
         raise ValueError(f"start = {text}")
-    return found
+    return state
 
 
 def state_scales(data: xr.Dataset, structure: Structure) -> NDArray[np.float64]:

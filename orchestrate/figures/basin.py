@@ -78,8 +78,8 @@ def mark_attractors(plane: Axes, data: xr.Dataset) -> None:
     for index in range(data.sizes["attractor"]):
         colour = COLOURS[index] if index < len(COLOURS) else OTHER
         style["markerfacecolor"] = colour
-        place = columns[x][index] / right, columns[y][index] / up
-        plane.plot(*place, "X", **style)
+        position = columns[x][index] / right, columns[y][index] / up
+        plane.plot(*position, "X", **style)
     plane.set(xlim=limits[0], ylim=limits[1])
     plane.plot([], [], "X", **{**style, "markerfacecolor": "white"}, label="states on them")
 

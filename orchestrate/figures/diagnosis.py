@@ -56,12 +56,12 @@ def draw_signs(data: xr.Dataset, title: str = "") -> Figure:
     channels = [str(channel) for channel in data.channel.values]
     share = HEIGHT / len(channels)
     for number, channel in enumerate(channels):
-        place = np.arange(len(signs)) + share * (number - 0.5 * (len(channels) - 1))
+        positions = np.arange(len(signs)) + share * (number - 0.5 * (len(channels) - 1))
         values = ratio.sel(channel=channel).values
         label = CHANNELS.get(channel, channel)
         colour = COLOURS[number % len(COLOURS)]
-        axes.barh(place, np.nan_to_num(values), share, color=colour, label=label)
-        write_values(axes, place, values, data.value.sel(channel=channel).values)
+        axes.barh(positions, np.nan_to_num(values), share, color=colour, label=label)
+        write_values(axes, positions, values, data.value.sel(channel=channel).values)
     lines: Any = {"linewidth": 1.0, "zorder": 3}
     axes.axvline(1.0, color=GREY, label="noise and a sound structure", **lines)
     axes.axvline(LIMIT, color=RED, linestyle="--", label="from here it stands out", **lines)

@@ -61,8 +61,8 @@ def draw(
         column_axes[3].set_title(f"means of {turns}, twice")
         column_axes[4].set_xlabel(f"time {words} in s")
         column_axes[4].set_xlim(time[0], time[-1])
-    speed, place = label_with_unit("speed", data.speed), label_with_unit("$x_1$", data.x1)
-    labels = (speed, "voltage in V", place, "power in W", "multiple of the speed")
+    speed, displacement = label_with_unit("speed", data.speed), label_with_unit("$x_1$", data.x1)
+    labels = (speed, "voltage in V", displacement, "power in W", "multiple of the speed")
     for panel, label in zip(axes[::count], labels, strict=True):
         panel.set_ylabel(label)
     for row in (0, 3):

@@ -130,19 +130,19 @@ def plot(*answers: xr.Dataset, title: str = "", part: str = "", units: str | Uni
         return plot_part(answers, several, part, title)
     if len(answers) == 1 and kinds[0] in analysis.DRAW:
         return analysis.draw(answers[0], title=title)
-    told = {"title": title} if title else {}
+    keywords = {"title": title} if title else {}
     if len(answers) == 1 and kinds[0] in DRAW:
-        return DRAW[kinds[0]](answers[0], **told)
+        return DRAW[kinds[0]](answers[0], **keywords)
     if len(several) == 1 and kinds[0] in SEVERAL:
-        return SEVERAL[kinds[0]](*answers, **told)
+        return SEVERAL[kinds[0]](*answers, **keywords)
     (below, *more) = sorted(several - {"branch"}) or [""]
     if "branch" in several and below in OVERLAY and not more and kinds.count(below) == 1:
         parts = [answer for answer, kind in zip(answers, kinds, strict=True) if kind == "branch"]
-        return OVERLAY[below](answers[kinds.index(below)], overlay=parts, **told)
+        return OVERLAY[below](answers[kinds.index(below)], overlay=parts, **keywords)
     if len(several) == 1 and kinds[0] in BESIDE and len(answers) == 2:
         delaminated, bonded = sorted(answers, key=is_bonded)
         if is_bonded(bonded) and not is_bonded(delaminated):
-            return BESIDE[kinds[0]](delaminated, bonded=bonded, **told)
+            return BESIDE[kinds[0]](delaminated, bonded=bonded, **keywords)
     return plot_drive(answers, kinds, title)
 
 

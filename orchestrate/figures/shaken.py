@@ -38,13 +38,13 @@ def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) ->
     rows = figure.subplots(4, 1, sharex=True, height_ratios=(1.0, 1.6, 1.2, 1.2))
     set_title(figure, title or f"{data.attrs['excitation']}; {title_from_attributes(data)}")
     box, masses, gap, impacts = rows
-    felt, unit = acceleration_scale(data)
-    draw_signal(box, data, "box_acceleration", felt, color=BLACK)
+    scale, unit = acceleration_scale(data)
+    draw_signal(box, data, "box_acceleration", scale, color=BLACK)
     box.set_ylabel(f"box in {unit}")
     for name, style in MASSES:
-        draw_signal(masses, data, name, felt, alpha=0.55, **style)
+        draw_signal(masses, data, name, scale, alpha=0.55, **style)
     if bonded is not None:
-        draw_bonded_envelope(masses, bonded, felt)
+        draw_bonded_envelope(masses, bonded, scale)
     masses.set_ylabel(f"masses in {unit}")
     masses.legend(ncols=3, loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.2)
     factor, letter = length_scale(data, float(data.x_rel.max()))

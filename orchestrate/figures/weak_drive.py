@@ -119,7 +119,11 @@ def draw_jumps(runs: Mapping[str, xr.Dataset], title: str = "") -> Figure:
 def jump_directions(runs: Mapping[str, xr.Dataset]) -> list[str]:
     """Return the directions, "up" and "down", in which any of the runs jumps."""
     directions = ("up", "down")
-    return [way for way in directions if any(has_jump(data, way) for data in runs.values())]
+    return [
+        direction
+        for direction in directions
+        if any(has_jump(data, direction) for data in runs.values())
+    ]
 
 
 def draw_theory(axes: Sequence[Axes], theory: xr.Dataset) -> None:
@@ -170,9 +174,9 @@ def further_jumps(data: xr.Dataset) -> list[tuple[str, float, bool]]:
     if "further_decided" not in data:
         return []
     return [
-        (str(way), float(at.further_jumps if sure else at.further_held), sure)
-        for way in data.jump.values
-        for at in (data.sel(jump=way, order=place) for place in data.order.values)
+        (str(direction), float(at.further_jumps if sure else at.further_held), sure)
+        for direction in data.jump.values
+        for at in (data.sel(jump=direction, order=order) for order in data.order.values)
         if at.further_decided.item()
         for sure in (at.further_decided.item() != "undecided",)
     ]

@@ -140,12 +140,12 @@ class LargestExponentJob(Job):
         rows = np.full((self.candidates, len(NUMBERS)), np.nan)
         rows[:, -1] = NOT_RUN
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            for place, (point, start, screened) in enumerate(candidates):
-                other = another_start(point, start, [self.seed, number, place])
+            for index, (point, start, screened) in enumerate(candidates):
+                other = another_start(point, start, [self.seed, number, index])
                 run = long_run(instance, point, other, self.periods, self.parts, self.runs)
                 eta = point.excitation.eta(point.structure)
                 outcome = self.classify_run(run, screened, eta)
-                rows[place] = [eta, screened, *run.exponent, outcome]
+                rows[index] = [eta, screened, *run.exponent, outcome]
                 if outcome == STEADY:
                     break
         return {"rows": rows[np.newaxis]}

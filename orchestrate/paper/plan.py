@@ -107,8 +107,13 @@ def sweep_job(structure: Structure, direction: str, resolution: Resolution) -> S
 
 def make_onward_job(kind: type[Followers], sweep: SweepJob, name: str, **fields: Any) -> Followers:
     """Return a job of a class that continues a sweep's responses."""
-    given: Any = {"structure": sweep.structure, "eta": sweep.eta, "follows": sweep.name, **fields}
-    return kind(name=sweep.name.replace("orbit", name), **given)
+    keywords: Any = {
+        "structure": sweep.structure,
+        "eta": sweep.eta,
+        "follows": sweep.name,
+        **fields,
+    }
+    return kind(name=sweep.name.replace("orbit", name), **keywords)
 
 
 def settled_job(sweep: SweepJob, resolution: Resolution) -> SettledJob:

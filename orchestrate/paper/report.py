@@ -87,7 +87,7 @@ def write_report(
         "sampled": f"$n = {first}(1){first + resolution.samples}$",
     }
     page = environment.get_template("report.html.j2").render(**shown, **content)
-    return write_whole(output / "report.html", lambda place: place.write_bytes(page.encode()))
+    return write_whole(output / "report.html", lambda path: path.write_bytes(page.encode()))
 
 
 def summarize_verdicts(claims: Sequence[Mapping[str, str]]) -> dict[str, Any]:

@@ -69,21 +69,21 @@ def reproduce(
     drawn = [part for part in parts if part.picture]
     pictures = draw_all(drawn, output, options.processes)
     asked = [part for part in parts if not part.picture]
-    found = check_claims(output, asked[0].jobs, resolution.decides) if asked else NOTHING
-    content = {"resolution": resolution, "fmu": find(OSCILLATOR), **found}
+    checked = check_claims(output, asked[0].jobs, resolution.decides) if asked else NOTHING
+    content = {"resolution": resolution, "fmu": find(OSCILLATOR), **checked}
     return Reproduction(
-        found, pictures, report.write_report(output, pictures, whole.parts, content)
+        checked, pictures, report.write_report(output, pictures, whole.parts, content)
     )
 
 
 def check_claims(output: Path, names: Sequence[str], full: bool) -> dict[str, Any]:
     """Check the claims against stored results; write them as JSON and return them."""
     data = {name: load(output / f"{name}.nc") for name in names}
-    found = {
+    checked = {
         "claims": claims.check_all_claims(data, full),
         "regions": answers.region_rows(data),
         "answers": answers.answer_sentences(data),
     }
-    text = json.dumps(found, indent=1, ensure_ascii=False) + "\n"
-    write_whole(output / "claims.json", lambda place: place.write_text(text, encoding="utf-8"))
-    return found
+    text = json.dumps(checked, indent=1, ensure_ascii=False) + "\n"
+    write_whole(output / "claims.json", lambda path: path.write_text(text, encoding="utf-8"))
+    return checked

@@ -100,10 +100,10 @@ class LimitsJob(Job):
         """Return number, structure and start state of each branch."""
         items = []
         for number, one in enumerate(self.branches):
-            place = list(CASES).index(one.case)
-            row = inputs[self.sweeps[place]].sel(eta=one.eta, method="nearest")
+            index = list(CASES).index(one.case)
+            row = inputs[self.sweeps[index]].sel(eta=one.eta, method="nearest")
             state = tuple(map(float, row.end_state.values))
-            items.append((number, self.structures[place], state))
+            items.append((number, self.structures[index], state))
         return items
 
     def work(
@@ -115,9 +115,9 @@ class LimitsJob(Job):
         """Trace one branch; return its stable windows with their bifurcations."""
         ((number, structure, state),) = items
         one = self.branches[number]
-        given: Any = {"progress": False, "fmu": fmus[OSCILLATOR]}
-        start = orbit(structure, eta=one.eta, period=one.period, guess=state, **given)
-        windows = stable_windows(branch(structure, start=start, limits=one.limits, **given))
+        keywords: Any = {"progress": False, "fmu": fmus[OSCILLATOR]}
+        start = orbit(structure, eta=one.eta, period=one.period, guess=state, **keywords)
+        windows = stable_windows(branch(structure, start=start, limits=one.limits, **keywords))
         return {
             "branch": np.full(len(windows), number),
             "ends": np.array([(w.low, w.high) for w in windows]).reshape(-1, 2),

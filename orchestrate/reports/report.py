@@ -78,7 +78,7 @@ def report(
         signed=is_verdict(first),
     )
     text = page.html().encode()
-    return write_whole(Path(output), lambda place: place.write_bytes(text))
+    return write_whole(Path(output), lambda path: path.write_bytes(text))
 
 
 def is_verdict(answer: xr.Dataset) -> bool:

@@ -40,11 +40,13 @@ def make_verdict(answer: xr.Dataset) -> Verdict:
 def format_range(answer: xr.Dataset) -> str:
     """Format the levels and frequencies that the record covers."""
     low, high = scalar(answer, "frequency_low"), scalar(answer, "frequency_high")
-    felt, unit = scale_of(answer, "m/s2")
-    turn, word = scale_of(answer, "Hz")
-    level = f"{format_number(scalar(answer, 'level_high') / felt)} {unit.replace('m/s2', 'm/s²')}"
+    per_unit, unit = scale_of(answer, "m/s2")
+    frequency_scale, word = scale_of(answer, "Hz")
+    level = (
+        f"{format_number(scalar(answer, 'level_high') / per_unit)} {unit.replace('m/s2', 'm/s²')}"
+    )
     over = "Omega/omega" if word == "eta" else word
-    first, last = (format_number(end / turn, digits=4) for end in (low, high))
+    first, last = (format_number(end / frequency_scale, digits=4) for end in (low, high))
     return f"up to {level} over {first} to {last} {over}"
 
 
@@ -196,7 +198,7 @@ def hypothesis_table(answer: xr.Dataset) -> Table:
 def deciding_hypotheses(answer: xr.Dataset, names: Sequence[str]) -> list[int]:
     """Return the indices of the hypotheses on which the verdict rests."""
     parted = {"delaminated": True, "no opening seen": False}.get(str(answer.verdict.values))
-    return [place for place, name in enumerate(names) if name.startswith(PARTED) == parted]
+    return [index for index, name in enumerate(names) if name.startswith(PARTED) == parted]
 
 
 def parameter_section(answer: xr.Dataset) -> Section | None:
@@ -215,14 +217,14 @@ def parameter_section(answer: xr.Dataset) -> Section | None:
         for name in answer.parameter.values
     ]
     columns = [0] + [
-        place for place in range(1, 1 + len(shown)) if any(row[place] != MISSING for row in rows)
+        column for column in range(1, 1 + len(shown)) if any(row[column] != MISSING for row in rows)
     ][:BEST]
     known = [
-        tuple(row[place] for place in columns)
+        tuple(row[column] for column in columns)
         for row in rows
-        if any(row[place] != MISSING for place in columns[1:])
+        if any(row[column] != MISSING for column in columns[1:])
     ]
-    heads = ("parameter", *(names[place - 1] for place in columns[1:]))
+    heads = ("parameter", *(names[column - 1] for column in columns[1:]))
     text = (
         "Errors are standard errors from blocks of the record and from what the structure misses. "
         f"What a structure does not have, or the record does not hold, has a dash ({MISSING})."

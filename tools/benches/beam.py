@@ -258,8 +258,8 @@ class DelaminatedBeam:
             Nodes from one contact to the next.
         """
         frequency, shapes, participation = self.modes(modes)
-        place = np.array([self.single_mass_position() if sensor is None else sensor])
-        faces_rows = [self.deflection_rows(shapes, layer, place)[0] for layer in (1, 2)]
+        position = np.array([self.single_mass_position() if sensor is None else sensor])
+        faces_rows = [self.deflection_rows(shapes, layer, position)[0] for layer in (1, 2)]
         return ModalSystem(
             frequency=frequency,
             damping_ratio=np.full(modes, zeta),

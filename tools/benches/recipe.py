@@ -234,9 +234,9 @@ def draw_sagging(rng: np.random.Generator, level: float, conditions: Conditions)
     change = rng.uniform(0.02, 0.15)
     peak = level / (2.0 * one.zeta * (TURN * one.f) ** 2 * (1.0 + change))
     cubic, sag = cubic_stiffness(change, one.f, peak), peak * rng.uniform(0.1, 0.5)
-    found = bonded_specimen(own, own.bonded(cubic=cubic, sag=sag), cubic)
+    specimen = bonded_specimen(own, own.bonded(cubic=cubic, sag=sag), cubic)
     stiffer = math.sqrt(1.0 + 3.0 * cubic * sag**2 / (TURN * one.f) ** 2)
-    return replace(found, f1=one.f * stiffer, f2=one.f * stiffer)
+    return replace(specimen, f1=one.f * stiffer, f2=one.f * stiffer)
 
 
 def draw_with_friction(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:

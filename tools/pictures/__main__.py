@@ -100,17 +100,17 @@ def draw_by_command(line: str, ending: str) -> bytes:
 def main(names: list[str]) -> None:
     """Draw the named pictures, by default all that no other tool writes."""
     for name in names or [*PICTURES, *COMMANDS]:
-        place = DOCS / f"{name}.png"
+        path = DOCS / f"{name}.png"
         if name in PICTURES:
-            save_small(PICTURES[name](), place)
+            save_small(PICTURES[name](), path)
         elif name in COMMANDS:
-            write_small(draw_by_command(*COMMANDS[name]), place)
+            write_small(draw_by_command(*COMMANDS[name]), path)
         elif name in KEPT:
-            write_small(place.read_bytes(), place)
+            write_small(path.read_bytes(), path)
         else:
             expected = ", ".join([*PICTURES, *COMMANDS, *KEPT])
             raise SystemExit(f"{name}: no picture of the manual; expected one of {expected}")
-        print(place, place.stat().st_size)
+        print(path, path.stat().st_size)
 
 
 if __name__ == "__main__":

@@ -69,12 +69,14 @@ def measure_steps(fmu: str | PathLike[str], eta: float, steps: int) -> StepTimes
         known = describe(fmu)
         reference = {name: str(v.valueReference) for name, v in known.variables.items()}
         reals = {name for name in values if name not in ("bonded",)}
-        given = [part for name in reals for part in (reference[name], repr(float(values[name])))]
+        start_values = [
+            part for name in reals for part in (reference[name], repr(float(values[name])))
+        ]
         program = Path(folder) / "steps"
         options = ("-O2", "-std=gnu99", "-Wall", "-Wextra", "-Werror")
         run_command("gcc", *options, HERE / "steps.c", "-ldl", "-o", program)
         order = [str(steps), repr(SIZE), str(RUNS), *(reference[name] for name in COUNTED)]
-        text = run_command(program, library, known.guid, *order, *given, timeout=3600.0)
+        text = run_command(program, library, known.guid, *order, *start_values, timeout=3600.0)
     lines = [line.split() for line in text.splitlines()]
     evaluations, impacts, contacts = (int(count) for _, count in lines[:3])
     times = Counter({int(time): int(count) for time, count in lines[3:]})

@@ -40,8 +40,8 @@ def run_campaign(
 ) -> ledger_file.LedgerEntry:
     """Run a campaign, or continue it; finished batches are reused; return its ledger entry."""
     job = make_job(campaign, seed, budget)
-    place = store / f"{campaign.name}-{seed}-{budget}-{job.sources[:6]}.nc"
-    result = answer(job, {"store": place, **running}, finder(running))
+    path = store / f"{campaign.name}-{seed}-{budget}-{job.sources[:6]}.nc"
+    result = answer(job, {"store": path, **running}, finder(running))
     return ledger_file.make_entry(campaign.name, seed, budget, result)
 
 
@@ -56,16 +56,16 @@ def keep_partial_run(
         Where the first batch is not there.
     """
     job = make_job(campaign, seed, budget)
-    place = store / f"{campaign.name}-{seed}-{budget}-{job.sources[:6]}.nc"
+    path = store / f"{campaign.name}-{seed}-{budget}-{job.sources[:6]}.nc"
     find = finder({})
     fmus = {model: find(model) for model in job.models}
     identity = identity_of(job, fmus, {})
-    kept = open_store(job.name, identity, RunOptions.from_keywords({"store": place}))
+    kept = open_store(job.name, identity, RunOptions.from_keywords({"store": path}))
     try:
         done = Progress(job, kept, identity, fmus).done_chunks
         count = next(number for number in range(len(done) + 1) if number not in done)
         if not count:
-            raise InputError(f"{place}: holds no batch; expected a run that was begun")
+            raise InputError(f"{path}: holds no batch; expected a run that was begun")
         part = replace(job, budget=min(count * job.chunk_size * campaign.batch, budget))
         result = part.dataset(kept.table(count), {})
         result = with_provenance(result, part, identity, fmus, kept.begun)
@@ -90,7 +90,7 @@ def write_page() -> None:
     """Write docs/trust.md and its pictures from all ledger entries."""
     ledger_page.draw_pictures(ledger_file.read_entries())
     text = ledger_page.page_text(ledger_file.read_entries())
-    write_whole(ledger_page.PAGE, lambda place: place.write_text(text, "utf-8"))
+    write_whole(ledger_page.PAGE, lambda path: path.write_text(text, "utf-8"))
 
 
 def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:

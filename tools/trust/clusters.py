@@ -52,15 +52,15 @@ class DaskNodes:
 
     def start(self) -> None:
         """Start the scheduler at an address of its own, and its workers."""
-        place = self.folder / "address"
-        place.unlink(missing_ok=True)
-        self.scheduler = fork_coroutine(lambda: run_scheduler(place), self.folder / "log")
+        path = self.folder / "address"
+        path.unlink(missing_ok=True)
+        self.scheduler = fork_coroutine(lambda: run_scheduler(path), self.folder / "log")
         self.pids.append(self.scheduler)
         stop = time.monotonic() + START
-        while not place.exists():
+        while not path.exists():
             assert time.monotonic() < stop, (self.folder / "log").read_text()[-1000:]
             time.sleep(0.01)
-        self.address = place.read_text()
+        self.address = path.read_text()
         self.workers = [self.start_worker() for _ in range(2)]
 
     def start_worker(self, version: str = "") -> int:

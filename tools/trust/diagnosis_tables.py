@@ -58,12 +58,12 @@ def table_lines(rows: Sequence[Sequence[Any]]) -> list[str]:
 def verdict_lines(table: pd.DataFrame) -> list[str]:
     """Return Markdown lines of the table of verdicts by kind of beam."""
     head = " | ".join(VERDICTS)
-    found = [f"| beam | {head} | wrong |", "|---" * (len(VERDICTS) + 2) + "|"]
+    lines = [f"| beam | {head} | wrong |", "|---" * (len(VERDICTS) + 2) + "|"]
     for kind, own in table.groupby("kind", sort=True):
         counts = [int((own.verdict == verdict).sum()) for verdict in VERDICTS]
         cells = [str(kind), *map(str, counts), str(int((own.wrong != "").sum()))]
-        found.append(f"| {' | '.join(cells)} |")
-    return found
+        lines.append(f"| {' | '.join(cells)} |")
+    return lines
 
 
 def target_lines(table: pd.DataFrame) -> list[str]:
@@ -75,7 +75,7 @@ def target_lines(table: pd.DataFrame) -> list[str]:
     errors = np.abs(compliant[["f1 error", "f2 error"]].astype(float).to_numpy().ravel())
     errors = 100.0 * errors[np.isfinite(errors)]
     wrong, undecided = (compliant.wrong != "").sum(), (compliant.verdict == UNDECIDED).sum()
-    found = [
+    lines = [
         "At 1 to 5 % noise, where the record was not refused:",
         "",
         f"- two masses, sound or delaminated: wrong "
@@ -86,17 +86,17 @@ def target_lines(table: pd.DataFrame) -> list[str]:
     ]
     if len(errors):
         median, nine = np.quantile(errors, (0.5, 0.9))
-        found.append(
+        lines.append(
             f"- f1 and f2 of two masses called delaminated ({len(errors)} numbers): median error "
             f"{median:.2f} %, nine of ten within {nine:.2f} %;"
         )
-    found += deviation_lines(compliant)
+    lines += deviation_lines(compliant)
     seconds = table.seconds.astype(float)
-    found.append(
+    lines.append(
         f"- a verdict takes {seconds.median():.1f} s of one processor in the median, "
         f"{seconds.max():.1f} s at most."
     )
-    return found
+    return lines
 
 
 def deviation_lines(table: pd.DataFrame) -> list[str]:
@@ -111,7 +111,7 @@ def deviation_lines(table: pd.DataFrame) -> list[str]:
 
 def curve_lines(table: pd.DataFrame) -> list[str]:
     """Return Markdown lines of areas under the ROC curves and detector rates, by group."""
-    found = [
+    lines = [
         "Beams that opened against sound ones: of each sign, and of the ratio of misfits by which "
         "the detector decides, the area under its curve with its standard error, and the part of "
         f"opened beams above the threshold that {100 * FALSE:.0f} % of the sound ones pass; of the "
@@ -130,19 +130,19 @@ def curve_lines(table: pd.DataFrame) -> list[str]:
         cells += [
             roc.format_share(int((g.verdict == DELAMINATED).sum()), len(g)) for g in (opened, sound)
         ]
-        found.append(f"| {' | '.join(cells)} |")
-    return found
+        lines.append(f"| {' | '.join(cells)} |")
+    return lines
 
 
 def sign_cell(table: pd.DataFrame, sign: str) -> str:
     """Return a table cell with a sign's area under the curve and its rate."""
-    found = sign_curve(table, sign)
-    if found is None:
+    curve = sign_curve(table, sign)
+    if curve is None:
         return "none"
     known = table[table[sign].notna()]
     counts = int((known.opened == 1).sum()), int((known.delaminated == 0).sum())
-    error = roc.area_error(found.area, *counts)
-    return f"{found.area:.3f} ± {error:.3f}; {100.0 * found.true_rate_at(FALSE):.0f} %"
+    error = roc.area_error(curve.area, *counts)
+    return f"{curve.area:.3f} ± {error:.3f}; {100.0 * curve.true_rate_at(FALSE):.0f} %"
 
 
 def sign_curve(table: pd.DataFrame, sign: str) -> roc.RocCurve | None:
@@ -157,30 +157,30 @@ def sign_curve(table: pd.DataFrame, sign: str) -> roc.RocCurve | None:
 def group_rows(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
     """Return groups of rows: all, then by noise, level and length of the delamination."""
     masses = table[table["size"].isna()]
-    found = [("all", table), ("two masses", masses)]
+    groups = [("all", table), ("two masses", masses)]
     for low, high in roc.neighbour_pairs(NOISE):
-        found.append(
+        groups.append(
             (f"noise {100 * low:g} to {100 * high:g} %", rows_within(masses, "noise", low, high))
         )
     for low, high in roc.neighbour_pairs(LEVEL):
-        found.append((f"level {low:g} to {high:g} m/s²", rows_within(masses, "level", low, high)))
+        groups.append((f"level {low:g} to {high:g} m/s²", rows_within(masses, "level", low, high)))
     beams = table[table["size"].notna()]
     for low, high in roc.neighbour_pairs(SIZE):
         size = beams["size"].astype(float)
         own = beams[(beams.delaminated == 0) | ((size >= low) & (size < high))]
-        found.append((f"finite elements, {low:g} to {high:g} of the length", own))
-    return found
+        groups.append((f"finite elements, {low:g} to {high:g} of the length", own))
+    return groups
 
 
 def groups_by_setup(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
     """Return groups of two-mass rows by excitation, number of sensors, kind of sound beam."""
     masses = table[table["size"].isna()]
-    found = [(f"excitation: {name}", own) for name, own in masses.groupby("excitation", sort=True)]
-    found += [(f"sensors: {count}", own) for count, own in masses.groupby("sensors", sort=True)]
+    groups = [(f"excitation: {name}", own) for name, own in masses.groupby("excitation", sort=True)]
+    groups += [(f"sensors: {count}", own) for count, own in masses.groupby("sensors", sort=True)]
     for kind in (*NONLINEAR, "sagging"):
         own = masses[(masses.kind == kind) | (masses.delaminated == 1)]
-        found.append((f"sound ones: {kind}", own))
-    return found
+        groups.append((f"sound ones: {kind}", own))
+    return groups
 
 
 def rows_within(table: pd.DataFrame, name: str, low: float, high: float) -> pd.DataFrame:
@@ -220,9 +220,9 @@ def draw_panel(panel: Any, name: str, table: pd.DataFrame) -> None:
     """Draw one group of rows: a ROC curve per sign, the detector as a point with intervals."""
     opened, sound = table[table.opened == 1], table[table.delaminated == 0]
     for sign, (label, colour) in SIGNS.items():
-        found = sign_curve(table, sign)
-        if found is not None:
-            panel.plot(found.false, found.true, color=colour, label=label)
+        curve = sign_curve(table, sign)
+        if curve is not None:
+            panel.plot(curve.false, curve.true, color=colour, label=label)
     counts = [(int((own.verdict == DELAMINATED).sum()), len(own)) for own in (sound, opened)]
     at = np.array([count / of for count, of in counts])
     ends = np.array([roc.wilson_interval(*one) for one in counts])

@@ -115,27 +115,27 @@ def write_attack(
     turn = number % 4
     if turn in (0, 1):
         kind = list(archives.KINDS)[(number // 2) % len(archives.KINDS)]
-        place = folder / "input.fmu"
-        place.unlink(missing_ok=True)
-        archives.KINDS[kind](fmu, place, chance)
+        path = folder / "input.fmu"
+        path.unlink(missing_ok=True)
+        archives.KINDS[kind](fmu, path, chance)
         command = ["simulate", "--eta", "1", "--periods", "2", "--plot", "none"]
-        return kind, [*command, "--output", str(folder / "results"), "--fmu", str(place)]
+        return kind, [*command, "--output", str(folder / "results"), "--fmu", str(path)]
     if turn == 2 and number % 8 == 2:
-        place = folder / "input.csv"
-        documents.write_course(place, chance)
+        path = folder / "input.csv"
+        documents.write_course(path, chance)
         command = ["couple", "--only", "delaminated", "--one-way", "--plot", "none"]
-        return "CSV", [*command, "--output", str(folder / "results"), "--course", str(place)]
+        return "CSV", [*command, "--output", str(folder / "results"), "--course", str(path)]
     if turn == 2:
-        place = folder / "input.toml"
-        documents.write_toml(place, chance)
+        path = folder / "input.toml"
+        documents.write_toml(path, chance)
         command = ["simulate", "--eta", "1", "--periods", "2", "--plot", "none"]
-        return "TOML", [*command, "--output", str(folder / "results"), "--structure", str(place)]
+        return "TOML", [*command, "--output", str(folder / "results"), "--structure", str(path)]
     reader = chance.choice(list(documents.READERS))
-    place = folder / "input.nc"
-    place.unlink(missing_ok=True)
-    documents.write_result(place, chance, good)
+    path = folder / "input.nc"
+    path.unlink(missing_ok=True)
+    documents.write_result(path, chance, good)
     output = folder / ("page.html" if reader in ("explore", "branches") else "results")
-    command = [*documents.READERS[reader](place), "--output", str(output)]
+    command = [*documents.READERS[reader](path), "--output", str(output)]
     return f"NetCDF for {reader}", command
 
 
@@ -155,7 +155,7 @@ def run_on_attack(arguments: list[str], folder: Path) -> tuple[FinishedCommand, 
 def escaped_paths(folder: Path) -> list[Path]:
     """Return the paths where an escaped file of the attacks would be."""
     places = (Path("/"), Path("/tmp"), *folder.parents, folder, Path.cwd(), *Path.cwd().parents)
-    return [place / "escaped" for place in dict.fromkeys(places)]
+    return [folder_above / "escaped" for folder_above in dict.fromkeys(places)]
 
 
 def find_problem(ended: FinishedCommand, strays: list[str]) -> str:

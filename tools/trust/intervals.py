@@ -87,13 +87,13 @@ def fit_noisy_record(rng: np.random.Generator) -> list[float | None]:
     answer = orchestrate.fit(record, guess, jobs=1, progress=False)
     errors = answer.standard_error.sel(parameter=list(FITTED)).values.tolist()
     values = answer.value.sel(parameter=list(FITTED)).values.tolist()
-    found = [
+    errors_in_sigma = [
         round_digits((value - truth[name]) / error)
         if math.isfinite(value) and error > 0.0
         else None
         for name, value, error in zip(FITTED, values, errors, strict=True)
     ]
-    return [round_digits(noise), round_digits(float(answer.misfit)), *found]
+    return [round_digits(noise), round_digits(float(answer.misfit)), *errors_in_sigma]
 
 
 def simulate_record(

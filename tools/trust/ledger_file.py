@@ -94,9 +94,9 @@ class LedgerEntry:
 
 def make_entry(campaign: str, seed: int, budget: int, answer: xr.Dataset) -> LedgerEntry:
     """Return the ledger entry of a finished run's dataset."""
-    told = [json.loads(str(text)) for text in answer.told.values]
+    details = [json.loads(str(text)) for text in answer.told.values]
     counts: Counter[str] = Counter()
-    for part in told:
+    for part in details:
         counts.update(part["counts"])
     return LedgerEntry(
         campaign=campaign,
@@ -107,7 +107,7 @@ def make_entry(campaign: str, seed: int, budget: int, answer: xr.Dataset) -> Led
         worst=float(f"{float(answer.worst.max()):.3g}"),
         worst_seed=int(answer.seed[int(answer.worst.values.argmax())]),
         counts=dict(sorted(counts.items())),
-        notes=[note for part in told for note in part["notes"]],
+        notes=[note for part in details for note in part["notes"]],
         seconds=round(float(answer.seconds.sum()), 2),
         date=time.strftime("%Y-%m-%d", time.gmtime()),
         version=__version__,
@@ -115,7 +115,7 @@ def make_entry(campaign: str, seed: int, budget: int, answer: xr.Dataset) -> Led
         package=digest(PACKAGE),
         machine=describe_machine(),
         campaigns=str(answer.attrs["sources"]),
-        rows=[row for part in told for row in part["rows"]],
+        rows=[row for part in details for row in part["rows"]],
     )
 
 

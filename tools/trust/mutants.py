@@ -92,12 +92,12 @@ def make_mutant(source: str, chance: random.Random) -> tuple[str, str]:
 def copy_tree(folder: Path) -> Path:
     """Copy sources and tests, to be mutated; return the copy's folder."""
     for name in TREES:
-        place = ROOT / name
-        if place.is_dir():
+        source = ROOT / name
+        if source.is_dir():
             ignored = shutil.ignore_patterns("__pycache__", "*.png")
-            shutil.copytree(place, folder / name, ignore=ignored)
+            shutil.copytree(source, folder / name, ignore=ignored)
         else:
-            shutil.copy(place, folder / name)
+            shutil.copy(source, folder / name)
     return folder
 
 

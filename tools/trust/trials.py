@@ -101,8 +101,8 @@ class Trial:
 
     def arguments(self) -> list[str]:
         """Return the arguments of the command."""
-        given = str(self.folder.parent / GIVEN)
-        named = [given if text == GIVEN else text for text in COMMANDS[self.name]]
+        start_file = str(self.folder.parent / GIVEN)
+        named = [start_file if text == GIVEN else text for text in COMMANDS[self.name]]
         return [*named, "--output", str(self.output)]
 
     def start(self, prepare: Callable[[], object] | None = None) -> ChildCommand:

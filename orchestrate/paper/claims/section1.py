@@ -51,13 +51,13 @@ def check_sommerfeld(results: Results) -> Finding:
     """Check whether the averaged theory of the set ``beam`` has folds at its resonance."""
     structure, drive = Structure.from_file(BEAM), Drive.from_file(BEAM)
     folds = averaged.folds(structure, drive)
-    place = averaged.resonance(structure, drive)
+    resonance = averaged.resonance(structure, drive)
     text = "; ".join(
         f"fold at speed {fold.Omega:.4f} omega, "
         f"{fold.eta0 * drive.motor_constant * structure.omega:.3f} V"
         for fold in folds
     )
-    value = f"resonance at {place:.4f} omega; {text or 'no fold: the speed does not jump'}"
+    value = f"resonance at {resonance:.4f} omega; {text or 'no fold: the speed does not jump'}"
     why = "Bonded masses; jumps of the delaminated beam: the command couple."
     return Finding(value, YES if len(folds) > 1 else NO, why)
 

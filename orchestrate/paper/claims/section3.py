@@ -81,11 +81,11 @@ def check_most_unfavourable(results: Results) -> Finding:
     largest = results.get("map_kappa").impulse_max.max("eta")
     own = CASES["elastic"].kappa
     here = float(largest.sel(kappa=own, method="nearest"))
-    least, place = float(largest.min()), float(largest.idxmin())
+    least, kappa_of_least = float(largest.min()), float(largest.idxmin())
     text = (
         f"largest impulse over eta at k_2/k_1 = {own:g}: {here:.3g} m_1 omega a eta^2; the least "
         f"of {float(largest.kappa.min()):.2f} to {float(largest.kappa.max()):.2f}: {least:.3g} at "
-        f"{place:.2f}"
+        f"{kappa_of_least:.2f}"
     )
     why = "The more alike the halves are, the weaker their impacts: by (6) alike ones never part."
     return Finding(text, YES if here <= 1.1 * least else NO, why if here > 1.1 * least else "")
@@ -242,11 +242,11 @@ def crossings(x: np.ndarray, y: np.ndarray) -> int:
     begin, piece = points[:-1], np.diff(points)
     count = 0
     for i in range(len(piece) - 2):
-        way = begin[i + 2 :] - begin[i]
+        offset = begin[i + 2 :] - begin[i]
         turn = (piece[i].conjugate() * piece[i + 2 :]).imag
         with np.errstate(divide="ignore", invalid="ignore"):
-            here = (way.conjugate() * piece[i + 2 :]).imag / turn
-            there = (way.conjugate() * piece[i]).imag / turn
+            here = (offset.conjugate() * piece[i + 2 :]).imag / turn
+            there = (offset.conjugate() * piece[i]).imag / turn
         inside = (here > 0.0) & (here < 1.0) & (there > 0.0) & (there < 1.0)
         count += int(inside[: -1 if i == 0 else None].sum())
     return count
