@@ -21,6 +21,8 @@ from orchestrate.paper.regions import COUNT, list_regions
 from orchestrate.response.questions import Point
 from orchestrate.structures import Excitation
 
+from .limits import make_limits
+
 DAMPED = CASES["damped"]
 ENDS = {  # of the damped case, shortened
     "T, contact": (0.42, 0.46),
@@ -33,17 +35,8 @@ ENDS = {  # of the damped case, shortened
 
 
 def limits():
-    """What the limits job gives, of one case."""
-    low, high = np.transpose(list(ENDS.values()))
-    columns = {
-        "low": low,
-        "high": high,
-        "below": ["fold"] * len(low),
-        "above": ["fold"] * len(low),
-        "case": ["damped"] * len(low),
-        "orbit": list(ENDS),
-    }
-    return xr.Dataset({name: ("window", values) for name, values in columns.items()})
+    """What the limits job gives, of the damped case."""
+    return make_limits("damped", ENDS)
 
 
 def job(**changes):

@@ -22,6 +22,8 @@ from orchestrate.paper.claims.results import Results
 from orchestrate.paper.later_responses import classify_changes
 from orchestrate.response.curves import CONTACT, FLIGHT
 
+from .limits import make_limits
+
 UP = "orbit_e0.7_D0.005_up"
 GAMMAS = np.array([1e-3, 1e-5, 1e-7, 1e-9])
 
@@ -44,11 +46,7 @@ WINDOWS = {  # exact limits of the elastic case, rounded
 
 def limits():
     """What the limits job gives, of the elastic case."""
-    low, high = np.transpose(list(WINDOWS.values()))
-    same = {"below": ["fold"], "above": ["fold"], "case": ["elastic"]}
-    columns = {"low": low, "high": high, "orbit": list(WINDOWS)}
-    columns |= {name: values * len(low) for name, values in same.items()}
-    return xr.Dataset({name: ("window", values) for name, values in columns.items()})
+    return make_limits("elastic", WINDOWS)
 
 
 # -- section 1: Figure 2(a) ------------------------------------------------------------------------
