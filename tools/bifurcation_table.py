@@ -129,7 +129,7 @@ def format_orbit(instance: EventInstance, answer: xr.Dataset) -> str:
 
 
 def format_no_orbit(instance: EventInstance, at: xr.Dataset, eta: float) -> str:
-    """Return a table cell where there is no such orbit: the FMU's impacts per period."""
+    """Return a table cell for an eta without such an orbit: the FMU's impacts per period."""
     advance(instance, eta, at.bifurcation_state.values[0], PERIODS)
     impacts = instance.get("impact_count")[0] / PERIODS
     return f"none: {impacts:.3f} impacts a period"

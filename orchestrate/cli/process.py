@@ -149,6 +149,6 @@ def raise_for_signal(number: int, _: FrameType | None) -> None:
 
 
 def exit_after_grace(number: int) -> None:
-    """Wait ``GRACE`` seconds, then exit the process without a message."""
+    """Sleep for ``GRACE`` seconds, then exit the process with 128 + the signal's number."""
     time.sleep(GRACE)
     os._exit(128 + number)

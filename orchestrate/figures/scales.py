@@ -120,7 +120,7 @@ def parameter_scale(data: xr.Dataset, parameter: str) -> tuple[float, str]:
 
 
 def gap_scale(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
-    """Return an axis' unit of gaps in m (0: gaps over a eta^2), and the axis label.
+    """Return the unit of an axis of gaps, m (0: gaps are shown over a eta^2), and its label.
 
     It is in m for a structure in SI, or where a unit of length is asked for.
     """

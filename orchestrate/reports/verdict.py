@@ -87,7 +87,7 @@ def not_described_statement(answer: xr.Dataset) -> str:
 
 
 def undecided_statement(answer: xr.Dataset) -> str:
-    """Return the statement for insufficient evidence."""
+    """Return the statement that the record does not suffice for a decision."""
     return "This record does not tell a delaminated beam from a sound one."
 
 
@@ -100,7 +100,7 @@ SENTENCES = {
 
 
 def scalar(answer: xr.Dataset, name: str) -> float:
-    """Return a scalar variable of a result; NaN if it has none of that name."""
+    """Return a scalar variable of a result by its name; NaN if the result lacks it."""
     return float(answer[name]) if name in answer else math.nan
 
 

@@ -156,7 +156,7 @@ def join_wrong_version(trial: ClusterTrial) -> str:
 
 
 class ClusterCampaign(DisturbanceCampaign):
-    """Campaign: faults of a Dask cluster during a command."""
+    """Campaign: commands on a Dask cluster survive the loss of workers and scheduler."""
 
     name = "cluster"
     title = "Dask"

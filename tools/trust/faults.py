@@ -169,7 +169,7 @@ FAULTS: dict[str, Callable[[Trial], str]] = {
 
 
 class FaultCampaign(DisturbanceCampaign):
-    """Campaign: faults during a single command."""
+    """Campaign: commands that are killed, starved or damaged end well when run again."""
 
     name = "faults"
     title = "Faults"

@@ -26,7 +26,7 @@ def compile_with_sanitizer(fmu: Path, version: str, model: str, options: tuple[s
 
 
 class FuzzCampaign(Campaign):
-    """Campaign: any function in any order with any argument."""
+    """Campaign: FMU functions called in any order with any argument cause no memory error."""
 
     name = "fuzzing"
     title = "Call sequences"

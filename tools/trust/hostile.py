@@ -18,7 +18,7 @@ LONG = 2000  # letters of a line that a person reads
 
 
 class HostileCampaign(Campaign):
-    """Campaign: malicious input files."""
+    """Campaign: commands refuse malicious input files in one line, or read them without harm."""
 
     name = "hostile"
     title = "Malicious input"

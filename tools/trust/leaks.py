@@ -19,7 +19,7 @@ LARGEST = (
 
 
 class LeakCampaign(Campaign):
-    """Campaign: memory stays flat."""
+    """Campaign: instances, steps and sweeps do not make memory grow."""
 
     name = "leaks"
     title = "Leaks"
@@ -73,7 +73,7 @@ def peak_memory(fmu: Path, number: int) -> int:
 
 
 def compute_sweep(fmu: Path, number: int) -> None:
-    """Compute a sweep of some frequencies, stored on disk."""
+    """Compute a sweep of ``number`` frequencies with a result file in a temporary folder."""
     import numpy as np
 
     import orchestrate
