@@ -1,4 +1,4 @@
-"""Ask a vibro-impacting structure: describe it, ask a question, get a dataset.
+"""Public API: describe a vibro-impacting structure, call a function, get a dataset.
 
 >>> import orchestrate
 >>> beam = orchestrate.Structure.nondimensional(e=0.7, D=0.005)
@@ -45,14 +45,14 @@ from pathlib import Path
 from typing import Any
 
 
-def read_places() -> dict[str, str]:
-    """Return a dict from public name to the submodule that defines it, read from the stub."""
+def read_public_names() -> dict[str, str]:
+    """Return a dict from public name to its submodule, read from the stub ``__init__.pyi``."""
     stub = ast.parse(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
     imports = (node for node in stub.body if isinstance(node, ast.ImportFrom))
     return {alias.name: node.module or "" for node in imports for alias in node.names}
 
 
-PLACES = read_places()  # a name is imported when it is used, so that `import` takes no time
+PLACES = read_public_names()  # a name is imported when it is used, so that `import` takes no time
 __all__ = sorted(PLACES)
 
 

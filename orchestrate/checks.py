@@ -1,4 +1,4 @@
-"""Checks of a user's arguments that every package shares."""
+"""Checks of integer and word arguments, for all packages."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ REQUIRES_DELAMINATED = "bonded = True: expected a delaminated structure (bonded 
 
 
 def checked_integer(name: str, value: Any, minimum: int, maximum: int = MAX_COUNT) -> int:
-    """Return ``value`` as an int; raise ``InputError`` unless it is whole and within the range.
+    """Return ``value`` as int; raise ``InputError`` unless whole and from minimum to maximum.
 
     Raises
     ------

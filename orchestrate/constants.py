@@ -1,4 +1,4 @@
-"""Numbers that the whole package shares."""
+"""Physical and mathematical constants of the whole package: gravity and one turn."""
 
 import math
 

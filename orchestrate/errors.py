@@ -1,27 +1,27 @@
-"""What can go wrong; each exception says in one line the thing, its value and what is expected."""
+"""Exceptions of the package; each message names the thing, its value and what is expected."""
 
 from __future__ import annotations
 
 
 class VibroimpactError(Exception):
-    """The base of all exceptions that this package raises on purpose."""
+    """Base class of all exceptions that this package raises on purpose."""
 
 
 class InputError(VibroimpactError, ValueError):
-    """What was given cannot be taken: a parameter, a file, an option."""
+    """Raised for a parameter, file or option of the user that cannot be accepted."""
 
 
 class StaleError(InputError):
-    """A stored result that was made for another question, by other code or by another FMU."""
+    """Raised for a stored result made by other arguments, other code or another FMU."""
 
 
 class StoreError(VibroimpactError, OSError):
-    """A disk that is full or not writable, or a stored file that is damaged."""
+    """Raised if a disk is full or not writable, or a stored file is damaged."""
 
 
 class FmuError(VibroimpactError, RuntimeError):
-    """An FMU refused a call; the text is the FMU's own message."""
+    """Raised if an FMU refuses a call; the message is the FMU's own."""
 
 
 class WorkerError(VibroimpactError, RuntimeError):
-    """A worker process ended without a word."""
+    """Raised if a worker process ended without a message."""

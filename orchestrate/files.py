@@ -1,4 +1,4 @@
-"""Write files atomically (temporary file, then rename), lock them, read them with a size limit."""
+"""Write files atomically, lock them, read them with a size limit, make folders."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PROBE = ".writable"
 
 
 def write_whole(path: str | os.PathLike[str], write: Callable[[Path], object]) -> Path:
-    """Write a file atomically: ``write`` fills a temporary one beside it, which is then renamed.
+    """Write a file atomically: ``write`` fills a temporary file, which is then renamed.
 
     Parameters
     ----------
@@ -36,13 +36,15 @@ def write_whole(path: str | os.PathLike[str], write: Callable[[Path], object]) -
         Where it cannot be written; what stood there before still does.
     """
     path = Path(path)
-    sweep_up(path)
+    remove_dead_temporaries(path)
     temporary = path.with_name(f"{path.name}.{os.getpid()}.tmp")
     try:
         write(temporary)
         temporary.replace(path)
     except (OSError, RuntimeError) as error:  # the NetCDF library says RuntimeError at a full disk
-        raise StoreError(f"{path}: cannot be written ({reason(error, path.parent)})") from error
+        raise StoreError(
+            f"{path}: cannot be written ({format_write_error(error, path.parent)})"
+        ) from error
     finally:
         temporary.unlink(missing_ok=True)
     return path
@@ -50,7 +52,7 @@ def write_whole(path: str | os.PathLike[str], write: Callable[[Path], object]) -
 
 @contextmanager
 def made_once(path: Path) -> Iterator[None]:
-    """Hold a file lock, as a context manager, so that only one process makes a file at a time.
+    """Hold a file lock in a ``with`` block, so that only one process makes a file at a time.
 
     Raises
     ------
@@ -100,16 +102,16 @@ def read_text(path: str | os.PathLike[str], most: int) -> str:
     return data.decode("utf-8")
 
 
-def check_name(path: str | os.PathLike[str]) -> None:
-    """Raise ``InputError`` unless a path can be encoded as UTF-8, which NetCDF and HDF5 require."""
+def check_path_encoding(path: str | os.PathLike[str]) -> None:
+    """Raise ``InputError`` unless a path can be encoded as UTF-8, as NetCDF and HDF5 need."""
     try:
         str(Path(path).absolute()).encode("utf-8")
     except UnicodeEncodeError:
         raise InputError(f"{path}: a path that is not UTF-8; expected one that is") from None
 
 
-def reason(error: BaseException, folder: Path) -> str:
-    """Format why a file could not be written: the error's text and the free bytes on the disk."""
+def format_write_error(error: BaseException, folder: Path) -> str:
+    """Return why a file could not be written: the error's text and the disk's free bytes."""
     text = getattr(error, "strerror", None) or (str(error).splitlines() or [""])[0]
     try:
         return f"{text}, {shutil.disk_usage(folder).free} bytes free on the disk"
@@ -117,21 +119,21 @@ def reason(error: BaseException, folder: Path) -> str:
         return str(text)
 
 
-def sweep_up(path: Path) -> None:
-    """Delete the temporary files of ``write_whole`` for this path whose processes are gone."""
-    for left in path.parent.glob(f"{glob_name(path.name)}.*.tmp"):
+def remove_dead_temporaries(path: Path) -> None:
+    """Delete a path's temporary files of ``write_whole`` whose processes no longer run."""
+    for left in path.parent.glob(f"{escape_glob(path.name)}.*.tmp"):
         number = left.name.removesuffix(".tmp").rpartition(".")[2]
-        if number.isdigit() and not alive(int(number)):
+        if number.isdigit() and not is_process_alive(int(number)):
             left.unlink(missing_ok=True)
 
 
-def glob_name(name: str) -> str:
-    """Escape brackets, stars and question marks of a file name for use in ``glob``."""
+def escape_glob(name: str) -> str:
+    """Return a file name with the characters ``[]*?`` escaped for use in ``glob``."""
     return "".join(f"[{letter}]" if letter in "[]*?" else letter for letter in name)
 
 
-def alive(pid: int) -> bool:
-    """Return whether a process of this machine runs, by its id; True where that cannot be asked."""
+def is_process_alive(pid: int) -> bool:
+    """Return whether a process id runs on this machine; True where that cannot be asked."""
     if sys.platform == "win32":  # there the question would end it
         return True
     try:
@@ -144,7 +146,7 @@ def alive(pid: int) -> bool:
 
 
 def open_folder(folder: str | os.PathLike[str]) -> Path:
-    """Create a folder if missing and return it; raise unless a file can be written there.
+    """Create a folder if it is missing and return it; raise unless it is writable.
 
     Raises
     ------
@@ -154,7 +156,7 @@ def open_folder(folder: str | os.PathLike[str]) -> Path:
     probe = folder / f"{PROBE}.{os.getpid()}.tmp"
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        sweep_up(folder / PROBE)
+        remove_dead_temporaries(folder / PROBE)
         probe.write_bytes(b"")
         probe.unlink(missing_ok=True)  # another thread may have been quicker
     except OSError as error:

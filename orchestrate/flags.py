@@ -1,4 +1,4 @@
-"""Words of CF's flag variables: numbers in a dataset that stand for words."""
+"""Read the words of CF flag variables: numbers in a dataset that stand for words."""
 
 from __future__ import annotations
 

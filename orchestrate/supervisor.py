@@ -1,4 +1,4 @@
-"""Run a command in a child process; a parent process passes on signals and reports crashes.
+"""Run a command in a child process; the parent passes on signals and reports crashes.
 
 An FMU and a library may hang, spin, abort or call ``exit``, and Python hears no signal then. So the
 command runs in a child; this process waits, hands signals on, and ends the child where it does not
@@ -32,8 +32,8 @@ PR_SET_PDEATHSIG = 1  # of Linux
 _child: int | None = None  # in the child: where it says so
 
 
-def supervised(work: Callable[[], int]) -> int:
-    """Fork, run ``work()`` in the child, wait for it, and return its exit code; report a crash.
+def run_supervised(work: Callable[[], int]) -> int:
+    """Fork, run ``work()`` in the child, wait for it; return its exit code, report a crash.
 
     Where there is no fork, and where there is no room for another process, it is computed here.
 
@@ -45,7 +45,7 @@ def supervised(work: Callable[[], int]) -> int:
     pipes: list[int] = []
     parent = os.getpid()
     try:
-        fill_descriptors()
+        open_missing_streams()
         pipes += os.pipe()
         pipes += os.pipe()
         child = os.fork()
@@ -57,43 +57,43 @@ def supervised(work: Callable[[], int]) -> int:
     if child == 0:
         for number in (reader, wake_reader, wake_writer):
             os.close(number)
-        return carried_out(work, writer, parent)
+        return run_in_child(work, writer, parent)
     os.close(writer)
     return Supervisor(child, reader).run(wake_reader, wake_writer)
 
 
-def carried_out(work: Callable[[], int], writer: int, parent: int) -> int:
-    """Run ``work()`` in the forked child and return its exit code; notify the parent at the end."""
+def run_in_child(work: Callable[[], int], writer: int, parent: int) -> int:
+    """Run ``work()`` in the forked child; tell the parent at the end; return the exit code."""
     global _child
     _child = writer
-    end_with(parent)
+    die_with_parent(parent)
     try:
         return work()
     finally:
-        say(TOLD)
+        send_to_parent(TOLD)
 
 
-def heeded() -> None:
-    """Notify the supervising parent that this child has got its signal and is ending by itself."""
-    say(HEEDED)
+def confirm_signal() -> None:
+    """Tell the supervising parent that this child has got its signal and is ending."""
+    send_to_parent(HEEDED)
 
 
-def say(word: bytes) -> None:
-    """Write a byte message to the pipe to the supervising parent process, if there is one."""
+def send_to_parent(word: bytes) -> None:
+    """Write a byte message to the supervising parent's pipe, if there is one."""
     if _child is not None:
         with contextlib.suppress(OSError):
             os.write(_child, word)
 
 
-def fill_descriptors() -> None:
-    """Open the closed ones of the standard streams (descriptors 0 to 2) on ``/dev/null``."""
+def open_missing_streams() -> None:
+    """Open closed ones of the standard streams (descriptors 0 to 2) on ``/dev/null``."""
     while (number := os.open(os.devnull, os.O_RDWR)) <= 2:
         os.set_inheritable(number, True)
     os.close(number)
 
 
-def end_with(parent: int) -> None:
-    """Make this process kill itself as soon as its parent process has ended."""
+def die_with_parent(parent: int) -> None:
+    """Make this process end itself as soon as its parent process has ended."""
     if sys.platform == "linux":
         import ctypes
 
@@ -103,6 +103,7 @@ def end_with(parent: int) -> None:
         return
 
     def watch() -> None:
+        """Wait until the parent process has changed, then exit."""
         while os.getppid() == parent:
             time.sleep(0.5)
         os._exit(FAILURE)
@@ -111,7 +112,7 @@ def end_with(parent: int) -> None:
 
 
 class Supervisor:
-    """Parent's side of a supervised child process: waits, passes signals on, gives the exit code.
+    """Parent's side of a child process: waits, passes signals on, returns the exit code.
 
     Parameters
     ----------
@@ -136,32 +137,32 @@ class Supervisor:
             (signal.SIGTERM, signal.SIG_DFL),
         ):
             if signal.getsignal(heard) == usual:  # not ignored, as behind nohup
-                signal.signal(heard, self.note)
+                signal.signal(heard, self.note_signal)
         listened = [self.reader, wake_reader]
-        while (status := self.ended()) is None:
+        while (status := self.poll_status()) is None:
             for number in select.select(listened, [], [], POLL)[0]:
-                said = os.read(number, 64)
+                message = os.read(number, 64)
                 if number == self.reader:
-                    self.words += said
-                    if not said:
+                    self.words += message
+                    if not message:
                         listened.remove(number)
-            self.act()
+            self.handle_signals()
         with contextlib.suppress(BlockingIOError):  # what it said at last
             os.set_blocking(self.reader, False)
             self.words += os.read(self.reader, 64)
-        return self.verdict(status)
+        return self.exit_code(status)
 
-    def note(self, number: int, _: object) -> None:
+    def note_signal(self, number: int, _: object) -> None:
         """Handle a signal: append its number and time of arrival for the waiting loop."""
         self.signals.append((number, time.monotonic()))
 
-    def ended(self) -> int | None:
+    def poll_status(self) -> int | None:
         """Return the child's raw wait status if it has ended, or None while it runs."""
         pid, status = os.waitpid(self.child, os.WNOHANG)
         return status if pid else None
 
-    def act(self) -> None:
-        """Send a received signal on to a child that has not heard it; kill one that is late."""
+    def handle_signals(self) -> None:
+        """Send a received signal on to a child that has not got it; kill one that is late."""
         if not self.signals:
             return
         asked, first = self.signals[0]
@@ -171,18 +172,18 @@ class Supervisor:
             os.kill(self.child, asked)
         again = any(when - first > HEARD for _, when in self.signals)
         if again or waited > (GRACE if heard else DEAF):
-            self.force()
+            self.kill_all()
 
-    def force(self) -> None:
+    def kill_all(self) -> None:
         """Kill the child and all its descendant processes with SIGKILL, and set ``forced``."""
-        pids = [self.child, *below(self.child)]
+        pids = [self.child, *descendants(self.child)]
         for pid in pids:
             with contextlib.suppress(OSError):
                 os.kill(pid, signal.SIGKILL)
         self.forced = True
 
-    def verdict(self, status: int) -> int:
-        """Return the exit code for a wait status; print why, if the child did not end by itself."""
+    def exit_code(self, status: int) -> int:
+        """Return the exit code for a wait status; print why, unless the child ended by itself."""
         code = os.waitstatus_to_exitcode(status)
         if TOLD in self.words and code >= 0:
             return code
@@ -191,7 +192,7 @@ class Supervisor:
             asked = self.signals[0][0]
             word = "terminated" if asked == signal.SIGTERM else "interrupted"
             why = "; what ran did not answer and was ended by force" if self.forced else ""
-            tell(f"{word}{why}; {KEPT}")
+            print_line(f"{word}{why}; {KEPT}")
             return 128 + asked
         if code < 0:
             name = signal.Signals(-code).name
@@ -200,29 +201,29 @@ class Supervisor:
                 if -code == signal.SIGKILL
                 else ("an FMU or a library has crashed")
             )
-            tell(f"error: the command was ended by {name}: {why}; {KEPT}")
+            print_line(f"error: the command was ended by {name}: {why}; {KEPT}")
         else:
             ended = f"an FMU or a library has ended the command, with exit code {code}"
-            tell(f"error: {ended}; expected an answer; {KEPT}")
+            print_line(f"error: {ended}; expected an answer; {KEPT}")
         return FAILURE
 
 
-def tell(line: str) -> None:
+def print_line(line: str) -> None:
     """Print a line on standard error, below the line of a progress bar that may stand there."""
     with contextlib.suppress(OSError):
         os.write(2, f"\n{line}\n".encode())
 
 
-def below(pid: int) -> Iterator[int]:
-    """Yield the process ids of all descendants of a process, recursively; Linux only, else none."""
-    for place in Path(f"/proc/{pid}/task").glob("*/children"):
+def descendants(pid: int) -> Iterator[int]:
+    """Yield the process ids of all descendants of a process (Linux only, else none)."""
+    for path in Path(f"/proc/{pid}/task").glob("*/children"):
         with contextlib.suppress(OSError):
-            for child in map(int, place.read_text().split()):
+            for child in map(int, path.read_text().split()):
                 yield child
-                yield from below(child)
+                yield from descendants(child)
 
 
 def remove_unpacked(pid: int) -> None:
-    """Delete the temporary folders of unpacked FMUs that a process id has left behind."""
+    """Delete the temporary folders of unpacked FMUs that a process has left behind."""
     for folder in Path(tempfile.gettempdir()).glob(f"{UNPACKED}{pid}-*"):
         shutil.rmtree(folder, ignore_errors=True)

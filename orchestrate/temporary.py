@@ -1,4 +1,4 @@
-"""The temporary folder of a process, with the FMUs that it has unpacked or was sent.
+"""Create and remove the temporary folder of a process, which holds unpacked FMUs.
 
 It is removed at the end of the process, a worker's too; where that was killed, at the start of
 another one.
@@ -16,7 +16,7 @@ import tempfile
 from multiprocessing.util import Finalize
 from pathlib import Path
 
-from .files import alive, check_name
+from .files import check_path_encoding, is_process_alive
 
 PREFIX = "vibroimpact-fmu-"  # by which the supervisor of a command knows them too
 _folders: dict[int, Path] = {}  # by process: a forked child makes its own
@@ -27,31 +27,31 @@ def process_folder() -> Path:
     pid = os.getpid()
     folder = _folders.get(pid)
     if folder is None or not folder.is_dir():
-        check_name(tempfile.gettempdir())
+        check_path_encoding(tempfile.gettempdir())
         remove_leftovers()
         folder = _folders[pid] = Path(tempfile.mkdtemp(prefix=f"{PREFIX}{pid}-"))
-        atexit.register(remove, folder, pid)
+        atexit.register(remove_own_folder, folder, pid)
         # processes of multiprocessing, such as Dask's workers, know nothing of atexit
-        Finalize(None, remove, (folder, pid), exitpriority=0)
+        Finalize(None, remove_own_folder, (folder, pid), exitpriority=0)
     return folder
 
 
-def remove(folder: Path, pid: int) -> None:
-    """Delete a temporary folder at exit, only in the process that made it (not in forked ones)."""
+def remove_own_folder(folder: Path, pid: int) -> None:
+    """Delete a temporary folder at exit, only in the process that made it (not in a fork)."""
     if os.getpid() == pid:
         shutil.rmtree(folder, ignore_errors=True)
 
 
 def remove_leftovers() -> None:
-    """Delete this user's temporary folders whose processes no longer run (killed ones)."""
+    """Delete this user's temporary folders whose processes no longer run."""
     for folder in Path(tempfile.gettempdir()).glob(f"{PREFIX}*"):
         match = re.match(rf"{PREFIX}(\d+)-", folder.name)
         with contextlib.suppress(OSError):
-            if match and is_mine(folder) and not alive(int(match[1])):
+            if match and is_own_folder(folder) and not is_process_alive(int(match[1])):
                 shutil.rmtree(folder, ignore_errors=True)
 
 
-def is_mine(folder: Path) -> bool:
+def is_own_folder(folder: Path) -> bool:
     """Return whether a path is a real folder (no link) that belongs to the current user."""
     return (
         folder.is_dir()

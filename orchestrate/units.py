@@ -1,4 +1,4 @@
-"""The units in which numbers are shown: in prints, pictures, tables and pages.
+"""Display units: convert and format SI values for prints, pictures, tables and pages.
 
 Datasets are in SI, whatever is asked. What shows a dataset reads here which units were asked for,
 which the dataset carries as the attribute ``shown_in`` (:func:`with_units`); a stored result has
@@ -81,14 +81,14 @@ class Units:
 
     @property
     def words(self) -> tuple[str, ...]:
-        """The names of the chosen units, without the kinds for which none was chosen."""
+        """Names of the chosen units, without kinds for which none was chosen."""
         return tuple(filter(None, (getattr(self, field.name) for field in fields(self))))
 
     def __str__(self) -> str:
         return ", ".join(self.words)
 
-    def completed(self, usual: Units) -> Units:
-        """Return a copy in which the kinds without a chosen unit take that of ``usual``."""
+    def with_defaults(self, usual: Units) -> Units:
+        """Return a copy in which kinds without a chosen unit take that of ``usual``."""
         names = [field.name for field in fields(self)]
         return Units(**{name: getattr(self, name) or getattr(usual, name) for name in names})
 
@@ -96,7 +96,7 @@ class Units:
 def with_units(data: xr.Dataset, units: Units | str) -> xr.Dataset:
     """Return a dataset marked to be displayed in the given units; its numbers stay in SI."""
     chosen = units if isinstance(units, Units) else Units.from_text(units)
-    text = str(chosen.completed(units_of(data)))
+    text = str(chosen.with_defaults(units_of(data)))
     return data.assign_attrs({SHOWN_IN: text}) if text else data
 
 
@@ -112,7 +112,7 @@ def has_own_frequency(data: xr.Dataset) -> bool:
 
 
 def with_readable_lengths(*answers: xr.Dataset) -> list[xr.Dataset]:
-    """Return datasets set to display lengths in m, mm or um, whichever suits the largest length.
+    """Return datasets with display lengths in m, mm or um, by their largest length.
 
     This is m, mm or um, so that the largest number is 1 at least. Answers stay as they are where
     a unit of length was asked for, and where their structure is not in SI.

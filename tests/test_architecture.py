@@ -269,8 +269,8 @@ def test_no_files_import_each_other_in_a_circle():
 def test_commands_do_not_know_each_other():
     shared = {
         "__init__",
-        "declared",
-        "drives",
+        "declared_options",
+        "drive_options",
         "grammar",
         "options",
         "output",

@@ -32,7 +32,7 @@ def test_it_is_short():
 @pytest.mark.parametrize("reference", assets.REFERENCES, ids=lambda reference: reference.model)
 def test_the_variable_tables_are_the_fmus(exported, reference):
     table = assets.variable_table(BUILD / "fmi2-python" / f"{reference.model}.fmu")
-    assert assets.with_table(TABLES, reference, table) == TABLES
+    assert assets.replace_table(TABLES, reference, table) == TABLES
 
 
 @pytest.mark.parametrize("command", COMMANDS)

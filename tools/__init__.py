@@ -1,1 +1,1 @@
-"""What is done in a clone only, and not shipped: assets of the FMUs, and benchmarks."""
+"""Developer tools that are not shipped: generated assets, benchmarks, campaigns, pictures."""

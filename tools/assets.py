@@ -1,4 +1,4 @@
-"""What the FMUs carry beside their code, made through them: ``python -m tools.assets``.
+"""Generate the FMUs' documentation, tables and reference results: ``python -m tools.assets``.
 
 Pictures of the documentation, ``model.png`` and the reference results; the variable tables of
 ``docs/variables.md`` too. They are kept in the repository, so that an export does not depend on a
@@ -28,15 +28,15 @@ TABLES = Path(__file__).resolve().parents[1] / "docs" / "variables.md"
 SERIES = re.compile(r"\[(?!1\])\d+\]$")  # of a series, the first stands for all
 
 
-def marks(reference: Reference) -> tuple[str, str]:
-    """Return the lines that stand before and after a model's variable table."""
+def table_marks(reference: Reference) -> tuple[str, str]:
+    """Return the comment lines that stand before and after a model's variable table."""
     source = f"fmu_src/models/{reference.folder}/variables.py"
     begin = f"<!-- variables: generated from {source}, kept so by a test -->"
     return begin, "<!-- end of variables -->"
 
 
 def variable_table(path: str | PathLike[str]) -> str:
-    """Return a model's variables as a table, from the FMU's own description."""
+    """Return an FMU's variables as a Markdown table, from its model description."""
     lines = ["| name | causality | unit | start | meaning |", "|---|---|---|---|---|"]
     for v in describe(path).variables.values():
         if SERIES.search(v.name):
@@ -48,22 +48,22 @@ def variable_table(path: str | PathLike[str]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def with_table(page: str, reference: Reference, table: str) -> str:
-    """Return the page with a model's variable table replaced."""
-    begin, end = marks(reference)
+def replace_table(page: str, reference: Reference, table: str) -> str:
+    """Return a page's text with a model's variable table replaced."""
+    begin, end = table_marks(reference)
     head, rest = page.split(begin + "\n")
     _, tail = rest.split(end, 1)
     return f"{head}{begin}\n{table}{end}{tail}"
 
 
-def example(
+def simulate_example(
     fmu: str | PathLike[str],
     eta: float = 0.4,
     transient: int = 500,
     periods: int = 2,
     points: int = 600,
 ) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Compute two settled periods of the paper's Figure 5; return times, and values by name."""
+    """Simulate two settled periods of the paper's Figure 5; return times and values by name."""
     names = ("x1", "x2", "x_rel", "in_contact")
     period = 2.0 * math.pi / eta
     times = [0.0, *(transient * period + np.linspace(0.0, periods * period, points))]
@@ -76,8 +76,10 @@ def example(
     return np.array(times[1:]), dict(zip(names, np.array(rows).T, strict=True))
 
 
-def draw(reference: Reference, fmu: str | PathLike[str], rows: Sequence[Sequence[float]]) -> None:
-    """Draw a model's scheme, large and small, and an example run into its documentation."""
+def draw_documentation(
+    reference: Reference, fmu: str | PathLike[str], rows: Sequence[Sequence[float]]
+) -> None:
+    """Draw a model's scheme, icon and example run into its documentation folder."""
     folder = MODELS / reference.folder
     shaker = reference is SHAKER
     scheme = shaker_pictures.draw_shaker if shaker else oscillator.draw_scheme
@@ -88,7 +90,7 @@ def draw(reference: Reference, fmu: str | PathLike[str], rows: Sequence[Sequence
         values = dict(zip(("time", *reference.outputs), np.array(rows).T, strict=True))
         plot = shaker_pictures.draw_run_up(values["time"], values["speed"], values["box_position"])
     else:
-        plot = oscillator.draw_example(*example(fmu))
+        plot = oscillator.draw_example(*simulate_example(fmu))
     files.save(plot, folder / "documentation" / "plot", ("svg",))
 
 
@@ -98,10 +100,10 @@ def main() -> None:
         fmu = find(reference.model).path
         rows = reference_rows(reference, fmu)
         write_reference(reference, rows)
-        draw(reference, fmu, rows)
+        draw_documentation(reference, fmu, rows)
         table = variable_table(find(reference.model, "fmi2-python").path)
         page = TABLES.read_text(encoding="utf-8")
-        TABLES.write_text(with_table(page, reference, table), encoding="utf-8")
+        TABLES.write_text(replace_table(page, reference, table), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""How fast, as ratios: ``python -m tools.benchmark``.
+"""Measure the FMU's speed beside other solvers and versions: ``python -m tools.benchmark``.
 
 Kernel, FMU calls and a sampled solver, measured one after the other in one run on one core; times
 are of this machine, the ratios travel. With ``--before FMU``, another version's native FMI 3.0 FMU,
@@ -33,12 +33,12 @@ SETTLE = 50  # periods
 COLUMNS = ("eta", "us/period", "ns/impact", "pure Python", "solve_ivp")
 
 
-def harmonic(eta: float, time: float) -> float:
-    """Acceleration of the paper's box, of amplitude 1/eta^2 m."""
+def harmonic_acceleration(eta: float, time: float) -> float:
+    """Return the acceleration at a time of the paper's box, of amplitude 1/eta^2 m."""
     return -math.sin(eta * time)
 
 
-def periods(fmu: str | PathLike[str], eta: float, count: int) -> tuple[float, int]:
+def time_periods(fmu: str | PathLike[str], eta: float, count: int) -> tuple[float, int]:
     """Return the seconds and impacts of ``count`` periods in one step, after some to settle."""
     period = 2.0 * math.pi / eta
     drive = {"box_amplitude": 1.0 / eta**2, "box_frequency": eta}
@@ -51,8 +51,8 @@ def periods(fmu: str | PathLike[str], eta: float, count: int) -> tuple[float, in
         return time.perf_counter() - begin, instance.get("impact_count")[0] - before
 
 
-def quiet_step(fmu: str | PathLike[str], count: int = 100_000) -> float:
-    """Return the seconds a call of doStep where no impact falls, through FMPy."""
+def time_quiet_step(fmu: str | PathLike[str], count: int = 100_000) -> float:
+    """Return the seconds of one doStep call without an impact, through FMPy."""
     with Instance(fmu) as instance:
         instance.initialize(bonded=True, x_rel_max_on=False)
         step = Channel(instance, (), ()).step
@@ -62,18 +62,18 @@ def quiet_step(fmu: str | PathLike[str], count: int = 100_000) -> float:
         return (time.perf_counter() - begin) / count
 
 
-def pure_python(fmu: str | PathLike[str], eta: float, count: int) -> float:
-    """Return the seconds of ``count`` periods in the Python kernel, in a process of its own."""
+def time_pure_python(fmu: str | PathLike[str], eta: float, count: int) -> float:
+    """Return the seconds of ``count`` periods in the Python kernel, in its own process."""
     environment = {**os.environ, "VIBROIMPACT_PURE_PYTHON": "1"}
     command = [sys.executable, "-m", "tools.benchmark", "--once", str(fmu), str(eta), str(count)]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     return float(done.stdout)
 
 
-def figure_6(
+def time_figure_6(
     fmu: str | PathLike[str], watched: bool = False, step: float = 0.02
 ) -> tuple[float, int]:
-    """Run a part of Figure 6 with the gap watched or not; return its seconds and impacts."""
+    """Compute a part of Figure 6, the gap watched or not; return its seconds and impacts."""
     seconds, impacts = 0.0, 0
     state = dict.fromkeys(("x1_start", "x2_start", "v1_start", "v2_start"), 0.0)
     with Instance(fmu) as instance:
@@ -94,47 +94,51 @@ def figure_6(
     return seconds, impacts
 
 
-def best_of_both(
+def fastest_of_each(
     measure: Callable[[Path], float], fmus: Sequence[Path], rounds: int
 ) -> list[float]:
-    """Return the least of some measurements of each FMU, in turn."""
+    """Return the shortest of several measurements of each FMU, taken in turn."""
     return [
         min(row) for row in zip(*([measure(f) for f in fmus] for _ in range(rounds)), strict=True)
     ]
 
 
 def compare_versions(before: Path, rounds: int = 5) -> None:
-    """Print nanoseconds of this version and of another by measure, and their ratio."""
+    """Print times in ns of this version and another one by measure, and their ratio."""
     fmus = (find(OSCILLATOR).path, before)
     measures: dict[str, Callable[[Path], float]] = {
-        "Figure 6, an impact": lambda fmu: operator.truediv(*figure_6(fmu)),
+        "Figure 6, an impact": lambda fmu: operator.truediv(*time_figure_6(fmu)),
         "Figure 6, largest gap watched all along": lambda fmu: operator.truediv(
-            *figure_6(fmu, True)
+            *time_figure_6(fmu, True)
         ),
-        "a step without impact, from C": c_host.quiet_step,
-        "the same, largest gap watched": lambda fmu: c_host.quiet_step(fmu, watched=True),
+        "a step without impact, from C": c_host.time_quiet_step,
+        "the same, largest gap watched": lambda fmu: c_host.time_quiet_step(fmu, watched=True),
     }
     for name, measure in measures.items():
-        now, then = (seconds * 1e9 for seconds in best_of_both(measure, fmus, rounds))
+        now, then = (seconds * 1e9 for seconds in fastest_of_each(measure, fmus, rounds))
         print(f"{name:40}{now:8.1f} ns{then:8.1f} ns before{now / then:8.3f}", flush=True)
 
 
-def compare(count: int) -> None:
-    """Print times of a period and an impact over eta, and how much slower other solvers are."""
+def compare_solvers(count: int) -> None:
+    """Print times per period and impact over eta, and how much slower other solvers are."""
     native, python = find(OSCILLATOR).path, find(OSCILLATOR, "fmi2-python").path
     print("".join(f"{name:>12}" for name in COLUMNS), "  (the last two: times the native FMU)")
     seconds, impacts = 0.0, 0
     for eta in ETAS:
-        taken, count_of_impacts = min(periods(native, eta, count) for _ in range(3))
+        taken, count_of_impacts = min(time_periods(native, eta, count) for _ in range(3))
         seconds, impacts = seconds + taken, impacts + count_of_impacts
         each = taken / count
         ratios = (
-            pure_python(python, eta, 30) / 30 / each,
-            sampled_solver.run(PAPER, partial(harmonic, eta), 10 * TURN / eta)[0] / 10 / each,
+            time_pure_python(python, eta, 30) / 30 / each,
+            sampled_solver.simulate_from_rest(
+                PAPER, partial(harmonic_acceleration, eta), 10 * TURN / eta
+            )[0]
+            / 10
+            / each,
         )
         row = (eta, each * 1e6, taken / max(count_of_impacts, 1) * 1e9, *ratios)
         print("".join(f"{value:12.4g}" for value in row), flush=True)
-    quiet = quiet_step(native) * 1e9
+    quiet = time_quiet_step(native) * 1e9
     print(f"all: {seconds / impacts * 1e9:.0f} ns an impact; a step without one: {quiet:.0f} ns")
 
 
@@ -149,9 +153,9 @@ def main() -> None:
         compare_versions(arguments.before)
     elif arguments.once:
         fmu, eta, count = arguments.once
-        print(periods(fmu, float(eta), int(count))[0])
+        print(time_periods(fmu, float(eta), int(count))[0])
     else:
-        compare(arguments.periods)
+        compare_solvers(arguments.periods)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The tables of docs/bifurcation_tables.md: each bifurcation is checked by direct simulation.
+"""Write docs/bifurcation_tables.md: each bifurcation checked by direct simulation.
 
     python -m tools.bifurcation_table
 
@@ -25,7 +25,7 @@ from orchestrate.figures import orbit_diagram
 from orchestrate.files import write_whole
 from orchestrate.response.sweep import sweep
 from orchestrate.structures import Excitation, Structure
-from tools.marked import put
+from tools.marked import replace_part
 from tools.pictures.small import save_small
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
@@ -60,51 +60,53 @@ WINDOWS = {  # the same branches, where all three cases have orbits on them
 NODES = ("node_kind", "node_phase", "node_position", "node_velocity", "node_closing")
 
 
-def run(instance: EventInstance, eta: float, state: np.ndarray, periods: int) -> np.ndarray:
-    """Return the FMU's state after some periods."""
+def advance(instance: EventInstance, eta: float, state: np.ndarray, periods: int) -> np.ndarray:
+    """Simulate the FMU over some periods from a state; return the state at the end."""
     excitation = Excitation.nondimensional(eta, PAPER)
     begin(instance, PAPER, excitation, state)
     instance.advance(0.0, periods * excitation.period)
     return instance.read("x1", "x2", "v1", "v2").copy()
 
 
-def growth(instance: EventInstance, answer: xr.Dataset) -> float:
-    """Return how much a small deviation from an orbit has grown after ``PERIODS``."""
+def deviation_growth(instance: EventInstance, answer: xr.Dataset) -> float:
+    """Return by which factor a small deviation from an orbit has grown after ``PERIODS``."""
     states = answer.state.values
     nudged = states[0] + NUDGE * np.array([-1.0, 1.0, 1.0, -1.0])
-    ended = run(instance, float(answer.eta), nudged, PERIODS // len(states) * len(states))
+    ended = advance(instance, float(answer.eta), nudged, PERIODS // len(states) * len(states))
     return float(np.abs(states - ended).max(axis=1).min() / NUDGE)
 
 
-def outside(instance: EventInstance, answer: xr.Dataset) -> int:
-    """Multipliers outside the unit circle, by differences of the FMU's own map."""
+def count_unstable_multipliers(instance: EventInstance, answer: xr.Dataset) -> int:
+    """Return the number of multipliers outside the unit circle, from the FMU's own map."""
     state, periods, eta = answer.state.values[0], answer.sizes["sample"], float(answer.eta)
     slowest = float(np.nanmin(answer.node_closing.where(answer.node_kind == 0)))
     step = min(1e-7, max(1e-9, 1e-4 * slowest**2))  # the map bends the more the slower an impact
-    moved = [run(instance, eta, state + s * step * a, periods) for a in np.eye(4) for s in (1, -1)]
+    moved = [
+        advance(instance, eta, state + s * step * a, periods) for a in np.eye(4) for s in (1, -1)
+    ]
     matrix = (np.array(moved[0::2]) - np.array(moved[1::2])).T / (2.0 * step)
     return int((np.abs(np.linalg.eigvals(matrix)) > 1.0).sum())
 
 
-def beside(answer: xr.Dataset, at: xr.Dataset, eta: float) -> list[xr.Dataset]:
-    """Return the branch's orbits at an eta beside a bifurcation: one, none, or two at a fold."""
+def orbits_near(answer: xr.Dataset, at: xr.Dataset, eta: float) -> list[xr.Dataset]:
+    """Return a branch's orbits at an eta beside a bifurcation: one, none, or two at a fold."""
     place, value = float(at.bifurcation_place), float(at.bifurcation_value)
     count = answer.sizes["point"]
     orbits = []
-    for way in (-1, 1):
-        first = int(np.floor(place) if way < 0 else np.ceil(place))
-        numbers = [i for i in range(first, first + NEIGHBOURS * way, way) if 0 <= i < count]
+    for step in (-1, 1):
+        first = int(np.floor(place) if step < 0 else np.ceil(place))
+        numbers = [i for i in range(first, first + NEIGHBOURS * step, step) if 0 <= i < count]
         near = [i for i in numbers if (answer.eta.values[i] - value) * (eta - value) > 0.0]
         for i in sorted(near, key=lambda i: abs(float(answer.eta[i]) - eta)):
-            one = corrected(answer.isel(point=i), eta)
+            one = correct_orbit(answer.isel(point=i), eta)
             if one is not None:
                 orbits.append(one)
                 break
     return orbits
 
 
-def corrected(guess: xr.Dataset, eta: float) -> xr.Dataset | None:
-    """Return the orbit at an eta near another one; None if there is none that the FMU follows."""
+def correct_orbit(guess: xr.Dataset, eta: float) -> xr.Dataset | None:
+    """Return the orbit at an eta from a near one; None if the FMU follows none there."""
     periods = guess.sizes["sample"]
     try:
         answer = orbit(PAPER, eta=eta, period=periods, guess=guess, progress=False)
@@ -114,30 +116,33 @@ def corrected(guess: xr.Dataset, eta: float) -> xr.Dataset | None:
 
 
 def format_orbit(instance: EventInstance, answer: xr.Dataset) -> str:
-    """Return what the FMU does near an orbit."""
-    largest, grown = float(np.hypot(*answer.multipliers.values[0])), growth(instance, answer)
+    """Return a table cell on an orbit: multiplier, unstable ones, growth, agreement."""
+    largest, grown = (
+        float(np.hypot(*answer.multipliers.values[0])),
+        deviation_growth(instance, answer),
+    )
     as_said = grown < 1.0 / GROWTH if answer.stable else grown > GROWTH
-    count = outside(instance, answer)
+    count = count_unstable_multipliers(instance, answer)
     by_formula = int((np.hypot(*answer.multipliers.values.T) > 1.0).sum())
     agrees = as_said and count == by_formula
     return f"{largest:.4f}, {count}, {grown:.0e}{'' if agrees else ' (!)'}"
 
 
-def without_orbit(instance: EventInstance, at: xr.Dataset, eta: float) -> str:
-    """Return what the FMU does where there is no such orbit: its impacts per period."""
-    run(instance, eta, at.bifurcation_state.values[0], PERIODS)
+def format_no_orbit(instance: EventInstance, at: xr.Dataset, eta: float) -> str:
+    """Return a table cell for an eta without such an orbit: the FMU's impacts per period."""
+    advance(instance, eta, at.bifurcation_state.values[0], PERIODS)
     impacts = instance.get("impact_count")[0] / PERIODS
     return f"none: {impacts:.3f} impacts a period"
 
 
-def contacts(instance: EventInstance, at: xr.Dataset, eta: float) -> str:
-    """Permanent contacts of the FMU in ``PERIODS``."""
-    run(instance, eta, at.bifurcation_state.values[0], PERIODS)
+def format_contacts(instance: EventInstance, at: xr.Dataset, eta: float) -> str:
+    """Return a table cell with the FMU's number of permanent contacts in ``PERIODS``."""
+    advance(instance, eta, at.bifurcation_state.values[0], PERIODS)
     return f"{int(instance.get('contact_count')[0])} contacts in {PERIODS} periods"
 
 
-def rows(instance: EventInstance, label: str, answer: xr.Dataset) -> Iterator[str]:
-    """Yield lines of the table for a branch, upwards."""
+def branch_rows(instance: EventInstance, label: str, answer: xr.Dataset) -> Iterator[str]:
+    """Yield a branch's bifurcations as Markdown table rows, by rising eta."""
     values, names = answer.bifurcation_value.values, kind_names(answer)
     for i in np.argsort(values):
         at = answer.isel(bifurcation=int(i))
@@ -148,24 +153,24 @@ def rows(instance: EventInstance, label: str, answer: xr.Dataset) -> Iterator[st
         cells = []
         for eta in (values[i] - away, values[i] + away):
             if lost:
-                cells.append(contacts(instance, at, eta))
+                cells.append(format_contacts(instance, at, eta))
                 continue
-            orbits = [format_orbit(instance, one) for one in beside(answer, at, eta)]
-            cells.append("; ".join(orbits) or without_orbit(instance, at, eta))
+            orbits = [format_orbit(instance, one) for one in orbits_near(answer, at, eta)]
+            cells.append("; ".join(orbits) or format_no_orbit(instance, at, eta))
         yield f"| {label} | {values[i]:.8f} | {kind} | {away:.1e} | {cells[0]} | {cells[1]} |"
 
 
-def table(answer: dict[str, xr.Dataset]) -> list[str]:
-    """Return all lines of the Markdown table of a branch."""
+def branch_table(answer: dict[str, xr.Dataset]) -> list[str]:
+    """Return the Markdown table of all branches' bifurcations."""
     lines = ["| branch | eta | kind | ± | below | above |", "|---|---|---|---|---|---|"]
     with EventInstance(find(OSCILLATOR).path) as instance:
         for label, one in answer.items():
-            lines += rows(instance, label, one)
+            lines += branch_rows(instance, label, one)
     return lines
 
 
-def windows(answer: dict[str, xr.Dataset]) -> list[xr.Dataset]:
-    """Return the borders of T/1 to 4T/1 over eta and e."""
+def border_curves(answer: dict[str, xr.Dataset]) -> list[xr.Dataset]:
+    """Return the bifurcation curves of T/1 to 4T/1 over eta and e."""
     curves = []
     for label in ("T/1", "2T/1", "3T/1", "4T/1"):
         for i in range(answer[label].sizes["bifurcation"]):
@@ -174,8 +179,8 @@ def windows(answer: dict[str, xr.Dataset]) -> list[xr.Dataset]:
     return curves
 
 
-def window_line(case: str, label: str, window: StableWindow) -> str:
-    """Return a line of the table of windows; the loss of contact depends on gamma from 1e-6 on."""
+def window_row(case: str, label: str, window: StableWindow) -> str:
+    """Return a row of the table of windows; digits depend on the kind of limit."""
     ends = [
         f"{value:g}, limit"
         if kind == "limit"
@@ -185,30 +190,30 @@ def window_line(case: str, label: str, window: StableWindow) -> str:
     return f"| {case} | {label} | {ends[0]} | {ends[1]} |"
 
 
-def all_windows() -> list[str]:
-    """Return the table of windows of the paper's three cases."""
+def window_table() -> list[str]:
+    """Return the Markdown table of stable windows of the paper's three cases."""
     lines = ["| case | orbit | stable from | to |", "|---|---|---|---|"]
     for case, structure in CASES.items():
         for label, (eta, period, limits) in WINDOWS.items():
             start = orbit(structure, eta=eta, period=period)
             answer = branch(structure, start=start, limits=limits)
-            lines += [window_line(case, label, window) for window in stable_windows(answer)]
+            lines += [window_row(case, label, window) for window in stable_windows(answer)]
     return lines
 
 
 def main() -> None:
-    """Write tables and pictures of the orbits' bifurcations."""
+    """Compute the branches; write the tables and pictures of their bifurcations."""
     answer = {
         label: branch(PAPER, start=orbit(PAPER, eta=eta, period=period), limits=limits)
         for label, (eta, period, limits) in STARTS.items()
     }
     page = DOCS / "bifurcation_tables.md"
-    text = put(page.read_text("utf-8"), "table", table(answer))
-    text = put(text, "windows", all_windows())
-    write_whole(page, lambda place: place.write_text(text, "utf-8"))
+    text = replace_part(page.read_text("utf-8"), "table", branch_table(answer))
+    text = replace_part(text, "windows", window_table())
+    write_whole(page, lambda path: path.write_text(text, "utf-8"))
     responses = sweep(PAPER, eta=FIGURE_6)
     save_small(orbit_diagram.draw(responses, overlay=list(answer.values())), DOCS / "branches.png")
-    save_small(borders_figure.draw(*windows(answer)), DOCS / "borders.png")
+    save_small(borders_figure.draw(*border_curves(answer)), DOCS / "borders.png")
 
 
 if __name__ == "__main__":

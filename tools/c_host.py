@@ -1,4 +1,4 @@
-"""What a call of the native FMU costs a host in C, compiled here."""
+"""Time one FMU step called from a compiled C program."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ SOURCE = Path(__file__).with_suffix(".c")
 APART = {"x1_start": -1.0, "x2_start": 1e4, "box_amplitude": 1.0, "box_frequency": 0.4}
 
 
-def quiet_step(fmu: Path, watched: bool = False, step: float = 1e-3) -> float:
-    """Return the seconds a step of an FMI 3.0 FMU without an impact, called from C.
+def time_quiet_step(fmu: Path, watched: bool = False, step: float = 1e-3) -> float:
+    """Return the seconds of an FMI 3.0 step without an impact, called from C.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Headless Chromium, driven by selenium, for tests and campaigns."""
+"""Start headless Chromium by selenium, for tests and campaigns."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import Any
 WORDS = ("headless=new", "no-sandbox", "disable-dev-shm-usage", "disable-gpu")
 
 
-def headless(program: str, driver: str, downloads: Path) -> Any:
-    """Start Chromium without a window; return selenium's driver of it, which has to be quit."""
+def start_chromium(program: str, driver: str, downloads: Path) -> Any:
+    """Start Chromium without a window; return selenium's driver, to be quit by the caller."""
     from selenium import webdriver
 
     options = webdriver.ChromeOptions()

@@ -1,4 +1,4 @@
-"""How a sweep of Figure 6 scales with cores: ``python -m tools.cores``.
+"""Predict how a sweep of Figure 6 scales with cores: ``python -m tools.cores``.
 
 The plan of chunks is played with so many workers. Each chunk is computed once for each state it is
 begun from, for real and timed, in this process: which guesses stand and what each costs is
@@ -28,8 +28,8 @@ WORKERS = (1, 2, 4, 8, 16, 32, 64, 128, 256, 1000)
 Done = tuple[bytes, Table]
 
 
-def figure_6(step: float) -> SweepJob:
-    """Return the paper's sweep, at every so manyth frequency."""
+def figure_6_job(step: float) -> SweepJob:
+    """Return the job of the paper's sweep with a step of the frequency ratio."""
     etas = np.round(np.arange(0.1, 8.0 + 0.5 * step, step), 3)
     return SweepJob(
         **series_arguments(Structure.nondimensional(), etas, None, None), name="figure 6"
@@ -37,13 +37,13 @@ def figure_6(step: float) -> SweepJob:
 
 
 @dataclass
-class Clockwork:
-    """Chunks computed once each, with the seconds they took."""
+class TimedChunks:
+    """Cache of chunks computed once each, with the processor seconds they took."""
 
     known: dict[tuple[int, bytes], tuple[Done, float]] = field(default_factory=dict)
 
-    def run(self, job: SweepJob, task: Task) -> tuple[Done, float]:
-        """Return a chunk's result, and its seconds."""
+    def compute(self, job: SweepJob, task: Task) -> tuple[Done, float]:
+        """Return a chunk's result and its seconds; compute it only the first time."""
         begun = (
             job.boundary_state(task.previous)
             if task.previous is not None
@@ -58,8 +58,10 @@ class Clockwork:
         return self.known[key]
 
 
-def elapsed(job: SweepJob, workers: int, clockwork: Clockwork, each: float) -> tuple[float, int]:
-    """Run a job; return the seconds that so many workers take, and the values guessed in vain.
+def simulate_schedule(
+    job: SweepJob, workers: int, clockwork: TimedChunks, each: float
+) -> tuple[float, int]:
+    """Return the seconds a job would take on some workers, and the wasted guessed values.
 
     Parameters
     ----------
@@ -76,7 +78,7 @@ def elapsed(job: SweepJob, workers: int, clockwork: Clockwork, each: float) -> t
     while not progress.complete:
         while len(busy) < workers and (task := progress.next_task()) is not None:
             progress.under_way.add(task.chunk.index)
-            done, seconds = clockwork.run(job, task)
+            done, seconds = clockwork.compute(job, task)
             heapq.heappush(busy, (now + seconds + each, task.chunk.index, task, done))
         now, _, task, done = heapq.heappop(busy)
         progress.add_result(task, *done)
@@ -84,22 +86,22 @@ def elapsed(job: SweepJob, workers: int, clockwork: Clockwork, each: float) -> t
 
 
 def main() -> None:
-    """Print a table of the seconds that a sweep takes with more and more workers."""
+    """Print a table of a sweep's seconds and efficiency with more and more workers."""
     parser = argparse.ArgumentParser(prog="python -m tools.cores", description=__doc__)
     parser.add_argument("--step", type=float, default=0.001, help="of the frequency ratio")
     parser.add_argument("--chunk", type=int, default=SweepJob.chunk_size, help="values a chunk")
     parser.add_argument("--each", type=float, default=2e-3, help="seconds beside, a chunk")
     arguments = parser.parse_args()
-    job, clockwork = figure_6(arguments.step), Clockwork()
+    job, clockwork = figure_6_job(arguments.step), TimedChunks()
     find(OSCILLATOR)
     with patch.object(SweepJob, "chunk_size", arguments.chunk):
         print(f"{job.count()} values in {len(job.chunks())} chunks")
         print("workers   seconds   efficiency   guessed in vain")
-        elapsed(job, 1, clockwork, arguments.each)
+        simulate_schedule(job, 1, clockwork, arguments.each)
         clockwork.known.clear()  # the first time all is loaded
         alone = 0.0
         for workers in WORKERS:
-            seconds, wasted = elapsed(job, workers, clockwork, arguments.each)
+            seconds, wasted = simulate_schedule(job, workers, clockwork, arguments.each)
             alone = alone or seconds
             part = alone / (workers * seconds)
             print(f"{workers:7d}{seconds:10.2f}{part:13.3f}{wasted:18d}", flush=True)

@@ -1,5 +1,4 @@
-"""Independent truth for tests and campaigns: the two oscillators in SI units as sums of complex
-exponentials, in high precision; first roots by scan and polish.
+"""Solve the two oscillators in 50 digits, as sums of exponentials, to check the kernel.
 
 Nothing here comes from the kernel: no omega, no mu, no branches of damping. Newton's law of each
 mass, its characteristic roots, and mpmath.
@@ -25,7 +24,7 @@ BESIDE = mp.mpf("1e-24")  # a drive is that far from any resonance: wrong by as 
 
 
 class Signal:
-    """``Re sum c_k e^{s_k t} + sum p_k t^k / k!``."""
+    """Function of time ``Re sum c_k e^{s_k t} + sum p_k t^k / k!``."""
 
     def __init__(self, terms: Sequence[tuple[Any, Any]], polynomial: Sequence[Any]) -> None:
         self.terms, self.polynomial = terms, polynomial
@@ -46,36 +45,38 @@ class Signal:
         )
 
     def derivative(self) -> Signal:
-        """Return the derivative by t."""
+        """Return the signal's derivative by time."""
         return Signal([(c * s, s) for c, s in self.terms], [*self.polynomial[1:], mp.mpf(0)])
 
     def __call__(self, t: Any) -> Any:
-        """Return the value at t, in high precision."""
+        """Return the value at time t, in high precision."""
         t = mp.mpf(t)
-        return mp.re(sum(c * mp.exp(s * t) for c, s in self.terms)) + taylor(self.polynomial, t)
+        return mp.re(sum(c * mp.exp(s * t) for c, s in self.terms)) + taylor_polynomial(
+            self.polynomial, t
+        )
 
     def sample(self, t: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return values in double precision on an array, by high precision where terms cancel."""
+        """Return values on an array of times in double precision; exactly where terms cancel."""
         terms, polynomial = self._coarse
         if max(abs(c) for c, _ in terms) > LARGE:
             return np.array([float(self(x)) for x in t])
-        return sum((c * np.exp(s * t)).real for c, s in terms) + taylor(polynomial, t)
+        return sum((c * np.exp(s * t)).real for c, s in terms) + taylor_polynomial(polynomial, t)
 
-    def fastest(self) -> float:
-        """Return the largest rate of change of a term."""
+    def fastest_rate(self) -> float:
+        """Return the largest rate of change of a term, 1/s."""
         return max([abs(s) for _, s in self._coarse[0]] + [1e-3])
 
 
-def taylor(derivatives: Sequence[Any], t: Any) -> Any:
-    """Return a polynomial, given by its derivatives at 0, at t."""
+def taylor_polynomial(derivatives: Sequence[Any], t: Any) -> Any:
+    """Return the value at t of a polynomial given by its derivatives at 0."""
     value: Any = 0
     for k in range(len(derivatives), 0, -1):
         value = derivatives[k - 1] + value * t / k
     return value
 
 
-def box(values: Mapping[str, float], phase: Any) -> Signal:
-    """Return the box's acceleration from the inputs; ``phase``, rad, is the harmonic part's."""
+def box_acceleration(values: Mapping[str, float], phase: Any) -> Signal:
+    """Return the box's acceleration as a ``Signal``, from the FMU's inputs and a phase, rad."""
     a, frequency = (
         mp.mpf(values.get("box_amplitude", 1.0)),
         mp.mpf(values.get("box_frequency", 0.0)),
@@ -88,18 +89,20 @@ def box(values: Mapping[str, float], phase: Any) -> Signal:
     return Signal([(mp.mpc(0, 1) * a * frequency**2 * mp.expj(phase), mp.mpc(0, frequency))], cubic)
 
 
-def beside(s: Any, damping: Any, stiffness: Any) -> Any:
-    """Return an exponent, or one next to it where the oscillator has just this one."""
+def avoid_resonance(s: Any, damping: Any, stiffness: Any) -> Any:
+    """Return an exponent, moved by 1e-24 if the oscillator has just this one."""
     at_resonance = abs(s * s + damping * s + stiffness) < BESIDE * stiffness
     return s * (1 + BESIDE) if at_resonance else s
 
 
-def oscillator(
+def oscillator_motion(
     mass: Any, damping: Any, stiffness: Any, x: Any, v: Any, acceleration: Signal
 ) -> Signal:
-    """Return the displacement relative to the box as a Signal; x, v: its value and rate at 0."""
+    """Return an oscillator's displacement in the box as a ``Signal``, from x and v at 0."""
     mass, damping, stiffness = mp.mpf(mass), mp.mpf(damping), mp.mpf(stiffness)
-    exponents = [(c, beside(s, damping / mass, stiffness / mass)) for c, s in acceleration.terms]
+    exponents = [
+        (c, avoid_resonance(s, damping / mass, stiffness / mass)) for c, s in acceleration.terms
+    ]
     forced = [(-c / (s * s + damping / mass * s + stiffness / mass), s) for c, s in exponents]
     cubic = [mp.mpf(0)] * 4
     # mass q'' + damping q' + stiffness q = -mass p: exact after four rounds, p being a cubic
@@ -120,22 +123,26 @@ def oscillator(
     return Signal(forced + free, cubic)
 
 
-def apart(values: Mapping[str, float], state: Sequence[Any], phase: Any) -> tuple[Signal, Signal]:
-    """Return both masses' displacements on their own, from a state (x1, v1, x2, v2)."""
+def free_motion(
+    values: Mapping[str, float], state: Sequence[Any], phase: Any
+) -> tuple[Signal, Signal]:
+    """Return both masses' displacements in flight, from a state (x1, v1, x2, v2)."""
     x1, v1, x2, v2 = (mp.mpf(value) for value in state)
-    shaken = box(values, phase)
-    first = oscillator(values["m1"], values["d1"], values["k1"], x1, v1, shaken)
-    return first, oscillator(values["m2"], values["d2"], values["k2"], x2, v2, shaken)
+    shaken = box_acceleration(values, phase)
+    first = oscillator_motion(values["m1"], values["d1"], values["k1"], x1, v1, shaken)
+    return first, oscillator_motion(values["m2"], values["d2"], values["k2"], x2, v2, shaken)
 
 
-def gap_of(values: Mapping[str, float], first: Signal, second: Signal) -> Signal:
-    """Return the gap: the clearance, and what both masses' motions are apart."""
+def gap_signal(values: Mapping[str, float], first: Signal, second: Signal) -> Signal:
+    """Return the gap as a ``Signal``: clearance plus the displacements' difference."""
     constant = [mp.mpf(values.get("clearance", 0.0)), 0, 0, 0]
     return second - first + Signal([], constant)
 
 
-def together(values: Mapping[str, float], x: Any, v: Any, phase: Any) -> tuple[Signal, Signal]:
-    """Return mass 1's motion where both move as one, and the force with which it pushes mass 2.
+def contact_motion(
+    values: Mapping[str, float], x: Any, v: Any, phase: Any
+) -> tuple[Signal, Signal]:
+    """Return mass 1's motion in contact, and the force with which it pushes mass 2.
 
     The force is by Newton's law of mass 1.
 
@@ -143,26 +150,26 @@ def together(values: Mapping[str, float], x: Any, v: Any, phase: Any) -> tuple[S
     position around which both swing.
     """
     m1, d1, k1 = (mp.mpf(values[name]) for name in ("m1", "d1", "k1"))
-    shaken = box(values, phase)
+    shaken = box_acceleration(values, phase)
     load = mp.mpf(values["k2"]) * mp.mpf(values.get("clearance", 0.0)) / (k1 + values["k2"])
-    common = oscillator(
+    common = oscillator_motion(
         m1 + values["m2"], d1 + values["d2"], k1 + values["k2"], mp.mpf(x) - load, mp.mpf(v), shaken
     ) + Signal([], [load, 0, 0, 0])
     speed = common.derivative()
     return common, -1 * (m1 * (speed.derivative() + shaken) + d1 * speed + k1 * common)
 
 
-def polish(signal: Signal, low: Any, high: Any) -> Any:
-    """Return the root of a signal in a bracket."""
+def refine_root(signal: Signal, low: Any, high: Any) -> Any:
+    """Return a signal's root inside a bracket, in high precision."""
     return mp.findroot(signal, (mp.mpf(low), mp.mpf(high)), solver="anderson", verify=False)
 
 
 def first_root(signal: Signal, stop: float, start: float = 0.0) -> Any | None:
-    """Return the first root in ``start < t <= stop``, None without one.
+    """Return a signal's first root in ``start < t <= stop``; None without one.
 
     By a scan with hundreds of points a period, each near miss settled by its own minimum.
     """
-    spacing = 0.02 / signal.fastest()
+    spacing = 0.02 / signal.fastest_rate()
     fine = start + np.geomspace(1e-8, 1.0, 60) * min(spacing, stop - start)
     t = np.concatenate([fine, np.arange(fine[-1] + spacing, stop, spacing), [stop]])
     h = signal.sample(t)
@@ -170,9 +177,9 @@ def first_root(signal: Signal, stop: float, start: float = 0.0) -> Any | None:
     near = 1e-3 * np.abs(h).max()
     for i in range(1, len(t)):
         if h[i] <= 0.0:
-            return polish(signal, t[i - 1], t[i])
+            return refine_root(signal, t[i - 1], t[i])
         if i + 1 < len(t) and h[i] <= min(h[i - 1], h[i + 1]) and h[i] < near:
-            bottom = polish(slope, t[i - 1], t[i + 1])
+            bottom = refine_root(slope, t[i - 1], t[i + 1])
             if signal(bottom) < 0:
-                return polish(signal, t[i - 1], bottom)
+                return refine_root(signal, t[i - 1], bottom)
     return None

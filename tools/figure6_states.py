@@ -1,4 +1,4 @@
-"""Where the responses of Figure 6 begin, for the explorer: ``python -m tools.figure6_states``.
+"""Write the shipped Figure 6 of the explorer: ``python -m tools.figure6_states``.
 
 Kept in the repository, so that a page is written at once and its clicks replay one branch, the same
 everywhere. To be made anew when the kernel changes: a test says so.
@@ -19,8 +19,8 @@ KEPT = ["frequency", "amplitude", "impacts_per_period", "end_state"]
 LEFT_OUT = ("identity", "history")  # of every source: the stamp tells what decides the bits
 
 
-def figure6() -> xr.Dataset:
-    """Return the sweep, of it what the page needs."""
+def compute_figure6() -> xr.Dataset:
+    """Compute Figure 6's sweep; return the part of it that the page needs."""
     etas = np.arange(100, 8001) / 1000
     answer = orchestrate.sweep(orchestrate.Structure(), eta=etas, direction="up")
     answer = answer[KEPT].drop_vars("period")
@@ -29,8 +29,8 @@ def figure6() -> xr.Dataset:
 
 
 def main() -> None:
-    """Compute Figure 6's start states for the explorer and write them to its folder."""
-    data = figure6()
+    """Compute Figure 6's start states and write them to the explorer's folder."""
+    data = compute_figure6()
     small = {"zlib": True, "complevel": 9, "shuffle": True}
     encoding = dict.fromkeys((*KEPT, "eta"), small)
     write_whole(FILE, lambda place: data.to_netcdf(place, engine="netcdf4", encoding=encoding))

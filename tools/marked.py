@@ -1,4 +1,4 @@
-"""Parts of a page that are made by a tool: lines between two marks."""
+"""Replace a generated part of a Markdown page, between two marks."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from collections.abc import Sequence
 MARK = "<!-- {}: {} -->\n"
 
 
-def put(text: str, name: str, lines: Sequence[str]) -> str:
-    """Return a page's text with lines between two marks."""
+def replace_part(text: str, name: str, lines: Sequence[str]) -> str:
+    """Return a page's text with the lines between the marks of a name replaced."""
     before, rest = text.split(MARK.format(name, "begin"))
     after = rest.split(MARK.format(name, "end"))[1]
     own = "\n".join(lines)

@@ -1,4 +1,4 @@
-"""The numbers of docs/paper.md and docs/claims.md: made from what ``orchestrate paper`` computed.
+"""Write the results of ``orchestrate paper`` into docs/paper.md and docs/claims.md.
 
     python -m tools.paper_page results/paper
 
@@ -16,14 +16,14 @@ from typing import Any
 
 from orchestrate.files import write_whole
 from orchestrate.paper.claims.claim import WORDS
-from tools.marked import MARK, put
+from tools.marked import MARK, replace_part
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 PAGES, CLAIMS = (DOCS / "paper.md", DOCS / "claims.md"), DOCS / "claims.json"
 
 
-def counts(rows: Sequence[Mapping[str, str]]) -> list[str]:
-    """Return how many claims are borne out."""
+def count_verdicts(rows: Sequence[Mapping[str, str]]) -> list[str]:
+    """Return a text on how many claims have which verdict."""
     number = {verdict: sum(row["verdict"] == verdict for row in rows) for verdict in WORDS}
     return [
         f"Of {len(rows)} statements of all sections {number['yes']} are borne out, "
@@ -31,8 +31,8 @@ def counts(rows: Sequence[Mapping[str, str]]) -> list[str]:
     ]
 
 
-def sections(rows: Sequence[Mapping[str, str]]) -> list[str]:
-    """Return the table of counts of each section."""
+def section_table(rows: Sequence[Mapping[str, str]]) -> list[str]:
+    """Return a Markdown table of counts of verdicts by section."""
     heads = [*WORDS.values()]
     lines = [f"| section | {' | '.join(heads)} |", f"|{'---|' * (1 + len(heads))}"]
     for section in dict.fromkeys(row["section"] for row in rows):
@@ -41,51 +41,51 @@ def sections(rows: Sequence[Mapping[str, str]]) -> list[str]:
     return lines
 
 
-def cell(text: str) -> str:
-    """Escape a text for a cell of a Markdown table."""
+def escape_cell(text: str) -> str:
+    """Return a text escaped for a cell of a Markdown table."""
     return text.replace("|", "\\|").replace("*", "\\*").replace("_", "\\_")
 
 
-def verdicts(rows: Sequence[Mapping[str, str]]) -> list[str]:
-    """Return the table of claims."""
+def claim_table(rows: Sequence[Mapping[str, str]]) -> list[str]:
+    """Return the Markdown table of all claims with their verdicts."""
     names = ("section", "text", "printed", "found")
     lines = ["| section | the paper | its value | found | |", "|---|---|---|---|---|"]
     for row in rows:
-        cells = [cell(row[name]) for name in names]
+        cells = [escape_cell(row[name]) for name in names]
         lines.append(f"| {' | '.join(cells)} | {WORDS[row['verdict']]} |")
     return lines
 
 
-def regions(rows: Sequence[Mapping[str, str]]) -> list[str]:
-    """Return the table of regions."""
+def region_table(rows: Sequence[Mapping[str, str]]) -> list[str]:
+    """Return the Markdown table of frequency regions."""
     names = ("case", "region", "count", "chaotic", "neutral", "largest")
     heads = ("case", "from, to", "frequencies", "chaotic", "neutral", "largest exponent")
     lines = [f"| {' | '.join(heads)} |", f"|{'---|' * len(heads)}"]
     return lines + [f"| {' | '.join(row[name] for name in names)} |" for row in rows]
 
 
-def page(text: str, found: Mapping[str, Any]) -> str:
-    """Return a page's text with what was computed, in the parts that it has."""
+def fill_page(text: str, found: Mapping[str, Any]) -> str:
+    """Return a page's text with the results put into the parts that it has."""
     parts = {
-        "counts": lambda: counts(found["claims"]),
-        "sections": lambda: sections(found["claims"]),
-        "verdicts": lambda: verdicts(found["claims"]),
-        "regions": lambda: regions(found["regions"]),
+        "counts": lambda: count_verdicts(found["claims"]),
+        "sections": lambda: section_table(found["claims"]),
+        "verdicts": lambda: claim_table(found["claims"]),
+        "regions": lambda: region_table(found["regions"]),
         "answers": lambda: [f"- {sentence}" for sentence in found["answers"]],
     }
     for name, lines in parts.items():
         if MARK.format(name, "begin") in text:
-            text = put(text, name, lines())
+            text = replace_part(text, name, lines())
     return text
 
 
 def main(folder: str) -> None:
-    """Write the manual's pages on the paper's claims."""
+    """Write results from a folder into the manual's pages on the paper's claims."""
     shutil.copyfile(Path(folder) / "claims.json", CLAIMS)
-    found = json.loads(CLAIMS.read_text("utf-8"))
-    for place in PAGES:
-        text = page(place.read_text("utf-8"), found)
-        write_whole(place, lambda file, text=text: file.write_text(text, "utf-8"))
+    results = json.loads(CLAIMS.read_text("utf-8"))
+    for path in PAGES:
+        text = fill_page(path.read_text("utf-8"), results)
+        write_whole(path, lambda file, text=text: file.write_text(text, "utf-8"))
 
 
 if __name__ == "__main__":

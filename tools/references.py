@@ -1,4 +1,4 @@
-"""Reference runs of the models as FMI's cross-check has them: inputs that jump, and the answers."""
+"""Compute and write reference runs of the models, in the format of FMI's cross-check."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MODELS = Path(__file__).resolve().parents[1] / "fmu_src" / "models"
 
 @dataclass(frozen=True)
 class Reference:
-    """A model's reference run.
+    """A model's reference run: inputs, outputs and times.
 
     Attributes
     ----------
@@ -86,10 +86,11 @@ REFERENCES = (OSCILLATOR, SHAKER)
 
 
 def reference_rows(reference: Reference, fmu: str | PathLike[str]) -> list[list[float]]:
-    """Time and outputs of the reference run through an FMU, one row a communication point."""
+    """Run the reference through an FMU; return rows of time and outputs."""
     times = reference.times()
 
     def inputs(time: float) -> dict[str, float]:
+        """Return the inputs at a time as keywords."""
         return dict(zip(reference.inputs, reference.input_at(time), strict=True))
 
     with Instance(fmu) as instance:

@@ -1,4 +1,4 @@
-"""The oscillator by SciPy's ``solve_ivp`` with events: what one writes without a closed form."""
+"""Solve the oscillator by SciPy's ``solve_ivp`` with events, for comparison of speed."""
 
 from __future__ import annotations
 
@@ -18,32 +18,36 @@ CREEP = 1e-7  # the slowest parting
 SLOW = 1e-4  # closing speed below which contact begins; all over the scale
 
 
-def motions(structure: Structure, acceleration: Acceleration) -> tuple[Motion, Motion]:
-    """Return the equations (3) to (6) of x1, v1, x2, v2 in the box: apart, and in contact."""
+def equations_of_motion(structure: Structure, acceleration: Acceleration) -> tuple[Motion, Motion]:
+    """Return functions for the rates (3) to (6) of x1, v1, x2, v2: in flight, in contact."""
     m1, m2, k1, k2, d1, d2 = (getattr(structure, n) for n in ("m1", "m2", "k1", "k2", "d1", "d2"))
     m, k, d = m1 + m2, k1 + k2, d1 + d2
 
     def flight(t: float, y: np.ndarray) -> list[float]:
+        """Return the rates of the state in flight."""
         box = acceleration(t)
         one = -box - (d1 * y[1] + k1 * y[0]) / m1
         return [y[1], one, y[3], -box - (d2 * y[3] + k2 * y[2]) / m2]
 
     def contact(t: float, y: np.ndarray) -> list[float]:
+        """Return the rates of the state in permanent contact."""
         pull = -acceleration(t) - (d * y[1] + k * y[0]) / m
         return [y[1], pull, y[1], pull]
 
     return flight, contact
 
 
-def events(structure: Structure) -> tuple[Event, Event]:
-    """Return functions that vanish where the gap closes, and where the contact force does (18)."""
+def event_functions(structure: Structure) -> tuple[Event, Event]:
+    """Return functions whose roots are an impact and the end of contact (18)."""
     s = structure
     spring, damper = s.m2 * s.k1 - s.m1 * s.k2, s.m2 * s.d1 - s.m1 * s.d2
 
     def gap(t: float, y: np.ndarray) -> float:
+        """Return the gap, whose root is an impact."""
         return float(y[2] - y[0])
 
     def pressed(t: float, y: np.ndarray) -> float:
+        """Return the contact force, whose root is the release."""
         return float(spring * y[0] + damper * y[1])
 
     for event, direction in ((gap, -1), (pressed, 1)):
@@ -51,8 +55,10 @@ def events(structure: Structure) -> tuple[Event, Event]:
     return gap, pressed
 
 
-def after(y: np.ndarray, touching: bool, structure: Structure, scale: float) -> np.ndarray:
-    """The state after an event: thrown apart (15), or together."""
+def state_after_event(
+    y: np.ndarray, touching: bool, structure: Structure, scale: float
+) -> np.ndarray:
+    """Return the state after an event: masses parted by restitution (15), or together."""
     mu, creep = structure.mu, CREEP * scale * structure.omega
     mean = (y[1] + mu * y[3]) / (1.0 + mu)
     parting = 0.0 if touching else max(structure.restitution(y[1] - y[3]) * (y[1] - y[3]), creep)
@@ -61,14 +67,14 @@ def after(y: np.ndarray, touching: bool, structure: Structure, scale: float) -> 
     return np.array([y[0], one, y[0] + apart, one + parting])
 
 
-def run(
+def simulate_from_rest(
     structure: Structure,
     acceleration: Acceleration,
     end: float,
     scale: float = 1.0,
     rate: float | None = None,
 ) -> tuple[float, int]:
-    """Integrate from rest; return the processor seconds and the number of impacts.
+    """Integrate the structure from rest; return processor seconds and number of impacts.
 
     Parameters
     ----------
@@ -87,20 +93,20 @@ def run(
     seconds : float
     impacts : int
     """
-    flight, contact = motions(structure, acceleration)
-    gap, pressed = events(structure)
+    flight, contact = equations_of_motion(structure, acceleration)
+    gap, pressed = event_functions(structure)
     begin = time.process_time()
     t, y, touching, impacts = 0.0, np.zeros(4), True, 0
     while t < end:
         motion, event = (contact, pressed) if touching else (flight, gap)
         grid = None if rate is None else np.arange(np.ceil(t * rate), end * rate) / rate
         tolerances = {"rtol": 1e-8, "atol": 1e-10 * scale}
-        found = solve_ivp(motion, (t, end), y, events=event, t_eval=grid, **tolerances)
-        if not found.t_events[0].size:
+        solution = solve_ivp(motion, (t, end), y, events=event, t_eval=grid, **tolerances)
+        if not solution.t_events[0].size:
             break
-        t, y = found.t_events[0][0], found.y_events[0][0].copy()
+        t, y = solution.t_events[0][0], solution.y_events[0][0].copy()
         impacts += not touching
         slow = structure.restitution(y[1] - y[3]) * (y[1] - y[3]) < SLOW * scale * structure.omega
         touching = not touching and slow and pressed(t, y) < 0.0
-        y = after(y, touching, structure, scale)
+        y = state_after_event(y, touching, structure, scale)
     return time.process_time() - begin, impacts

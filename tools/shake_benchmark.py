@@ -1,4 +1,4 @@
-"""How fast a structure is shaken: ``python -m tools.shake_benchmark``.
+"""Measure the speed of ``shake`` beside ``solve_ivp``: ``python -m tools.shake_benchmark``.
 
 A minute of random excitation of a beam at 45 Hz, recorded at 20 kHz, in processor time: against
 the time that the test itself would take, and against SciPy's ``solve_ivp`` with events.
@@ -21,23 +21,24 @@ BAND = ((20.0, 0.5), (200.0, 0.5))  # Hz, (m/s2)^2/Hz: 1 g rms
 RATE = 20_000.0
 
 
-def shaking(duration: float) -> Random:
-    """Return the benchmark's excitation, a random vibration."""
+def make_excitation(duration: float) -> Random:
+    """Return the benchmark's excitation, a random vibration of a duration in s."""
     return Random(psd=BAND, duration=duration, seed=1)
 
 
-def our_seconds(duration: float) -> tuple[float, int]:
-    """Time :func:`orchestrate.shake` whole; return processor seconds and impacts."""
+def time_shake(duration: float) -> tuple[float, int]:
+    """Time :func:`orchestrate.shake`; return processor seconds and impacts."""
     begin = time.process_time()
-    history = shake(BEAM, shaking(duration), sample_rate=RATE, progress=False, jobs=1)
+    history = shake(BEAM, make_excitation(duration), sample_rate=RATE, progress=False, jobs=1)
     return time.process_time() - begin, history.sizes["impact"]
 
 
-def acceleration_of(pieces: Pieces) -> Acceleration:
-    """The acceleration at one time, as quick as Python has it."""
+def make_acceleration(pieces: Pieces) -> Acceleration:
+    """Return a fast function of time for the acceleration given by cubic pieces."""
     nodes, rows = pieces.nodes.tolist(), pieces.derivatives.tolist()
 
     def acceleration(t: float) -> float:
+        """Return the base acceleration at a time, m/s2."""
         index = min(bisect_right(nodes, t), len(rows)) - 1
         a, b, c, d = rows[index]
         t -= nodes[index]
@@ -46,12 +47,12 @@ def acceleration_of(pieces: Pieces) -> Acceleration:
     return acceleration
 
 
-def solver_seconds(duration: float) -> tuple[float, int]:
+def time_solver(duration: float) -> tuple[float, int]:
     """Time ``solve_ivp`` under the same pieces; return processor seconds and impacts."""
-    signal = shaking(duration)
-    acceleration = acceleration_of(signal.pieces())
+    signal = make_excitation(duration)
+    acceleration = make_acceleration(signal.pieces())
     scale = signal.rms / BEAM.omega**2
-    return sampled_solver.run(BEAM, acceleration, duration, scale, RATE)
+    return sampled_solver.simulate_from_rest(BEAM, acceleration, duration, scale, RATE)
 
 
 def main() -> None:
@@ -60,12 +61,12 @@ def main() -> None:
     parser.add_argument("--duration", type=float, default=60.0, help="s")
     parser.add_argument("--solver", type=float, default=3.0, help="s that solve_ivp integrates")
     arguments = parser.parse_args()
-    our_seconds(1.0)  # imports, and the FMU unpacked
-    seconds, impacts = min(our_seconds(arguments.duration) for _ in range(3))
+    time_shake(1.0)  # imports, and the FMU unpacked
+    seconds, impacts = min(time_shake(arguments.duration) for _ in range(3))
     pace = arguments.duration / seconds
     print(f"shake: {arguments.duration:g} s at {RATE:g} Hz, {impacts} impacts: {seconds:.3g} s,")
     print(f"  {pace:.3g} times as fast as the test")
-    slow, slow_impacts = solver_seconds(arguments.solver)
+    slow, slow_impacts = time_solver(arguments.solver)
     each = slow / arguments.solver
     print(f"solve_ivp: {arguments.solver:g} s, {slow_impacts} impacts: {slow:.3g} s,")
     print(f"  {each:.3g} times as long as the test, {each * pace:.3g} times as long as shake")

@@ -1,4 +1,4 @@
-"""The site, manual and explorer, as a folder that runs without installing anything.
+"""Build manual and explorer as one static site, and check its links.
 
 ``python -m tools.site site/html`` builds it and checks it: no page may point to what is not there,
 nor take a script, a style, a font or a picture from another host. Serve the folder by any web
@@ -24,7 +24,7 @@ TAKEN = {"script": "src", "link": "href", "img": "src", "iframe": "src", "source
 
 @dataclass
 class Page(HTMLParser):
-    """A page's links, what it takes from elsewhere, and the places that can be linked to.
+    """HTML parser that collects a page's links, resources and anchors.
 
     Attributes
     ----------
@@ -43,7 +43,7 @@ class Page(HTMLParser):
         self.feed(self.path.read_text(encoding="utf-8"))
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Collect what a tag links to, takes, and names."""
+        """Collect what a tag links to, loads, and names."""
         values = {name: value or "" for name, value in attrs}
         self.places |= {values[name] for name in ("id", "name") if name in values}
         if tag == "a" and "href" in values:
@@ -54,7 +54,7 @@ class Page(HTMLParser):
 
 @dataclass
 class Site:
-    """A folder of pages.
+    """A folder of HTML pages.
 
     Attributes
     ----------
@@ -65,11 +65,11 @@ class Site:
 
     @cached_property
     def pages(self) -> dict[Path, Page]:
-        """Return all HTML pages of the site by their files."""
+        """Return a dict from file to page of all HTML files of the site."""
         return {path: Page(path) for path in sorted(self.folder.resolve().rglob("*.html"))}
 
-    def from_other_hosts(self) -> list[str]:
-        """Return what pages take from other hosts, as ``page: address``."""
+    def external_resources(self) -> list[str]:
+        """Return what pages load from other hosts, as ``page: address``."""
         return [
             f"{path.name}: {address}"
             for path, page in self.pages.items()
@@ -77,8 +77,8 @@ class Site:
             if urlsplit(address).scheme in ("http", "https") or address.startswith("//")
         ]
 
-    def broken(self) -> list[str]:
-        """Return links, pictures and scripts of pages to what is not there, as ``page: address``.
+    def broken_links(self) -> list[str]:
+        """Return links, pictures and scripts whose targets are missing, as ``page: address``.
 
         Those of other hosts are not asked.
         """
@@ -86,25 +86,25 @@ class Site:
             f"{path.name}: {address}"
             for path, page in self.pages.items()
             for address in (*page.links, *page.taken)
-            if not self.leads_somewhere(path, address)
+            if not self.target_exists(path, address)
         ]
 
-    def leads_somewhere(self, path: Path, address: str) -> bool:
-        """Return whether an address of a page is one of this folder that exists, or elsewhere."""
+    def target_exists(self, path: Path, address: str) -> bool:
+        """Return whether an address of a page exists in the folder, or is elsewhere."""
         if urlsplit(address).scheme or address.startswith("//"):
             return True
-        file, place = urldefrag(address)
+        file, anchor = urldefrag(address)
         target = (path.parent / unquote(urlsplit(file).path)).resolve() if file else path
         if target not in self.pages:
             return target.is_file()
         return (
-            not place
+            not anchor
             or target.name == "explore.html"
-            or unquote(place) in self.pages[target].places
+            or unquote(anchor) in self.pages[target].places
         )
 
 
-def build(folder: Path) -> None:
+def build_site(folder: Path) -> None:
     """Build manual and explorer into a folder; warnings are errors."""
     kept = folder.parent / "doctrees"  # what Sphinx remembers, which nobody is to be served
     options = ["-q", "-W", "-n", "--keep-going", "-d", kept]
@@ -114,11 +114,11 @@ def build(folder: Path) -> None:
 
 
 def main(folder: str = "site/html") -> None:
-    """Build the site, check it, and say how large it is."""
+    """Build the site, check it, and print its size."""
     begin = time.monotonic()
     site = Site(Path(folder))
-    build(site.folder)
-    wrong = [*site.broken(), *site.from_other_hosts()]
+    build_site(site.folder)
+    wrong = [*site.broken_links(), *site.external_resources()]
     if wrong:
         raise SystemExit("\n".join(["not to be found, or from other hosts:", *wrong]))
     files = [path for path in site.folder.rglob("*") if path.is_file()]

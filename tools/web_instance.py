@@ -1,4 +1,4 @@
-"""The oscillator's kernel as WebAssembly under wasmtime, for tests and campaigns."""
+"""Run the kernel's WebAssembly module under wasmtime, for tests and campaigns."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from orchestrate.access.webassembly import WebKernel
 
 
-class Web:
-    """An instance in the WebAssembly module."""
+class WebInstance:
+    """An oscillator in the WebAssembly module, with its memory."""
 
     def __init__(self, kernel: WebKernel) -> None:
         import wasmtime
@@ -27,16 +27,16 @@ class Web:
         self.starts = kernel.starts
 
     def bytes(self) -> bytes:
-        """Return the instance's whole memory."""
+        """Return the instance's whole memory as bytes."""
         end = self.address + 8 * self.slots["SIZE"]
         return bytes(self.exports["memory"].read(self.store, self.address, end))
 
     def memory(self) -> NDArray[np.float64]:
-        """Return the instance's memory as numbers, one a slot."""
+        """Return the instance's memory as numbers, one per slot."""
         return np.frombuffer(self.bytes())
 
     def set(self, **values: float) -> None:
-        """Set slots by name; the shim's flag too where a cubic input is among them."""
+        """Set slots by name; with a cubic input the shim's flag too."""
         for name, value in values.items():
             place = self.address + 8 * self.slots[name]
             self.exports["memory"].write(self.store, np.float64(value).tobytes(), place)

@@ -1,4 +1,4 @@
-"""The command line: each command asks one question of the public API and prints the result.
+"""Command line's entry: parse the arguments, run one command, turn errors into exit codes.
 
 A command's module has ``add_parser``, which declares its options, and ``run``, which carries it
 out; :mod:`.options` has what commands share.
@@ -46,8 +46,8 @@ from . import (
     spectra,
     sweep,
 )
-from .options import Commands, sets_text
-from .process import Terminated, outputs, signals
+from .options import Commands, list_shipped_sets
+from .process import Terminated, handled_signals, safe_outputs
 
 COMMANDS = (
     *(build, simulate, shake, analyse, diagnose, resonance, spectra, sweep, map),
@@ -69,13 +69,13 @@ sets of parameters that come with the package, for --structure and --drive:
 
 
 def program_name() -> str:
-    """Return how the command line was called."""
+    """Return the name to show in help texts: ``vibroimpact`` or ``python -m orchestrate``."""
     called = Path(sys.argv[0]).name if sys.argv and sys.argv[0] else ""
     return "vibroimpact" if called.startswith("vibroimpact") else "python -m orchestrate"
 
 
 def make_parser(words: Collection[str] | None = None) -> argparse.ArgumentParser:
-    """Make the command line's parser, with one subparser per command.
+    """Return the ``argparse`` parser of the command line, with one subparser per command.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def make_parser(words: Collection[str] | None = None) -> argparse.ArgumentParser
         prog=program,
         description="Ask a vibro-impacting structure, through its FMUs: what its response is, "
         "where it is irregular, what a motor does to it.",
-        epilog=EXAMPLES.format(program=program, sets=sets_text()),
+        epilog=EXAMPLES.format(program=program, sets=list_shipped_sets()),
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
@@ -98,7 +98,7 @@ def make_parser(words: Collection[str] | None = None) -> argparse.ArgumentParser
     adding = Commands(commands, program, words)
     for command in COMMANDS:
         command.add_parser(adding)
-    adding.finish()
+    adding.add_common_options()
     return parser
 
 
@@ -115,13 +115,13 @@ def join_negative_values(arguments: Sequence[str]) -> list[str]:
 
 
 def set_up_logging() -> None:
-    """Show the library's log messages on the error output, one line each."""
+    """Send the library's log messages of level INFO and above to standard error."""
     logging.basicConfig(format="%(message)s")
     logging.getLogger(__package__.partition(".")[0]).setLevel(logging.INFO)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line; return the exit code, after an error with one line about it.
+    """Run the command line on a list of arguments; print errors in one line; return the exit code.
 
     Parameters
     ----------
@@ -134,8 +134,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         Exit code: 0 success, 1 a failure, 2 a user's mistake, 130 interrupted, 143 terminated.
     """
     try:
-        with outputs() as output, signals():
-            code = carry_out(sys.argv[1:] if arguments is None else arguments)
+        with safe_outputs() as output, handled_signals():
+            code = run_command(sys.argv[1:] if arguments is None else arguments)
             output.flush()
             if output.failure():
                 print_error(
@@ -144,11 +144,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 return code or FAILURE
             return code
     except KeyboardInterrupt as ended:  # before the command has begun, or as it goes
-        return interrupted(ended)
+        return report_interruption(ended)
 
 
-def carry_out(arguments: Sequence[str]) -> int:
-    """Run a command; return the exit code."""
+def run_command(arguments: Sequence[str]) -> int:
+    """Parse the arguments and run the command they name; return the exit code."""
     set_up_logging()
     if store := sys.modules.get(STORE):  # of a command before, in this process
         store.STARTED.clear()
@@ -156,17 +156,17 @@ def carry_out(arguments: Sequence[str]) -> int:
     chosen = make_parser(arguments).parse_args(join_negative_values(arguments))
     chosen.command_line = f"{program_name()} {shlex.join(arguments)}"
     try:
-        with warnings_as_lines():
+        with print_warnings_in_one_line():
             chosen.run(chosen)
         return SUCCESS
     except KeyboardInterrupt as ended:
-        return interrupted(ended)
+        return report_interruption(ended)
     except (MemoryError, ImportError) as error:
         if chosen.debug:
             raise
         reason = (str(error).strip().splitlines() or ["out of memory"])[0]
         expected = "expected more memory, or an installation that is whole"
-        print_error(f"error: {reason}; {expected}; {stored_state()}")
+        print_error(f"error: {reason}; {expected}; {describe_progress_kept()}")
         return FAILURE
     except (VibroimpactError, RuntimeError, OSError) as error:
         if chosen.debug:
@@ -193,18 +193,18 @@ def with_option_names(message: str, chosen: argparse.Namespace) -> str:
     return re.sub(r"(?<![\w-])(?P<name>[a-z_]\w*)=(?=[\s,;:.)]|$)", option, message)
 
 
-def interrupted(ended: KeyboardInterrupt) -> int:
-    """Print that a signal has ended the command; return the exit code."""
+def report_interruption(ended: KeyboardInterrupt) -> int:
+    """Print that SIGINT or SIGTERM has ended the command; return the exit code, 130 or 143."""
     from ..temporary import remove_leftovers
 
     remove_leftovers()  # of workers that were ended in the middle of a chunk
     terminated = isinstance(ended, Terminated)
-    print_error(f"{'terminated' if terminated else 'interrupted'}: {stored_state()}")
+    print_error(f"{'terminated' if terminated else 'interrupted'}: {describe_progress_kept()}")
     return TERMINATED if terminated else INTERRUPTED
 
 
-def stored_state() -> str:
-    """Return what an interruption leaves: whether the same command goes on from there."""
+def describe_progress_kept() -> str:
+    """Return a text for the user: what an interrupted command has stored, and how to go on."""
     store = sys.modules.get(STORE)  # not imported only to say that nothing is in it
     if store and store.STARTED:
         return "what was stored is kept, the same command goes on from there"
@@ -214,11 +214,12 @@ def stored_state() -> str:
 
 
 @contextmanager
-def warnings_as_lines() -> Iterator[None]:
-    """Print what is meant for the user as one line, without the place in the code."""
+def print_warnings_in_one_line() -> Iterator[None]:
+    """Print a ``UserWarning`` in the ``with`` block as one line, without its place in the code."""
     usual = warnings.showwarning
 
     def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+        """Print a ``UserWarning`` in one line; pass other warnings to Python's usual printer."""
         if category is UserWarning:
             print_error(f"warning: {message}")
         else:
@@ -230,12 +231,12 @@ def warnings_as_lines() -> Iterator[None]:
 
 
 def print_error(line: str) -> None:
-    """Print a line on the error output."""
+    """Print a line on standard error, with control characters escaped."""
     print(printable(line), file=sys.stderr)
 
 
 def printable(text: str, max_length: int = 1000) -> str:
-    r"""Return a text as one line that a terminal shows as it is, shortened in its middle.
+    r"""Return a text as one line with control characters escaped; cut a long one in its middle.
 
     Examples
     --------

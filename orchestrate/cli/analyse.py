@@ -1,4 +1,4 @@
-"""``analyse``: what an analyser shows of a record, measured or simulated."""
+"""Command ``analyse``: FRF, PSD, orders, harmonics and other analyses of vibration records."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from ..units import scale_of, text_of, with_units
-from .grammar import orders_of, plain_float
+from .grammar import parse_orders, plain_float
 from .options import Commands
 from .output import (
     FORMATS,
     PLOTS,
-    add_files,
-    add_units,
+    add_file_options,
+    add_units_option,
     check_output,
     digest,
     draw_picture,
-    endings_of,
     export_formats,
+    parse_endings,
     print_units_note,
-    record_units,
+    read_record_units,
     unit_note,
     units_ending,
     with_ending,
 )
-from .question import read_stored
+from .question import read_earlier_result
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -47,7 +47,7 @@ READING = ("unit", "columns", "sample_rate", "scale")
 
 @dataclass(frozen=True)
 class Analysis:
-    """One analysis that ``--show`` names: its function, options and printer.
+    """One analysis that ``--show`` names: its public function, its options and its title.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ Reporter = Callable[["xr.Dataset"], Iterator[str]]
 
 
 def add_parser(commands: Commands) -> None:
-    """Add the command's parser."""
+    """Add the parser of the command ``analyse`` with all its options."""
     text = "what an analyser shows of a record: responses, spectra, orders, shock spectra"
     parser = commands.add("analyse", run, text, EXAMPLES)
     record = "a result of shake (.nc), or a record: .csv, .txt, .uff, .unv, .mat, .wav, .nc"
@@ -96,17 +96,17 @@ def add_parser(commands: Commands) -> None:
     option("--sensor", metavar="HZ[:RATE]", help=sensor)
     option("--from", dest="begin", type=plain_float, metavar="S", help="time it begins at, s")
     option("--to", dest="end", type=plain_float, metavar="S", help="time it ends at, s")
-    add_reading(parser)
-    add_settings(parser)
-    add_units(parser)
-    add_files(parser, store=False)
+    add_reading_options(parser)
+    add_analysis_options(parser)
+    add_units_option(parser)
+    add_file_options(parser, store=False)
     option = parser.add_argument_group("results").add_argument
-    place = "folder of the results (default: results)"
-    option("--output", type=Path, default=Path("results"), metavar="FOLDER", help=place)
+    folder_help = "folder of the results (default: results)"
+    option("--output", type=Path, default=Path("results"), metavar="FOLDER", help=folder_help)
 
 
-def add_reading(parser: argparse.ArgumentParser) -> None:
-    """Add the options for reading measured records; NetCDF files need none."""
+def add_reading_options(parser: argparse.ArgumentParser) -> None:
+    """Add ``--unit``, ``--columns``, ``--sample-rate``, ``--scale``: how to read record files."""
     group = parser.add_argument_group("how to read records", "what files but NetCDF may not say")
     option = group.add_argument
     option("--unit", metavar="UNIT", help="of accelerations: m/s2, g, mg ...")
@@ -117,8 +117,8 @@ def add_reading(parser: argparse.ArgumentParser) -> None:
     option("--scale", type=plain_float, metavar="X", help="m/s2 at the full scale of WAV files")
 
 
-def add_settings(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the analyses; an analysis gets only those that are given."""
+def add_analysis_options(parser: argparse.ArgumentParser) -> None:
+    """Add the analyses' own options, such as ``--resolution``, ``--orders`` and ``--damping``."""
     option = parser.add_argument_group("settings").add_argument
     lines = "distance of the lines, Hz, of frf, psd and spectrogram"
     option("--resolution", type=plain_float, metavar="HZ", help=lines)
@@ -135,19 +135,19 @@ def add_settings(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Analyse records: print the results, write them and their pictures."""
-    names = endings_of("--show", arguments.show, tuple(ANALYSES))
-    formats = endings_of("--format", arguments.format, FORMATS)
-    plots = endings_of("--plot", arguments.plot, PLOTS)
-    settings = settings_of(arguments, names)
+    """Run ``analyse``: compute the chosen analyses of all records; print, store and draw them."""
+    names = parse_endings("--show", arguments.show, tuple(ANALYSES))
+    formats = parse_endings("--format", arguments.format, FORMATS)
+    plots = parse_endings("--plot", arguments.plot, PLOTS)
+    settings = keywords_by_analysis(arguments, names)
     check_output(arguments.output)
-    paths = paths_of(arguments)
-    records = {label: part_of(arguments, path) for label, path in paths.items()}
+    paths = paths_by_label(arguments)
+    records = {label: read_cut_record(arguments, path) for label, path in paths.items()}
     for label, record in records.items():
         if note := unit_note(record.attrs):
             print(f"{paths[label]}: {note}")
     warn_without_sensor(arguments, records)
-    units = record_units(arguments)
+    units = read_record_units(arguments)
     for name in names:
         results = {
             label: analyse(ANALYSES[name], record, paths[label], settings[name])
@@ -157,14 +157,14 @@ def run(arguments: argparse.Namespace) -> None:
         print_result(name, shown)
         print_units_note(arguments, *shown.values())
         read = {label: str(path) for label, path in paths.items()}
-        told = digest(read, settings[name], *part_and_reading(arguments))
-        stem = f"analyse_{name}_{arguments.record.stem}_{told}"
+        digits = digest(read, settings[name], *record_options(arguments))
+        stem = f"analyse_{name}_{arguments.record.stem}_{digits}"
         place = arguments.output / f"{stem}.nc"
-        write(place, results, shown, formats, plots, units_ending(arguments))
+        write_files(place, results, shown, formats, plots, units_ending(arguments))
 
 
 def warn_without_sensor(arguments: argparse.Namespace, records: Mapping[str, xr.Dataset]) -> None:
-    """Warn where accelerations between impacts stand beside what sensors have read."""
+    """Warn if simulated accelerations without impulses are compared with measured ones."""
     simulated = [label for label, record in records.items() if "impulse" in record]
     if arguments.sensor is None and 0 < len(simulated) < len(records):
         warnings.warn(
@@ -174,30 +174,32 @@ def warn_without_sensor(arguments: argparse.Namespace, records: Mapping[str, xr.
         )
 
 
-def part_and_reading(arguments: argparse.Namespace) -> list[Any]:
-    """Return all options that decide what a record is, for the name of the files."""
+def record_options(arguments: argparse.Namespace) -> list[Any]:
+    """Return the options' values that decide how a record is read and cut, for a file name."""
     return [getattr(arguments, name) for name in ("begin", "end", "sensor", *READING)]
 
 
-def settings_of(arguments: argparse.Namespace, names: tuple[str, ...]) -> dict[str, dict[str, Any]]:
-    """Return the keywords of each analysis; raise for an option that none of them takes."""
+def keywords_by_analysis(
+    arguments: argparse.Namespace, names: tuple[str, ...]
+) -> dict[str, dict[str, Any]]:
+    """Return a dict of keywords for each analysis; raise for an option that none of them takes."""
     owned = {option for one in ANALYSES.values() for option in one.options}
-    given = {option for option in owned if getattr(arguments, option) is not None}
-    for option in sorted(given):
+    chosen = {option for option in owned if getattr(arguments, option) is not None}
+    for option in sorted(chosen):
         owners = [name for name, one in ANALYSES.items() if option in one.options]
         if not set(owners) & set(names):
             raise InputError(f"--{option}: expected with --show {' or '.join(owners)} alone")
     settings = {
-        name: {o: getattr(arguments, o) for o in ANALYSES[name].options if o in given}
+        name: {o: getattr(arguments, o) for o in ANALYSES[name].options if o in chosen}
         for name in names
     }
     if arguments.orders is not None and "orders" in names:
-        settings["orders"]["orders"] = orders_of("--orders", arguments.orders)
+        settings["orders"]["orders"] = parse_orders("--orders", arguments.orders)
     return settings
 
 
-def paths_of(arguments: argparse.Namespace) -> dict[str, Path]:
-    """Return the files of the records by label, the first record first."""
+def paths_by_label(arguments: argparse.Namespace) -> dict[str, Path]:
+    """Return a dict from label to record file, from FILE and ``--beside``; FILE comes first."""
     label = arguments.label or (arguments.record.stem if arguments.beside else "")
     paths = {label: arguments.record}
     for text in arguments.beside:
@@ -210,9 +212,9 @@ def paths_of(arguments: argparse.Namespace) -> dict[str, Path]:
     return paths
 
 
-def part_of(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
-    """Read a record and cut it to ``--from`` and ``--to``."""
-    record = record_of(arguments, path)
+def read_cut_record(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
+    """Read a record file and keep its samples between ``--from`` and ``--to``."""
+    record = read_record_file(arguments, path)
     if "time" not in record.coords or arguments.begin is arguments.end is None:
         return record
     part = record.sel(time=slice(arguments.begin, arguments.end))
@@ -222,15 +224,15 @@ def part_of(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
     return part
 
 
-def record_of(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
-    """Read a record from a file of any kind; NetCDF files need no options."""
+def read_record_file(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
+    """Read a record from a file of any format; apply ``--sensor`` to a simulated one."""
     from .. import read_record
 
     if path.suffix.lower() == ".nc":
-        stored = read_stored("FILE" if path == arguments.record else "--beside", path)
+        stored = read_earlier_result("FILE" if path == arguments.record else "--beside", path)
         units = {stored[name].attrs.get("units", "m/s2") for name in MASSES if name in stored}
         if arguments.sensor is not None and "impulse" in stored:
-            return as_read(stored, arguments.sensor)
+            return apply_sensor(stored, arguments.sensor)
         return stored if units <= {"m/s2"} else read_record(path)
     if not path.is_file():
         raise InputError(f"{path}: no such file; expected a record")
@@ -238,12 +240,12 @@ def record_of(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
     if path.suffix.lower() != ".wav":  # the scale is of the others
         reading.pop("scale", None)
     if "columns" in reading:
-        reading["columns"] = columns_of(reading["columns"])
+        reading["columns"] = parse_columns(reading["columns"])
     return read_record(path, **reading)
 
 
-def as_read(history: xr.Dataset, text: str) -> xr.Dataset:
-    """Compute what the sensors of ``--sensor`` read of a simulated motion.
+def apply_sensor(history: xr.Dataset, text: str) -> xr.Dataset:
+    """Return what accelerometers of ``--sensor HZ[:RATE]`` would read of a simulated motion.
 
     Raises
     ------
@@ -261,8 +263,8 @@ def as_read(history: xr.Dataset, text: str) -> xr.Dataset:
     return measure(history, Sensor(bandwidth=numbers[0], sample_rate=rate))
 
 
-def columns_of(text: str) -> dict[str, str | int]:
-    """Parse the columns of ``--columns``, by channel.
+def parse_columns(text: str) -> dict[str, str | int]:
+    """Parse ``CHANNEL=COLUMN,...`` into a dict from channel to column name or number.
 
     Raises
     ------
@@ -278,7 +280,7 @@ def columns_of(text: str) -> dict[str, str | int]:
 def analyse(
     analysis: Analysis, record: xr.Dataset, path: Path, settings: Mapping[str, Any]
 ) -> xr.Dataset:
-    """Analyse a record; errors name its file."""
+    """Call the public function of an analysis on a record; errors begin with the file's name."""
     import orchestrate
 
     try:
@@ -288,7 +290,7 @@ def analyse(
     return result
 
 
-def write(
+def write_files(
     place: Path,
     results: dict[str, xr.Dataset],
     shown: dict[str, xr.Dataset],
@@ -296,7 +298,7 @@ def write(
     plots: tuple[str, ...],
     units: str = "",
 ) -> None:
-    """Write each record's result to a file, and one picture of all.
+    """Write each record's result to NetCDF and other formats, and one picture of all; print paths.
 
     Parameters
     ----------
@@ -330,98 +332,98 @@ def write(
 
 
 def print_result(name: str, results: dict[str, xr.Dataset]) -> None:
-    """Print the most important numbers, a line per channel."""
+    """Print an analysis' title and its most important numbers, a line per record and channel."""
     print(f"{ANALYSES[name].text}:")
     for label, data in results.items():
         for line in REPORTERS[name](data):
             print(f"  {label + ': ' if label else ''}{line}")
 
 
-def channels_of(data: xr.Dataset, box: bool = True) -> Iterator[tuple[str, xr.Dataset]]:
-    """Yield name and result of each channel."""
+def iterate_channels(data: xr.Dataset, box: bool = True) -> Iterator[tuple[str, xr.Dataset]]:
+    """Yield each channel's printed name and part of a result; no base if not ``box``."""
     for channel in map(str, data.channel.values):
         if box or channel != "box_acceleration":
             yield MASSES[channel], data.sel(channel=channel)
 
 
-def largest(values: xr.DataArray) -> xr.DataArray:
-    """Return the entry with the largest value, with its coordinates."""
+def at_maximum(values: xr.DataArray) -> xr.DataArray:
+    """Return the entry of an array with the largest value, as a scalar with its coordinates."""
     flat = values.stack(every=values.dims)
     return flat.isel(every=int(flat.fillna(-1.0).values.argmax()))
 
 
-def at_frequency(data: xr.Dataset, peak: xr.Dataset | xr.DataArray) -> str:
-    """Format the frequency of a value, as an answer is shown."""
+def format_frequency(data: xr.Dataset, peak: xr.Dataset | xr.DataArray) -> str:
+    """Format a value's frequency coordinate as text in the result's display unit."""
     return text_of(data, peak.frequency, "Hz", ".5g")
 
 
-def say_frf(data: xr.Dataset) -> Iterator[str]:
-    """Yield a line on the peak of H1, its error, and the coherence."""
+def frf_lines(data: xr.Dataset) -> Iterator[str]:
+    """Yield a line per channel: the FRF's peak, its frequency, random error and coherence."""
     if not data.excited.any():
         yield "the box does not move"
         return
-    for name, part in channels_of(data):
+    for name, part in iterate_channels(data):
         band = part.where(data.excited > 0, drop=True)
         peak = band.isel(frequency=int(band.magnitude.sel(estimator="H1").values.argmax()))
         height = float(peak.magnitude.sel(estimator="H1"))
         yield (
-            f"{name}: |H1| has its largest value {height:.4g} at {at_frequency(data, peak)}, "
+            f"{name}: |H1| has its largest value {height:.4g} at {format_frequency(data, peak)}, "
             f"random error {100.0 * float(peak.random_error):.2g} %; coherence "
             f"{float(peak.coherence):.4f} there, {float(band.coherence.median()):.4f} in the median"
         )
 
 
-def say_psd(data: xr.Dataset) -> Iterator[str]:
-    """Yield a line on root mean square and peak."""
-    for name, part in channels_of(data):
+def psd_lines(data: xr.Dataset) -> Iterator[str]:
+    """Yield a line per channel: rms, largest spectral density and its frequency."""
+    for name, part in iterate_channels(data):
         at = text_of(data, part.psd.idxmax(), "Hz", ".5g")
         rms = text_of(data, part.rms, "m/s2", ".4g")
         density = text_of(data, part.psd.max(), "m2/s4/Hz", ".4g").replace("m2/s4", "(m/s2)2")
         yield f"{name}: {rms} rms, largest density {density} at {at}"
 
 
-def say_orders(data: xr.Dataset) -> Iterator[str]:
-    """Yield lines on the largest amplitude of each order, and its frequency."""
-    for name, part in channels_of(data, box=False):
-        peaks, (felt, unit) = [], scale_of(data, "m/s2")
+def order_lines(data: xr.Dataset) -> Iterator[str]:
+    """Yield a line per channel: each order's largest amplitude and its frequency."""
+    for name, part in iterate_channels(data, box=False):
+        peaks, (unit_size, unit) = [], scale_of(data, "m/s2")
         for order in map(float, part.order.values):
-            peak = largest(part.amplitude.sel(order=order))
-            size = f"{float(peak) / felt:.4g}"
-            peaks.append(f"order {order:g} {size} at {at_frequency(data, peak)}")
+            peak = at_maximum(part.amplitude.sel(order=order))
+            size = f"{float(peak) / unit_size:.4g}"
+            peaks.append(f"order {order:g} {size} at {format_frequency(data, peak)}")
         yield f"{name}: largest amplitudes in {unit}: {', '.join(peaks)}"
 
 
-def say_harmonics(data: xr.Dataset) -> Iterator[str]:
-    """Yield a line on the largest and the median distortion."""
-    for name, part in channels_of(data, box=False):
-        peak, usual = largest(part.distortion), 100.0 * float(part.distortion.median())
+def harmonic_lines(data: xr.Dataset) -> Iterator[str]:
+    """Yield a line per channel: median and largest harmonic distortion, and where it is largest."""
+    for name, part in iterate_channels(data, box=False):
+        peak, usual = at_maximum(part.distortion), 100.0 * float(part.distortion.median())
         yield (
             f"{name}: distortion {usual:.3g} % in the median, {100.0 * float(peak):.3g} % at the "
-            f"most, at {at_frequency(data, peak)}"
+            f"most, at {format_frequency(data, peak)}"
         )
 
 
-def say_spectrogram(data: xr.Dataset) -> Iterator[str]:
-    """Yield a line on the largest line of the spectra."""
-    for name, part in channels_of(data):
-        peak = largest(part.amplitude)
+def spectrogram_lines(data: xr.Dataset) -> Iterator[str]:
+    """Yield a line per channel: the spectrogram's largest amplitude, its frequency and time."""
+    for name, part in iterate_channels(data):
+        peak = at_maximum(part.amplitude)
         yield (
             f"{name}: largest amplitude {text_of(data, peak, 'm/s2', '.4g')} at "
-            f"{at_frequency(data, peak)}, {float(peak.time):.4g} s"
+            f"{format_frequency(data, peak)}, {float(peak.time):.4g} s"
         )
 
 
-def say_shock(data: xr.Dataset) -> Iterator[str]:
-    """Yield a line on the largest response."""
-    for name, part in channels_of(data):
-        peak = largest(part.maximax)
+def shock_lines(data: xr.Dataset) -> Iterator[str]:
+    """Yield a line per channel: the shock spectrum's largest response and its frequency."""
+    for name, part in iterate_channels(data):
+        peak = at_maximum(part.maximax)
         size = text_of(data, peak, "m/s2", ".4g")
-        yield f"{name}: largest response {size} at {at_frequency(data, peak)}"
+        yield f"{name}: largest response {size} at {format_frequency(data, peak)}"
 
 
-def say_density(data: xr.Dataset) -> Iterator[str]:
-    """Yield a line on skewness and kurtosis with their errors."""
-    for name, part in channels_of(data):
+def density_lines(data: xr.Dataset) -> Iterator[str]:
+    """Yield a line per channel: skewness and kurtosis with their errors, and standard deviation."""
+    for name, part in iterate_channels(data):
         yield (
             f"{name}: skewness {float(part.skewness):.3f} +- {float(part.skewness_error):.3f}, "
             f"kurtosis {float(part.kurtosis):.3f} +- {float(part.kurtosis_error):.3f}, standard "
@@ -430,11 +432,11 @@ def say_density(data: xr.Dataset) -> Iterator[str]:
 
 
 REPORTERS: dict[str, Reporter] = {
-    "frf": say_frf,
-    "psd": say_psd,
-    "orders": say_orders,
-    "harmonics": say_harmonics,
-    "spectrogram": say_spectrogram,
-    "shock": say_shock,
-    "density": say_density,
+    "frf": frf_lines,
+    "psd": psd_lines,
+    "orders": order_lines,
+    "harmonics": harmonic_lines,
+    "spectrogram": spectrogram_lines,
+    "shock": shock_lines,
+    "density": density_lines,
 }

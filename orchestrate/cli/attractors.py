@@ -1,20 +1,20 @@
-"""``attractors``: what random starts lead to."""
+"""Command ``attractors``: find the attractors that random start states lead to."""
 
 from __future__ import annotations
 
 import argparse
 from typing import TYPE_CHECKING
 
-from .grammar import one_value
-from .options import Commands, add_over, structure_of, varied_arguments
+from .grammar import parse_single_number
+from .options import Commands, add_over_options, read_structure_options, varied_arguments
 from .question import (
-    carry_out,
+    answer_question,
+    draw_result,
     format_parameter,
     format_ranges,
     is_curve,
-    parameter_of,
-    picture_of,
     print_attractors,
+    varied_parameter,
 )
 
 if TYPE_CHECKING:
@@ -32,31 +32,31 @@ MAX_ATTRACTORS = 12  # attractors along a parameter that are printed
 
 
 def add_parser(commands: Commands) -> None:
-    """Add the command's parser."""
+    """Add the parser of the command ``attractors`` with its options."""
     text = "coexisting motions: how many, and how many random starts lead to each"
-    question = commands.ask("attractors", run, text, EXAMPLES)
-    add_over(question)
+    question = commands.add_response_command("attractors", run, text, EXAMPLES)
+    add_over_options(question)
     half = (
         "half width of one box of starts around zero, m (default: --width times the gap from "
         "rest, and a second box around the response from rest)"
     )
-    question.add("scale", one_value, metavar="X", help=half)
+    question.add("scale", parse_single_number, metavar="X", help=half)
     question.declare("starts", "seed", "width", "transient", "settle", "samples")
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Find the attractors that random starts lead to, and their shares."""
-    structure = structure_of(arguments)
+    """Run ``attractors``: find attractors from random starts and their shares; print and store."""
+    structure = read_structure_options(arguments)
     excitation, _ = varied_arguments(arguments, structure)
     question = {**excitation, **arguments.question.keywords(arguments)}
-    carry_out(
-        arguments, structure, question, print_result, picture_of if is_curve(excitation) else None
+    answer_question(
+        arguments, structure, question, print_result, draw_result if is_curve(excitation) else None
     )
 
 
 def print_result(data: xr.Dataset) -> None:
-    """Print attractors and their shares, or where there are several."""
-    name = parameter_of(data)
+    """Print the attractors at one parameter value, or the ranges where there are several."""
+    name = varied_parameter(data)
     if data.sizes[name] <= MAX_VALUES_IN_FULL:
         for i in range(data.sizes[name]):
             at_value = data.isel({name: i})
@@ -72,11 +72,11 @@ def print_result(data: xr.Dataset) -> None:
         if holds.any():
             where = format_ranges(data, name, ordered[name].values, holds)
             print(f"{number} found at {int(holds.sum())} of {holds.size} values: {where}")
-    print_lines(ordered, name)
+    print_attractor_ranges(ordered, name)
 
 
-def print_lines(data: xr.Dataset, name: str) -> None:
-    """Print the most frequent attractors along the parameter, from where to where."""
+def print_attractor_ranges(data: xr.Dataset, name: str) -> None:
+    """Print the most frequent attractors with the parameter ranges in which each exists."""
     for number in range(min(MAX_ATTRACTORS, data.sizes["attractor"])):
         attractor = data.isel(attractor=number)
         exists = attractor.multiplicity.notnull().values

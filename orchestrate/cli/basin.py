@@ -1,4 +1,4 @@
-"""``basin``: which attractor each start of a plane leads to."""
+"""Command ``basin``: compute basins of attraction over a plane of start states."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import orchestrate
 
 from ..units import range_text
-from .grammar import side_of, state_of
-from .options import Commands, excitation_of, structure_of
-from .question import carry_out, picture_of, print_attractors
+from .grammar import parse_plane_side, parse_state
+from .options import Commands, read_question
+from .question import answer_question, draw_result, print_attractors
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -27,32 +27,30 @@ Coordinates: x1 x2 x_rel in m, v1 v2 v_rel in m/s, phase in rad. What is not var
 
 
 def add_parser(commands: Commands) -> None:
-    """Add the command's parser."""
+    """Add the parser of the command ``basin`` with its options."""
     text = "basins of attraction: which motion each start of a plane leads to"
-    question = commands.ask("basin", run, text, EXAMPLES, several=False)
+    question = commands.add_response_command("basin", run, text, EXAMPLES, several=False)
     form = "NAME,FIRST,LAST,COUNT"
     side = "horizontal side of the plane (default: x_rel as far as twice the attractors' largest "
-    question.add("x", side_of, metavar=form, help=f"{side}gap, 80 values)")
+    question.add("x", parse_plane_side, metavar=form, help=f"{side}gap, 80 values)")
     side = "vertical side of the plane (default: v_rel as far as twice the attractors' largest "
-    question.add("y", side_of, metavar=form, help=f"{side}rate, 80 values)")
+    question.add("y", parse_plane_side, metavar=form, help=f"{side}rate, 80 values)")
     rest = (
         "state that the plane goes through, m and m/s "
         "(default: rest; without --x and --y the mean of the attractors)"
     )
-    question.add("at", state_of, metavar="X1,X2,V1,V2", help=rest)
+    question.add("at", parse_state, metavar="X1,X2,V1,V2", help=rest)
     question.declare("phase", "transient", "settle", "samples")
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Compute which attractor each start of a plane leads to."""
-    structure = structure_of(arguments)
-    excitation = excitation_of(arguments, structure, si=True, one=True)
-    question = {**excitation, **arguments.question.keywords(arguments)}
-    carry_out(arguments, structure, question, print_result, picture_of)
+    """Run ``basin``: compute which attractor each start of a plane leads to; print, store, draw."""
+    structure, question = read_question(arguments)
+    answer_question(arguments, structure, question, print_result, draw_result)
 
 
 def print_result(data: xr.Dataset) -> None:
-    """Print the attractors and their shares of the plane."""
+    """Print a basin result: the plane, its attractors with their shares, the basin entropy."""
     labels = data.attractor_of.values
     started, overlapping = int((labels >= 0).sum()), int((labels < 0).sum())
     print(f"{data.sizes['attractor']} found, of {started} starts in {format_plane(data)}")
@@ -63,7 +61,7 @@ def print_result(data: xr.Dataset) -> None:
 
 
 def format_plane(data: xr.Dataset) -> str:
-    """Format the ranges of both coordinates of the plane."""
+    """Format the coordinates and ranges of a basin's plane as text, with units."""
     axes = [data[name] for name in map(str, data.attractor_of.dims)]
     ranges = (
         range_text(data, axis.min().item(), axis.max().item(), str(axis.attrs["units"]))
@@ -73,7 +71,7 @@ def format_plane(data: xr.Dataset) -> str:
 
 
 def print_entropy(data: xr.Dataset) -> None:
-    """Print the basin entropy of the plane, if there are enough starts."""
+    """Print the plane's basin entropy if it has enough start states for that."""
     if data.sizes["attractor"] < 2 or min(data.attractor_of.shape) < FEWEST_STARTS:
         return
     mixed = orchestrate.basin_entropy(data)

@@ -1,4 +1,4 @@
-"""``border``: a bifurcation of a branch over two parameters."""
+"""Command ``border``: follow a bifurcation of periodic orbits over two parameters."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import InputError
-from .grammar import ends_of, plain_int
-from .options import Commands, add_structure, structure_of
-from .output import add_results, add_units
-from .question import carry_out, format_parameter, picture_of, read_stored
+from .grammar import parse_ends, plain_int
+from .options import Commands, add_structure_options, read_structure_options
+from .output import add_result_options, add_units_option
+from .question import answer_question, draw_result, format_parameter, read_earlier_result
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -21,46 +21,48 @@ EXAMPLES = """\
 
 
 def add_parser(commands: Commands) -> None:
-    """Add the command's parser."""
+    """Add the parser of the command ``border`` with its options."""
     text = "follow a bifurcation of a branch over two parameters: where a window begins or ends"
     parser = commands.add("border", run, text, EXAMPLES)
-    add_structure(parser)
-    question = commands.question(parser)
+    add_structure_options(parser)
+    question = commands.add_function_options(parser)
     over = "both parameters, that of the branch first (default: %(default)s)"
-    question.add("over", names_of, default="eta,e", metavar="NAME,NAME", help=over)
+    question.add("over", parse_names, default="eta,e", metavar="NAME,NAME", help=over)
     limits = "between which each is followed"
-    question.add("limits", limits_of, metavar="A:B,C:D", help=limits)
-    question.add("start", read_stored, type=Path, metavar="FILE", help="NetCDF file of a branch")
+    question.add("limits", parse_limits, metavar="A:B,C:D", help=limits)
+    question.add(
+        "start", read_earlier_result, type=Path, metavar="FILE", help="NetCDF file of a branch"
+    )
     number = "its number (default: 0)"
     question.add("bifurcation", type=plain_int, default=0, metavar="N", help=number)
     question.declare("longest", "most")
-    add_units(parser)
-    add_results(parser)
+    add_units_option(parser)
+    add_result_options(parser)
 
 
-def names_of(option: str, text: str) -> tuple[str, ...]:
-    """Parse a list of parameters' names; return them as a tuple."""
+def parse_names(option: str, text: str) -> tuple[str, ...]:
+    """Parse a comma-separated list of parameter names into a tuple."""
     return tuple(part.strip() for part in text.split(","))
 
 
-def limits_of(option: str, text: str) -> tuple[tuple[float, float], ...]:
-    """Parse limits; return a pair (low, high) for each parameter."""
-    return tuple(ends_of(option, part) for part in text.split(","))
+def parse_limits(option: str, text: str) -> tuple[tuple[float, float], ...]:
+    """Parse an option's limits of several parameters into a tuple of (low, high) pairs."""
+    return tuple(parse_ends(option, part) for part in text.split(","))
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Trace a bifurcation of a branch over two parameters."""
-    structure = structure_of(arguments)
+    """Run ``border``: trace a bifurcation curve over two parameters; print, store and draw it."""
+    structure = read_structure_options(arguments)
     for name in ("start", "limits"):
         if getattr(arguments, name) is None:
             expected = "a file of the command branch" if name == "start" else "A:B,C:D"
             raise InputError(f"--{name}: nothing given; expected {expected}")
     question = arguments.question.keywords(arguments)
-    carry_out(arguments, structure, question, print_result, picture_of)
+    answer_question(arguments, structure, question, print_result, draw_result)
 
 
 def print_result(data: xr.Dataset) -> None:
-    """Print the curve's extent, its points of codimension two, and why it ends."""
+    """Print a bifurcation curve's extent, its codimension-two points, and why it ends."""
     from ..flags import flag_words
 
     print(f"{data.attrs['kind']}: {data.sizes['point']} points")

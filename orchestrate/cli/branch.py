@@ -1,4 +1,4 @@
-"""``branch``: periodic motions along a parameter, with their bifurcations."""
+"""Command ``branch``: continue a periodic orbit along a parameter, through its bifurcations."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from .grammar import ends_of, plain_int
+from .grammar import parse_ends, plain_int
 from .options import (
     UNITS,
     Commands,
-    amplitude_of,
-    excitation_of,
     frequency_option,
-    structure_of,
+    read_amplitude,
+    read_excitation,
+    read_structure_options,
 )
-from .question import carry_out, format_parameter, parameter_parts, read_stored
+from .question import answer_question, format_parameter, parameter_parts, read_earlier_result
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,40 +32,40 @@ The excitation says where a first orbit is looked for; without it that is the lo
 
 
 def add_parser(commands: Commands) -> None:
-    """Add the command's parser."""
+    """Add the parser of the command ``branch`` with its options."""
     text = "follow periodic motions along a parameter, stable and unstable, to their bifurcations"
-    question = commands.ask("branch", run, text, EXAMPLES, several=False)
+    question = commands.add_response_command("branch", run, text, EXAMPLES, several=False)
     option = question.group.add_argument
     names = "eta, hz, rpm, frequency, amplitude, box_acceleration or a parameter of the structure"
     over = f"what varies: {names} (default: %(default)s)"
     option("--over", default="eta", metavar="NAME", help=over)
     option("--limits", metavar="FIRST:LAST", help="between which it is followed, in its own unit")
     start = "NetCDF file of an orbit or a branch to begin with"
-    question.add("start", read_stored, type=Path, metavar="FILE", help=start)
+    question.add("start", read_earlier_result, type=Path, metavar="FILE", help=start)
     switch = "number of a bifurcation of --start: the branch that leaves there"
     question.add("switch", type=plain_int, metavar="N", help=switch)
     question.declare("period", "box_acceleration", "longest", "most")
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Trace a branch of periodic motions along a parameter, with its bifurcations."""
-    structure = structure_of(arguments)
-    over, limits = over_of(arguments)
+    """Run ``branch``: trace a branch of periodic orbits; print its bifurcations; store, draw."""
+    structure = read_structure_options(arguments)
+    over, limits = parse_parameter(arguments)
     keywords = arguments.question.keywords(arguments)
     excitation = excitation_arguments(arguments, structure, over, keywords["start"] is not None)
     question = {**excitation, "over": over, "limits": limits, **keywords}
-    carry_out(arguments, structure, question, print_result, picture_of)
+    answer_question(arguments, structure, question, print_result, draw_result)
 
 
-def over_of(arguments: argparse.Namespace) -> tuple[str, tuple[float, float]]:
-    """Return the parameter's name in the public API, and the pair of its limits in that unit."""
+def parse_parameter(arguments: argparse.Namespace) -> tuple[str, tuple[float, float]]:
+    """Return the varied parameter's name in the public API, and its limits in that one's unit."""
     from ..structures.sections import TO_RAD_S
 
     if arguments.limits is None:
         raise InputError("--limits: nothing given; expected FIRST:LAST")
     if arguments.over == "g":
         raise InputError("--over g: expected --over amplitude, in m, at one frequency")
-    first, last = ends_of("--limits", arguments.limits)
+    first, last = parse_ends("--limits", arguments.limits)
     if arguments.over in UNITS:
         to_rad_s = TO_RAD_S[UNITS[arguments.over]]
         return "frequency", (to_rad_s(first), to_rad_s(last))
@@ -75,8 +75,8 @@ def over_of(arguments: argparse.Namespace) -> tuple[str, tuple[float, float]]:
 def excitation_arguments(
     arguments: argparse.Namespace, structure: Structure, over: str, begun: bool
 ) -> dict[str, Any]:
-    """Return the box's motion where the first orbit is looked for; what varies may be left out."""
-    name, amplitude = frequency_option(arguments), amplitude_of(arguments)
+    """Return the excitation at which the first orbit is searched, as keywords for ``branch``."""
+    name, amplitude = frequency_option(arguments), read_amplitude(arguments)
     if over == "frequency" and arguments.g is not None:
         raise InputError(
             "--g: a branch over the frequency has one amplitude; expected --amplitude in m "
@@ -86,7 +86,7 @@ def excitation_arguments(
         raise InputError(f"--over {arguments.over}: expected --amplitude in m with it")
     if name is None and over in ("eta", "frequency") or begun and name is None:
         return {} if amplitude is None else {"amplitude": amplitude}
-    excitation = excitation_of(arguments, structure, one=True)
+    excitation = read_excitation(arguments, structure, one=True)
     needed = "frequency" if over in ("frequency", "amplitude") else over
     if over in ("eta", "frequency", "amplitude") and needed not in excitation:
         expected = "--eta without an amplitude" if over == "eta" else "a frequency and --amplitude"
@@ -94,8 +94,8 @@ def excitation_arguments(
     return excitation
 
 
-def picture_of(data: xr.Dataset) -> Any:
-    """Draw the branch over its parameter; return the figure."""
+def draw_result(data: xr.Dataset) -> Any:
+    """Draw a branch over its parameter; return the figure."""
     from ..figures.branches import draw
     from ..figures.labels import title_from_attributes
 
@@ -103,7 +103,7 @@ def picture_of(data: xr.Dataset) -> Any:
 
 
 def print_result(data: xr.Dataset) -> None:
-    """Print bifurcations as a table, and why the branch ends."""
+    """Print a branch's bifurcations as a table, and why the branch ends."""
     from ..flags import flag_words
 
     name = str(data.attrs["over"])

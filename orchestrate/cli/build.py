@@ -1,4 +1,4 @@
-"""``build``: export the FMUs."""
+"""Command ``build``: export the FMUs."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ..errors import InputError
 from .options import Commands
-from .output import add_units, check_output, refuse_units
+from .output import add_units_option, check_output, refuse_units
 
 EXAMPLES = """  {program} build
   {program} build --folder /tmp/fmus
@@ -17,7 +17,7 @@ EXAMPLES = """  {program} build
 
 
 def add_parser(commands: Commands) -> None:
-    """Add the command's parser."""
+    """Add the parser of the command ``build`` with its options."""
     text = (
         "export the FMUs, each form with the same variables and numbers, and compile the master "
         "and the explorer's kernels"
@@ -48,11 +48,11 @@ def add_parser(commands: Commands) -> None:
         "fmi3-plain-sources/): native FMUs without binaries, for targets that compile the C "
         "sources inside; no compiler is needed here",
     )
-    add_units(parser)
+    add_units_option(parser)
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Export the FMUs."""
+    """Run ``build``: export the FMUs of the chosen models and forms; print their paths."""
     refuse_units(arguments, "FMUs are in SI")
     from ..access import (
         FORMS,

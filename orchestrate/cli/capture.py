@@ -1,4 +1,4 @@
-"""``capture``: whether a motor switched on from rest passes the resonance."""
+"""Command ``capture``: which voltages let a motor started from rest pass the resonance."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from ..units import text_of
-from .drives import (
-    add_control,
-    add_ends,
-    add_only,
-    add_step,
-    ask_each,
-    control_of,
-    folds_of,
-    times_of,
-    two_voltages,
+from .drive_options import (
+    add_controller_options,
+    add_only_option,
+    add_step_option,
+    add_voltage_options,
+    answer_each_structure,
+    averaged_jump_voltages,
+    make_controller,
+    parse_ramp_ends,
+    times_in_seconds,
 )
-from .grammar import values_of
-from .options import Commands, structure_and_drive
-from .output import add_results
+from .grammar import parse_values
+from .options import Commands, read_drive_options
+from .output import add_result_options
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -42,51 +42,51 @@ command goes on where it was."""
 
 
 def add_parser(commands: Commands) -> None:
-    """Add the command's parser."""
+    """Add the parser of the command ``capture`` with its options."""
     text = "voltages switched on from rest: which pass the resonance, which are captured"
-    parser = commands.ask_coupled("capture", run, text, EXAMPLES)
-    add_only(parser)
-    question = commands.question(parser)
+    parser = commands.add_drive_command("capture", run, text, EXAMPLES)
+    add_only_option(parser)
+    question = commands.add_function_options(parser)
     group, option = question.group, question.group.add_argument
-    add_ends(group, "LOWEST:HIGHEST", "from the jump down to above the jump up")
+    add_voltage_options(group, "LOWEST:HIGHEST", "from the jump down to above the jump up")
     option("--over", metavar="NAME", help="a second parameter, of drive or structure")
     option("--values", metavar="VALUES", help="its values, FIRST:LAST:STEP or a list A,B,...")
     question.declare("count", "tolerance", "time")
-    add_step(group)
-    add_control(parser)
-    add_results(parser, store=False, several=True)
+    add_step_option(group)
+    add_controller_options(parser)
+    add_result_options(parser, store=False, several=True)
 
 
-def range_of(
+def voltage_range(
     arguments: argparse.Namespace, structure: Structure, drive: Drive
 ) -> tuple[float, float]:
-    """Return the lowest and the highest voltage to try, V."""
+    """Return the lowest and highest starting voltage to try, V, from the options."""
     if arguments.eta0 or arguments.voltage:
-        return two_voltages(arguments, structure, drive)
-    down, up = folds_of(arguments, structure, drive)
+        return parse_ramp_ends(arguments, structure, drive)
+    down, up = averaged_jump_voltages(arguments, structure, drive)
     return down, 1.06 * up
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Compute which voltages from rest pass the resonance and which are captured."""
-    structure, drive = structure_and_drive(arguments)
+    """Run ``capture``: find the voltages that pass the resonance or are captured; print, draw."""
+    structure, drive = read_drive_options(arguments)
     if (arguments.over is None) != (arguments.values is None):
         raise InputError("--over and --values: expected both, or none of them")
-    values = values_of("--values", arguments.values, zero=True)[0] if arguments.over else None
+    values = parse_values("--values", arguments.values, zero=True)[0] if arguments.over else None
     question = {
-        "voltage": range_of(arguments, structure, drive),
+        "voltage": voltage_range(arguments, structure, drive),
         "over": arguments.over,
         "values": values,
         **arguments.question.keywords(arguments),
-        "control": control_of(arguments, structure, drive),
-        **times_of(arguments, structure, "step"),
+        "control": make_controller(arguments, structure, drive),
+        **times_in_seconds(arguments, structure, "step"),
     }
-    draw = partial(picture_of, name=Path(arguments.drive).stem, question=question)
-    ask_each(arguments, structure, drive, question, draw, print_result)
+    draw = partial(draw_results, name=Path(arguments.drive).stem, question=question)
+    answer_each_structure(arguments, structure, drive, question, draw, print_result)
 
 
-def picture_of(results: dict[str, xr.Dataset], name: str, question: dict[str, Any]) -> Any:
-    """Draw the maps of which starting voltages are captured; return the figure."""
+def draw_results(results: dict[str, xr.Dataset], name: str, question: dict[str, Any]) -> Any:
+    """Draw capture maps of the bonded and the delaminated structure; return the figure."""
     from ..figures.capture import draw
 
     control = question["control"]
@@ -96,7 +96,7 @@ def picture_of(results: dict[str, xr.Dataset], name: str, question: dict[str, An
 
 
 def print_result(state: str, data: xr.Dataset) -> None:
-    """Print the borders."""
+    """Print one structure's threshold voltage, or its capture map, under its name."""
     (over,) = {str(dim) for dim in data.passes.dims} - {"voltage"} or {""}
     if not over:
         print(f"{state}: {format_map(data)}")
@@ -106,8 +106,10 @@ def print_result(state: str, data: xr.Dataset) -> None:
 
 
 def format_map(data: xr.Dataset) -> str:
-    """Format the result for one system, with warnings."""
-    lines = [format_border(data) if math.isfinite(float(data.border)) else format_no_border(data)]
+    """Format a capture result as lines of text, with warnings about undecided starts."""
+    lines = [
+        format_threshold(data) if math.isfinite(float(data.border)) else format_no_threshold(data)
+    ]
     reasons = {
         UNDECIDED: "undecided: the speed had not settled; give a longer --time",
         NEITHER: "neither passed nor captured: the speed settles at the resonance",
@@ -124,8 +126,8 @@ def format_map(data: xr.Dataset) -> str:
     return "\n  ".join(lines)
 
 
-def format_border(data: xr.Dataset) -> str:
-    """Format the threshold voltage, or the interval it lies in."""
+def format_threshold(data: xr.Dataset) -> str:
+    """Format the voltage between capture and passage, or the interval it lies in."""
     low, high = float(data.border_low), float(data.border_high)
     slowest = f"in at most {float(data.passage_time.max()):.4g} s as tried"
     below, beyond = float(data.speed_low), float(data.speed_high)
@@ -138,8 +140,8 @@ def format_border(data: xr.Dataset) -> str:
     return f"passes from {float(data.border):.5f} V on {error}, {slowest}; {speeds}"
 
 
-def format_no_border(data: xr.Dataset) -> str:
-    """Format why there is no threshold voltage."""
+def format_no_threshold(data: xr.Dataset) -> str:
+    """Format why a capture result has no threshold voltage."""
     low, high = (float(end) for end in (data.voltage[0], data.voltage[-1]))
     passes, undecided = data.passes.values > 0, data.decision.isin([UNDECIDED, NEITHER]).values
     if passes.all():

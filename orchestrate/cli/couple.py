@@ -1,4 +1,4 @@
-"""``couple``: the weak drive; without options the set ``quick``, bonded and delaminated."""
+"""Command ``couple``: ramp the motor's voltage with the structure on it; find the speed's jumps."""
 
 from __future__ import annotations
 
@@ -10,31 +10,31 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..units import range_text, units_of, with_units
-from .drives import (
-    add_control,
-    add_hold,
-    add_only,
-    add_schedule,
-    add_step,
-    asked_runs,
-    check_files,
-    control_of,
-    file_name,
+from .drive_options import (
+    add_controller_options,
+    add_hold_option,
+    add_only_option,
+    add_schedule_options,
+    add_step_option,
+    check_file_options,
+    format_title,
+    make_controller,
+    make_schedule,
     picture_path,
-    schedule_from,
-    shown_runs,
-    states_of,
-    times_of,
-    title_of_runs,
+    result_name,
+    structures_by_name,
+    times_in_seconds,
+    with_display_units,
+    with_readable_units,
 )
 from .grammar import plain_float
-from .options import Commands, structure_and_drive
+from .options import Commands, read_drive_options
 from .output import (
-    add_results,
+    add_result_options,
     digest,
     draw_picture,
     export_formats,
-    running_of,
+    read_running_options,
     units_ending,
     user_fmus,
     with_ending,
@@ -64,25 +64,25 @@ Interrupted, the same command goes on where it was. A finished result is left as
 
 
 def add_parser(commands: Commands) -> None:
-    """Add the command's parser."""
+    """Add the parser of the command ``couple`` with all its options."""
     text = "the weak drive: structure and motor coupled, the voltage up and down (Figure 2)"
-    parser = commands.ask_coupled("couple", run, text, EXAMPLES)
-    add_only(parser)
-    add_schedule(parser)
-    add_control(parser)
-    add_master(parser)
+    parser = commands.add_drive_command("couple", run, text, EXAMPLES)
+    add_only_option(parser)
+    add_schedule_options(parser)
+    add_controller_options(parser)
+    add_master_options(parser)
     branches = "compute the branches of stationary motions too, and draw them under the ramps"
     parser.add_argument("--branches", action="store_true", help=branches)
-    add_results(parser, store=False, several=True)
+    add_result_options(parser, store=False, several=True)
     package = "write the coupled system for other tools instead"
     parser.add_argument("--ssp", type=Path, metavar="FILE", help=package)
 
 
-def add_master(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the co-simulation master."""
+def add_master_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the co-simulation master: step, hold, tolerance and algorithm."""
     group = parser.add_argument_group("master")
-    add_step(group)
-    add_hold(group)
+    add_step_option(group)
+    add_hold_option(group)
     text = "step-size tolerance: largest defect over the work exchanged in a step (default: 1e-8)"
     group.add_argument("--tolerance", type=plain_float, help=text)
     text = "co-simulation algorithm: jacobi, jacobi-derivative, gauss-seidel, rollback or iterated "
@@ -90,48 +90,48 @@ def add_master(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--algorithm", default="rollback", help=text)
 
 
-def jobs_of(arguments: argparse.Namespace, structure: Structure, drive: Drive) -> list[CoupleJob]:
-    """Return the runs, bonded first."""
+def make_jobs(arguments: argparse.Namespace, structure: Structure, drive: Drive) -> list[CoupleJob]:
+    """Return the jobs for the runs asked for, a ``CoupleJob`` per structure, bonded first."""
     from ..weak_drive.couple import couple_job, scheme_of
 
-    control = control_of(arguments, structure, drive)
-    schedule = schedule_from(arguments, structure, drive, control)
-    step, hold = times_of(arguments, structure, "step", "hold").values()
+    control = make_controller(arguments, structure, drive)
+    schedule = make_schedule(arguments, structure, drive, control)
+    step, hold = times_in_seconds(arguments, structure, "step", "hold").values()
     settings = (arguments.algorithm, arguments.tolerance, control is not None)
     scheme = scheme_of(structure, step, *settings)
-    base_name = file_name(arguments, structure, drive, (schedule, scheme, control, hold))
+    base_name = result_name(arguments, structure, drive, (schedule, scheme, control, hold))
     return [
         replace(
             couple_job(chosen, drive, schedule, scheme, control=control, hold=hold),
             name=f"{base_name}_{state}",
         )
-        for state, chosen in states_of(arguments, structure).items()
+        for state, chosen in structures_by_name(arguments, structure).items()
     ]
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Couple structure and motor for the voltages asked for: runs, jumps, pictures and packages."""
+    """Run ``couple``: compute the coupled runs; print jumps; write files, pictures or SSP."""
     from ..access import finder
     from ..running.options import RunOptions
     from ..running.runner import answer_all
     from ..running.store import load
 
-    structure, drive = structure_and_drive(arguments)
-    jobs = jobs_of(arguments, structure, drive)
+    structure, drive = read_drive_options(arguments)
+    jobs = make_jobs(arguments, structure, drive)
     if arguments.ssp:
         print(write_package(arguments, drive, jobs[-1], user_fmus(arguments.fmu)))
         return
-    formats, plots = check_files(arguments)
-    running = running_of(arguments)
+    formats, plots = check_file_options(arguments)
+    running = read_running_options(arguments)
     paths = [arguments.output / f"{job.name}.nc" for job in jobs]
     fresh = arguments.force or not all(path.exists() for path in paths)
     answer_all(jobs, arguments.output, RunOptions.from_keywords(running), finder(running))
-    states = states_of(arguments, structure)
+    states = structures_by_name(arguments, structure)
     results = {state: load(path) for state, path in zip(states, paths, strict=True)}
-    asked = asked_runs(arguments, results)
-    shown = shown_runs(asked)
-    branches = branches_of(arguments, structure, drive)
-    print_result(shown, drive.volts(structure), folds_crossed(branches, structure, drive))
+    asked = with_display_units(arguments, results)
+    shown = with_readable_units(asked)
+    branches = compute_branches(arguments, structure, drive)
+    print_results(shown, drive.volts(structure), folds_crossed(branches, structure, drive))
     for data, path in zip(asked.values(), paths, strict=True):
         table = with_ending(path, units_ending(arguments))
         for file in (path, *export_formats(data, table, formats, fresh)):
@@ -141,7 +141,7 @@ def run(arguments: argparse.Namespace) -> None:
         picture,
         plots,
         fresh,
-        lambda: picture_of(arguments, shown, structure, drive, jobs[0], branches),
+        lambda: draw_results(arguments, shown, structure, drive, jobs[0], branches),
     )
     for file in (*files, *draw_jumps(arguments, shown, picture, plots, fresh)):
         print(file)
@@ -150,7 +150,7 @@ def run(arguments: argparse.Namespace) -> None:
 def write_package(
     arguments: argparse.Namespace, drive: Drive, job: CoupleJob, user_fmus: Mapping[str, Path]
 ) -> Path:
-    """Write the coupled system as an SSP file, usually with FMI 2.0 FMUs; return its path."""
+    """Write the coupled system as an SSP file with its FMUs; return its path."""
     from ..access import find
     from ..weak_drive.ssp import write_ssp
 
@@ -162,17 +162,17 @@ def write_package(
     )
 
 
-def branches_of(
+def compute_branches(
     arguments: argparse.Namespace, structure: Structure, drive: Drive
 ) -> xr.Dataset | None:
-    """Compute the branches and print their bifurcations; return None if they are not asked for."""
+    """Compute stationary branches, print bifurcations; return None without ``--branches``."""
     from ..weak_drive.drive_branch import drive_branch
 
     if not arguments.branches:
         return None
     digits = digest(structure.as_delaminated().parameters(), drive.parameters())
     store = arguments.output / f"branches_{Path(arguments.drive).stem}_{digits}.nc"
-    branches = drive_branch(structure, drive, **running_of(arguments, store))
+    branches = drive_branch(structure, drive, **read_running_options(arguments, store))
     for kind, name, volts in zip(
         *(branches[f"bifurcation_{of}"].values for of in ("kind", "structure", "voltage")),
         strict=True,
@@ -188,21 +188,22 @@ def draw_jumps(
     plots: tuple[str, ...],
     fresh: bool,
 ) -> list[Path]:
-    """Draw the jumps over time beside the picture of the ramp, where there are any."""
+    """Draw speed and amplitude around each jump into a second picture; return its paths, if any."""
     import numpy as np
 
     if not any(np.isfinite(data.jumps).any() for data in results.values()):
         return []
 
     def draw() -> Any:
+        """Draw the jumps of all runs; return the figure."""
         from ..figures import weak_drive
 
-        return weak_drive.draw_jumps(results, title_of_runs(results, Path(arguments.drive).stem))
+        return weak_drive.draw_jumps(results, format_title(results, Path(arguments.drive).stem))
 
     return draw_picture(picture.with_stem(f"{picture.stem}_jumps"), plots, fresh, draw)
 
 
-def picture_of(
+def draw_results(
     arguments: argparse.Namespace,
     results: dict[str, xr.Dataset],
     structure: Structure,
@@ -210,7 +211,7 @@ def picture_of(
     job: CoupleJob,
     branches: xr.Dataset | None,
 ) -> Any:
-    """Draw all runs; with ramps the averaged theory too, and branches if they are asked for."""
+    """Draw the runs: ramps with averaged theory and branches, others over time."""
     import numpy as np
     import xarray as xr
 
@@ -220,7 +221,7 @@ def picture_of(
     from ..weak_drive.schedule import Ramp
 
     control = type(job.control).__name__ if job.control else ""
-    title = title_of_runs(results, Path(arguments.drive).stem, control)
+    title = format_title(results, Path(arguments.drive).stem, control)
     if job.control or not isinstance(job.schedule, Ramp):
         resonance = own_resonance.dividing_speed(structure, drive) * structure.omega
         return run_history.draw(results, resonance, title)
@@ -244,7 +245,7 @@ def picture_of(
 
 
 def folds_crossed(branches: xr.Dataset | None, structure: Structure, drive: Drive) -> Folds:
-    """Return the voltages of the folds at which slow ramps jump across the resonance, V.
+    """Return the voltages, V, of the folds at which slow ramps jump across the resonance, by run.
 
     A ramp may jump before to another motion on the same side: that fold is not meant.
     """
@@ -266,8 +267,8 @@ def folds_crossed(branches: xr.Dataset | None, structure: Structure, drive: Driv
     return folds
 
 
-def print_result(results: dict[str, xr.Dataset], volts: float, folds: Folds | None = None) -> None:
-    """Print the results.
+def print_results(results: dict[str, xr.Dataset], volts: float, folds: Folds | None = None) -> None:
+    """Print a line per structure: revolutions, speeds, jumps and lags; then the run's accuracy.
 
     Parameters
     ----------
@@ -284,7 +285,7 @@ def print_result(results: dict[str, xr.Dataset], volts: float, folds: Folds | No
         for jump in map(str, data.jump.values):
             at, bonded_at = data.sel(jump=jump), None if bonded is None else bonded.sel(jump=jump)
             texts.append(format_jump(at, volts, bonded_at, (folds or {}).get((name, jump))))
-            texts += format_further(at)
+            texts += format_further_jumps(at)
         passed = float(data.passage_time)
         if not any("V" in text for text in texts) and math.isfinite(passed):
             texts.append(f"beyond the resonance from {passed:.4g} s on")
@@ -293,7 +294,7 @@ def print_result(results: dict[str, xr.Dataset], volts: float, folds: Folds | No
 
 
 def format_revolutions(data: xr.Dataset) -> str:
-    """Format the number of revolutions, and the slowest and the quickest."""
+    """Format a run's number of revolutions and its range of speeds."""
     ends = (float(data.speed.min()), float(data.speed.max()))
     speeds = range_text(data, *ends, "rad/s")
     return f"{data.sizes['revolution']} revolutions at {speeds}"
@@ -302,7 +303,7 @@ def format_revolutions(data: xr.Dataset) -> str:
 def format_jump(
     at: xr.Dataset, volts: float, bonded: xr.Dataset | None, fold: float | None = None
 ) -> str:
-    """Format a jump with its lag, or why there is none.
+    """Format a direction's jump with its voltage and lag, or why there is none.
 
     Parameters
     ----------
@@ -331,25 +332,25 @@ def format_jump(
     return f"{text}, {format_lag(at, volts, bonded, fold)}"
 
 
-def format_further(at: xr.Dataset) -> list[str]:
-    """Format the further jumps of a direction, sure and undecided ones."""
+def format_further_jumps(at: xr.Dataset) -> list[str]:
+    """Return a list of texts on a direction's further jumps, decided and undecided ones."""
     texts = []
-    for place in at.order.values if "further_decided" in at else ():
-        one = at.sel(order=place)
-        decided, jump = str(one.further_decided.item()), at.jump.item()
-        held, error = float(one.further_held), float(one.further_error)
+    for order in at.order.values if "further_decided" in at else ():
+        jump_at = at.sel(order=order)
+        decided, jump = str(jump_at.further_decided.item()), at.jump.item()
+        held, error = float(jump_at.further_held), float(jump_at.further_error)
         if decided == "undecided":
             ends = f"between {held - error:.5g} and {held + error:.5g} V"
             texts.append(f"a further jump {jump} undecided {ends}: a longer --hold may tell")
         elif decided:
-            text = f"a further jump {jump} at {float(one.further_jumps):.4f} V"
+            text = f"a further jump {jump} at {float(jump_at.further_jumps):.4f} V"
             lost = f": the motion is lost at {held:.4f} +- {error:.4f} V"
             texts.append(f"{text}, {decided}{lost if math.isfinite(held) else ''}")
     return texts
 
 
 def format_lag(at: xr.Dataset, volts: float, bonded: xr.Dataset | None, fold: float | None) -> str:
-    """Format how late a jump comes, and where it is at rate 0."""
+    """Format by how many volts a jump comes late on the ramp, and its voltage at rate 0."""
     voltage, unknown = float(at.jumps), "late by what jump-voltages tells"
     if fold is not None:
         late = f"{abs(voltage - fold):.4f} V late at this rate"
@@ -369,7 +370,7 @@ def format_lag(at: xr.Dataset, volts: float, bonded: xr.Dataset | None, fold: fl
 
 
 def lag_error(voltage: float, volts: float, bonded: xr.Dataset) -> float:
-    """Estimate the error of a delaminated structure's lag, from the bonded structure's, V.
+    """Return the estimated error, V, of a delaminated structure's lag taken from the bonded one's.
 
     It depends on the branch by the fold, which differs as the vibration's torque there does. The
     slip tells that torque: a jump that is moved by a tenth of it is taken to be late by as much as
@@ -383,7 +384,7 @@ def lag_error(voltage: float, volts: float, bonded: xr.Dataset) -> float:
 
 
 def print_accuracy(data: xr.Dataset) -> None:
-    """Print the energy error and the coupling error, and a warning if they are large."""
+    """Print a run's energy and coupling errors, and a warning if they are large."""
     missing, defects = (
         float(data.attrs[key]) for key in ("missing_over_motor_work", "defects_over_motor_work")
     )

@@ -1,4 +1,4 @@
-"""``diagnose``: records in, a verdict on each beam and a report out."""
+"""Command ``diagnose``: decide from measured records whether beams are delaminated."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from typing import TYPE_CHECKING
 
 from ..errors import InputError
 from ..units import with_units
-from .options import Commands, add_set, plain_float, structure_of
+from .options import Commands, add_set_option, plain_float, read_structure_options
 from .output import (
     FORMATS,
     PLOTS,
-    add_results,
-    add_units,
+    add_result_options,
+    add_units_option,
     check_output,
     digest,
     draw_picture,
-    endings_of,
     export_formats,
-    record_units,
-    running_of,
+    parse_endings,
+    read_record_units,
+    read_running_options,
     unit_note,
     units_ending,
     with_ending,
@@ -67,7 +67,7 @@ CHANNELS = {  # in the order of --columns, and what they are called towards the 
 
 
 def add_parser(commands: Commands) -> None:
-    """Add the command's parser."""
+    """Add the parser of the command ``diagnose`` with all its options."""
     text = "whether a measured beam is delaminated: a verdict, its evidence, a report"
     parser = commands.add("diagnose", run, text, EXAMPLES)
     files = "measured: .csv, .txt, .uff, .unv, .mat, .nc; one beam each"
@@ -76,7 +76,7 @@ def add_parser(commands: Commands) -> None:
     guess.add_argument(
         "--structure", metavar="FILE", help="TOML file with a [structure], or the name of a set"
     )
-    add_set(guess, "one of its parameters, such as f1=42; may be repeated")
+    add_set_option(guess, "one of its parameters, such as f1=42; may be repeated")
     option = parser.add_argument_group("records").add_argument
     other = "record of the same beam at another level or in the other direction, for the signs"
     option("--other", type=Path, action="append", default=[], metavar="FILE", help=other)
@@ -87,45 +87,45 @@ def add_parser(commands: Commands) -> None:
     option("--sample-rate", type=plain_float, metavar="HZ", help=rate)
     option = parser.add_argument_group("report").add_argument
     option("--notes", default="", metavar="WORDS", help="below the title: which beam, who, when")
-    add_units(parser)
-    add_results(parser, store=False)
+    add_units_option(parser)
+    add_result_options(parser, store=False)
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Diagnose records: a verdict on each beam, its evidence and a report."""
-    formats = endings_of("--format", arguments.format, FORMATS)
-    plots = endings_of("--plot", arguments.plot, PLOTS)
+    """Run ``diagnose``: compute a verdict per record; print it; write results and reports."""
+    formats = parse_endings("--format", arguments.format, FORMATS)
+    plots = parse_endings("--plot", arguments.plot, PLOTS)
     check_output(arguments.output)
-    guess = guess_of(arguments)
-    others = [read(arguments, path) for path in arguments.other]
+    guess = read_guess(arguments)
+    others = [read_one_record(arguments, path) for path in arguments.other]
     if others and len(arguments.records) > 1:
         raise InputError("--other: of one beam; expected one record with it")
-    records, refused = read_all(arguments)
-    names = {path: name_of(path, guess, arguments) for path in records}
-    verdicts = verdicts_of(arguments, records, names, guess) if records else {}
-    units = record_units(arguments)
+    records, refused = read_all_records(arguments)
+    names = {path: file_stem(path, guess, arguments) for path in records}
+    verdicts = compute_verdicts(arguments, records, names, guess) if records else {}
+    units = read_record_units(arguments)
     for path, verdict in verdicts.items():
         print_verdict(path, with_units(verdict, units))
-        signs = signs_of(records[path], others, guess)
-        write(arguments, names[path], {"": verdict, "_signs": signs}, formats, plots)
+        signs = compute_signs(records[path], others, guess)
+        write_files(arguments, names[path], {"": verdict, "_signs": signs}, formats, plots)
     if refused:
         count = len(records) + len(refused)
         raise InputError(f"{len(refused)} of {count} records refused: {'; '.join(refused)}")
 
 
-def name_of(path: Path, guess: Structure, arguments: argparse.Namespace) -> str:
-    """Return the name of a record's files, which depends on content, guess and reading options."""
+def file_stem(path: Path, guess: Structure, arguments: argparse.Namespace) -> str:
+    """Return the name of a record's result files, unique for content, guess and reading options."""
     read_as = [arguments.columns, arguments.unit, arguments.sample_rate]
-    return f"diagnose_{path.stem}_{digest(checksum(path), guess.parameters(), read_as)}"
+    return f"diagnose_{path.stem}_{digest(file_checksum(path), guess.parameters(), read_as)}"
 
 
-def checksum(path: Path) -> str:
-    """Return the SHA-256 of a file."""
+def file_checksum(path: Path) -> str:
+    """Return a file's SHA-256 in hexadecimal digits."""
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def guess_of(arguments: argparse.Namespace) -> Structure:
-    """Return the guess of the beam, from ``--structure``.
+def read_guess(arguments: argparse.Namespace) -> Structure:
+    """Return the user's guess of the beam as a ``Structure``; raise without ``--structure``.
 
     Raises
     ------
@@ -135,11 +135,11 @@ def guess_of(arguments: argparse.Namespace) -> Structure:
     if arguments.structure is None:
         text = "expected a TOML file with a guess of the beam, within some 10 %"
         raise InputError(f"--structure: nothing given; {text}")
-    return structure_of(arguments)
+    return read_structure_options(arguments)
 
 
-def read_all(arguments: argparse.Namespace) -> tuple[dict[Path, xr.Dataset], list[str]]:
-    """Read all records; return them by their files, and a line on each one that is refused.
+def read_all_records(arguments: argparse.Namespace) -> tuple[dict[Path, xr.Dataset], list[str]]:
+    """Read all record files; return a dict of records, and an error line per refused file.
 
     Raises
     ------
@@ -153,7 +153,7 @@ def read_all(arguments: argparse.Namespace) -> tuple[dict[Path, xr.Dataset], lis
     paths = list(dict.fromkeys(arguments.records))
     for path in paths:
         try:
-            record = read(arguments, path)
+            record = read_one_record(arguments, path)
             checked_data(record)
             records[path] = record
         except InputError as error:
@@ -164,11 +164,11 @@ def read_all(arguments: argparse.Namespace) -> tuple[dict[Path, xr.Dataset], lis
     return records, refused
 
 
-def read(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
-    """Read a record from its file; raise if no face's acceleration is in it."""
+def read_one_record(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
+    """Read a record from a file; raise if it has no acceleration of either face."""
     from .. import read_record
 
-    columns = columns_of(arguments)
+    columns = parse_columns(arguments)
     record = read_record(
         path, columns=columns, unit=arguments.unit, sample_rate=arguments.sample_rate
     )
@@ -179,8 +179,8 @@ def read(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
     return record
 
 
-def columns_of(arguments: argparse.Namespace) -> dict[str, str | int] | None:
-    """Parse ``--columns``: the channels' columns, by name or number; None if it is not given.
+def parse_columns(arguments: argparse.Namespace) -> dict[str, str | int] | None:
+    """Parse ``--columns A,B,...`` into a dict from channel to column; None if it is not given.
 
     Raises
     ------
@@ -198,18 +198,18 @@ def columns_of(arguments: argparse.Namespace) -> dict[str, str | int] | None:
     return dict(zip(names, numbers, strict=False))
 
 
-def verdicts_of(
+def compute_verdicts(
     arguments: argparse.Namespace,
     records: Mapping[Path, xr.Dataset],
     names: Mapping[Path, str],
     guess: Structure,
 ) -> dict[Path, xr.Dataset]:
-    """Compute the verdict on each record, or take it from disk; store where it comes from too."""
+    """Compute each record's verdict, or load a stored one; store with it where it comes from."""
     from .. import detect_all
     from ..running.store import write_netcdf
 
     named = {names[path]: record for path, record in records.items()}
-    running = running_of(arguments, arguments.output)
+    running = read_running_options(arguments, arguments.output)
     verdicts = detect_all(named, guess, **running)
     described = {}
     for path, name in names.items():
@@ -228,7 +228,7 @@ def origin_attributes(
     """Return a verdict's attributes on its record, the guess's file and the command."""
     words = {
         "record_file": path.name,
-        "record_sha256": checksum(path),
+        "record_sha256": file_checksum(path),
         "record_columns": record.attrs.get("columns", ""),
         "record_unit": record.attrs.get("unit", ""),
         "record_unit_note": unit_note(record.attrs),
@@ -239,44 +239,44 @@ def origin_attributes(
     return {name: text for name, text in words.items() if text}
 
 
-def signs_of(record: xr.Dataset, others: list[xr.Dataset], guess: Structure) -> xr.Dataset:
-    """Compute the model-free signs of a record."""
+def compute_signs(record: xr.Dataset, others: list[xr.Dataset], guess: Structure) -> xr.Dataset:
+    """Compute a record's model-free signs of delamination, beside further records of the beam."""
     from .. import signs
 
     return signs(record, other=others, structure=guess)
 
 
-def write(
+def write_files(
     arguments: argparse.Namespace,
     stem: str,
     answers: Mapping[str, xr.Dataset],
     formats: tuple[str, ...],
     plots: tuple[str, ...],
 ) -> None:
-    """Write answers, pictures and the report; print the paths of the files."""
+    """Write results, pictures and the HTML report of one record; print the files' paths."""
     from .. import plot, report
     from ..files import open_folder
     from ..running.store import write_netcdf
 
-    folder, units = open_folder(arguments.output), record_units(arguments)
+    folder, units = open_folder(arguments.output), read_record_units(arguments)
     for ending, answer in answers.items():
-        place = folder / f"{stem}{ending}.nc"
+        path = folder / f"{stem}{ending}.nc"
         if ending:  # the verdict is stored already
-            write_netcdf(answer, place)
-        shown, named = with_units(answer, units), with_ending(place, units_ending(arguments))
+            write_netcdf(answer, path)
+        shown, named = with_units(answer, units), with_ending(path, units_ending(arguments))
         pictures = draw_picture(named, plots, True, partial(plot, shown))
-        for file in (place, *export_formats(shown, named, formats, fresh=True), *pictures):
+        for file in (path, *export_formats(shown, named, formats, fresh=True), *pictures):
             print(file)
     page, notes = folder / f"{stem}.html", arguments.notes
     print(report(*answers.values(), output=page, notes=notes, units=units))
 
 
 def print_verdict(path: Path, verdict: xr.Dataset) -> None:
-    """Print the verdict and what it rests on, in a few lines."""
-    from ..reports.verdict import verdict_of
+    """Print a record's verdict in a few lines: what it is, its reason, what would settle it."""
+    from ..reports.verdict import make_verdict
 
-    said = verdict_of(verdict)
-    print(f"{path}: {said.word} {said.sentence}")
+    shown = make_verdict(verdict)
+    print(f"{path}: {shown.word} {shown.sentence}")
     for name, label in LINES.items():
         if verdict.attrs.get(name):
             print(f"  {label}: {verdict.attrs[name]}")

@@ -1,4 +1,4 @@
-"""``drive-branch``: stationary motions of structure and motor, stable and unstable."""
+"""Command ``drive-branch``: trace stationary motions of structure and motor over the voltage."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..units import text_of
-from .drives import ask_once
-from .grammar import ends_of
-from .options import Commands, structure_and_drive
-from .output import add_results
+from .drive_options import answer_both_structures
+from .grammar import parse_ends
+from .options import Commands, read_drive_options
+from .output import add_result_options
 
 if TYPE_CHECKING:
     import numpy as np
@@ -36,26 +36,26 @@ Branches go round their folds. Interrupted, the same command goes on where it wa
 
 
 def add_parser(commands: Commands) -> None:
-    """Add the command's parser."""
+    """Add the parser of the command ``drive-branch`` with its options."""
     text = "stationary motions of structure and motor, stable and unstable, and their bifurcations"
-    parser = commands.ask_coupled("drive-branch", run, text, EXAMPLES)
-    question = commands.question(parser)
+    parser = commands.add_drive_command("drive-branch", run, text, EXAMPLES)
+    question = commands.add_function_options(parser)
     speed = "range of mean speeds, rad/s (default: 0.95 and 1.25 times the resonance)"
-    question.add("speed", ends_of, metavar="FIRST:LAST", help=speed)
+    question.add("speed", parse_ends, metavar="FIRST:LAST", help=speed)
     question.declare("longest", "most", "period", "steps", "settle")
-    add_results(parser, several=True)
+    add_result_options(parser, several=True)
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Trace the stationary motions of structure and motor, stable and unstable."""
-    structure, drive = structure_and_drive(arguments)
+    """Run ``drive-branch``: trace branches of stationary motions; print, store and draw them."""
+    structure, drive = read_drive_options(arguments)
     question = arguments.question.keywords(arguments)
-    draw = partial(picture_of, name=Path(arguments.drive).stem)
-    ask_once(arguments, structure, drive, question, draw, print_result)
+    draw = partial(draw_result, name=Path(arguments.drive).stem)
+    answer_both_structures(arguments, structure, drive, question, draw, print_result)
 
 
-def picture_of(data: xr.Dataset, name: str) -> Any:
-    """Draw speed over voltage and amplitude over speed."""
+def draw_result(data: xr.Dataset, name: str) -> Any:
+    """Draw branches of stationary motions: speed over voltage, amplitude over speed."""
     from ..figures.weak_drive import draw_stationary
 
     volts = f"{float(data.voltage.min()):.4g} V to {float(data.voltage.max()):.4g} V"
@@ -63,7 +63,7 @@ def picture_of(data: xr.Dataset, name: str) -> Any:
 
 
 def print_result(data: xr.Dataset) -> None:
-    """Print bifurcations, which of them slow ramps meet, and how far the branches go."""
+    """Print the branches' bifurcations, which of them slow ramps meet, and where branches end."""
     from ..weak_drive.ramp_path import ramp_paths
 
     paths = {str(name): ramp_paths(data, str(name)) for name in data.structure.values}
@@ -71,8 +71,10 @@ def print_result(data: xr.Dataset) -> None:
     for i, (structure, kind, voltage, speed) in enumerate(
         zip(*(data[f"bifurcation_{name}"].values for name in names), strict=True)
     ):
-        direction = jump_at(data.sel(structure=structure), voltage, speed) if kind == FOLD else ""
-        what = meaning(data, paths[structure], i, direction)
+        direction = (
+            jump_direction(data.sel(structure=structure), voltage, speed) if kind == FOLD else ""
+        )
+        what = format_ramp_effect(data, paths[structure], i, direction)
         rate = text_of(data, speed, "rad/s", ".5g")
         print(f"{structure}: {kind} at {voltage:.5f} V, {rate}{what}")
     for structure, both in paths.items():
@@ -92,8 +94,8 @@ def print_result(data: xr.Dataset) -> None:
                 print_unlocated(at, data.bifurcation_speed.values)
 
 
-def meaning(data: xr.Dataset, paths: dict[str, RampPath], i: int, direction: str) -> str:
-    """Format what a bifurcation means to slow ramps.
+def format_ramp_effect(data: xr.Dataset, paths: dict[str, RampPath], i: int, direction: str) -> str:
+    """Format what a slow ramp does at a bifurcation: jump, go on, or not meet it; may be empty.
 
     Parameters
     ----------
@@ -122,8 +124,8 @@ def meaning(data: xr.Dataset, paths: dict[str, RampPath], i: int, direction: str
     return f": a jump {direction}; whether a slow ramp meets it these branches do not tell"
 
 
-def jump_at(branch: xr.Dataset, voltage: float, speed: float) -> str:
-    """Return which way the speed jumps at a fold; empty where no stable motion ends there."""
+def jump_direction(branch: xr.Dataset, voltage: float, speed: float) -> str:
+    """Return the way ("up", "down") the speed jumps at a fold; empty if it does not jump."""
     import numpy as np
 
     spans = {name: float(branch[name].max() - branch[name].min()) for name in ("voltage", "speed")}
@@ -145,7 +147,7 @@ def jump_at(branch: xr.Dataset, voltage: float, speed: float) -> str:
 
 
 def print_unlocated(leg: xr.Dataset, speeds: np.ndarray) -> None:
-    """Print between which speeds stability changes without a located bifurcation."""
+    """Print the speeds at which a branch's stability changes without a located bifurcation."""
     at = leg.dropna("point", subset=["voltage"])
     stable = at.stable.values.astype(int)
     for i in (stable[1:] != stable[:-1]).nonzero()[0]:

@@ -1,4 +1,4 @@
-"""``explore``: one page in the browser, the kernel of the FMU inside."""
+"""Command ``explore``: write the interactive page and open it in the browser."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
-from .options import Commands, add_structure, structure_of
-from .output import add_units, units_option
-from .question import read_stored
+from .options import Commands, add_structure_options, read_structure_options
+from .output import add_units_option, read_units
+from .question import read_earlier_result
 
 EXAMPLES = """  {program} explore                              the paper's Figure 6
   {program} explore results/orbit_e0.7_D0.005_up.nc   an own sweep: a click replays its responses
@@ -17,38 +17,38 @@ EXAMPLES = """  {program} explore                              the paper's Figur
 
 
 def add_parser(commands: Commands) -> None:
-    """Add the command's parser."""
+    """Add the parser of the command ``explore`` with its options."""
     text = "open a page that shows orbit diagrams and motions, computed in the browser"
     parser = commands.add("explore", run, text, EXAMPLES)
     sweep = "NetCDF file of a sweep along the frequency (default: the paper's Figure 6)"
     parser.add_argument("result", type=Path, nargs="?", metavar="RESULT", help=sweep)
-    add_structure(parser)
+    add_structure_options(parser)
     option = parser.add_argument_group("page").add_argument
     branches = "NetCDF file of branches over eta, drawn over the diagram"
     option("--branches", type=Path, metavar="FILE", help=branches)
-    place = "the page (default: %(default)s)"
-    option("--output", type=Path, default=Path("explorer.html"), metavar="FILE", help=place)
-    add_units(parser)
+    output_help = "the page (default: %(default)s)"
+    option("--output", type=Path, default=Path("explorer.html"), metavar="FILE", help=output_help)
+    add_units_option(parser)
     option("--no-open", action="store_true", help="only write it")
     folder = "where the compiled kernel is looked for and put"
     option("--build-folder", type=Path, metavar="FOLDER", help=folder)
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Write the explorer's page and open it in the browser."""
+    """Run ``explore``: write the explorer's HTML page and open it in the browser."""
     from ..explorer.page import explore
 
-    data: Any = structure_of(arguments)
+    data: Any = read_structure_options(arguments)
     if arguments.result is not None:
         if arguments.set or arguments.structure != "paper":
             raise InputError(f"{arguments.result} with --structure or --set: expected one of them")
-        data = read_stored("RESULT", arguments.result)
-    branches = arguments.branches and read_stored("--branches", arguments.branches)
+        data = read_earlier_result("RESULT", arguments.result)
+    branches = arguments.branches and read_earlier_result("--branches", arguments.branches)
     page = explore(
         data,
         output=arguments.output,
         branches=branches,
-        units=units_option(arguments),
+        units=read_units(arguments),
         build_folder=arguments.build_folder,
     )
     print(f"{page}  {page.stat().st_size / 1024:.0f} kB")

@@ -1,4 +1,4 @@
-"""The grammar of numbers in options: plain digits, lists, ranges, pairs, states, ``NAME=VALUE``.
+"""Parse texts of options: numbers, lists, ranges, pairs, states and ``NAME=VALUE``.
 
 What is wrong is an :class:`InputError` that names the option, its text and what is expected.
 """
@@ -28,7 +28,7 @@ SET_UNITS: dict[tuple[str, ...], dict[str, str]] = {  # of parameters in --set, 
 
 
 def check_digits(text: str) -> None:
-    """Check that a text has plain digits only: Python takes those of any script, and ``1_000``.
+    """Raise ``ValueError`` unless a text has plain digits: no ``1_000``, no other scripts' digits.
 
     Raises
     ------
@@ -39,13 +39,13 @@ def check_digits(text: str) -> None:
 
 
 def plain_float(text: str) -> float:
-    """Parse a number in plain digits; raise ``ValueError`` at any other."""
+    """Parse a number in plain digits as float; raise ``ValueError`` otherwise."""
     check_digits(text)
     return float(text)
 
 
 def plain_int(text: str) -> int:
-    """Parse an integer in plain digits; raise ``ValueError`` at any other."""
+    """Parse an integer in plain digits; raise ``ValueError`` otherwise."""
     check_digits(text)
     return int(text)
 
@@ -54,7 +54,7 @@ plain_float.__name__, plain_int.__name__ = "float", "int"  # what argparse calls
 
 
 def parse(option: str, text: str, expected: str, reader: Callable[[str], Parsed]) -> Parsed:
-    """Parse the text of an option by a function that raises ``ValueError`` where it is wrong.
+    """Call ``reader`` on an option's text; turn its ``ValueError`` into an ``InputError``.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def parse(option: str, text: str, expected: str, reader: Callable[[str], Parsed]
         raise InputError(f"{option} {text}: expected {expected}") from None
 
 
-def floats(
+def parse_floats(
     text: str, separator: str, counts: Collection[int] = (), positive: bool = False
 ) -> tuple[float, ...]:
     """Parse numbers between separators; raise unless there are as many as one of ``counts``.
@@ -85,35 +85,37 @@ def floats(
     return numbers
 
 
-def number_of(option: str, text: str) -> float:
-    """Parse a number > 0 where a range would make no sense."""
+def positive_number(option: str, text: str) -> float:
+    """Parse an option's text as one number > 0; raise ``InputError`` that names the option."""
     expected = f"a number > 0, such as {option} 0.5"
-    return parse(option, text, expected, lambda part: floats(part, ",", (1,), positive=True))[0]
+    return parse(option, text, expected, lambda part: parse_floats(part, ",", (1,), positive=True))[
+        0
+    ]
 
 
-def whole_number_of(option: str, text: str) -> int:
-    """Parse a whole number of an option; raise an error that names it."""
+def whole_number(option: str, text: str) -> int:
+    """Parse an option's text as an integer; raise ``InputError`` that names the option."""
     return parse(option, text, "a whole number >= 0", plain_int)
 
 
-def ends_of(option: str, text: str) -> tuple[float, float]:
-    """Parse ``FIRST:LAST``; return both numbers."""
+def parse_ends(option: str, text: str) -> tuple[float, float]:
+    """Parse ``FIRST:LAST`` into two numbers."""
     expected = "FIRST:LAST, two numbers such as 1.2:1.65"
-    first, last = parse(option, text, expected, lambda part: floats(part, ":", (2,)))
+    first, last = parse(option, text, expected, lambda part: parse_floats(part, ":", (2,)))
     return first, last
 
 
-def number_or_ends(option: str, text: str) -> tuple[float, ...]:
-    """Parse ``VALUE`` or ``FIRST:LAST``; return one number or two."""
+def parse_number_or_ends(option: str, text: str) -> tuple[float, ...]:
+    """Parse ``VALUE`` or ``FIRST:LAST`` into a tuple of one or two numbers."""
     expected = "a number, or FIRST:LAST such as 1.2:1.65"
-    return parse(option, text, expected, lambda part: floats(part, ":", (1, 2)))
+    return parse(option, text, expected, lambda part: parse_floats(part, ":", (1, 2)))
 
 
-def rates_of(option: str, text: str, one: bool = False) -> tuple[float, ...]:
-    """Parse rates > 0, or exactly one of them; return a tuple."""
+def parse_rates(option: str, text: str, one: bool = False) -> tuple[float, ...]:
+    """Parse a list of rates > 0 into a tuple; with ``one``, exactly one rate."""
     several = "" if one else ", or several as A,B,..., such as 1e-4,5e-5,2.5e-5"
     expected = f"a number > 0{several}"
-    rates = parse(option, text, expected, lambda part: floats(part, ",", positive=True))
+    rates = parse(option, text, expected, lambda part: parse_floats(part, ",", positive=True))
     if one and len(rates) > 1:
         raise InputError(
             f"{option} {text}: {len(rates)} rates; expected one (jump-voltages takes several)"
@@ -121,33 +123,35 @@ def rates_of(option: str, text: str, one: bool = False) -> tuple[float, ...]:
     return rates
 
 
-def orders_of(option: str, text: str) -> float | tuple[float, ...]:
-    """Parse a number of orders, or a list of them."""
-    orders = parse(option, text, "a whole number, or 0.5,1,2", lambda part: floats(part, ","))
+def parse_orders(option: str, text: str) -> float | tuple[float, ...]:
+    """Parse ``N`` or a list of orders such as ``0.5,1,2``; return the number or the list."""
+    orders = parse(option, text, "a whole number, or 0.5,1,2", lambda part: parse_floats(part, ","))
     return orders if "," in text else orders[0]
 
 
-def state_of(option: str, text: str) -> tuple[float, ...]:
-    """Parse a state ``X1,X2,V1,V2``; return its four numbers."""
+def parse_state(option: str, text: str) -> tuple[float, ...]:
+    """Parse a state ``X1,X2,V1,V2`` into its four numbers."""
     expected = "X1,X2,V1,V2, four numbers in m and m/s"
-    return parse(option, text, expected, lambda part: floats(part, ",", (4,)))
+    return parse(option, text, expected, lambda part: parse_floats(part, ",", (4,)))
 
 
-def side_of(option: str, text: str) -> AxisSpec:
-    """Parse a side of a plane from ``NAME,FIRST,LAST,COUNT``."""
+def parse_plane_side(option: str, text: str) -> AxisSpec:
+    """Parse one side of a basin's plane, ``NAME,FIRST,LAST,COUNT``."""
 
     def read(text: str) -> AxisSpec:
+        """Split the text into name, two numbers and a count; raise ``ValueError`` otherwise."""
         name, first, last, count = (part.strip() for part in text.split(","))
         return name, plain_float(first), plain_float(last), plain_int(count)
 
     return parse(option, text, "NAME,FIRST,LAST,COUNT such as x_rel,0,0.8,60", read)
 
 
-def breakpoints_of(option: str, text: str) -> tuple[tuple[float, float], ...]:
-    """Parse break points ``HZ:VALUE,HZ:VALUE,...``; return pairs of frequency and value."""
+def parse_breakpoints(option: str, text: str) -> tuple[tuple[float, float], ...]:
+    """Parse ``HZ:VALUE,HZ:VALUE,...`` into pairs of frequency and value."""
 
     def read(text: str) -> tuple[tuple[float, float], ...]:
-        pairs = [floats(part, ":", (2,)) for part in text.split(",")]
+        """Split the text into pairs of numbers; raise ``ValueError`` otherwise."""
+        pairs = [parse_floats(part, ":", (2,)) for part in text.split(",")]
         if not all(math.isfinite(number) for pair in pairs for number in pair):
             raise ValueError(text)
         return tuple((first, last) for first, last in pairs)
@@ -158,7 +162,7 @@ def breakpoints_of(option: str, text: str) -> tuple[tuple[float, float], ...]:
 # -- ranges and lists -----------------------------------------------------------------------------
 
 
-def values_of(option: str, text: str, zero: bool = False) -> tuple[tuple[float, ...], bool]:
+def parse_values(option: str, text: str, zero: bool = False) -> tuple[tuple[float, ...], bool]:
     """Parse ``FIRST:LAST:STEP`` or ``A,B,...``; return the numbers, and whether it was a range.
 
     Parameters
@@ -188,13 +192,13 @@ def values_of(option: str, text: str, zero: bool = False) -> tuple[tuple[float, 
     return tuple(map(float, numbers)), is_range
 
 
-def is_one(text: str) -> bool:
+def is_single_number(text: str) -> bool:
     """Return whether a text is a single number, rather than a range or a list."""
     return not (":" in text or "," in text)
 
 
-def one_or_more(option: str, text: str, one: bool = False) -> float | tuple[float, ...]:
-    """Parse a number, or those of a range or a list.
+def parse_one_or_more(option: str, text: str, one: bool = False) -> float | tuple[float, ...]:
+    """Parse one number as float, a range or list as tuple; with ``one``, one number only.
 
     Parameters
     ----------
@@ -202,12 +206,16 @@ def one_or_more(option: str, text: str, one: bool = False) -> float | tuple[floa
     one : bool
         Whether it must be one number.
     """
-    return one_value(option, text) if one or is_one(text) else values_of(option, text)[0]
+    return (
+        parse_single_number(option, text)
+        if one or is_single_number(text)
+        else parse_values(option, text)[0]
+    )
 
 
-def one_value(option: str, text: str) -> float:
-    """Parse a single number > 0."""
-    values, _ = values_of(option, text)
+def parse_single_number(option: str, text: str) -> float:
+    """Parse a single number > 0; raise if the text is a range or a list."""
+    values, _ = parse_values(option, text)
     if len(values) != 1:
         raise InputError(
             f"{option} {text}: {len(values)} values; expected one, such as {option} 1.2"
@@ -218,8 +226,8 @@ def one_value(option: str, text: str) -> float:
 # -- names and values -----------------------------------------------------------------------------
 
 
-def changes_of(texts: list[str]) -> dict[str, float | bool]:
-    """Parse the texts ``NAME=VALUE`` of ``--set``; return values by name."""
+def parse_changes(texts: list[str]) -> dict[str, float | bool]:
+    """Parse the texts ``NAME=VALUE`` of ``--set`` into a dict from parameter to value."""
     changes: dict[str, float | bool] = {}
     for text in texts:
         name, equals, value = (part.strip() for part in text.partition("="))
@@ -227,12 +235,12 @@ def changes_of(texts: list[str]) -> dict[str, float | bool]:
             raise InputError(f"--set {text}: expected NAME=VALUE, such as e=0.3")
         if name in changes:
             raise InputError(f"--set {text}: {name} is set twice; expected once")
-        changes[name] = value_of(text, name, value)
+        changes[name] = parse_changed_value(text, name, value)
     return changes
 
 
-def value_of(text: str, name: str, value: str) -> float | bool:
-    """Parse a value of ``--set``: a number, perhaps with a unit that its parameter may have."""
+def parse_changed_value(text: str, name: str, value: str) -> float | bool:
+    """Parse the VALUE of ``--set NAME=VALUE``: a number, with a unit if the parameter allows it."""
     if value in ("true", "false"):
         return value == "true"
     known = next((units for names, units in SET_UNITS.items() if name in names), {})

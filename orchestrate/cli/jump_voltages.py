@@ -1,4 +1,4 @@
-"""``jump-voltages``: where the speed jumps at no rate, bonded against delaminated."""
+"""Command ``jump-voltages``: extrapolate the voltages of the speed's jumps to ramp rate 0."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .drives import (
-    add_ends,
-    add_rate,
-    add_settle,
-    add_step,
-    ask_once,
-    times_of,
-    two_voltages,
+from .drive_options import (
+    add_rate_option,
+    add_settle_option,
+    add_step_option,
+    add_voltage_options,
+    answer_both_structures,
+    parse_ramp_ends,
+    times_in_seconds,
 )
-from .grammar import rates_of
-from .options import Commands, structure_and_drive
-from .output import add_results
+from .grammar import parse_rates
+from .options import Commands, read_drive_options
+from .output import add_result_options
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,36 +34,36 @@ Three rates or more give a standard error. Interrupted, the same command goes on
 
 
 def add_parser(commands: Commands) -> None:
-    """Add the command's parser."""
+    """Add the parser of the command ``jump-voltages`` with its options."""
     text = "voltages at which the speed jumps, at rate 0 from ramps of several rates"
-    parser = commands.ask_coupled("jump-voltages", run, text, EXAMPLES)
+    parser = commands.add_drive_command("jump-voltages", run, text, EXAMPLES)
     group = parser.add_argument_group("ramps")
-    add_ends(group)
-    add_rate(group, "A,B,...", ", a list", USUAL)
-    add_settle(group)
+    add_voltage_options(group)
+    add_rate_option(group, "A,B,...", ", a list", USUAL)
+    add_settle_option(group)
     group.add_argument("--one-way", action="store_true", help="do not come back: jumps up only")
-    add_step(group)
-    add_results(parser, several=True)
+    add_step_option(group)
+    add_result_options(parser, several=True)
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Compute the voltages at which the speed jumps at rate 0, bonded and delaminated."""
-    structure, drive = structure_and_drive(arguments)
+    """Run ``jump-voltages``: extrapolate ramps' jump voltages to rate 0; print, store, draw."""
+    structure, drive = read_drive_options(arguments)
     unit = drive.volts(structure) * structure.omega
-    ends = two_voltages(arguments, structure, drive)
+    ends = parse_ramp_ends(arguments, structure, drive)
     question = {
         "voltage": ends,
-        "rates": [rate * unit for rate in rates_of("--rate", arguments.rate or USUAL)],
+        "rates": [rate * unit for rate in parse_rates("--rate", arguments.rate or USUAL)],
         "back": not arguments.one_way,
-        **times_of(arguments, structure, "settle", "step"),
+        **times_in_seconds(arguments, structure, "settle", "step"),
     }
-    draw = partial(picture_of, name=Path(arguments.drive).stem, ends=ends)
-    tell = partial(print_result, directions=("up",) if arguments.one_way else ("up", "down"))
-    ask_once(arguments, structure, drive, question, draw, tell)
+    draw = partial(draw_result, name=Path(arguments.drive).stem, ends=ends)
+    print_table = partial(print_result, directions=("up",) if arguments.one_way else ("up", "down"))
+    answer_both_structures(arguments, structure, drive, question, draw, print_table)
 
 
-def picture_of(data: xr.Dataset, name: str, ends: tuple[float, float]) -> Any:
-    """Draw voltages over the rate."""
+def draw_result(data: xr.Dataset, name: str, ends: tuple[float, float]) -> Any:
+    """Draw the jump voltages over the ramps' rate; return the figure."""
     from ..figures.jump_voltages import draw
 
     slowest, fastest = float(data.rate.min()), float(data.rate.max())
@@ -72,7 +72,7 @@ def picture_of(data: xr.Dataset, name: str, ends: tuple[float, float]) -> Any:
 
 
 def print_result(data: xr.Dataset, directions: tuple[str, ...]) -> None:
-    """Print a table of the jumps at rate 0, and what to do where there is none."""
+    """Print a table of the jump voltages at rate 0, and advice if one is missing."""
     print(f"{'jump':6}{'bonded':>24}{'delaminated':>24}{'change':>12}   in V, at rate 0")
     for jump in directions:
         at = data.sel(jump=jump)
@@ -87,7 +87,7 @@ def print_result(data: xr.Dataset, directions: tuple[str, ...]) -> None:
 
 
 def format_voltage(value: float, error: float) -> str:
-    """Format a voltage with its standard error; two rates have a line, but no error."""
+    """Format a voltage with its standard error; "none" for NaN, no error if that is NaN."""
     if math.isnan(value):
         return "none"
     return f"{value:.4f}" if math.isnan(error) else f"{value:.4f} +- {error:.4f}"

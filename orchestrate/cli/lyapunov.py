@@ -1,4 +1,4 @@
-"""``lyapunov``: largest Lyapunov exponents along a parameter."""
+"""Command ``lyapunov``: compute largest Lyapunov exponents along a parameter."""
 
 from __future__ import annotations
 
@@ -8,9 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import orchestrate
 
-from .options import Commands, add_over, structure_of, varied_arguments
-from .output import running_of
-from .question import carry_out, format_parameter, format_ranges, is_curve, parameter_of, picture_of
+from .options import Commands, add_over_options, read_structure_options, varied_arguments
+from .output import read_running_options
+from .question import (
+    answer_question,
+    draw_result,
+    format_parameter,
+    format_ranges,
+    is_curve,
+    varied_parameter,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,32 +32,32 @@ WORDS = {1: "chaotic", 0: "neutral", -1: "periodic"}
 
 
 def add_parser(commands: Commands) -> None:
-    """Add the command's parser."""
+    """Add the parser of the command ``lyapunov`` with its options."""
     text = "largest Lyapunov exponents of responses: periodic, neutral or chaotic"
-    question = commands.ask("lyapunov", run, text, EXAMPLES)
-    add_over(question)
+    question = commands.add_response_command("lyapunov", run, text, EXAMPLES)
+    add_over_options(question)
     follow = "responses of a sweep in this direction (default: each from rest)"
     question.group.add_argument("--follow", choices=("up", "down"), help=follow)
     question.declare("transient", "periods", "sigmas", "spectrum")
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Compute the largest Lyapunov exponents along a parameter."""
-    structure = structure_of(arguments)
+    """Run ``lyapunov``: compute largest Lyapunov exponents; print verdicts, store and draw them."""
+    structure = read_structure_options(arguments)
     excitation, _ = varied_arguments(arguments, structure)
     question = {**excitation, **arguments.question.keywords(arguments)}
     if arguments.follow:
         swept: dict[str, Any] = {**excitation, "direction": arguments.follow, "samples": 1}
         swept["transient"] = arguments.transient
-        question["start"] = orchestrate.sweep(structure, **swept, **running_of(arguments))
-    carry_out(
-        arguments, structure, question, print_result, picture_of if is_curve(excitation) else None
+        question["start"] = orchestrate.sweep(structure, **swept, **read_running_options(arguments))
+    answer_question(
+        arguments, structure, question, print_result, draw_result if is_curve(excitation) else None
     )
 
 
 def print_result(data: xr.Dataset) -> None:
-    """Print verdicts, and where they hold."""
-    name = parameter_of(data)
+    """Print how many exponents have which verdict, and the parameter ranges of each."""
+    name = varied_parameter(data)
     ordered = data.sortby(name)
     if data.sizes[name] <= 10:
         for value, exponent, error, verdict in zip(
@@ -79,7 +86,7 @@ def print_result(data: xr.Dataset) -> None:
 
 def print_undecided(data: xr.Dataset) -> None:
     """Print how many periods would decide whether neutral responses are chaotic or periodic."""
-    neutral = data.isel({parameter_of(data): data.verdict.values == 0})
+    neutral = data.isel({varied_parameter(data): data.verdict.values == 0})
     sizes = abs(neutral.exponent.values)
     if not (sizes > 0.0).any():
         return

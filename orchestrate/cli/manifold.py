@@ -1,4 +1,4 @@
-"""``manifold``: the unstable manifold of a saddle, as a curve."""
+"""Command ``manifold``: trace the unstable manifold of a saddle orbit as a curve."""
 
 from __future__ import annotations
 
@@ -7,8 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..units import range_text
-from .options import Commands, amplitude_of, excitation_of, frequency_option, structure_of
-from .question import carry_out, picture_of, read_stored
+from .options import (
+    Commands,
+    frequency_option,
+    read_amplitude,
+    read_excitation,
+    read_structure_options,
+)
+from .question import answer_question, draw_result, read_earlier_result
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -20,27 +26,29 @@ What starts beside a saddle with one multiplier outside the unit circle leaves a
 
 
 def add_parser(commands: Commands) -> None:
-    """Add the command's parser."""
+    """Add the parser of the command ``manifold`` with its options."""
     text = "the unstable manifold of a saddle of the stroboscopic map, as a curve to each side"
-    question = commands.ask("manifold", run, text, EXAMPLES, several=False)
+    question = commands.add_response_command("manifold", run, text, EXAMPLES, several=False)
     start = "NetCDF file of an orbit (default: the orbit that the command orbit finds)"
-    question.add("start", read_stored, type=Path, metavar="FILE", help=start)
+    question.add("start", read_earlier_result, type=Path, metavar="FILE", help=start)
     names = ("period", "box_acceleration", "length", "spacing", "angle", "distance", "most")
     question.declare(*names)
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Compute the unstable manifold of a saddle."""
-    structure = structure_of(arguments)
+    """Run ``manifold``: trace the unstable manifold of a saddle; print, store and draw it."""
+    structure = read_structure_options(arguments)
     question = arguments.question.keywords(arguments)
-    given = frequency_option(arguments) is not None or amplitude_of(arguments) is not None
-    if given or question["start"] is None:
-        question |= excitation_of(arguments, structure, si=True, one=True)
-    carry_out(arguments, structure, question, print_result, picture_of)
+    has_excitation = (
+        frequency_option(arguments) is not None or read_amplitude(arguments) is not None
+    )
+    if has_excitation or question["start"] is None:
+        question |= read_excitation(arguments, structure, si=True, one=True)
+    answer_question(arguments, structure, question, print_result, draw_result)
 
 
 def print_result(data: xr.Dataset) -> None:
-    """Print the multiplier, how far each side was followed, and where it is broken."""
+    """Print a manifold's multiplier, each side's length, and where the curve is broken."""
     from ..flags import flag_words
 
     words, size = flag_words(data.end.attrs), float(data.orbit_size)

@@ -1,4 +1,4 @@
-"""``map``: responses over two parameters."""
+"""Command ``map``: compute responses over a grid of two parameters."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from .grammar import values_of
+from .grammar import parse_values
 from .options import (
     Commands,
-    add_over,
+    add_over_options,
     check_over,
     excitation_by_level,
-    excitation_of,
-    structure_of,
+    read_excitation,
+    read_structure_options,
 )
-from .question import carry_out, format_parameter, is_flag, picture_of
+from .question import answer_question, draw_result, format_parameter, has_flag
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,39 +32,39 @@ MAX_KINDS = 4  # multiplicities that are told
 
 
 def add_parser(commands: Commands) -> None:
-    """Add the command's parser."""
+    """Add the parser of the command ``map`` with its options."""
     text = "responses over two parameters: impacts per period, multiplicity, largest gap, exponent"
-    question = commands.ask("map", run, text, EXAMPLES)
-    add_over(question, twice=True)
+    question = commands.add_response_command("map", run, text, EXAMPLES)
+    add_over_options(question, twice=True)
     question.declare(
         "exponent", "transient", "settle", "samples", "periods", "tolerance", "longest"
     )
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Compute responses over two parameters."""
-    structure = structure_of(arguments)
+    """Run ``map``: compute responses over two parameters; print a summary, store and draw them."""
+    structure = read_structure_options(arguments)
     question = {
         **map_arguments(arguments, structure),
         **arguments.question.keywords(arguments),
     }
-    carry_out(arguments, structure, question, print_result, picture_of)
+    answer_question(arguments, structure, question, print_result, draw_result)
 
 
 def map_arguments(arguments: argparse.Namespace, structure: Structure) -> dict[str, Any]:
-    """Return the box's motion and the parameters, two of them as lists."""
+    """Return excitation and varied parameters as keywords of ``map``; exactly two are lists."""
     if len(arguments.over) != len(arguments.values):
         raise InputError("--over and --values: expected as many of one as of the other")
     for name in arguments.over:
         check_over(name, arguments)
     twice = len(arguments.over) == 2
     by_level = arguments.g is not None
-    chosen = excitation_by_level if by_level else excitation_of
+    chosen = excitation_by_level if by_level else read_excitation
     excitation = chosen(arguments, structure, one=twice)
     for name, text in zip(arguments.over, arguments.values, strict=True):
         if name in excitation or (name == "level" and "amplitude" in excitation):
             raise InputError(f"--over {name}: twice; expected two parameters")
-        excitation[name] = values_of("--values", text, zero=True)[0]
+        excitation[name] = parse_values("--values", text, zero=True)[0]
     if sum(isinstance(value, tuple) for value in excitation.values()) != 2:
         raise InputError(
             "map: expected two parameters that vary: a range of frequencies and one of levels "
@@ -74,8 +74,8 @@ def map_arguments(arguments: argparse.Namespace, structure: Structure) -> dict[s
 
 
 def print_result(data: xr.Dataset) -> None:
-    """Print what the map shows."""
-    undecided = is_flag(data.multiplicity_decided, "undecided")
+    """Print a map's shares of periods, its largest gap and where, impacts and chaotic share."""
+    undecided = has_flag(data.multiplicity_decided, "undecided")
     kinds = data.multiplicity.where(~undecided, -1).values.astype(int)
     shares = [f"not periodic {float((kinds == 0).mean()):.1%}"]
     for number in range(1, MAX_KINDS + 1):

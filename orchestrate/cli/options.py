@@ -1,4 +1,4 @@
-"""Options of commands: structures, motors, frequencies, arguments of the public functions."""
+"""Options that several commands share: structure, drive, excitation, varied parameter."""
 
 from __future__ import annotations
 
@@ -12,9 +12,16 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from ..structures.ranges import ADDED, STRUCTURE
-from .declared import option_of
-from .grammar import changes_of, is_one, number_of, one_or_more, plain_float, values_of
-from .output import add_results, add_units
+from .declared_options import option_keywords
+from .grammar import (
+    is_single_number,
+    parse_changes,
+    parse_one_or_more,
+    parse_values,
+    plain_float,
+    positive_number,
+)
+from .output import add_result_options, add_units_option
 
 if TYPE_CHECKING:
     from ..structures import Drive, Structure
@@ -35,8 +42,8 @@ ASSUMED = {  # what a beam needs beside what is set, with the names that set it 
 ETA0 = "eta0 = U/(K omega) is the voltage as no-load speed over omega = sqrt(k1/m1)."
 
 
-def described(name: str, width: int = 94, indent: int = 24) -> str:
-    """Return lines of help on a parameter of a structure, from the variable table."""
+def parameter_help(name: str, width: int = 94, indent: int = 24) -> str:
+    """Return lines of help text on a structure's parameter, from the FMU's variable table."""
     quantity = STRUCTURE[name]
     unit = "" if quantity.unit == "1" else f", {quantity.unit}"
     text = f"{quantity.description[0].lower()}{quantity.description[1:]}{unit}"
@@ -49,7 +56,7 @@ QUANTITIES = f"""quantities:
   e                     coefficient of restitution: speed after an impact over that before
   gamma                 end of chattering: the masses stick where the next flight would last
                         less than gamma/omega
-{"".join(described(name) + chr(10) for name in ADDED)}\
+{"".join(parameter_help(name) + chr(10) for name in ADDED)}\
   omega = sqrt(k1/m1)   unit of frequency, rad/s
   mu = m2/m1, kappa = k2/k1
   D1 = d1/(2 omega m1), D2 = d2/(2 omega m2); D sets both
@@ -66,7 +73,7 @@ QUANTITIES = f"""quantities:
 
 @dataclass(frozen=True)
 class Commands:
-    """Collects the commands' parsers.
+    """Registry of the commands' parsers: adds each command with its help and common options.
 
     Attributes
     ----------
@@ -87,7 +94,7 @@ class Commands:
     def add(
         self, name: str, run: Callable[[argparse.Namespace], None], text: str, examples: str
     ) -> argparse.ArgumentParser:
-        """Add a command with its help, examples and function; return its parser.
+        """Add a command with its help text, examples and run function; return its parser.
 
         Parameters
         ----------
@@ -112,7 +119,7 @@ class Commands:
         parser.set_defaults(run=run, command=name)
         return parser
 
-    def ask(
+    def add_response_command(
         self,
         name: str,
         run: Callable[[argparse.Namespace], None],
@@ -121,7 +128,7 @@ class Commands:
         several: bool = True,
         usual: str = "",
     ) -> FunctionOptions:
-        """Add a command that asks for responses of a structure to a harmonic motion of the box.
+        """Add a command on responses to harmonic excitation; return its ``FunctionOptions``.
 
         Parameters
         ----------
@@ -133,28 +140,30 @@ class Commands:
             What is asked where no frequency is given.
         """
         parser = self.add(name, run, text, examples)
-        add_structure(parser)
-        add_excitation(parser, several, usual)
+        add_structure_options(parser)
+        add_excitation_options(parser, several, usual)
         self.asked.append(parser)
-        return self.question(parser)
+        return self.add_function_options(parser)
 
-    def ask_coupled(
+    def add_drive_command(
         self, name: str, run: Callable[[argparse.Namespace], None], text: str, examples: str
     ) -> argparse.ArgumentParser:
-        """Add a command that asks for a structure on a motor; arguments as of :meth:`add`."""
+        """Add a command on a structure driven by a motor; return its parser."""
         parser = self.add(name, run, text, examples.replace("{eta0}", ETA0))
-        add_drive(parser)
-        add_units(parser)
+        add_drive_options(parser)
+        add_units_option(parser)
         return parser
 
-    def finish(self) -> None:
-        """Add the options of a result to the commands of :meth:`ask`."""
+    def add_common_options(self) -> None:
+        """Add the options of output and units, last, to all commands on responses."""
         for parser in self.asked:
-            add_units(parser)
-            add_results(parser)
+            add_units_option(parser)
+            add_result_options(parser)
 
-    def question(self, parser: argparse.ArgumentParser, title: str = "question") -> FunctionOptions:
-        """Add the group of a command's options that are arguments of its public function."""
+    def add_function_options(
+        self, parser: argparse.ArgumentParser, title: str = "question"
+    ) -> FunctionOptions:
+        """Add a group for the options that are the public function's arguments; return it."""
         command = parser.get_default("command")
         question = FunctionOptions(command, self.wanted is None or command in self.wanted)
         question.group = parser.add_argument_group(title)
@@ -164,7 +173,7 @@ class Commands:
 
 @dataclass
 class FunctionOptions:
-    """Options of a command that are arguments of the public function of its name.
+    """Options of a command that are arguments of the public function of the same name.
 
     Attributes
     ----------
@@ -183,21 +192,21 @@ class FunctionOptions:
     def add(
         self, name: str, reader: Callable[[str, Any], Any] | None = None, **details: Any
     ) -> None:
-        """Add an argument by ``details`` for ``argparse``, and how its text is read."""
+        """Add an option for a function's argument; ``reader`` parses its text."""
         self.readers[name] = reader
         self.group.add_argument(option_name(name), **details)
 
     def declare(self, *names: str) -> None:
-        """Add arguments as the function's signature and docstring declare them."""
+        """Add options for arguments, their type, default and help read from the function."""
         if self.wanted:
             import orchestrate
 
             function = getattr(orchestrate, self.command.replace("-", "_"))
             for name in names:
-                self.add(name, **option_of(function, name))
+                self.add(name, **option_keywords(function, name))
 
     def keywords(self, arguments: argparse.Namespace) -> dict[str, Any]:
-        """Return the options as keywords of the function."""
+        """Return the options' values as keywords of the public function."""
         keywords = {name: getattr(arguments, name) for name in self.readers}
         for name, reader in self.readers.items():
             if reader is not None and keywords[name] is not None:
@@ -206,12 +215,12 @@ class FunctionOptions:
 
 
 def option_name(name: str) -> str:
-    """Return the command-line option of an argument: ``--max-points`` of ``max_points``."""
+    """Return the command-line option of an argument: ``--max-points`` for ``max_points``."""
     return f"--{name.replace('_', '-')}"
 
 
-def sets_text() -> str:
-    """Format the shipped sets, a line each: the first sentence of its file."""
+def list_shipped_sets() -> str:
+    """Return a text with the shipped parameter sets, one line each, for the help."""
     lines = []
     for path in sorted(SETS.glob("*.toml")):
         above = path.read_text(encoding="utf-8").partition("\n\n")[0]
@@ -223,7 +232,7 @@ def sets_text() -> str:
 # -- structures -----------------------------------------------------------------------------------
 
 
-def add_structure(parser: argparse.ArgumentParser, default: str = "paper") -> None:
+def add_structure_options(parser: argparse.ArgumentParser, default: str = "paper") -> None:
     """Add ``--structure`` and ``--set``."""
     group = parser.add_argument_group("structure")
     group.add_argument(
@@ -232,30 +241,30 @@ def add_structure(parser: argparse.ArgumentParser, default: str = "paper") -> No
         metavar="FILE",
         help="TOML file with a [structure], or the name of a set (default: %(default)s)",
     )
-    add_set(
+    add_set_option(
         group,
         f"one of its parameters, SI ({' '.join(STRUCTURE)}), of each half (f1 f2 in "
         "Hz, zeta1 zeta2) or the paper's (mu kappa D D1 D2 omega); may be repeated",
     )
 
 
-def add_set(group: Any, text: str) -> None:
-    """Add ``--set``."""
+def add_set_option(group: Any, text: str) -> None:
+    """Add ``--set NAME=VALUE``."""
     group.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help=text)
 
 
-def structure_of(arguments: argparse.Namespace) -> Structure:
-    """Return the structure that the options describe."""
+def read_structure_options(arguments: argparse.Namespace) -> Structure:
+    """Return the ``Structure`` of ``--structure`` with the changes of ``--set``."""
     from ..structures import Structure
 
-    changes = changes_of(arguments.set)
+    changes = parse_changes(arguments.set)
     structure = Structure.from_file(arguments.structure).replace(**changes)
     print_assumptions(structure, arguments.structure, changes)
     return structure
 
 
 def print_assumptions(structure: Structure, source: str, changes: Mapping[str, Any]) -> None:
-    """Print what a shipped set assumes of a user's beam; warn of damping ratios like per cent."""
+    """Print which parameters of the user's beam are taken from a shipped set; warn of per cent."""
     from ..structures.plausible import warn_of_per_cent
 
     warn_of_per_cent({name: changes[name] for name in ("zeta1", "zeta2") if name in changes})
@@ -269,7 +278,7 @@ def print_assumptions(structure: Structure, source: str, changes: Mapping[str, A
 
 
 def format_assumed(name: str, value: float) -> str:
-    """Format a parameter that nobody has set, with its unit."""
+    """Format a parameter's value with its unit; damping ratios in per cent."""
     units = {"m": " kg", "f": " Hz"}
     if name.startswith("zeta"):
         return f"{100.0 * value:.4g} %"
@@ -279,8 +288,8 @@ def format_assumed(name: str, value: float) -> str:
 # -- motor and box ---------------------------------------------------------------------------------
 
 
-def add_drive(parser: argparse.ArgumentParser) -> None:
-    """Add ``--drive``, ``--structure`` and ``--set``."""
+def add_drive_options(parser: argparse.ArgumentParser) -> None:
+    """Add ``--drive``, ``--structure``, ``--set`` and the motor's datasheet options."""
     group = parser.add_argument_group("structure, motor and box")
     text = (
         "TOML file with [motor], [box] and [structure], or a set: quick, beam, rig (default: "
@@ -289,7 +298,9 @@ def add_drive(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--drive", default="quick", metavar="FILE", help=text)
     other = "file or set with another [structure] than that of --drive"
     group.add_argument("--structure", metavar="FILE", help=other)
-    add_set(group, "a parameter of the structure, or of motor and box in SI; may be repeated")
+    add_set_option(
+        group, "a parameter of the structure, or of motor and box in SI; may be repeated"
+    )
     sheet = parser.add_argument_group(
         "a motor by its datasheet", "in place of motor_constant and armature_resistance: all three"
     )
@@ -302,17 +313,17 @@ def add_drive(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def structure_and_drive(arguments: argparse.Namespace) -> tuple[Structure, Drive]:
-    """Read the structure and the drive of the options, with what ``--set`` changes of either."""
+def read_drive_options(arguments: argparse.Namespace) -> tuple[Structure, Drive]:
+    """Return structure and drive of the options, with the changes of ``--set`` to either."""
     from ..structures import Drive, Structure
 
     drive = Drive.from_file(arguments.drive)
     structure = Structure.from_file(arguments.structure or arguments.drive)
-    changes = changes_of(arguments.set)
+    changes = parse_changes(arguments.set)
     drive_names = {field.name for field in fields(Drive)}
     of_drive = {name: float(value) for name, value in changes.items() if name in drive_names}
     of_structure = {name: value for name, value in changes.items() if name not in drive_names}
-    of_drive |= datasheet_of(arguments, of_drive)
+    of_drive |= read_datasheet(arguments, of_drive)
     check_masses(arguments.structure or arguments.drive, of_structure)
     changed = structure.replace(**of_structure)
     print_assumptions(changed, arguments.structure or arguments.drive, of_structure)
@@ -320,7 +331,7 @@ def structure_and_drive(arguments: argparse.Namespace) -> tuple[Structure, Drive
 
 
 def check_masses(source: str, changes: Mapping[str, Any]) -> None:
-    """Check that the masses of a beam are known, if its frequencies are set: the motor feels them.
+    """Raise if a beam's frequencies are set but its masses are not: the motor feels them.
 
     Raises
     ------
@@ -336,8 +347,8 @@ def check_masses(source: str, changes: Mapping[str, Any]) -> None:
         )
 
 
-def datasheet_of(arguments: argparse.Namespace, changes: Mapping[str, float]) -> dict[str, float]:
-    """Return the motor's constants by the datasheet's options, if they are given."""
+def read_datasheet(arguments: argparse.Namespace, changes: Mapping[str, float]) -> dict[str, float]:
+    """Return motor constant and resistance from the datasheet's options; empty without them."""
     from ..structures.drive import torque_line
 
     names = ("rated_voltage", "no_load_rpm", "stall_torque")
@@ -365,8 +376,10 @@ def datasheet_of(arguments: argparse.Namespace, changes: Mapping[str, float]) ->
 # -- the box's motion -----------------------------------------------------------------------------
 
 
-def add_excitation(parser: argparse.ArgumentParser, several: bool = True, usual: str = "") -> None:
-    """Add frequency and amplitude of the box.
+def add_excitation_options(
+    parser: argparse.ArgumentParser, several: bool = True, usual: str = ""
+) -> None:
+    """Add ``--hz``, ``--rpm``, ``--frequency``, ``--eta``, ``--amplitude`` and ``--g``.
 
     Parameters
     ----------
@@ -394,14 +407,14 @@ def add_excitation(parser: argparse.ArgumentParser, several: bool = True, usual:
     option("--g", metavar="G", help=f"{text}{levels}")
 
 
-def excitation_of(
+def read_excitation(
     arguments: argparse.Namespace,
     structure: Structure,
     si: bool = False,
     one: bool = False,
     level: bool = True,
 ) -> dict[str, Any]:
-    """Return the box's motion as keywords of the public API.
+    """Return frequency and amplitude of the box's motion as keywords of the public API.
 
     Parameters
     ----------
@@ -419,14 +432,16 @@ def excitation_of(
     from ..structures.sections import TO_RAD_S
 
     name = frequency_option(arguments)
-    amplitude = amplitude_of(arguments)
-    described_too = described_excitation(arguments) if name is None and amplitude is None else None
+    amplitude = read_amplitude(arguments)
+    described_too = excitation_from_file(arguments) if name is None and amplitude is None else None
     if described_too:
         return described_too
     if name is None:
-        raise InputError(f"frequency: nothing given; expected one of {options(FREQUENCIES)}")
+        raise InputError(
+            f"frequency: nothing given; expected one of {join_option_names(FREQUENCIES)}"
+        )
     text = getattr(arguments, name)
-    values = one_or_more(f"--{name}", text, one)
+    values = parse_one_or_more(f"--{name}", text, one)
     if name == "eta" and amplitude is None:
         if si and not math.isclose(structure.omega, 1.0):
             raise InputError(
@@ -438,15 +453,24 @@ def excitation_of(
         either = "--amplitude in m or --g" if level else "--amplitude in m"
         raise InputError(f"--{name} {text}: expected {either} with it")
     omega = structure.omega
-    frequencies = each(TO_RAD_S[UNITS[name]] if name in UNITS else lambda eta: eta * omega, values)
+    frequencies = apply_to_each(
+        TO_RAD_S[UNITS[name]] if name in UNITS else lambda eta: eta * omega, values
+    )
     if arguments.g is None:
         return {"frequency": frequencies, "amplitude": amplitude}
-    held = each(lambda value: amplitude * GRAVITY / (value * value), frequencies)
+    held = apply_to_each(lambda value: amplitude * GRAVITY / (value * value), frequencies)
     return {"frequency": frequencies, "amplitude": held}
 
 
-def described_excitation(arguments: argparse.Namespace) -> dict[str, Any] | None:
-    """Return the box's motion in the structure's file, None without one; set ``--phase`` by it."""
+def read_question(arguments: argparse.Namespace) -> tuple[Structure, dict[str, Any]]:
+    """Return the structure, and all keywords of a public function at one frequency."""
+    structure = read_structure_options(arguments)
+    excitation = read_excitation(arguments, structure, si=True, one=True)
+    return structure, {**excitation, **arguments.question.keywords(arguments)}
+
+
+def excitation_from_file(arguments: argparse.Namespace) -> dict[str, Any] | None:
+    """Return frequency and amplitude from the structure's TOML file, or None; set ``--phase``."""
     from ..structures.files import read
 
     excitation: Any = read(arguments.structure).get("excitation")
@@ -458,44 +482,44 @@ def described_excitation(arguments: argparse.Namespace) -> dict[str, Any] | None
 
 
 def frequency_option(arguments: argparse.Namespace) -> str | None:
-    """Return the option that gives the frequency, None if none does; raise if several do."""
+    """Return which option gives the frequency, None if none does; raise if several do."""
     present = [name for name in FREQUENCIES if getattr(arguments, name) is not None]
     if len(present) > 1:
-        raise InputError(f"{options(present, ' and ')}: expected one of them")
+        raise InputError(f"{join_option_names(present, ' and ')}: expected one of them")
     return present[0] if present else None
 
 
 def check_one_level(arguments: argparse.Namespace) -> None:
-    """Check that amplitude and level are not both given."""
+    """Raise if both ``--amplitude`` and ``--g`` are given."""
     if arguments.amplitude is not None and arguments.g is not None:
         raise InputError("--amplitude and --g: expected one of them")
 
 
-def amplitude_of(arguments: argparse.Namespace) -> float | None:
-    """Return the amplitude in m, or in g if that is given; None if neither is."""
+def read_amplitude(arguments: argparse.Namespace) -> float | None:
+    """Return the number of ``--amplitude`` (m) or ``--g`` (g); None if neither is given."""
     check_one_level(arguments)
     for name in ("amplitude", "g"):
         text = getattr(arguments, name)
         if text is not None:
-            return number_of(f"--{name}", text)
+            return positive_number(f"--{name}", text)
     return None
 
 
-def options(names: Any, joint: str = ", ") -> str:
-    """Format names as options."""
+def join_option_names(names: Any, joint: str = ", ") -> str:
+    """Join names as options in a text: ``--eta, --hz``."""
     return joint.join(f"--{name}" for name in names)
 
 
-def each(change: Callable[[float], float], values: float | tuple[float, ...]) -> Any:
-    """Apply a function to one number, or to each of several."""
+def apply_to_each(change: Callable[[float], float], values: float | tuple[float, ...]) -> Any:
+    """Return a function's value for one number, or a tuple of values for a tuple."""
     return tuple(map(change, values)) if isinstance(values, tuple) else change(values)
 
 
 # -- a parameter that varies ----------------------------------------------------------------------
 
 
-def add_over(question: FunctionOptions, twice: bool = False) -> None:
-    """Add ``--over`` and ``--values``, once or twice."""
+def add_over_options(question: FunctionOptions, twice: bool = False) -> None:
+    """Add ``--over`` and ``--values``, which may be repeated if ``twice``."""
     option = question.group.add_argument
     action: dict[str, Any] = {"action": "append", "default": []} if twice else {}
     more = "; twice at one frequency" if twice else ", at one frequency"
@@ -508,70 +532,70 @@ def add_over(question: FunctionOptions, twice: bool = False) -> None:
 def varied_arguments(
     arguments: argparse.Namespace, structure: Structure, usual: str | None = None
 ) -> tuple[dict[str, Any], bool]:
-    """Return what varies as keywords of the public API, and whether its values were a range.
+    """Return excitation and varied parameter as keywords, and whether a range was given.
 
     Parameters
     ----------
     arguments : argparse.Namespace
-        With the options of :func:`add_excitation` and :func:`add_over`.
+        With the options of :func:`add_excitation_options` and :func:`add_over_options`.
     structure : Structure
     usual : str, optional
         Of ``--eta``, where no frequency is given.
     """
     over, values = arguments.over, arguments.values
-    if over is None and arguments.g is not None and not is_one(arguments.g):
+    if over is None and arguments.g is not None and not is_single_number(arguments.g):
         box = excitation_by_level(arguments, structure, one=True)
         levels = {"over": "level", "values": box["level"]}
         return {"frequency": box["frequency"], **levels}, ":" in arguments.g
     if (over is None) != (values is None):
         raise InputError("--over and --values: expected both, or none of them")
     if over is not None:
-        numbers, is_range = values_of("--values", values, zero=True)
+        numbers, is_range = parse_values("--values", values, zero=True)
         check_over(over, arguments)
-        fixed = excitation_of(arguments, structure, one=True)
+        fixed = read_excitation(arguments, structure, one=True)
         return {**fixed, "over": over, "values": numbers}, is_range
     if (
         usual is not None
         and frequency_option(arguments) is None
-        and amplitude_of(arguments) is None
+        and read_amplitude(arguments) is None
     ):
         arguments.eta = usual
-    excitation = excitation_of(arguments, structure)
+    excitation = read_excitation(arguments, structure)
     return excitation, ":" in str(getattr(arguments, frequency_option(arguments) or "eta"))
 
 
 def excitation_by_level(
     arguments: argparse.Namespace, structure: Structure, one: bool = False
 ) -> dict[str, Any]:
-    """Return frequency and level of the box, each a number or several; of ``--g``.
+    """Return frequency and level (m/s2) of the box from ``--g``, each a number or a tuple.
 
     Parameters
     ----------
     arguments, structure, one
-        As in :func:`excitation_of`.
+        As in :func:`read_excitation`.
     """
     from ..constants import GRAVITY
 
     check_one_level(arguments)
-    levels = one_or_more("--g", arguments.g)
+    levels = parse_one_or_more("--g", arguments.g)
     plain = argparse.Namespace(**{**vars(arguments), "g": None, "amplitude": "1"})
-    frequency = excitation_of(plain, structure, one=one)["frequency"]
-    return {"frequency": frequency, "level": each(lambda peak: peak * GRAVITY, levels)}
+    frequency = read_excitation(plain, structure, one=one)["frequency"]
+    return {"frequency": frequency, "level": apply_to_each(lambda peak: peak * GRAVITY, levels)}
 
 
-def add_beside(question: FunctionOptions) -> None:
-    """Add ``--beside``, see :func:`.question.carry_out_beside`."""
+def add_beside_option(question: FunctionOptions) -> None:
+    """Add ``--beside``: compute and draw the bonded structure too."""
     text = "the same of the bonded structure, beside it"
     question.group.add_argument("--beside", action="store_true", help=text)
 
 
 def check_over(over: str, arguments: argparse.Namespace) -> None:
-    """Check that what varies is the structure, and that ``--eta`` means one frequency then."""
+    """Raise unless ``--over`` names a structure's parameter that may vary with these options."""
     if over in FREQUENCIES:
         raise InputError(f"--over {over}: expected --{over} VALUES instead")
     if over in ("amplitude", "g", "level"):
         raise InputError(f"--over {over}: expected --g VALUES at one frequency instead")
-    scaled = amplitude_of(arguments) is not None and arguments.eta is not None
+    scaled = read_amplitude(arguments) is not None and arguments.eta is not None
     if scaled and over in ("m1", "k1", "omega"):
-        expected = options(UNITS, " or ")
+        expected = join_option_names(UNITS, " or ")
         raise InputError(f"--over {over}: omega varies; expected {expected} instead of --eta")

@@ -1,4 +1,4 @@
-"""``orbit``: one periodic motion, stable or not."""
+"""Command ``orbit``: find a periodic orbit, stable or unstable, by Newton's method."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import orchestrate
 
 from ..units import text_of, units_of, with_units
-from .grammar import state_of
-from .options import Commands, excitation_of, structure_of
-from .question import carry_out
+from .grammar import parse_state
+from .options import Commands, read_excitation, read_structure_options
+from .question import answer_question
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -23,22 +23,22 @@ Floquet multipliers: of a stable orbit all lie inside the unit circle."""
 
 
 def add_parser(commands: Commands) -> None:
-    """Add the command's parser."""
+    """Add the parser of the command ``orbit`` with its options."""
     text = "a periodic motion by Newton's method, stable or unstable, with its multipliers"
-    question = commands.ask("orbit", run, text, EXAMPLES, several=False)
+    question = commands.add_response_command("orbit", run, text, EXAMPLES, several=False)
     guess = "state at phase 0 to begin with, m and m/s (default: from the response from rest)"
-    question.add("guess", state_of, metavar="X1,X2,V1,V2", help=guess)
+    question.add("guess", parse_state, metavar="X1,X2,V1,V2", help=guess)
     question.declare("period", "box_acceleration")
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Find one periodic motion, stable or not, by Newton's method."""
-    structure = structure_of(arguments)
-    excitation = excitation_of(arguments, structure, si=True, one=True)
+    """Run ``orbit``: find a periodic orbit by Newton's method; print, store and draw it."""
+    structure = read_structure_options(arguments)
+    excitation = read_excitation(arguments, structure, si=True, one=True)
     question = {**excitation, **arguments.question.keywords(arguments)}
 
-    def picture_of(data: xr.Dataset) -> Any:
-        """Draw the motion over its periods, started on it."""
+    def draw_orbit(data: xr.Dataset) -> Any:
+        """Simulate one period from the orbit's state and draw the motion; return the figure."""
         from ..figures.motion import draw
 
         start = data.state.isel(sample=0).values
@@ -48,11 +48,11 @@ def run(arguments: argparse.Namespace) -> None:
         return draw(with_units(motion, units_of(data)))
 
     drawable = not arguments.box_acceleration
-    carry_out(arguments, structure, question, print_result, picture_of if drawable else None)
+    answer_question(arguments, structure, question, print_result, draw_orbit if drawable else None)
 
 
 def print_result(data: xr.Dataset) -> None:
-    """Print stability and impacts."""
+    """Print an orbit's stability, multipliers, impacts, states at phase 0 and largest gap."""
     parts = data.multipliers.transpose("multiplier", "part").values
     size = max(abs(complex(*pair)) for pair in parts)
     word = "stable" if bool(data.stable) else "unstable"

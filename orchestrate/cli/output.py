@@ -1,4 +1,4 @@
-"""Shared output of commands: files, pictures, FMUs, processes."""
+"""Output options of all commands, and the files they write: names, tables, pictures."""
 
 from __future__ import annotations
 
@@ -33,8 +33,10 @@ PREPARE_AFTER = 1.0  # s: after so much computing, a picture is prepared beside 
 # -- options --------------------------------------------------------------------------------------
 
 
-def add_results(parser: argparse.ArgumentParser, store: bool = True, several: bool = False) -> None:
-    """Add the options for what is written, where results go, and how they are computed.
+def add_result_options(
+    parser: argparse.ArgumentParser, store: bool = True, several: bool = False
+) -> None:
+    """Add the options of files (``--format`` ...) and of running (``--jobs`` ...).
 
     Parameters
     ----------
@@ -44,17 +46,17 @@ def add_results(parser: argparse.ArgumentParser, store: bool = True, several: bo
     several : bool
         Whether FMUs of several models compute it.
     """
-    add_files(parser, store)
-    add_running(parser, several=several)
+    add_file_options(parser, store)
+    add_running_options(parser, several=several)
 
 
-def add_running(
+def add_running_options(
     parser: argparse.ArgumentParser,
     output: Path | None = Path("results"),
     shown: str = "results",
     several: bool = False,
 ) -> None:
-    """Add the options for where results go, and how they are computed.
+    """Add ``--output``, ``--force``, ``--jobs``, ``--cluster``, ``--fmu`` and the like.
 
     Parameters
     ----------
@@ -78,12 +80,12 @@ def add_running(
     own = "own FMU (default: the one of the present sources)"
     more: dict[str, Any] = {"action": "append"} if several else {}
     option("--fmu", type=Path, metavar="FILE", help=own + "; may be repeated" * several, **more)
-    place = "where FMUs are looked for and exported to"
-    option("--build-folder", type=Path, metavar="FOLDER", help=place)
+    build_help = "where FMUs are looked for and exported to"
+    option("--build-folder", type=Path, metavar="FOLDER", help=build_help)
 
 
-def add_files(parser: argparse.ArgumentParser, store: bool = True) -> None:
-    """Add the options of what is written: ``--format``, ``--plot``, ``--store`` of one result."""
+def add_file_options(parser: argparse.ArgumentParser, store: bool = True) -> None:
+    """Add ``--format`` and ``--plot``, and ``--store`` for a single result."""
     option = parser.add_argument_group("files").add_argument
     if store:
         text = "the result's own file (default: a name of its own for each question in --output)"
@@ -94,8 +96,8 @@ def add_files(parser: argparse.ArgumentParser, store: bool = True) -> None:
     option("--plot", default="png", metavar="A,B,...", help=text)
 
 
-def add_units(parser: argparse.ArgumentParser) -> None:
-    """Add ``--units``."""
+def add_units_option(parser: argparse.ArgumentParser) -> None:
+    """Add ``--units``: display units of prints, pictures and tables."""
     text = (
         "of prints, pictures, tables and their names: Hz, rpm, rad/s or eta; m, mm or um; m/s2 or "
         "g; s or periods, a list such as Hz,mm,g (default: as the question is asked; nc is in SI)"
@@ -104,19 +106,19 @@ def add_units(parser: argparse.ArgumentParser) -> None:
     option("--units", default="", metavar="A,B,...", help=text)
 
 
-def units_option(arguments: argparse.Namespace) -> Units:
-    """Return the units of ``--units``; none where a command has no such option."""
+def read_units(arguments: argparse.Namespace) -> Units:
+    """Return the display units of ``--units``; none chosen where a command lacks the option."""
     from ..units import Units
 
     return Units.from_text(getattr(arguments, "units", ""), "--units")
 
 
-def record_units(arguments: argparse.Namespace) -> Units:
-    """Return the units of ``--units``, accelerations as ``--unit`` has them in a record."""
+def read_record_units(arguments: argparse.Namespace) -> Units:
+    """Return the units of ``--units``; accelerations by default in the record's ``--unit``."""
     from ..units import FACTORS, Units
 
     own = arguments.unit if arguments.unit in FACTORS["acceleration"] else ""
-    return units_option(arguments).completed(Units(acceleration=own))
+    return read_units(arguments).with_defaults(Units(acceleration=own))
 
 
 def unit_note(attributes: Mapping[Any, Any]) -> str:
@@ -127,28 +129,28 @@ def unit_note(attributes: Mapping[Any, Any]) -> str:
 
 
 def refuse_units(arguments: argparse.Namespace, reason: str) -> None:
-    """Refuse ``--units`` of a command that shows nothing in units.
+    """Raise if ``--units`` is given to a command whose output has no units.
 
     Raises
     ------
     InputError
     """
-    if str(units_option(arguments)):
+    if str(read_units(arguments)):
         raise InputError(f"--units {arguments.units}: {reason}; expected the command without it")
 
 
 def units_ending(arguments: argparse.Namespace) -> str:
-    """Return what names of tables and pictures end with: the units of ``--units``."""
-    return str(units_option(arguments)).replace(", ", "-").replace("/", "_")
+    """Return the units of ``--units`` as an ending of file names: ``Hz-mm-g``."""
+    return str(read_units(arguments)).replace(", ", "-").replace("/", "_")
 
 
 def with_ending(path: Path, *endings: str) -> Path:
-    """Return a file's name with endings, those that are not empty."""
+    """Return a path with endings joined to its stem by ``_``; empty ones are left out."""
     return path.with_stem("_".join(filter(None, [path.stem, *endings])))
 
 
 def print_units_note(arguments: argparse.Namespace, *answers: xr.Dataset) -> None:
-    """Print that ``--units`` changes nothing of some answers, where that is so."""
+    """Print a note if ``--units`` changes none of the numbers of some results."""
     from ..units import scale_of
 
     kinds = {
@@ -157,15 +159,15 @@ def print_units_note(arguments: argparse.Namespace, *answers: xr.Dataset) -> Non
         for array in data.variables.values()
         if array.dtype.kind == "f"
     }
-    units = units_option(arguments)
+    units = read_units(arguments)
     changed = any(scale_of(data, kind)[1] != kind for data in answers for kind in kinds)
     if units.words and not changed and kinds.isdisjoint(units.words):
         words = ", ".join(sorted(kinds - {"1"}))
         print(f"--units {units}: these have no such numbers, only {words}")
 
 
-def running_of(arguments: argparse.Namespace, store: Path | None = None) -> Running:
-    """Return keywords of the public API from the options."""
+def read_running_options(arguments: argparse.Namespace, store: Path | None = None) -> Running:
+    """Return ``jobs``, ``cluster``, ``force``, ``fmu`` and ``store`` as keywords of the API."""
     running: Running = {
         "jobs": arguments.jobs,
         "cluster": arguments.cluster,
@@ -180,7 +182,7 @@ def running_of(arguments: argparse.Namespace, store: Path | None = None) -> Runn
 
 
 def user_fmus(paths: list[Path] | None) -> dict[str, Path]:
-    """Return the user's own FMUs by the model names that they give."""
+    """Return a dict from model name to the user's FMU file; raise for unknown or double ones."""
     from ..access import MODELS, describe
 
     fmus: dict[str, Path] = {}
@@ -194,8 +196,8 @@ def user_fmus(paths: list[Path] | None) -> dict[str, Path]:
     return fmus
 
 
-def endings_of(option: str, text: str, known: tuple[str, ...]) -> tuple[str, ...]:
-    """Parse file endings such as ``png,pdf``; return them, raise at an unknown one."""
+def parse_endings(option: str, text: str, known: tuple[str, ...]) -> tuple[str, ...]:
+    """Parse a list such as ``png,pdf`` into a tuple of known names; ``none`` is empty."""
     if text == "none":
         return ()
     names = tuple(dict.fromkeys(part.strip() for part in text.split(",")))
@@ -207,7 +209,7 @@ def endings_of(option: str, text: str, known: tuple[str, ...]) -> tuple[str, ...
 
 
 def check_output(folder: Path, option: str = "--output") -> None:
-    """Check that a folder can be written, or made, without making it yet."""
+    """Raise unless a folder is writable or could be made; it is not made yet."""
     existing = next(
         (existing for existing in (folder, *folder.parents) if existing.exists()), Path()
     )
@@ -219,10 +221,10 @@ def check_output(folder: Path, option: str = "--output") -> None:
 # -- names ----------------------------------------------------------------------------------------
 
 
-def name_of(
+def result_name(
     command: str, structure: Structure, question: Mapping[str, Any], unit: str = "Hz"
 ) -> str:
-    """Return a file's name: readable, and different for every other question.
+    """Return a result's file name: command, structure, main arguments and a digest of all.
 
     Parameters
     ----------
@@ -246,12 +248,16 @@ def name_of(
         "frequency" if in_hertz and name in ("values", "limits") else name for name in question
     )
     pairs = zip(named, question.values(), strict=True)
-    parts = [command, structure.label(), *(brief(*item, unit, structure) for item in pairs)]
-    return "_".join(filter(None, [*parts, digest(parameters_of(structure), question)]))
+    parts = [
+        command,
+        structure.label(),
+        *(argument_in_file_name(*item, unit, structure) for item in pairs),
+    ]
+    return "_".join(filter(None, [*parts, digest(nonzero_parameters(structure), question)]))
 
 
-def parameters_of(structure: Structure) -> dict[str, float]:
-    """Return a structure's parameters by name; later additions only if they are in use."""
+def nonzero_parameters(structure: Structure) -> dict[str, float]:
+    """Return a structure's parameters by name, later additions only if they are not 0."""
     from ..structures.ranges import ADDED
 
     parameters = structure.parameters()
@@ -259,9 +265,10 @@ def parameters_of(structure: Structure) -> dict[str, float]:
 
 
 def digest(*arguments: Any) -> str:
-    """Return a few letters that differ where the arguments differ."""
+    """Return the first hexadecimal digits of a SHA-256 over arguments, for a file name."""
 
     def other(value: Any) -> str:  # a stored result is the question that it answers
+        """Return the text for a value JSON cannot hold: a dataset's question, or its repr."""
         identity = getattr(value, "attrs", {}).get("identity")
         return json.dumps(json.loads(identity)["question"]) if identity else repr(value)
 
@@ -269,8 +276,8 @@ def digest(*arguments: Any) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
 
 
-def brief(name: str, value: Any, unit: str, structure: Structure) -> str:
-    """Return what a file's name says of a keyword: the frequency, what varies, the direction."""
+def argument_in_file_name(name: str, value: Any, unit: str, structure: Structure) -> str:
+    """Return how an argument appears in a file name: ends of a range, a word, or nothing."""
     from ..structures import PARAMETERS
     from ..units import FACTORS
 
@@ -301,7 +308,7 @@ def brief(name: str, value: Any, unit: str, structure: Structure) -> str:
 
 @dataclass(frozen=True)
 class Files:
-    """Files of one result: NetCDF, and beside it other formats and pictures.
+    """Paths of one result: its NetCDF file, and tables and pictures beside it.
 
     Attributes
     ----------
@@ -325,7 +332,7 @@ class Files:
 
     @classmethod
     def from_options(cls, arguments: argparse.Namespace, name: str, over: str = "") -> Files:
-        """Return the files of a question, checked before anything is computed.
+        """Return the ``Files`` of a result by the options; raise if they cannot be written.
 
         Raises
         ------
@@ -333,8 +340,8 @@ class Files:
             Where a folder cannot be written, a format is unknown, or the place of ``--store`` has
             files of the same name that belong to something else.
         """
-        formats = endings_of("--format", arguments.format, FORMATS)
-        plots = endings_of("--plot", arguments.plot, PLOTS)
+        formats = parse_endings("--format", arguments.format, FORMATS)
+        plots = parse_endings("--plot", arguments.plot, PLOTS)
         store = getattr(arguments, "store", None)
         if store is not None and store.suffix != ".nc":
             raise InputError(f"--store {store}: expected a name that ends in .nc")
@@ -351,31 +358,31 @@ class Files:
         return files
 
     def beside(self) -> list[Path]:
-        """Return the other files that this result would have, by their main names."""
+        """Return the paths of the tables and pictures that belong beside the NetCDF file."""
         others = [ending for ending in self.formats if ending != "nc"]
-        files = [self.shown.with_suffix(f".{ending}") for ending in others]
-        return [*files, *self.pictures()]
+        files = [self.table_path.with_suffix(f".{ending}") for ending in others]
+        return [*files, *self.picture_paths()]
 
     @property
-    def shown(self) -> Path:
-        """Return the result's name for tables, whose units may be others than asked in."""
+    def table_path(self) -> Path:
+        """Path of the result's tables, without their endings: it names the display units."""
         return with_ending(self.result, self.units)
 
     @property
-    def picture(self) -> Path:
-        """Return the result's name for pictures, with its own ending."""
+    def picture_path(self) -> Path:
+        """Path of the result's pictures, without their endings: it names units and overlay."""
         return with_ending(self.result, self.units, self.over)
 
-    def pictures(self) -> list[Path]:
-        """Return the paths of the result's pictures."""
-        return [self.picture.with_suffix(f".{ending}") for ending in self.plots]
+    def picture_paths(self) -> list[Path]:
+        """Return the paths of the result's pictures, one for each format of ``--plot``."""
+        return [self.picture_path.with_suffix(f".{ending}") for ending in self.plots]
 
     def lacks_pictures(self) -> bool:
-        """Return whether a picture has to be drawn."""
-        return any(self.fresh or not path.exists() for path in self.pictures())
+        """Return whether a picture has to be drawn: the result is new or a picture is missing."""
+        return any(self.fresh or not path.exists() for path in self.picture_paths())
 
     def write(self, data: xr.Dataset, draw: Callable[[], Any] | None) -> None:
-        """Write what is missing beside the result, and print all files.
+        """Write missing tables and pictures beside the NetCDF file; print the paths of all files.
 
         Parameters
         ----------
@@ -384,21 +391,22 @@ class Files:
             Gives a :class:`matplotlib.figure.Figure`; none where there is nothing to draw.
         """
         print(f"{self.result}{'' if self.fresh else ': complete already'}")
-        others = export_formats(data, self.shown, self.formats, self.fresh)
-        pictures = draw_picture(self.picture, self.plots, self.fresh, draw) if draw else []
+        others = export_formats(data, self.table_path, self.formats, self.fresh)
+        pictures = draw_picture(self.picture_path, self.plots, self.fresh, draw) if draw else []
         for path in (*others, *pictures):
             print(path)
 
 
 @contextmanager
-def preparing_a_picture(needed: bool) -> Iterator[None]:
-    """Import the drawing code while a long computation runs."""
+def importing_matplotlib(needed: bool) -> Iterator[None]:
+    """Import the drawing code in a thread while the ``with`` block computes."""
 
     def prepare() -> None:
-        from ..figures.files import prepare
+        """Import Matplotlib and draw a small figure; ignore any error."""
+        from ..figures.files import warm_up_matplotlib
 
         with suppress(Exception):  # it comes again where the picture is drawn
-            prepare()
+            warm_up_matplotlib()
 
     timer = threading.Timer(PREPARE_AFTER, prepare)
     if needed:
@@ -414,7 +422,7 @@ def preparing_a_picture(needed: bool) -> Iterator[None]:
 def export_formats(
     data: xr.Dataset, result: Path, formats: tuple[str, ...], fresh: bool
 ) -> list[Path]:
-    """Write a result in other formats beside it, if it is new or they are missing.
+    """Write a result as CSV, MAT or Excel if it is new or they are missing; return the paths.
 
     Parameters
     ----------
@@ -428,9 +436,9 @@ def export_formats(
     """
     from ..running.formats import write
 
-    places = [result.with_suffix(f".{ending}") for ending in formats if ending != "nc"]
+    paths = [result.with_suffix(f".{ending}") for ending in formats if ending != "nc"]
     files: list[Path] = []
-    for path in places:
+    for path in paths:
         files += (
             sorted(write(data, path)) if fresh or not existing_files(path) else existing_files(path)
         )
@@ -438,17 +446,17 @@ def export_formats(
 
 
 def existing_files(path: Path) -> list[Path]:
-    """Return what exists of a file that may be several, as ``name.csv`` or ``name.eta.csv``."""
-    from ..files import glob_name
+    """Return the existing files of a table that may be several: ``x.csv``, ``x.eta.csv``."""
+    from ..files import escape_glob
 
-    several = path.parent.glob(f"{glob_name(path.stem)}.*{path.suffix}")
+    several = path.parent.glob(f"{escape_glob(path.stem)}.*{path.suffix}")
     return [*([path] if path.exists() else []), *sorted(several)]
 
 
 def draw_picture(
     path: Path, plots: tuple[str, ...], fresh: bool, draw: Callable[[], Any]
 ) -> list[Path]:
-    """Draw the picture of a result in its formats, if the result is new or a picture is missing.
+    """Call ``draw`` and save its figure if new or missing; return the pictures' paths.
 
     Parameters
     ----------

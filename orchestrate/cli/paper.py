@@ -1,4 +1,4 @@
-"""``paper``: every figure and every number of the paper, and a report."""
+"""Command ``paper``: compute all figures and claims of the paper and write a report."""
 
 from __future__ import annotations
 
@@ -8,7 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from .options import Commands
-from .output import add_running, add_units, check_output, refuse_units, running_of
+from .output import (
+    add_running_options,
+    add_units_option,
+    check_output,
+    read_running_options,
+    refuse_units,
+)
 
 EXAMPLES = """\
   {program} paper                     all at the paper's resolution, into results/paper/
@@ -19,7 +25,7 @@ Interrupted, the same command goes on where it was. Finished data is left as it 
 
 
 def add_parser(commands: Commands) -> None:
-    """Add the command's parser."""
+    """Add the parser of the command ``paper`` with its options."""
     text = "the whole paper through the FMU: figures, claims, report"
     parser = commands.add("paper", run, text, EXAMPLES)
     option = parser.add_argument_group("question").add_argument
@@ -34,12 +40,14 @@ def add_parser(commands: Commands) -> None:
         action="store_true",
         help="reduced resolution: the same frequencies, fewer periods, starts and map points",
     )
-    add_units(parser)
-    add_running(parser, output=None, shown="results/paper, with --quick results/paper-quick")
+    add_units_option(parser)
+    add_running_options(
+        parser, output=None, shown="results/paper, with --quick results/paper-quick"
+    )
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Compute the paper's figures and numbers; write its report."""
+    """Run ``paper``: compute its figures and numbers; print the claims; write the report."""
     refuse_units(arguments, "figures and numbers are those of the paper, ratios")
     from ..paper.reproduce import reproduce
     from ..paper.resolution import FULL, QUICK
@@ -49,7 +57,7 @@ def run(arguments: argparse.Namespace) -> None:
     check_output(output)
     figures = None if arguments.figures is None else arguments.figures.split(",")
     resolution = QUICK if arguments.quick else FULL
-    outcome = reproduce(output, resolution, figures, running_of(arguments))
+    outcome = reproduce(output, resolution, figures, read_running_options(arguments))
     print_verdicts(outcome.found)
     for picture in outcome.pictures.values():
         print(picture)
@@ -57,7 +65,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def print_verdicts(verdicts: Mapping[str, Any]) -> None:
-    """Print claims and answers, a line each."""
+    """Print each claim's verdict, and answers to further questions, a line each."""
     for row in verdicts["claims"]:
         text, printed = row["text"], row["printed"]
         verdict = f"{row['section']:4} {row['verdict']:7}"

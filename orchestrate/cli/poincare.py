@@ -1,4 +1,4 @@
-"""``poincare``: the section of a motion, at a phase of the box, at impacts or at releases."""
+"""Command ``poincare``: compute a Poincaré section of a motion."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import argparse
 from typing import TYPE_CHECKING
 
 from ..units import scale_of
-from .grammar import state_of
-from .options import Commands, excitation_of, structure_of
-from .question import carry_out, picture_of
+from .grammar import parse_state
+from .options import Commands, read_question
+from .question import answer_question, draw_result
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,24 +25,22 @@ SHOWN = {  # of each section
 
 
 def add_parser(commands: Commands) -> None:
-    """Add the command's parser."""
+    """Add the parser of the command ``poincare`` with its options."""
     text = "a Poincaré section: states at a phase of the box, at impacts or at releases"
-    question = commands.ask("poincare", run, text, EXAMPLES, several=False)
+    question = commands.add_response_command("poincare", run, text, EXAMPLES, several=False)
     question.declare("at", "phase", "transient", "periods")
     start = "state at phase 0, m and m/s (default: rest)"
-    question.add("start", state_of, metavar="X1,X2,V1,V2", help=start)
+    question.add("start", parse_state, metavar="X1,X2,V1,V2", help=start)
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Compute a Poincaré section: at a phase of the box, at impacts or at releases."""
-    structure = structure_of(arguments)
-    excitation = excitation_of(arguments, structure, si=True, one=True)
-    question = {**excitation, **arguments.question.keywords(arguments)}
-    carry_out(arguments, structure, question, print_result, picture_of)
+    """Run ``poincare``: compute a section at a phase, at impacts or at releases; print, draw."""
+    structure, question = read_question(arguments)
+    answer_question(arguments, structure, question, print_result, draw_result)
 
 
 def print_result(data: xr.Dataset) -> None:
-    """Print how many points the section has, and where they lie."""
+    """Print the number of points of a Poincaré section and the ranges they lie in."""
     count = data.sizes["point"]
     print(f"{count} points")
     if not count:

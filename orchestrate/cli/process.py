@@ -1,4 +1,4 @@
-"""Surroundings of a command's process: outputs that may fail, signals that end it.
+"""Standard streams and signals of a command: lost output and SIGTERM end it in order.
 
 What is computed is stored, so nothing that happens to the output may end a run.
 """
@@ -17,18 +17,18 @@ from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import Any
 
-from ..supervisor import fill_descriptors, heeded
+from ..supervisor import confirm_signal, open_missing_streams
 
 GRACE = 15.0  # s that a process has for ending on its own
 _ending = False  # whether a signal was heard
 
 
 class Terminated(KeyboardInterrupt):
-    """Raised when somebody asked the process to end, not by Ctrl-C."""
+    """``KeyboardInterrupt`` for SIGTERM, to tell it from Ctrl-C."""
 
 
 class SafeStream:
-    """Text stream that accepts everything, also when the stream below fails.
+    """Text stream that never raises: errors of the stream below are kept, not raised.
 
     Attributes
     ----------
@@ -41,15 +41,16 @@ class SafeStream:
         self.error: Exception | None = None
 
     def write(self, text: str) -> int:
-        """Write a text, or drop it where the reader is gone; return its length."""
-        self._try("write", text)
+        """Write a text, or drop it if the stream has failed; return its length."""
+        self._call_unless_failed("write", text)
         return len(text)
 
     def flush(self) -> None:
-        """Flush the stream, or drop what waits."""
-        self._try("flush")
+        """Flush the stream; do nothing if it has failed."""
+        self._call_unless_failed("flush")
 
-    def _try(self, name: str, *arguments: object) -> None:
+    def _call_unless_failed(self, name: str, *arguments: object) -> None:
+        """Call a method of the stream below unless it has failed; keep its error."""
         if self.error is None:
             try:
                 getattr(self._stream, name)(*arguments)
@@ -60,7 +61,7 @@ class SafeStream:
         return getattr(self._stream, name)
 
     def detach(self) -> None:
-        """Flush; redirect the stream if that fails, so that it does not fail again at the end."""
+        """Flush; if the stream has failed, redirect its descriptor to ``/dev/null``."""
         self.flush()
         if self.error is not None:
             with suppress(OSError, ValueError):
@@ -69,16 +70,16 @@ class SafeStream:
                 os.close(nowhere)
 
     def failure(self) -> str:
-        """Return why output is lost; an empty string if none is, or nobody wanted to read."""
+        """Return why output was lost; empty if none was, or the reader closed the pipe."""
         if self.error is None or isinstance(self.error, BrokenPipeError):
             return ""
         return str(getattr(self.error, "strerror", None) or self.error)
 
 
 @contextmanager
-def outputs() -> Iterator[SafeStream]:
-    """Replace standard output and error output by ones that cannot end a run; yield the first."""
-    fill_descriptors()
+def safe_outputs() -> Iterator[SafeStream]:
+    """Replace stdout and stderr by ``SafeStream`` in a ``with`` block; yield that of stdout."""
+    open_missing_streams()
     before = sys.stdout, sys.stderr
     nowhere = io.StringIO()  # in place of one that was closed
     streams = [SafeStream(stream or nowhere) for stream in before]
@@ -92,8 +93,8 @@ def outputs() -> Iterator[SafeStream]:
 
 
 @contextmanager
-def signals() -> Iterator[None]:
-    """Handle SIGTERM like Ctrl-C; end a process that hangs on its way out."""
+def handled_signals() -> Iterator[None]:
+    """Turn SIGINT and SIGTERM into exceptions in a ``with`` block; exit if ending hangs."""
     usual: dict[int, Any] = {
         signal.SIGINT: signal.default_int_handler,
         signal.SIGTERM: signal.SIG_DFL,
@@ -107,9 +108,9 @@ def signals() -> Iterator[None]:
         if ours and signal.getsignal(number) == usual_handler
     ]
     for number in handled:
-        signal.signal(number, end_soon)
+        signal.signal(number, raise_for_signal)
     before = sys.unraisablehook
-    sys.unraisablehook = functools.partial(send_again, before)
+    sys.unraisablehook = functools.partial(resend_signal, before)
     try:
         yield
     finally:
@@ -118,8 +119,8 @@ def signals() -> Iterator[None]:
             signal.signal(number, usual[number])
 
 
-def send_again(otherwise: Callable[[Any], object], lost: sys.UnraisableHookArgs) -> None:
-    """Send a signal again that came in a callback, where Python drops its exception.
+def resend_signal(otherwise: Callable[[Any], object], lost: sys.UnraisableHookArgs) -> None:
+    """Send a signal again whose exception Python dropped in a callback (an unraisable hook).
 
     Parameters
     ----------
@@ -136,18 +137,18 @@ def send_again(otherwise: Callable[[Any], object], lost: sys.UnraisableHookArgs)
         otherwise(lost)
 
 
-def end_soon(number: int, _: FrameType | None) -> None:
-    """Raise an exception that ends the program soon; exit at once at a second signal."""
+def raise_for_signal(number: int, _: FrameType | None) -> None:
+    """Handle a signal: raise ``KeyboardInterrupt``; at a second signal exit at once."""
     global _ending
     if _ending:
         os._exit(128 + number)
     _ending = True
-    heeded()
-    threading.Thread(target=end_anyway, args=(number,), daemon=True).start()
+    confirm_signal()
+    threading.Thread(target=exit_after_grace, args=(number,), daemon=True).start()
     raise Terminated if number == signal.SIGTERM else KeyboardInterrupt
 
 
-def end_anyway(number: int) -> None:
-    """Wait for a while, then exit without a message; workers end with this process."""
+def exit_after_grace(number: int) -> None:
+    """Sleep for ``GRACE`` seconds, then exit the process with 128 + the signal's number."""
     time.sleep(GRACE)
     os._exit(128 + number)

@@ -1,4 +1,4 @@
-"""Shared steps of all questions: ask, print the result, write the files."""
+"""Steps of most commands: call the public function, print the result, write its files."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from ..units import (
     with_readable_lengths,
     with_units,
 )
-from .output import Files, name_of, preparing_a_picture, running_of, units_option
+from .output import Files, importing_matplotlib, read_running_options, read_units, result_name
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -55,7 +55,7 @@ Question = Mapping[str, Any]
 Draw = Callable[["xr.Dataset"], Any]
 
 
-def carry_out(
+def answer_question(
     arguments: argparse.Namespace,
     structure: Structure,
     question: Question,
@@ -66,7 +66,7 @@ def carry_out(
     function: str = "",
     over: str = "",
 ) -> xr.Dataset:
-    """Ask a question of the public API; print the result, write the files.
+    """Call a command's public function; print its result; write files; return the dataset.
 
     Parameters
     ----------
@@ -94,12 +94,14 @@ def carry_out(
 
     command = function or arguments.command
     usual, units = asked_units(arguments, question)
-    named = name_of(command, structure, question, usual.frequency)
+    named = result_name(command, structure, question, usual.frequency)
     files = Files.from_options(arguments, "_".join(filter(None, [named, ending])), over)
     ask = getattr(orchestrate, command)
     print_frequency_notes(arguments, structure, question)
-    with preparing_a_picture(draw is not None and files.lacks_pictures()):
-        data: xr.Dataset = ask(structure, **question, **running_of(arguments, files.result))
+    with importing_matplotlib(draw is not None and files.lacks_pictures()):
+        data: xr.Dataset = ask(
+            structure, **question, **read_running_options(arguments, files.result)
+        )
     asked = with_units(data, units)
     (shown,) = with_readable_lengths(asked)
     for line in trivial_notes(structure, question, shown):
@@ -110,46 +112,48 @@ def carry_out(
 
 
 def asked_units(arguments: argparse.Namespace, question: Question) -> tuple[Units, Units]:
-    """Return the units that a question was asked in, and those that its answer is shown in."""
+    """Return the units of the frequency options given, and the units to display, as ``Units``."""
     over = UNIT_OF_OPTION.get(str(getattr(arguments, "over", "")), "")
-    given = [unit for name, unit in UNIT_OF_OPTION.items() if getattr(arguments, name, None)]
-    keys = excitation_keys(arguments) if "frequency" in question and not given else ()
-    given += [unit for key, unit in UNIT_OF_KEY.items() if key in keys]
-    frequency = over or next(iter(given), "eta" if "eta" in question else "Hz")
+    chosen = [unit for name, unit in UNIT_OF_OPTION.items() if getattr(arguments, name, None)]
+    keys = excitation_keys(arguments) if "frequency" in question and not chosen else ()
+    chosen += [unit for key, unit in UNIT_OF_KEY.items() if key in keys]
+    frequency = over or next(iter(chosen), "eta" if "eta" in question else "Hz")
     in_g = getattr(arguments, "g", None) is not None or "acceleration_g" in keys
     asked = Units(frequency, acceleration="g" if in_g else "")
-    return asked, units_option(arguments).completed(asked)
+    return asked, read_units(arguments).with_defaults(asked)
 
 
 def excitation_keys(arguments: argparse.Namespace) -> Collection[str]:
-    """Return the keys of the [excitation] in the file of ``--structure``."""
+    """Return the keys of the section ``[excitation]`` in the TOML file of ``--structure``."""
     from ..structures.files import parse, resolve
 
     excitation = parse(resolve(arguments.structure)).get("excitation", {})
     return tuple(excitation)
 
 
-def carry_out_beside(
+def answer_with_bonded(
     arguments: argparse.Namespace,
     structure: Structure,
     question: Question,
     print_result: Callable[[xr.Dataset], None],
 ) -> None:
-    """Ask and draw as :func:`carry_out`; with ``--beside`` of the bonded structure before."""
+    """Call :func:`answer_question`; with ``--beside`` also for the bonded structure, drawn in."""
     if not arguments.beside:
-        carry_out(arguments, structure, question, print_result, picture_of)
+        answer_question(arguments, structure, question, print_result, draw_result)
         return
     for name in ("store", "start"):
         if getattr(arguments, name) is not None:
             raise InputError(f"--beside: of two structures; expected it without --{name}")
-    bonded = carry_out(arguments, structure.as_bonded(), question, print_result, None)
+    bonded = answer_question(arguments, structure.as_bonded(), question, print_result, None)
     print("delaminated:")
-    beside = partial(picture_of, bonded=bonded)
-    carry_out(arguments, structure.as_delaminated(), question, print_result, beside, "with_bonded")
+    beside = partial(draw_result, bonded=bonded)
+    answer_question(
+        arguments, structure.as_delaminated(), question, print_result, beside, "with_bonded"
+    )
 
 
-def picture_of(data: xr.Dataset, **more: Any) -> Any:
-    """Draw an answer; with one of the bonded structure beside it, or branches over it."""
+def draw_result(data: xr.Dataset, **more: Any) -> Any:
+    """Draw a result by the function that its dataset names; return the figure."""
     from ..figures.plot import DRAW
 
     command = data.attrs["call"].partition("(")[0]
@@ -157,12 +161,12 @@ def picture_of(data: xr.Dataset, **more: Any) -> Any:
 
 
 def is_curve(question: Question) -> bool:
-    """Return whether an argument has several values, so that there is a curve to draw."""
+    """Return whether any argument has several values, so that a curve can be drawn."""
     return any(len(value) > 1 for value in question.values() if isinstance(value, tuple))
 
 
 def print_table(data: xr.Dataset, name: str) -> None:
-    """Print a result at one value as a table: there is no curve to draw."""
+    """Print all variables of a result at one parameter value as a table."""
     where = format_parameter(data, name, float(data[name][0]))
     print(f"one value, {where}: a table and no picture")
     numbers = as_shown(data.isel({name: 0}))
@@ -174,7 +178,7 @@ def print_table(data: xr.Dataset, name: str) -> None:
 
 
 def trivial_notes(structure: Structure, question: Question, shown: xr.Dataset) -> list[str]:
-    """Return remarks on what makes an answer trivial, with lengths as it is shown."""
+    """Return notes for the user on arguments that make the result trivial, such as bonded."""
     varied = isinstance(question.get("level"), tuple) or question.get("over") == "level"
     if varied and not structure.has_scale:
         from ..structures.ranges import OF_LENGTH
@@ -194,9 +198,7 @@ def trivial_notes(structure: Structure, question: Question, shown: xr.Dataset) -
 def print_frequency_notes(
     arguments: argparse.Namespace, structure: Structure, question: Question
 ) -> None:
-    """Print whose frequencies they are if nobody chose the structure; warn if they are far from its
-    own.
-    """
+    """Print which structure is used by default; warn if frequencies are far from its own."""
     frequency = question.get("frequency")
     values = (
         frequency if isinstance(frequency, tuple) else () if frequency is None else (frequency,)
@@ -221,9 +223,7 @@ def print_frequency_notes(
 def warn_of_other_unit(
     arguments: argparse.Namespace, structure: Structure, values: tuple[float, ...]
 ) -> None:
-    """Warn where frequencies miss the structure, and would fit it in the other unit: Hz for rad/s,
-    or the reverse.
-    """
+    """Warn if frequencies would fit the structure in the other unit: Hz for rad/s or reverse."""
     low, high = (1.0 - NEAR) * min(values), (1.0 + NEAR) * max(values)
     own = [TURN * f for f in (structure.f1, structure.f2)]
     if math.isclose(structure.omega, 1.0) or any(low <= omega <= high for omega in own):
@@ -240,9 +240,7 @@ def warn_of_other_unit(
 
 
 def clearance_notes(structure: Structure, question: Question, shown: xr.Dataset) -> list[str]:
-    """Return a remark where the box's motion stays below the threshold of a clearance: the
-    response from rest is the linear one.
-    """
+    """Return a note if the level is below the threshold at which the gap opens or closes."""
     import numpy as np
 
     names = {"eta", "frequency", "amplitude", "level"} & question.keys()
@@ -252,7 +250,7 @@ def clearance_notes(structure: Structure, question: Question, shown: xr.Dataset)
         return []
     if structure.bonded or not structure.clearance or names not in COMPLETE:
         return []
-    ratio = smallest_ratio(structure, {name: np.ravel(question[name]) for name in names})
+    ratio = threshold_over_level(structure, {name: np.ravel(question[name]) for name in names})
     if ratio <= 1.0:
         return []
     opens = structure.clearance < 0.0
@@ -270,8 +268,8 @@ def clearance_notes(structure: Structure, question: Question, shown: xr.Dataset)
     ]
 
 
-def smallest_ratio(structure: Structure, box: Mapping[str, Any]) -> float:
-    """Return the threshold over the box's level, the smallest of all that is asked for."""
+def threshold_over_level(structure: Structure, box: Mapping[str, Any]) -> float:
+    """Return the smallest ratio of contact threshold to excitation level, of all points asked."""
     import orchestrate
 
     frequency = box["eta"] * structure.omega if "eta" in box else box["frequency"]
@@ -284,15 +282,15 @@ def smallest_ratio(structure: Structure, box: Mapping[str, Any]) -> float:
     return float((threshold / box["amplitude"]).min())
 
 
-def parameter_of(data: xr.Dataset) -> str:
-    """Return the parameter along which a result lies."""
+def varied_parameter(data: xr.Dataset) -> str:
+    """Return the name of the parameter along which a result lies."""
     others = {"direction", "structure", "attractor"}
     (name,) = {str(dim) for dim in data.impacts_per_period.dims} - others
     return name
 
 
 def format_parameter(data: xr.Dataset, name: str, value: float) -> str:
-    """Format a value of a parameter as :func:`parameter_parts` has it: ``12.5 Hz``, ``e = 0.7``."""
+    """Format a parameter's value in display units: ``12.5 Hz``, ``e = 0.7``."""
     before, number, unit = parameter_parts(data, name, value)
     return f"{before} = {number} {unit}".rstrip() if before else f"{number} {unit}"
 
@@ -300,9 +298,7 @@ def format_parameter(data: xr.Dataset, name: str, value: float) -> str:
 def parameter_parts(
     data: xr.Dataset, name: str, value: float, form: str = ".6g"
 ) -> tuple[str, str, str]:
-    """Return a parameter's name, its formatted value and its unit as an answer is shown; by
-    default frequencies in Hz and levels in g, which need no name.
-    """
+    """Return a parameter's name (may be empty), formatted value and unit for display."""
     units, omega = units_of(data), omega_of(data)
     if name == "eta" and units.frequency not in ("", "eta") and math.isfinite(omega):
         name, value = "frequency", value * omega
@@ -317,19 +313,19 @@ def parameter_parts(
 
 
 def unit_of(data: xr.Dataset, name: str) -> str:
-    """Return the SI unit of a parameter; empty where it has none."""
+    """Return the SI unit of a dataset's parameter; empty where it has none."""
     unit = str(data[name].attrs.get("units", "")) if name in data.variables else ""
     return unit.removeprefix("1")
 
 
-def is_flag(values: xr.DataArray, word: str) -> xr.DataArray:
-    """Return where a flag variable has the number that a word stands for."""
+def has_flag(values: xr.DataArray, word: str) -> xr.DataArray:
+    """Return a Boolean array: where a CF flag variable has the number of a word."""
     number = values.attrs["flag_meanings"].split().index(word)
     return values == values.attrs["flag_values"][number]
 
 
 def format_ranges(data: xr.Dataset, name: str, values: Any, flags: Any, max_ranges: int = 8) -> str:
-    """Format the runs of values for which something holds.
+    """Format the parameter ranges in which flags are true: ``0.4 to 0.6, 0.8``.
 
     Parameters
     ----------
@@ -362,7 +358,7 @@ def format_ranges(data: xr.Dataset, name: str, values: Any, flags: Any, max_rang
 
 
 def print_attractors(data: xr.Dataset, whole: str) -> None:
-    """Print attractors and their shares, a line each.
+    """Print attractors with share, period, impacts and a state, two lines each.
 
     Parameters
     ----------
@@ -387,8 +383,8 @@ def print_attractors(data: xr.Dataset, whole: str) -> None:
         print(f"     a state on it at phase 0, x1, x2 in m, v1, v2 in m/s: {state}")
 
 
-def read_stored(option: str, path: Path) -> xr.Dataset:
-    """Read a result of an earlier command.
+def read_earlier_result(option: str, path: Path) -> xr.Dataset:
+    """Read a NetCDF result of an earlier command; raise with the option's name if it is none.
 
     Raises
     ------

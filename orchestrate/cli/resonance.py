@@ -1,4 +1,4 @@
-"""``resonance``: amplitude and acceleration over frequency, bonded against delaminated."""
+"""Command ``resonance``: compute resonance curves, bonded against delaminated."""
 
 from __future__ import annotations
 
@@ -8,10 +8,17 @@ from typing import TYPE_CHECKING
 
 from ..errors import InputError
 from ..units import scale_of
-from .grammar import is_one
-from .options import Commands, excitation_by_level, excitation_of, structure_of
-from .overlay import add_overlay, drawing
-from .question import carry_out, format_parameter, is_curve, parameter_of, picture_of, print_table
+from .grammar import is_single_number
+from .options import Commands, excitation_by_level, read_excitation, read_structure_options
+from .overlay import add_overlay_option, drawing_function
+from .question import (
+    answer_question,
+    draw_result,
+    format_parameter,
+    is_curve,
+    print_table,
+    varied_parameter,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,36 +38,38 @@ LENGTHS = ("x1_max", "x2_max", "x_rel_max")
 
 
 def add_parser(commands: Commands) -> None:
-    """Add the command's parser."""
+    """Add the parser of the command ``resonance`` with its options."""
     text = (
         "resonance curves: amplitude and peak acceleration, bonded against delaminated; at several "
         "levels (--g FIRST:LAST:STEP), with the level at which a preloaded structure first opens"
     )
-    question = commands.ask("resonance", run, text, EXAMPLES)
+    question = commands.add_response_command("resonance", run, text, EXAMPLES)
     question.declare("direction", "transient", "samples", "prominence", "jump")
-    add_overlay(question)
+    add_overlay_option(question)
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Compute amplitude and acceleration over frequency, bonded and delaminated."""
-    structure = structure_of(arguments)
+    """Run ``resonance``: compute curves over frequency, or over levels; print, store and draw."""
+    structure = read_structure_options(arguments)
     keywords = arguments.question.keywords(arguments)
-    if arguments.g is not None and not is_one(arguments.g):
+    if arguments.g is not None and not is_single_number(arguments.g):
         if arguments.overlay:
             raise InputError(f"--overlay: with several levels, --g {arguments.g}; expected one")
         levels = excitation_by_level(arguments, structure)
-        draw = picture_of if is_curve(levels) else None
+        draw = draw_result if is_curve(levels) else None
         question, function = {**levels, **keywords}, "resonance_levels"
-        carry_out(arguments, structure, question, report_levels, draw, function=function)
+        answer_question(arguments, structure, question, print_levels, draw, function=function)
         return
-    excitation = excitation_of(arguments, structure, si=True)
-    picture, over = drawing(arguments, structure, excitation)
-    carry_out(arguments, structure, {**excitation, **keywords}, print_result, picture, over=over)
+    excitation = read_excitation(arguments, structure, si=True)
+    picture, over = drawing_function(arguments, structure, excitation)
+    answer_question(
+        arguments, structure, {**excitation, **keywords}, print_result, picture, over=over
+    )
 
 
 def print_result(data: xr.Dataset) -> None:
-    """Print peaks and jumps, a line each."""
-    name = parameter_of(data)
+    """Print a resonance result's peaks, jumps and threshold."""
+    name = varied_parameter(data)
     if data.sizes[name] == 1:
         print_table(data, name)
         return
@@ -69,21 +78,21 @@ def print_result(data: xr.Dataset) -> None:
     print_threshold(data)
 
 
-def report_levels(data: xr.Dataset) -> None:
-    """Print the largest response at each level, and the threshold, a line each."""
+def print_levels(data: xr.Dataset) -> None:
+    """Print a table of the largest responses at each level, and the threshold."""
     parted = data.sel(structure="delaminated")
-    print(f"{'level':>10}{titles(data, LENGTHS)}   largest gap at")
+    print(f"{'level':>10}{column_titles(data, LENGTHS)}   largest gap at")
     for level in data.level.values:
         at = parted.sel(level=level)
         top = at.isel(at.x_rel_max.argmax(...))
-        numbers = row(data, {name: float(at[name].max()) for name in LENGTHS})
+        numbers = format_row(data, {name: float(at[name].max()) for name in LENGTHS})
         where = format_parameter(data, "frequency", float(top.frequency))
         print(f"{format_parameter(data, 'level', level):>10}{numbers}   {where}")
     print_threshold(data)
 
 
 def print_threshold(data: xr.Dataset) -> None:
-    """Print the lowest level at which the structure first opens or touches."""
+    """Print the lowest level at which the structure first opens or touches, if there is one."""
     if "lowest_threshold" in data:
         event = data.lowest_threshold.attrs["event"]
         level = format_parameter(data, "level", float(data.lowest_threshold))
@@ -92,7 +101,7 @@ def print_threshold(data: xr.Dataset) -> None:
 
 
 def print_peaks(data: xr.Dataset, name: str) -> None:
-    """Print where amplitudes are largest."""
+    """Print a table of the resonance peaks: structure, frequency and amplitudes."""
     ends = " to ".join(
         format_parameter(data, name, float(end)) for end in (data[name].min(), data[name].max())
     )
@@ -106,28 +115,28 @@ def print_peaks(data: xr.Dataset, name: str) -> None:
     if not peaks.sizes["peak"]:
         print(f"no peak from {ends} where responses are periodic")
         return
-    print(f"peaks{'':31}{titles(data, COLUMNS)}")
+    print(f"peaks{'':31}{column_titles(data, COLUMNS)}")
     for i in range(peaks.sizes["peak"]):
         peak = peaks.isel(peak=i)
-        numbers = row(data, {key: float(peak[f"peak_{key}"]) for key in COLUMNS})
+        numbers = format_row(data, {key: float(peak[f"peak_{key}"]) for key in COLUMNS})
         where = format_parameter(data, name, float(peak[f"peak_{name}"]))
         print(f"  {format_direction(peak, 'peak')} {where:>16}{numbers}")
 
 
-def titles(data: xr.Dataset, names: Iterable[str]) -> str:
-    """Format the heads of columns, with the units that they are shown in."""
+def column_titles(data: xr.Dataset, names: Iterable[str]) -> str:
+    """Return a table's head line with quantities' names and display units."""
     heads = (f"{COLUMNS[name][0]} {scale_of(data, COLUMNS[name][1])[1]}" for name in names)
     return "".join(f"{head:>11}" for head in heads)
 
 
-def row(data: xr.Dataset, values: Mapping[str, float]) -> str:
-    """Format the numbers of a row, in the units that its columns are shown in."""
+def format_row(data: xr.Dataset, values: Mapping[str, float]) -> str:
+    """Format a table's numbers as one line, in the display units of their columns."""
     numbers = (value / scale_of(data, COLUMNS[name][1])[0] for name, value in values.items())
     return "".join(f"{number:11.4g}" for number in numbers)
 
 
 def print_jumps(data: xr.Dataset, name: str) -> None:
-    """Print where the gap jumps."""
+    """Print the frequencies at which the largest gap jumps, and its sizes before and after."""
     if not data.sizes["jump"]:
         print("no jump: the response follows the frequency without one in this range")
         return
@@ -142,6 +151,6 @@ def print_jumps(data: xr.Dataset, name: str) -> None:
 
 
 def format_direction(row: xr.Dataset, what: str) -> str:
-    """Format structure and direction of a peak or a jump; bonded, both directions are one."""
+    """Format a peak's or jump's structure and sweep direction as a table cell."""
     structure, direction = (str(row[f"{what}_{key}"].values) for key in ("structure", "direction"))
     return f"{structure if structure == 'bonded' else f'{structure}, {direction}':18}"

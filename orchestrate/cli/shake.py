@@ -1,6 +1,4 @@
-"""``shake``: time histories and impacts under swept and stepped sines, random vibration, shocks and
-records.
-"""
+"""Command ``shake``: time histories under sines, random vibration, shocks and records."""
 
 from __future__ import annotations
 
@@ -11,16 +9,23 @@ from ..errors import InputError
 from ..units import scale_of, text_of
 from .grammar import (
     RANGE,
-    breakpoints_of,
-    ends_of,
-    number_of,
-    state_of,
-    values_of,
-    whole_number_of,
+    parse_breakpoints,
+    parse_ends,
+    parse_state,
+    parse_values,
+    positive_number,
+    whole_number,
 )
-from .options import Commands, add_beside, add_structure, option_name, options, structure_of
-from .output import add_results, add_units, unit_note
-from .question import carry_out_beside
+from .options import (
+    Commands,
+    add_beside_option,
+    add_structure_options,
+    join_option_names,
+    option_name,
+    read_structure_options,
+)
+from .output import add_result_options, add_units_option, unit_note
+from .question import answer_with_bonded
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -49,24 +54,24 @@ OF_KINDS = {  # options that only one kind knows
 
 
 def add_parser(commands: Commands) -> None:
-    """Add the command's parser."""
+    """Add the parser of the command ``shake`` with its options."""
     text = "as in the laboratory: motion and impacts under sines, random, shock or a record"
     parser = commands.add("shake", run, text, EXAMPLES)
-    add_structure(parser)
-    add_signals(parser)
-    question = commands.question(parser, "the record")
+    add_structure_options(parser)
+    add_excitation_options(parser)
+    question = commands.add_function_options(parser, "the record")
     rate = "of the record (default: what the excitation needs)"
-    question.add("sample_rate", number_of, metavar="HZ", help=rate)
+    question.add("sample_rate", positive_number, metavar="HZ", help=rate)
     start = "state at the start, m and m/s (default: rest)"
-    question.add("start", state_of, metavar="X1,X2,V1,V2", help=start)
+    question.add("start", parse_state, metavar="X1,X2,V1,V2", help=start)
     question.declare("accuracy")
-    add_beside(question)
-    add_units(parser)
-    add_results(parser)
+    add_beside_option(question)
+    add_units_option(parser)
+    add_result_options(parser)
 
 
-def add_signals(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the excitation."""
+def add_excitation_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the base excitation, such as ``--swept-sine`` and ``--random``."""
     group = parser.add_argument_group("the box's acceleration", "one of the first five")
     option = group.add_argument
     option("--swept-sine", metavar="FIRST:LAST", help="frequencies, Hz; downwards too")
@@ -95,18 +100,18 @@ def add_signals(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Shake the structure, and print and write the record."""
-    structure = structure_of(arguments)
-    question = {"excitation": signal_of(arguments), **arguments.question.keywords(arguments)}
+    """Run ``shake``: simulate the structure under an excitation; print, store and draw."""
+    structure = read_structure_options(arguments)
+    question = {"excitation": read_excitation(arguments), **arguments.question.keywords(arguments)}
     if question["sample_rate"] is None:
         del question["sample_rate"]  # a file's name has always been without it
-    carry_out_beside(arguments, structure, question, print_result)
+    answer_with_bonded(arguments, structure, question, print_result)
 
 
-def signal_of(
+def read_excitation(
     arguments: argparse.Namespace,
 ) -> Random | Sampled | Shock | SteppedSine | SweptSine:
-    """Return the excitation that the options describe.
+    """Return the excitation that the options describe, such as a ``SweptSine``.
 
     Raises
     ------
@@ -114,60 +119,60 @@ def signal_of(
     """
     from .. import Random, Shock, SteppedSine, SweptSine
 
-    kind = kind_of(arguments)
+    kind = excitation_kind(arguments)
     if kind == "record":
-        return recorded(arguments)
+        return read_record_excitation(arguments)
     numbers = {
-        name: number_of(f"--{name}", getattr(arguments, name))
+        name: positive_number(f"--{name}", getattr(arguments, name))
         for name in ("duration", "rate", "length", "delay")
         if getattr(arguments, name) is not None
     }
     if kind == "random":
-        seed = 0 if arguments.seed is None else whole_number_of("--seed", arguments.seed)
-        return Random(psd=breakpoints_of("--random", arguments.random), seed=seed, **numbers)
+        seed = 0 if arguments.seed is None else whole_number("--seed", arguments.seed)
+        return Random(psd=parse_breakpoints("--random", arguments.random), seed=seed, **numbers)
     if kind == "shock":
-        level = level_of(arguments)
+        level = read_level(arguments)
         if not isinstance(level, float):
             raise InputError("--shock: expected one number for its peak, no profile")
         return Shock(peak=level, shape=arguments.shock, **numbers)
     if kind == "stepped_sine":
-        frequencies, _ = values_of("--stepped-sine", arguments.stepped_sine)
+        frequencies, _ = parse_values("--stepped-sine", arguments.stepped_sine)
         cycles = {
-            name: whole_number_of(option_name(name), getattr(arguments, name))
+            name: whole_number(option_name(name), getattr(arguments, name))
             for name in ("settle_cycles", "measured_cycles")
             if getattr(arguments, name) is not None
         }
-        return SteppedSine(frequencies=frequencies, acceleration=level_of(arguments), **cycles)
-    first, last = ends_of("--swept-sine", arguments.swept_sine)
+        return SteppedSine(frequencies=frequencies, acceleration=read_level(arguments), **cycles)
+    first, last = parse_ends("--swept-sine", arguments.swept_sine)
     spacing = arguments.spacing or "linear"
     return SweptSine(
-        first=first, last=last, acceleration=level_of(arguments), spacing=spacing, **numbers
+        first=first, last=last, acceleration=read_level(arguments), spacing=spacing, **numbers
     )
 
 
-def recorded(arguments: argparse.Namespace) -> Sampled:
-    """Read the box's acceleration from a file, as an excitation."""
+def read_record_excitation(arguments: argparse.Namespace) -> Sampled:
+    """Return the box's acceleration of a measured file as an excitation."""
     from .. import Sampled, read_record
 
     column = arguments.column
     columns = None
     if column is not None:
         columns = {"box_acceleration": int(column) if column.isdecimal() else column}
-    scale = None if arguments.scale is None else number_of("--scale", arguments.scale)
+    scale = None if arguments.scale is None else positive_number("--scale", arguments.scale)
     record = read_record(arguments.record, unit=arguments.unit, columns=columns, scale=scale)
     if note := unit_note(record.attrs):
         print(f"{arguments.record}: {note}")
     return Sampled.from_record(record)
 
 
-def kind_of(arguments: argparse.Namespace) -> str:
-    """Return which kind of excitation is asked for; raise for options of another kind."""
-    given = [name for name in KINDS if getattr(arguments, name) is not None]
-    if len(given) != 1:
-        told = options((name.replace("_", "-") for name in given), " and ") or "nothing"
-        names = options(name.replace("_", "-") for name in KINDS)
-        raise InputError(f"excitation: {told} given; expected one of {names}")
-    (kind,) = given
+def excitation_kind(arguments: argparse.Namespace) -> str:
+    """Return which kind of excitation is chosen; raise for options of another kind."""
+    chosen = [name for name in KINDS if getattr(arguments, name) is not None]
+    if len(chosen) != 1:
+        words = join_option_names((name.replace("_", "-") for name in chosen), " and ") or "nothing"
+        names = join_option_names(name.replace("_", "-") for name in KINDS)
+        raise InputError(f"excitation: {words} given; expected one of {names}")
+    (kind,) = chosen
     for name, owner in OF_KINDS.items():
         if getattr(arguments, name) is not None and owner != kind:
             option, kinds = (word.replace("_", "-") for word in (name, owner))
@@ -186,27 +191,27 @@ def kind_of(arguments: argparse.Namespace) -> str:
     return kind
 
 
-def level_of(arguments: argparse.Namespace) -> Any:
-    """Return the peak acceleration in m/s2: a number, or a profile over frequency."""
+def read_level(arguments: argparse.Namespace) -> Any:
+    """Return the peak acceleration, m/s2: a number, or a profile over frequency."""
     from ..constants import GRAVITY
 
-    given = [name for name in ("g", "acceleration") if getattr(arguments, name) is not None]
-    if len(given) != 1:
-        told = options(given, " and ") or "nothing"
-        raise InputError(f"level: {told} given; expected one of --g and --acceleration")
-    text, unit = getattr(arguments, given[0]), GRAVITY if given[0] == "g" else 1.0
+    chosen = [name for name in ("g", "acceleration") if getattr(arguments, name) is not None]
+    if len(chosen) != 1:
+        words = join_option_names(chosen, " and ") or "nothing"
+        raise InputError(f"level: {words} given; expected one of --g and --acceleration")
+    text, unit = getattr(arguments, chosen[0]), GRAVITY if chosen[0] == "g" else 1.0
     if ":" not in text:
-        return unit * number_of(f"--{given[0]}", text)
-    return tuple((f, unit * value) for f, value in breakpoints_of(f"--{given[0]}", text))
+        return unit * positive_number(f"--{chosen[0]}", text)
+    return tuple((f, unit * value) for f, value in parse_breakpoints(f"--{chosen[0]}", text))
 
 
 def print_result(data: xr.Dataset) -> None:
-    """Print the largest accelerations and gap, and the impacts."""
+    """Print a record's largest accelerations and gap, and its impacts."""
     names = ("box_acceleration", "a1_abs", "a2_abs")
     factor, unit = scale_of(data, "m/s2")
-    felt = [float(abs(data[name]).max()) / factor for name in names]
+    accelerations = [float(abs(data[name]).max()) / factor for name in names]
     text = "largest accelerations: box {:.4g}, masses 1 and 2 between impacts {:.4g} and {:.4g} {}"
-    print(text.format(*felt, unit))
+    print(text.format(*accelerations, unit))
     print(f"largest gap {text_of(data, data.x_rel.max(), 'm', '.4g')}")
     over = float(data.transient_time)
     print(f"the start is forgotten after {over:.3g} s where the motion is linear")

@@ -1,4 +1,4 @@
-"""``simulate``: time histories of both masses, the gap and the contact force."""
+"""Command ``simulate``: time histories of both masses, the gap and the contact force."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import argparse
 from typing import TYPE_CHECKING
 
 from ..units import text_of
-from .grammar import state_of
-from .options import Commands, add_beside, excitation_of, structure_of
-from .question import carry_out_beside
+from .grammar import parse_state
+from .options import Commands, add_beside_option, read_question
+from .question import answer_with_bonded
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -20,29 +20,29 @@ EXAMPLES = """  {program} simulate --eta 0.4 --transient 500 --periods 2      th
 
 
 def add_parser(commands: Commands) -> None:
-    """Add the command's parser."""
+    """Add the parser of the command ``simulate`` with its options."""
     text = "a motion in time: both masses, gap, contact force, impacts, phase plane and spectrum"
-    question = commands.ask("simulate", run, text, EXAMPLES, several=False)
+    question = commands.add_response_command("simulate", run, text, EXAMPLES, several=False)
     question.declare("periods", "transient", "points", "phase")
     start = "state at the start, m and m/s (default: rest)"
-    question.add("start", state_of, metavar="X1,X2,V1,V2", help=start)
-    add_beside(question)
+    question.add("start", parse_state, metavar="X1,X2,V1,V2", help=start)
+    add_beside_option(question)
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Compute time histories of both masses, the gap and the contact force."""
-    structure = structure_of(arguments)
-    excitation = excitation_of(arguments, structure, si=True, one=True)
-    question = {**excitation, **arguments.question.keywords(arguments)}
-    carry_out_beside(arguments, structure, question, print_result)
+    """Run ``simulate``: compute time histories; print, store and draw them."""
+    structure, question = read_question(arguments)
+    answer_with_bonded(arguments, structure, question, print_result)
 
 
 def print_result(data: xr.Dataset) -> None:
-    """Print the result."""
+    """Print a simulation's largest displacements, gap and accelerations, and its impacts."""
     reach = [text_of(data, abs(data[n]).max(), "m") for n in ("x1", "x2", "x_rel")]
     print("largest |x1| {}, |x2| {}, gap {}".format(*reach))
-    felt = [text_of(data, abs(data[name]).max(), "m/s2", ".4g") for name in ("a1_abs", "a2_abs")]
-    print("largest acceleration between impacts {} and {}".format(*felt))
+    accelerations = [
+        text_of(data, abs(data[name]).max(), "m/s2", ".4g") for name in ("a1_abs", "a2_abs")
+    ]
+    print("largest acceleration between impacts {} and {}".format(*accelerations))
     count = data.sizes["impact"]
     if not count:
         print("no impacts")

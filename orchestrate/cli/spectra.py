@@ -1,4 +1,4 @@
-"""``spectra``: acceleration spectra of a delamination, on a motor or shaken harmonically."""
+"""Command ``spectra``: acceleration spectra, on a motor or under harmonic excitation."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ from typing import TYPE_CHECKING
 
 from ..errors import InputError
 from ..units import text_of, with_units
-from .drives import drive_units
-from .grammar import changes_of, plain_float
+from .drive_options import drive_units
+from .grammar import parse_changes, plain_float
 from .options import (
     FREQUENCIES,
     Commands,
-    add_drive,
-    add_excitation,
-    amplitude_of,
-    excitation_of,
-    options,
-    structure_and_drive,
+    add_drive_options,
+    add_excitation_options,
+    join_option_names,
+    read_amplitude,
+    read_drive_options,
+    read_excitation,
 )
-from .output import Files, add_results, add_units, digest, running_of
-from .question import carry_out, format_parameter, picture_of
+from .output import Files, add_result_options, add_units_option, digest, read_running_options
+from .question import answer_question, draw_result, format_parameter
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,10 +35,10 @@ EXAMPLES = """\
 
 
 def add_parser(commands: Commands) -> None:
-    """Add the command's parser."""
+    """Add the parser of the command ``spectra`` with its options."""
     text = "acceleration spectra, bonded beside delaminated (Figure 3)"
     parser = commands.add("spectra", run, text, EXAMPLES)
-    add_drive(parser)
+    add_drive_options(parser)
     option = parser.add_argument_group("shaken by the motor").add_argument
     option(
         "--eta0",
@@ -48,30 +48,30 @@ def add_parser(commands: Commands) -> None:
         + ", else between the jumps of the averaged theory)",
     )
     option("--voltage", type=plain_float, help="the same in V")
-    add_excitation(parser, usual="none: shaken by the motor")
-    commands.question(parser).declare("transient", "periods", "points")
-    add_units(parser)
-    add_results(parser, several=True)
+    add_excitation_options(parser, usual="none: shaken by the motor")
+    commands.add_function_options(parser).declare("transient", "periods", "points")
+    add_units_option(parser)
+    add_result_options(parser, several=True)
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Compute acceleration spectra, on a motor or under harmonic excitation."""
+    """Run ``spectra``: compute spectra on a motor, or harmonic ones if a frequency is given."""
     frequencies = [name for name in FREQUENCIES if getattr(arguments, name) is not None]
-    if not frequencies and amplitude_of(arguments) is None:
-        motor_spectra(arguments)
+    if not frequencies and read_amplitude(arguments) is None:
+        run_motor_spectra(arguments)
         return
     for name in ("eta0", "voltage"):
         if getattr(arguments, name) is not None:
-            what = options(frequencies or ["amplitude or --g"], " and ")
+            what = join_option_names(frequencies or ["amplitude or --g"], " and ")
             raise InputError(f"{what}: expected without --{name}, which is the motor's")
-    harmonic_spectra(arguments)
+    run_harmonic_spectra(arguments)
 
 
-def motor_spectra(arguments: argparse.Namespace) -> None:
-    """Compute spectra with a motor (Figure 3)."""
+def run_motor_spectra(arguments: argparse.Namespace) -> None:
+    """Compute spectra of a motor-driven structure (Figure 3); print, store and draw them."""
     if arguments.eta0 is not None and arguments.voltage is not None:
         raise InputError("--eta0 and --voltage: expected one of them")
-    structure, drive = structure_and_drive(arguments)
+    structure, drive = read_drive_options(arguments)
     eta0 = USUAL.get(arguments.drive) if arguments.eta0 is None else arguments.eta0
     voltage = arguments.voltage
     if voltage is None and eta0 is not None:
@@ -82,7 +82,9 @@ def motor_spectra(arguments: argparse.Namespace) -> None:
     from ..figures import drive_spectra as figure
     from ..weak_drive.drive_spectra import drive_spectra
 
-    data = drive_spectra(structure, drive, voltage=voltage, **running_of(arguments, files.result))
+    data = drive_spectra(
+        structure, drive, voltage=voltage, **read_running_options(arguments, files.result)
+    )
     data = with_units(data, drive_units(arguments))
     for kind in map(str, data.kind.values):
         part = data.sel(kind=kind, mass=1)
@@ -93,19 +95,19 @@ def motor_spectra(arguments: argparse.Namespace) -> None:
     files.write(data, lambda: figure.draw(data, title=title))
 
 
-def harmonic_spectra(arguments: argparse.Namespace) -> None:
-    """Compute spectra under harmonic excitation."""
+def run_harmonic_spectra(arguments: argparse.Namespace) -> None:
+    """Compute spectra under harmonic excitation; print, store and draw them."""
     from ..structures import Structure
 
     structure = Structure.from_file(arguments.structure or "paper")
-    structure = structure.replace(**changes_of(arguments.set))
-    excitation = excitation_of(arguments, structure, si=True)
+    structure = structure.replace(**parse_changes(arguments.set))
+    excitation = read_excitation(arguments, structure, si=True)
     question = {**excitation, **arguments.question.keywords(arguments)}
-    carry_out(arguments, structure, question, print_result, picture_of)
+    answer_question(arguments, structure, question, print_result, draw_result)
 
 
 def print_result(data: xr.Dataset) -> None:
-    """Print the largest lines, a line per kind and frequency."""
+    """Print each spectrum's largest line, by structure and frequency."""
     name = str(data.acceleration.dims[0])
     for value in data[name].values:
         for kind in map(str, data.kind.values):
@@ -115,7 +117,7 @@ def print_result(data: xr.Dataset) -> None:
 
 
 def print_line_ratio(data: xr.Dataset, name: str, amplitude: xr.DataArray) -> None:
-    """Print the largest line, and how much there is above the excitation."""
+    """Print a spectrum's largest line, and its largest one above the excitation over that."""
     largest = float(amplitude.max())
     above = float(amplitude.where(amplitude.order > 1.5, 0.0).max())
     share = above / largest if largest else 0.0

@@ -1,4 +1,4 @@
-"""``sweep``: orbit diagrams; without options the paper's Figure 6."""
+"""Command ``sweep``: orbit diagrams over a parameter; by default the paper's Figure 6."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ import argparse
 from typing import TYPE_CHECKING
 
 from ..units import text_of
-from .grammar import state_of
-from .options import Commands, add_over, structure_of, varied_arguments
-from .overlay import add_overlay, drawing
+from .grammar import parse_state
+from .options import Commands, add_over_options, read_structure_options, varied_arguments
+from .overlay import add_overlay_option, drawing_function
 from .question import (
-    carry_out,
+    answer_question,
     format_parameter,
     format_ranges,
-    is_flag,
-    parameter_of,
+    has_flag,
     print_table,
+    varied_parameter,
 )
 
 if TYPE_CHECKING:
@@ -37,11 +37,11 @@ DIFFERENT = 0.01  # of the largest gap: where up and down differ by more, they a
 
 
 def add_parser(commands: Commands) -> None:
-    """Add the command's parser."""
+    """Add the parser of the command ``sweep`` with its options."""
     text = "follow responses along the frequency or another parameter: an orbit diagram"
     usual = f"{PAPER_RANGE} where no frequency is given"
-    question = commands.ask("sweep", run, text, EXAMPLES, usual=usual)
-    add_over(question)
+    question = commands.add_response_command("sweep", run, text, EXAMPLES, usual=usual)
+    add_over_options(question)
     question.group.add_argument(
         "--direction",
         choices=("up", "down", "both"),
@@ -49,26 +49,26 @@ def add_parser(commands: Commands) -> None:
         "range, a list as it stands)",
     )
     text = "state that the first value starts from, m and m/s (default: rest)"
-    question.add("start", state_of, metavar="X1,X2,V1,V2", help=text)
+    question.add("start", parse_state, metavar="X1,X2,V1,V2", help=text)
     question.declare("transient", "samples", "tolerance")
-    add_overlay(question)
+    add_overlay_option(question)
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Compute an orbit diagram: stroboscopic samples of the gap over a parameter."""
-    structure = structure_of(arguments)
+    """Run ``sweep``: compute an orbit diagram over a parameter; print, store and draw it."""
+    structure = read_structure_options(arguments)
     excitation, is_range = varied_arguments(arguments, structure, usual=PAPER_RANGE)
     direction = arguments.direction or ("up" if is_range else "given")
     question = {**excitation, "direction": direction, **arguments.question.keywords(arguments)}
     if question["start"] is None:
         del question["start"]  # a file's name has always been without it
-    draw, over = drawing(arguments, structure, excitation)
-    carry_out(arguments, structure, question, print_result, draw, over=over)
+    draw, over = drawing_function(arguments, structure, excitation)
+    answer_question(arguments, structure, question, print_result, draw, over=over)
 
 
 def print_result(data: xr.Dataset) -> None:
-    """Print largest gap, amplitudes, which responses repeat, and where up and down differ."""
-    name = parameter_of(data)
+    """Print a sweep's largest gap, amplitudes, periodic and irregular ranges, and hysteresis."""
+    name = varied_parameter(data)
     if data.sizes[name] == 1:
         print_table(data, name)
         return
@@ -77,14 +77,14 @@ def print_result(data: xr.Dataset) -> None:
     gap = text_of(data, top.xi_rel_max * top.amplitude * top.eta**2, "m", ".4g")
     print(f"largest gap: xi_Rel = {float(top.xi_rel_max):.6g}, {gap}, at {where}")
     for mass in (1, 2):
-        far = text_of(data, data[f"x{mass}_max"].max(), "m", ".4g")
-        felt = text_of(data, data[f"a{mass}_max"].max(), "m/s2", ".4g")
-        print(f"mass {mass}: largest displacement {far}, acceleration {felt}")
+        displacement = text_of(data, data[f"x{mass}_max"].max(), "m", ".4g")
+        acceleration = text_of(data, data[f"a{mass}_max"].max(), "m/s2", ".4g")
+        print(f"mass {mass}: largest displacement {displacement}, acceleration {acceleration}")
     decided = data.multiplicity_decided
-    periodic = int(is_flag(decided, "repeated").sum())
+    periodic = int(has_flag(decided, "repeated").sum())
     print(f"periodic: {periodic} of {decided.size} responses")
     for word, text in KINDS.items():
-        holds = is_flag(decided, word)
+        holds = has_flag(decided, word)
         holds = holds.any("direction") if "direction" in holds.dims else holds
         if holds.any():
             ordered = holds.sortby(name)
@@ -92,11 +92,11 @@ def print_result(data: xr.Dataset) -> None:
     contact = int(data.permanent_contact.sum())
     print(f"with permanent contact: {contact} of {decided.size} responses")
     if "direction" in data.dims:
-        print_differences(data, name)
+        print_hysteresis(data, name)
 
 
-def print_differences(data: xr.Dataset, name: str) -> None:
-    """Print where up and down are different motions."""
+def print_hysteresis(data: xr.Dataset, name: str) -> None:
+    """Print the parameter ranges in which up- and down-sweep are different motions."""
     gaps = data.xi_rel_max.sortby(name)
     up, down = (gaps.sel(direction=word) for word in ("up", "down"))
     differ = abs(up - down) > DIFFERENT * abs(gaps).max("direction")

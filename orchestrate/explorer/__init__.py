@@ -1,6 +1,6 @@
-"""One self-contained page: the orbit diagram, and behind each of its points the motion, computed in
-the browser by the kernel of the FMU.
+"""Explorer: one self-contained HTML page with the FMU's kernel running in the browser.
 
 :mod:`.page` puts it together of the sources in ``page/``: HTML, a style sheet and modern JavaScript
-modules, one idea a file, which :mod:`.bundle` joins. :mod:`.shipped` is what a sweep gives to it.
+modules, one idea a file, which :mod:`.bundle` joins. :mod:`.sweep_data` reads the sweep that it
+shows.
 """

@@ -1,4 +1,4 @@
-"""Branches of periodic orbits as lines over the diagram, and their bifurcations."""
+"""Convert branches of periodic orbits to the page's JSON: lines and bifurcations."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..flags import flag_words
-from .shipped import READING
+from .sweep_data import READING
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
-def overlay(found: xr.Dataset | None) -> dict[str, Any]:
-    """Return lines and bifurcations of a branch as the page's JSON.
+def branch_json(found: xr.Dataset | None) -> dict[str, Any]:
+    """Return lines and bifurcations of a branch as JSON data for the page.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def overlay(found: xr.Dataset | None) -> dict[str, Any]:
         over = found.attrs.get("over", "nothing")
         raise InputError(f"branches over {over}: expected a result of orchestrate.branch over eta")
     try:
-        drawn = {"branches": lines(found), "bifurcations": bifurcations(found)}
+        drawn = {"branches": branch_lines(found), "bifurcations": bifurcation_points(found)}
         json.dumps(drawn, allow_nan=False)  # as the page reads it
         return drawn
     except READING as error:
@@ -45,20 +45,22 @@ def overlay(found: xr.Dataset | None) -> dict[str, Any]:
         ) from None
 
 
-def lines(found: xr.Dataset) -> list[dict[str, Any]]:
-    """Return the branch's parts of one stability, a line for each sample of an orbit."""
+def branch_lines(found: xr.Dataset) -> list[dict[str, Any]]:
+    """Return a branch's stable and unstable parts as lines, one set per sample of an orbit."""
     stable = found.stable.values == 1
     return [
         {"x": along.tolist(), "y": gaps.tolist(), "stable": bool(flag)}
         for samples in found.xi_rel.transpose("sample", "point").values
-        for along, gaps, flag in runs(found["eta"].values.astype(float), samples, stable)
+        for along, gaps, flag in split_by_stability(
+            found["eta"].values.astype(float), samples, stable
+        )
     ]
 
 
-def runs(
+def split_by_stability(
     along: NDArray[np.float64], gaps: NDArray[np.float64], stable: NDArray[np.bool_]
 ) -> list[tuple[NDArray[np.float64], NDArray[np.float64], bool]]:
-    """Split a line by stability; return abscissas, gaps > 0 and stability of each part."""
+    """Split a line at changes of stability; return abscissas, gaps > 0 and a flag for each part."""
     kept = gaps > 0.0
     along, gaps, stable = along[kept], gaps[kept], stable[kept]
     cuts = [0, *(np.flatnonzero(np.diff(stable)) + 1).tolist(), len(along)]
@@ -69,8 +71,8 @@ def runs(
     ]
 
 
-def bifurcations(found: xr.Dataset) -> list[dict[str, Any]]:
-    """Return a branch's bifurcations, each with its place and its kind."""
+def bifurcation_points(found: xr.Dataset) -> list[dict[str, Any]]:
+    """Return a branch's bifurcations as dicts with eta, largest gap and kind."""
     if not found.sizes.get("bifurcation"):
         return []
     kinds = found.bifurcation_kind

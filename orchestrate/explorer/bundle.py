@@ -1,4 +1,4 @@
-"""JavaScript modules joined into one script, in the order in which they need each other.
+"""Join JavaScript modules into one script, in the order of their imports.
 
 Enough for modules that keep to three rules: imports are named and stand at the line's start, what
 is exported is declared as ``export function``, ``class`` or ``const``, and no import goes round in
@@ -15,7 +15,7 @@ EXPORT = re.compile(r"^export ((?:async )?(?:function\*?|class|const|let)) (\w+)
 
 
 def bundle(sources: Mapping[str, str], entry: str) -> str:
-    """Join JavaScript modules to one script that ends with the entry module.
+    """Join JavaScript modules into one script that ends with the entry module.
 
     Parameters
     ----------
@@ -41,33 +41,33 @@ def bundle(sources: Mapping[str, str], entry: str) -> str:
     <BLANKLINE>
     """
     order: list[str] = []
-    visit(sources, entry, order)
-    return '"use strict";\n' + "".join(wrapped(name, sources[name]) for name in order)
+    append_with_imports(sources, entry, order)
+    return '"use strict";\n' + "".join(wrap_module(name, sources[name]) for name in order)
 
 
-def visit(sources: Mapping[str, str], name: str, order: list[str]) -> None:
-    """Append a module to an order, after those that it needs."""
+def append_with_imports(sources: Mapping[str, str], name: str, order: list[str]) -> None:
+    """Append a module to an order, after the modules that it imports."""
     if name in order:
         return
     for match in IMPORT.finditer(sources[name]):
-        visit(sources, match[2], order)
+        append_with_imports(sources, match[2], order)
     order.append(name)
 
 
-def wrapped(name: str, source: str) -> str:
+def wrap_module(name: str, source: str) -> str:
     """Return a module as the text of a function that returns what it exports."""
     exported = ", ".join(match[2] for match in EXPORT.finditer(source))
-    body = IMPORT.sub(imported, source)
-    body = EXPORT.sub(r"\1 \2", without_comments(body)).strip()
+    body = IMPORT.sub(rewrite_import, source)
+    body = EXPORT.sub(r"\1 \2", remove_comments(body)).strip()
     return f"const module_{name} = (() => {{\n{body}\nreturn {{ {exported} }};\n}})();\n"
 
 
-def imported(match: re.Match[str]) -> str:
-    """Return an import statement rewritten as constants of the other module's function."""
+def rewrite_import(match: re.Match[str]) -> str:
+    """Return an import statement rewritten as constants from the other module's function."""
     names = " ".join(match[1].split()).rstrip(",")
     return f"const {{ {names} }} = module_{match[2]};\n"
 
 
-def without_comments(source: str) -> str:
-    """Block comments that fill whole lines taken out."""
+def remove_comments(source: str) -> str:
+    """Return a source without block comments that fill whole lines."""
     return re.sub(r"^[ \t]*/\*\*(?:(?!\*/).)*\*/[ \t]*\n", "", source, flags=re.M | re.S)

@@ -1,4 +1,4 @@
-"""The paper's Figure 6 as it comes with the package: where each of its responses begins."""
+"""Load the shipped Figure 6 (a sweep of the paper's structure) for the page."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..access.webassembly import kernel_digest
 from ..running.store import load
 from ..structures import Structure
 from ..units import Units
-from .shipped import Shipped, nothing, shipped
+from .sweep_data import SweepData, empty_sweep, read_sweep
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -22,22 +22,22 @@ STAMP = "kernel"  # attribute: digest of the kernel that computed it
 log = logging.getLogger(__name__)
 
 
-def first_diagram(structure: Structure, units: Units | None = None) -> Shipped:
-    """Return the diagram a page opens with: Figure 6 for the paper's structure, else an empty one.
+def first_diagram(structure: Structure, units: Units | None = None) -> SweepData:
+    """Return the page's first diagram: Figure 6 for the paper's structure, else an empty one.
 
     Nothing as well where the kernel is no longer the one that computed Figure 6: its states would
     then belong to no response of the page.
     """
     units = units or Units()
     if structure != Structure() or units.frequency not in ("", "eta"):
-        return nothing(structure, units)
+        return empty_sweep(structure, units)
     data = load(FILE)
-    if not is_present(data):
+    if not is_current(data):
         log.warning("Figure 6 was computed by another kernel: the page computes its own")
-        return nothing(structure, units)
-    return shipped(data)
+        return empty_sweep(structure, units)
+    return read_sweep(data)
 
 
-def is_present(data: xr.Dataset) -> bool:
+def is_current(data: xr.Dataset) -> bool:
     """Return whether the present kernel computed a stored Figure 6."""
     return bool(data.attrs.get(STAMP) == kernel_digest(OSCILLATOR))

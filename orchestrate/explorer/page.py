@@ -1,4 +1,4 @@
-"""The page, put together: sources, the compiled kernel, a sweep's starts, all in one HTML file."""
+"""Write the explorer's HTML page: JavaScript, kernels and a sweep's states in one file."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from ..structures import Drive, Structure
 from ..structures.ranges import STRUCTURE
 from ..units import Units
 from ..version import __version__
-from .branches import overlay
+from .branches import branch_json
 from .bundle import bundle
 from .figure6 import first_diagram
-from .shipped import Shipped, check_units, shipped
+from .sweep_data import SweepData, check_units, read_sweep
 from .tour import TOUR
 from .words import WORDS
 
@@ -45,7 +45,7 @@ def explore(
     units: str | Units = "",
     build_folder: str | PathLike[str] | None = None,
 ) -> Path:
-    """Write the explorer, one HTML file that needs nothing else.
+    """Write the explorer, one HTML file that needs no other file and no network.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def explore(
     if data is None or isinstance(data, Structure):
         chosen = first_diagram(data or Structure(), asked)
     else:
-        chosen = shipped(data)
+        chosen = read_sweep(data)
         check_units(asked, chosen.level)
     path = Path(output)
     if path.is_dir():
@@ -108,26 +108,26 @@ def explore(
         "oscillator": web_kernel(OSCILLATOR, build_folder),
         "shaker": web_kernel(SHAKER, build_folder),
     }
-    text = page(chosen, overlay(branches), kernels)
-    return write_whole(path, lambda place: place.write_text(text, encoding="utf-8"))
+    text = render_page(chosen, branch_json(branches), kernels)
+    return write_whole(path, lambda target: target.write_text(text, encoding="utf-8"))
 
 
 def first_bytes(path: Path) -> bytes:
-    """Return the first bytes of a file; none of what is no ordinary file."""
+    """Return the first bytes of a file; none if it is no regular file."""
     if not path.is_file():
         return b""
     with path.open("rb") as file:
         return file.read(READ)
 
 
-def page(chosen: Shipped, drawn: dict[str, Any], kernels: dict[str, WebKernel]) -> str:
-    """Return the page's HTML, made by a template that escapes all text."""
-    scripts = modules()
+def render_page(chosen: SweepData, drawn: dict[str, Any], kernels: dict[str, WebKernel]) -> str:
+    """Return the page's HTML from a template that escapes all text."""
+    scripts = read_modules()
     made_by = f"vibroimpact {__version__}, kernel {kernels['oscillator'].guid}"
     tables = {name: {"slots": one.slots, "starts": one.starts} for name, one in kernels.items()}
-    style, script = source("style.css"), bundle(scripts, "main")
+    style, script = read_source("style.css"), bundle(scripts, "main")
     return (
-        environment()
+        template_environment()
         .get_template("page.html.j2")
         .render(
             policy=content_security_policy(style, script),
@@ -139,17 +139,17 @@ def page(chosen: Shipped, drawn: dict[str, Any], kernels: dict[str, WebKernel]) 
             branches=drawn["branches"],
             source=made_by,
             swept=f"sweep by {chosen.source}" if chosen.source else "",
-            table={**table(chosen), **drawn, **tables, "drive": weak_drive()},
-            data=packed(chosen.numbers.astype("<f8").tobytes()),
-            **{name: packed(kernel.module) for name, kernel in kernels.items()},
-            **voltages(),
+            table={**page_data(chosen), **drawn, **tables, "drive": drive_data()},
+            data=compress(chosen.numbers.astype("<f8").tobytes()),
+            **{name: compress(kernel.module) for name, kernel in kernels.items()},
+            **voltage_slider(),
         )
     )
 
 
 @functools.cache
-def environment() -> jinja2.Environment:
-    """Return a template environment that escapes all text and raises at undefined names."""
+def template_environment() -> jinja2.Environment:
+    """Return a Jinja environment that escapes all text and raises at undefined names."""
     return jinja2.Environment(
         loader=jinja2.PackageLoader("orchestrate.explorer", "page"),
         autoescape=True,
@@ -158,13 +158,13 @@ def environment() -> jinja2.Environment:
 
 
 def content_security_policy(style: str, script: str) -> str:
-    """Return what a browser lets the page do: its own script and workers, no network."""
+    """Return the page's Content-Security-Policy: own script and workers, no network."""
     return "; ".join(
         (
             "default-src 'none'",
-            f"script-src '{digest(script)}' 'wasm-unsafe-eval' blob:",
+            f"script-src '{policy_digest(script)}' 'wasm-unsafe-eval' blob:",
             "worker-src blob:",
-            f"style-src '{digest(style)}'",
+            f"style-src '{policy_digest(style)}'",
             "img-src data: blob:",
             "base-uri 'none'",
             "form-action 'none'",
@@ -172,16 +172,16 @@ def content_security_policy(style: str, script: str) -> str:
     )
 
 
-def digest(content: str) -> str:
-    """Return the digest by which a security policy names a script or a style sheet."""
+def policy_digest(content: str) -> str:
+    """Return the digest by which the policy names a script or a style sheet."""
     return f"sha256-{base64.b64encode(hashlib.sha256(content.encode()).digest()).decode()}"
 
 
-def table(chosen: Shipped) -> dict[str, Any]:
-    """Return as JSON what the page has to know of the sweep and of structures."""
+def page_data(chosen: SweepData) -> dict[str, Any]:
+    """Return the sweep, ranges of parameters and tour as JSON data for the page."""
     return {
-        "structure": numbers(chosen.structure),
-        "usual": numbers(Structure()),
+        "structure": structure_numbers(chosen.structure),
+        "usual": structure_numbers(Structure()),
         "ranges": {name: [q.minimum, q.maximum] for name, q in STRUCTURE.items()} | FLAG,
         "units": {
             name: {"label": quantity.unit.replace(".", " "), **quantity.dimension}
@@ -194,40 +194,40 @@ def table(chosen: Shipped) -> dict[str, Any]:
         "low": chosen.low,
         "high": chosen.high,
         "level": chosen.level,
-        "tour": {stop.name: stop.words for step in TOUR for stop in step.stops},
+        "tour": {stop.name: stop.link_text for step in TOUR for stop in step.stops},
     }
 
 
-def weak_drive(step: float = 0.1) -> dict[str, Any]:
-    """Return the numbers of the page's motor, the set ``quick``, and the communication step."""
+def drive_data(step: float = 0.1) -> dict[str, Any]:
+    """Return parameters of the page's motor (set ``quick``) and its communication step."""
     structure = Structure.from_file("quick")
     drive = {name: float(value) for name, value in Drive.from_file("quick").parameters().items()}
-    return {"structure": numbers(structure), "drive": drive, "h": step / structure.omega}
+    return {"structure": structure_numbers(structure), "drive": drive, "h": step / structure.omega}
 
 
-def voltages(low: float = 0.8, high: float = 2.0, first: float = 0.9) -> dict[str, str]:
-    """Return the ends and the first value of the voltage's slider, as no-load speeds over omega."""
+def voltage_slider(low: float = 0.8, high: float = 2.0, first: float = 0.9) -> dict[str, str]:
+    """Return ends and first value of the voltage slider, V, as texts."""
     unit = Drive.from_file("quick").motor_constant * Structure.from_file("quick").omega
     ends = {"voltage_low": low, "voltage_high": high, "voltage": first}
     return {name: f"{value * unit:.6g}" for name, value in ends.items()}
 
 
-def numbers(structure: Structure) -> dict[str, float]:
-    """Return a structure's parameters by name as the kernel takes them."""
+def structure_numbers(structure: Structure) -> dict[str, float]:
+    """Return a structure's parameters by name as floats."""
     return {name: float(value) for name, value in structure.parameters().items()}
 
 
-def packed(content: bytes) -> str:
-    """Return bytes compressed and as text (base64), for a page of one file."""
+def compress(content: bytes) -> str:
+    """Return bytes compressed by zlib, as base64 text."""
     return base64.b64encode(zlib.compress(content, 9)).decode()
 
 
 @functools.cache
-def source(name: str) -> str:
+def read_source(name: str) -> str:
     """Return the text of one of the page's source files."""
     return (SOURCES / name).read_text(encoding="utf-8")
 
 
-def modules() -> dict[str, str]:
-    """Return the texts of the page's JavaScript modules by name."""
-    return {path.stem: source(path.name) for path in sorted(SOURCES.glob("*.js"))}
+def read_modules() -> dict[str, str]:
+    """Return a dict from name to text of the page's JavaScript modules."""
+    return {path.stem: read_source(path.name) for path in sorted(SOURCES.glob("*.js"))}

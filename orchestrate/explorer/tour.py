@@ -1,4 +1,4 @@
-"""The guided tour: six steps, each one or two motions with a text for who sees this first.
+"""Texts and motions of the guided tour, six steps for a first visitor.
 
 That a step shows what it says is computed by a test, through the FMU.
 """
@@ -29,8 +29,8 @@ PRESSED: dict[str, Any] = {
 
 
 @dataclass(frozen=True)
-class Stop:
-    """A motion of the tour, of the paper's structure or one near it.
+class View:
+    """A motion shown by the tour: its structure, frequency, start state and diagram range.
 
     Attributes
     ----------
@@ -66,8 +66,8 @@ class Stop:
     about: str = ""
 
     @property
-    def words(self) -> str:
-        """Return the text of the page's link to this view."""
+    def link_text(self) -> str:
+        """Text of the page's link to this view."""
         low, high = self.region
         start = ",".join(f"{value:g}" for value in self.start)
         level = {"g": self.level} if self.level else {}
@@ -77,17 +77,17 @@ class Stop:
 
     @property
     def structure(self) -> Structure:
-        """Return the structure whose motion this view shows."""
+        """Structure whose motion this view shows."""
         return Structure().replace(**self.changes)
 
 
 @dataclass(frozen=True)
 class Step:
-    """A step of the tour: its title, its text, and one motion or two."""
+    """A step of the tour: its title, its text, and one or two views."""
 
     title: str
     text: str
-    stops: tuple[Stop, ...]
+    stops: tuple[View, ...]
 
 
 TOUR = (
@@ -97,20 +97,20 @@ TOUR = (
         "resonance the halves tap each other once in each shaking period, always in the same way. "
         "In the diagram that is one dot: the gap is the same each time the shaking begins anew. An "
         "undamaged beam would be silent.",
-        (Stop("quiet", "", 1.7),),
+        (View("quiet", "", 1.7),),
     ),
     Step(
         "Rattling",
         "Shaken more slowly, the halves part further and strike three times in each period, with "
         "three different speeds. Still it repeats: one dot. Press Sound to hear the rhythm.",
-        (Stop("rattling", "", 0.7),),
+        (View("rattling", "", 0.7),),
     ),
     Step(
         "Chattering",
         "Very slow shaking: the halves bounce like a ball that is let fall, ever faster and lower, "
         "until they stick together and move as one, the shaded times. Then they part again. Each "
         "period has more than twenty impacts.",
-        (Stop("chattering", "", 0.3),),
+        (View("chattering", "", 0.3),),
     ),
     Step(
         "Two answers",
@@ -118,8 +118,8 @@ TOUR = (
         "that sweeps upwards and one that sweeps downwards can disagree: upwards is blue here, "
         "downwards orange.",
         (
-            Stop("two-answers", "from rest", 1.3, START, (1.1, 1.5), "both"),
-            Stop("two-answers-other", "the other, wider one", 1.3, OTHER, (1.1, 1.5), "both"),
+            View("two-answers", "from rest", 1.3, START, (1.1, 1.5), "both"),
+            View("two-answers-other", "the other, wider one", 1.3, OTHER, (1.1, 1.5), "both"),
         ),
     ),
     Step(
@@ -127,15 +127,15 @@ TOUR = (
         "Nothing is random here, and yet it never repeats: a cloud of dots in the diagram. Two "
         "motions that begin almost alike soon have nothing in common; the exponent, above zero, "
         "says how soon. Listen: no rhythm stays.",
-        (Stop("chaos", "", 2.9),),
+        (View("chaos", "", 2.9),),
     ),
     Step(
         "Pressed shut",
         "Pressed together by 0.05 mm, the halves stay shut at 30 Hz and 0.5 g: no test there can "
         "find the delamination. It opens at other frequencies, and at a higher level.",
         (
-            Stop("pressed", "0.5 g at 30 Hz: shut", 0.75, level=0.5, about=AT_LOW_LEVEL, **PRESSED),
-            Stop(
+            View("pressed", "0.5 g at 30 Hz: shut", 0.75, level=0.5, about=AT_LOW_LEVEL, **PRESSED),
+            View(
                 "pressed-hill",
                 "0.5 g at 41 Hz: open",
                 1.025,
@@ -143,7 +143,7 @@ TOUR = (
                 about=AT_LOW_LEVEL,
                 **PRESSED,
             ),
-            Stop(
+            View(
                 "pressed-open",
                 "3 g at 30 Hz: open",
                 0.75,

@@ -1,4 +1,4 @@
-"""What an analyser shows, several records in one picture: bonded, delaminated, measured."""
+"""Draw analyses of vibration records (FRF, PSD, orders, shock spectra), several in one picture."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from ..units import as_shown
 from .labels import plain_title
-from .scales import unit_text, with_unit
+from .scales import label_with_unit, typeset_array_unit
 from .style import (
     BLACK,
     BLUE,
@@ -22,7 +22,7 @@ from .style import (
     ORANGE,
     PURPLE,
     RED,
-    panels,
+    make_panels,
     set_title,
     styled,
     write_plain_numbers,
@@ -44,7 +44,7 @@ def draw(
     others: Mapping[str, xr.Dataset] | None = None,
     title: str = "",
 ) -> Figure:
-    """Draw a result of an analysis, and the same of other records with it.
+    """Draw an analysis' result, with those of further records for comparison; return the figure.
 
     Parameters
     ----------
@@ -73,8 +73,10 @@ def draw(
 # -- parts of pictures ----------------------------------------------------------------------------
 
 
-def grid_of(results: Results, rows: int, heights: tuple[float, ...]) -> tuple[Figure, Any]:
-    """Make a figure with a column for each measured mass; return it and axes by channel.
+def make_channel_grid(
+    results: Results, rows: int, heights: tuple[float, ...]
+) -> tuple[Figure, Any]:
+    """Make a figure with a column for each measured mass; return it and the axes by channel.
 
     Returns
     -------
@@ -82,10 +84,10 @@ def grid_of(results: Results, rows: int, heights: tuple[float, ...]) -> tuple[Fi
     axes : dict of str to list of Axes
         By channel, from top to bottom.
     """
-    every = present(results)
+    every = channels_in(results)
     names = [name for name in every if name != "box_acceleration"] or every
     size = (5.4 * len(names), 0.6 + 2.0 * sum(heights))
-    figure, axes = panels(
+    figure, axes = make_panels(
         rows, len(names), size, sharex=True, sharey="row", height_ratios=heights[:rows]
     )
     columns = {name: axes[i :: len(names)] for i, name in enumerate(names)}
@@ -94,32 +96,32 @@ def grid_of(results: Results, rows: int, heights: tuple[float, ...]) -> tuple[Fi
     return figure, columns
 
 
-def first_of(results: Results) -> xr.Dataset:
-    """Return the result of the first record; all are shown in its units."""
+def first_result(results: Results) -> xr.Dataset:
+    """Return the first record's result, whose display units the axes use."""
     return next(iter(results.values()))
 
 
 def frequency_label(results: Results, words: str = "frequency") -> str:
-    """Return the label of an axis of frequencies."""
-    return with_unit(words, first_of(results).frequency)
+    """Return a frequency axis' label with the display unit."""
+    return label_with_unit(words, first_result(results).frequency)
 
 
-def present(results: Results) -> list[str]:
-    """Return the channels that at least one of the records has, the box first."""
+def channels_in(results: Results) -> list[str]:
+    """Return the names of the channels that any of the records has, the base first."""
     known = {str(name) for data in results.values() for name in data.channel.values}
     return [name for name in CHANNELS if name in known]
 
 
-def of_channel(results: Results, channel: str) -> Iterator[tuple[str, xr.Dataset, str]]:
-    """Yield label, result and colour of each record that has a channel."""
-    colours = colours_of(results)
+def iterate_records(results: Results, channel: str) -> Iterator[tuple[str, xr.Dataset, str]]:
+    """Yield label, part of the result and colour of each record that has a channel."""
+    colours = colours_by_label(results)
     for label, data in results.items():
         if channel in data.channel.values:
             yield label, data.sel(channel=channel), colours[label]
 
 
-def colours_of(results: Results) -> dict[str, str]:
-    """Return a colour for each record; a measured record is black."""
+def colours_by_label(results: Results) -> dict[str, str]:
+    """Return a dict from record label to line colour; black for one labelled "measured"."""
     free = [colour for colour in COLOURS if colour != BLACK]
     colours: dict[str, str] = {}
     for label in results:
@@ -129,16 +131,16 @@ def colours_of(results: Results) -> dict[str, str]:
 
 
 def add_legend(figure: Figure, axes: Axes, results: Results) -> None:
-    """Add a legend with the names of the records below all panels, if they have names."""
+    """Add a legend with the records' labels below all panels, if they have labels."""
     if any(results):
-        colours = colours_of(results)
+        colours = colours_by_label(results)
         handles = [axes.plot([], [], color=colours[label])[0] for label in results]
         place: Any = {"loc": "outside lower right", "ncols": len(results)}
         figure.legend(handles, list(results), **place)
 
 
-def from_the_top(axes: Axes, values: list[np.ndarray], decades: int = DECADES) -> None:
-    """Set a logarithmic axis that ends some decades below the largest value."""
+def limit_log_axis(axes: Axes, values: list[np.ndarray], decades: int = DECADES) -> None:
+    """Set a logarithmic y axis that ends some decades below the largest value."""
     every = np.concatenate([np.ravel(array) for array in values])
     every = every[np.isfinite(every) & (every > 0.0)]
     axes.set_yscale("log")
@@ -150,8 +152,8 @@ def from_the_top(axes: Axes, values: list[np.ndarray], decades: int = DECADES) -
             write_plain_numbers(axes)
 
 
-def unbroken(phase: xr.DataArray) -> np.ndarray:
-    """Return a phase in degrees in -270 to 90, where resonances turn; NaN where it jumps."""
+def phase_in_degrees(phase: xr.DataArray) -> np.ndarray:
+    """Convert a phase from rad to degrees in -270 to 90; NaN where the drawn line would jump."""
     degrees = (DEGREES * phase.values + 270.0) % 360.0 - 270.0
     jumps = np.flatnonzero(np.abs(np.diff(degrees)) > 180.0)
     degrees[jumps] = np.nan
@@ -159,7 +161,7 @@ def unbroken(phase: xr.DataArray) -> np.ndarray:
 
 
 def note_hidden(axes: Axes, values: Mapping[str, list[np.ndarray]]) -> None:
-    """Write into a panel which records lie below its axis."""
+    """Write into a panel the labels of records whose curves lie below its axis."""
     low = axes.get_ylim()[0]
     hidden = [name for name, arrays in values.items() if np.nanmedian(np.hstack(arrays)) < low]
     if any(hidden):
@@ -167,8 +169,8 @@ def note_hidden(axes: Axes, values: Mapping[str, list[np.ndarray]]) -> None:
         axes.text(0.01, 0.02, f"below this axis: {', '.join(hidden)}", fontsize=8, **place)
 
 
-def directions(data: xr.Dataset) -> Iterator[tuple[xr.Dataset, str]]:
-    """Yield the upward and the downward parts of a sweep, each with its line style."""
+def split_sweep(data: xr.Dataset) -> Iterator[tuple[xr.Dataset, str]]:
+    """Yield the upward and downward parts of a swept-sine result, each with its line style."""
     rising = (data.sweep_rate.values >= 0.0).tolist()
     for up, numbers in groupby(range(len(rising)), key=rising.__getitem__):
         yield data.isel(time=list(numbers)), "-" if up else "--"
@@ -178,15 +180,15 @@ def directions(data: xr.Dataset) -> Iterator[tuple[xr.Dataset, str]]:
 
 
 def draw_frf(results: Results) -> Figure:
-    """Draw magnitude by H1, phase and coherence."""
-    figure, columns = grid_of(results, 3, (1.5, 0.9, 0.9))
+    """Draw frequency response functions: magnitude (H1), phase and coherence; return the figure."""
+    figure, columns = make_channel_grid(results, 3, (1.5, 0.9, 0.9))
     shown: list[np.ndarray] = []
     for channel, (magnitude, phase, coherence) in columns.items():
-        for _, data, colour in of_channel(results, channel):
+        for _, data, colour in iterate_records(results, channel):
             part = data.sel(estimator="H1").where(data.excited > 0)
             line: dict[str, Any] = {"color": colour, "linewidth": 1.0}
             magnitude.plot(part.frequency, part.magnitude, **line)
-            phase.plot(part.frequency, unbroken(part.phase), **line)
+            phase.plot(part.frequency, phase_in_degrees(part.phase), **line)
             coherence.plot(part.frequency, part.coherence, **line)
             shown.append(part.magnitude.values)
         phase.set(ylim=(-280.0, 100.0), yticks=(-270, -180, -90, 0, 90))
@@ -194,41 +196,44 @@ def draw_frf(results: Results) -> Figure:
     first = next(iter(columns.values()))
     for axes, word in zip(first, ("|H1|", "phase in degrees", "coherence"), strict=True):
         axes.set_ylabel(word)
-    from_the_top(first[0], shown)
+    limit_log_axis(first[0], shown)
     first[0].set_ylabel("|H1|, mass over box")
     add_legend(figure, first[0], results)
     return figure
 
 
 def draw_psd(results: Results) -> Figure:
-    """Draw power spectral densities, a row per channel."""
-    names = present(results)
-    figure, axes = panels(len(names), 1, (9.0, 0.8 + 2.0 * len(names)), sharex=True)
+    """Draw power spectral densities, a row per channel; return the figure."""
+    names = channels_in(results)
+    figure, axes = make_panels(len(names), 1, (9.0, 0.8 + 2.0 * len(names)), sharex=True)
     for channel, plane in zip(names, axes, strict=True):
         shown = []
-        for label, data, colour in of_channel(results, channel):
-            rms = f"{float(data.rms):.4g} {unit_text(data.rms)} rms"
+        for label, data, colour in iterate_records(results, channel):
+            rms = f"{float(data.rms):.4g} {typeset_array_unit(data.rms)} rms"
             words = f"{label + ': ' if label else ''}{rms}"
             plane.plot(data.frequency, data.psd, color=colour, linewidth=1.0, label=words)
             shown.append(data.psd.values[1:])
-        from_the_top(plane, shown)
+        limit_log_axis(plane, shown)
         plane.set_title(CHANNELS[channel])
-        plane.set_ylabel(unit_text(first_of(results).psd))
+        plane.set_ylabel(typeset_array_unit(first_result(results).psd))
         plane.legend(loc="upper right")
     axes[-1].set_xlabel(frequency_label(results))
     return figure
 
 
 def draw_orders(results: Results) -> Figure:
-    """Draw the amplitudes of the orders, a row per order, and the phase of the first."""
-    first = first_of(results)
-    orders, unit = [float(order) for order in first.order.values], unit_text(first.amplitude)
-    rows = [(f"order {n:g}\nin {unit}", order_reader(n, "amplitude", 1.0)) for n in orders]
-    figure, columns = draw_rows(results, rows, (1.0,) * len(orders) + (0.8,))
+    """Draw tracked orders' amplitudes over frequency, a row each, and the phase of order 1."""
+    first = first_result(results)
+    orders, unit = (
+        [float(order) for order in first.order.values],
+        typeset_array_unit(first.amplitude),
+    )
+    rows = [(f"order {n:g}\nin {unit}", make_order_reader(n, "amplitude", 1.0)) for n in orders]
+    figure, columns = draw_frequency_rows(results, rows, (1.0,) * len(orders) + (0.8,))
     for channel, column in columns.items():
-        for _, data, colour in of_channel(results, channel):
-            for part, style in directions(data):
-                phase = unbroken(at_order(part, 1.0).phase)
+        for _, data, colour in iterate_records(results, channel):
+            for part, style in split_sweep(data):
+                phase = phase_in_degrees(select_order(part, 1.0).phase)
                 column[-1].plot(part.frequency, phase, color=colour, linestyle=style, linewidth=1.0)
         column[-1].set(ylim=(-280.0, 100.0), yticks=(-270, -180, -90, 0, 90))
     next(iter(columns.values()))[-1].set_ylabel("phase of order 1\nin degrees")
@@ -236,23 +241,23 @@ def draw_orders(results: Results) -> Figure:
 
 
 def draw_harmonics(results: Results) -> Figure:
-    """Draw the total harmonic distortion and the lowest harmonics."""
-    orders = [float(order) for order in first_of(results).order.values[:2]]
+    """Draw total harmonic distortion and the lowest harmonics over frequency; return the figure."""
+    orders = [float(order) for order in first_result(results).order.values[:2]]
     rows: list[tuple[str, Reader]] = [("distortion\n(THD) in %", lambda x: 100.0 * x.distortion)]
     words = "order {:g}\nover order 1 in %"
-    rows += [(words.format(n), order_reader(n, "ratio", 100.0)) for n in orders]
-    return draw_rows(results, rows, (1.3,) + (1.0,) * len(orders))[0]
+    rows += [(words.format(n), make_order_reader(n, "ratio", 100.0)) for n in orders]
+    return draw_frequency_rows(results, rows, (1.3,) + (1.0,) * len(orders))[0]
 
 
-def order_reader(order: float, name: str, factor: float) -> Reader:
-    """Return a function that takes an order's values from a result."""
-    return lambda data: factor * at_order(data, order)[name]
+def make_order_reader(order: float, name: str, factor: float) -> Reader:
+    """Return a function that takes one order's values, times a factor, from a result."""
+    return lambda data: factor * select_order(data, order)[name]
 
 
-def draw_rows(
+def draw_frequency_rows(
     results: Results, rows: list[tuple[str, Reader]], heights: tuple[float, ...]
 ) -> tuple[Figure, Any]:
-    """Draw curves over a sweep's frequency, dashed downwards; return the figure and its axes.
+    """Draw rows of curves over a sweep's frequency, dashed for downward parts.
 
     Parameters
     ----------
@@ -262,11 +267,11 @@ def draw_rows(
     heights : tuple of float
         Of the rows; where there are more than ``rows`` the last ones stay empty.
     """
-    figure, columns = grid_of(results, len(heights), heights)
+    figure, columns = make_channel_grid(results, len(heights), heights)
     shown: list[dict[str, list[np.ndarray]]] = [{} for _ in rows]
     for channel, column in columns.items():
-        for label, data, colour in of_channel(results, channel):
-            for part, style in directions(data):
+        for label, data, colour in iterate_records(results, channel):
+            for part, style in split_sweep(data):
                 line: dict[str, Any] = {"color": colour, "linestyle": style, "linewidth": 1.0}
                 for axes, (_, values_of), values in zip(column, rows, shown, strict=False):
                     curve = values_of(part)
@@ -276,22 +281,22 @@ def draw_rows(
     first = next(iter(columns.values()))
     for axes, (word, _), values in zip(first, rows, shown, strict=False):
         axes.set_ylabel(word)
-        from_the_top(axes, [array for arrays in values.values() for array in arrays], 3)
+        limit_log_axis(axes, [array for arrays in values.values() for array in arrays], 3)
         note_hidden(axes, values)
     add_legend(figure, first[0], results)
     return figure, columns
 
 
-def at_order(data: xr.Dataset, order: float) -> xr.Dataset:
-    """Return the part of a result for one order; NaN if it was not tracked."""
+def select_order(data: xr.Dataset, order: float) -> xr.Dataset:
+    """Return the part of a result for one order; NaN if that order was not tracked."""
     return data.reindex(order=[order]).isel(order=0)
 
 
 def draw_spectrograms(results: Results) -> Figure:
-    """Draw spectrograms: a row per channel, a column per record, one scale of decibels."""
-    names, count = present(results), len(results)
+    """Draw spectrograms in decibels: a row per channel, a column per record; return the figure."""
+    names, count = channels_in(results), len(results)
     size = (1.2 + 4.2 * count, 0.8 + 2.2 * len(names))
-    figure, axes = panels(len(names), count, size, sharex=True, sharey=True)
+    figure, axes = make_panels(len(names), count, size, sharex=True, sharey=True)
     top = max(float(data.amplitude.max()) for data in results.values()) or 1.0
     for row, channel in enumerate(names):
         for column, (label, data) in enumerate(results.items()):
@@ -310,40 +315,43 @@ def draw_spectrograms(results: Results) -> Figure:
                 plane.set_ylabel(frequency_label(results))
             if row == len(names) - 1:
                 plane.set_xlabel("time in s")
-    unit = unit_text(first_of(results).amplitude)
+    unit = typeset_array_unit(first_result(results).amplitude)
     figure.colorbar(mesh, ax=axes, label=f"amplitude in dB re {top:.3g} {unit}", aspect=40)
     return figure
 
 
 def draw_shock_spectra(results: Results) -> Figure:
-    """Draw maximax shock spectra, and the residual ones as thin lines."""
-    names = present(results)
+    """Draw maximax shock response spectra, residual ones as thin lines; return the figure."""
+    names = channels_in(results)
     size = (1.0 + 3.6 * len(names), 4.4)
-    figure, axes = panels(1, len(names), size, sharex=True, sharey=True)
+    figure, axes = make_panels(1, len(names), size, sharex=True, sharey=True)
     shown = []
     for channel, plane in zip(names, axes, strict=True):
-        for _, data, colour in of_channel(results, channel):
+        for _, data, colour in iterate_records(results, channel):
             plane.loglog(data.frequency, data.maximax, color=colour, linewidth=1.4)
             plane.loglog(data.frequency, data.residual, color=colour, linewidth=0.7, linestyle=":")
             shown.append(data.maximax.values)
         plane.set_title(f"{CHANNELS[channel]} (dotted: after the record)")
         plane.set_xlabel(frequency_label(results, "natural frequency"))
-    damping, unit = float(first_of(results).damping), unit_text(first_of(results).maximax)
+    damping, unit = (
+        float(first_result(results).damping),
+        typeset_array_unit(first_result(results).maximax),
+    )
     axes[0].set_ylabel(f"largest acceleration in {unit}, damping ratio {100.0 * damping:g} %")
-    from_the_top(axes[0], shown, 4)
+    limit_log_axis(axes[0], shown, 4)
     add_legend(figure, axes[0], results)
     return figure
 
 
 def draw_densities(results: Results) -> Figure:
-    """Draw densities over standard deviations, beside the Gaussian one."""
-    names = present(results)
-    figure, axes = panels(1, len(names), (1.0 + 3.8 * len(names), 4.2), sharey=True)
+    """Draw probability densities over standard deviations, beside the Gaussian one."""
+    names = channels_in(results)
+    figure, axes = make_panels(1, len(names), (1.0 + 3.8 * len(names), 4.2), sharey=True)
     gauss = np.linspace(-4.5, 4.5, 181)
     for channel, plane in zip(names, axes, strict=True):
         bell = np.exp(-0.5 * gauss**2) / np.sqrt(2.0 * np.pi)
         plane.semilogy(gauss, bell, color=GREY, linestyle="--", linewidth=1.0, label="Gaussian")
-        for label, data, colour in of_channel(results, channel):
+        for label, data, colour in iterate_records(results, channel):
             sigma = float(data.standard_deviation) or 1.0
             numbers = f"skewness {float(data.skewness):.2f}, kurtosis {float(data.kurtosis):.2f}"
             words = f"{label + ': ' if label else ''}{numbers}"

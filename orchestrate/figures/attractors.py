@@ -1,4 +1,4 @@
-"""Coexisting attractors over a parameter: continued, matched, and how many starts lead to each."""
+"""Draw coexisting attractors over a parameter: largest gap, share of starts, number."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, PercentFor
 
 from .labels import orbit_label, title_from_attributes
 from .marks import MAX_DISTINCT
-from .scales import along, gaps, parameter_of
+from .scales import axis_values, displayed_gaps, varied_dimension
 from .style import (
     BLUE,
     GREEN,
@@ -24,7 +24,7 @@ from .style import (
     SKY,
     YELLOW,
     legend_below,
-    panels,
+    make_panels,
     set_title,
     styled,
 )
@@ -35,8 +35,8 @@ IRREGULAR, OTHER = "irregular", "other periodic"
 MAX_MARKED = 60  # values up to which each has a mark; of more, those alone have one
 
 
-class Kind(NamedTuple):
-    """Style in which attractors of one kind are drawn."""
+class AttractorStyle(NamedTuple):
+    """Marker and line style of attractors of one kind (period and impacts)."""
 
     colour: str
     marker: str
@@ -44,7 +44,7 @@ class Kind(NamedTuple):
 
 @styled
 def draw(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw attractors by their largest gap, the share of starts that lead to each, and their count.
+    """Draw attractors over a parameter: largest gap, share of starts and number; return the figure.
 
     Parameters
     ----------
@@ -53,13 +53,13 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
     title : str
         By default the structure.
     """
-    figure, axes = panels(3, 1, (9.6, 7.2), sharex=True, height_ratios=(3, 2, 1))
+    figure, axes = make_panels(3, 1, (9.6, 7.2), sharex=True, height_ratios=(3, 2, 1))
     top, middle, bottom = axes
     set_title(figure, title or title_from_attributes(data))
-    data = data.sortby(parameter_of(data.number))
-    x, name = along(data, parameter_of(data.number))
-    shown, label = gaps(data, data.xi_rel_max)
-    kinds, words = kinds_of(data)
+    data = data.sortby(varied_dimension(data.number))
+    x, name = axis_values(data, varied_dimension(data.number))
+    shown, label = displayed_gaps(data, data.xi_rel_max)
+    kinds, words = styles_by_kind(data)
     used = {word: kinds[word] for word in dict.fromkeys(words.ravel()) if word}
     for index in range(data.sizes["attractor"]):
         part = data.isel(attractor=index)
@@ -83,8 +83,8 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
     return figure
 
 
-def kinds_of(data: xr.Dataset) -> tuple[dict[str, Kind], np.ndarray]:
-    """Return styles by kind, the most frequent first, and each attractor's kind ("": none)."""
+def styles_by_kind(data: xr.Dataset) -> tuple[dict[str, AttractorStyle], np.ndarray]:
+    """Return a dict of styles by kind, most frequent first, and each attractor's kind."""
     n, rate = data.multiplicity.values, data.impacts_per_period.values
     words = np.full(n.shape, "", dtype=object)
     for index in zip(*np.nonzero(np.isfinite(n)), strict=True):
@@ -93,33 +93,41 @@ def kinds_of(data: xr.Dataset) -> tuple[dict[str, Kind], np.ndarray]:
     frequent = [word for word, _ in counts.most_common(len(COLOURS))]
     rare = np.isin(words, [*frequent, IRREGULAR, ""], invert=True)
     words[rare] = OTHER
-    kinds = {word: Kind(colour, "o") for word, colour in zip(frequent, COLOURS, strict=False)}
-    kinds |= {OTHER: Kind(GREY, "o"), IRREGULAR: Kind(RED, "D")}
+    kinds = {
+        word: AttractorStyle(colour, "o") for word, colour in zip(frequent, COLOURS, strict=False)
+    }
+    kinds |= {OTHER: AttractorStyle(GREY, "o"), IRREGULAR: AttractorStyle(RED, "D")}
     return kinds, words.astype(str)
 
 
 def draw_attractor(
-    panel: Axes, x: np.ndarray, values: np.ndarray, words: np.ndarray, kinds: dict[str, Kind]
+    panel: Axes,
+    x: np.ndarray,
+    values: np.ndarray,
+    words: np.ndarray,
+    kinds: dict[str, AttractorStyle],
 ) -> None:
-    """Draw one attractor along the parameter, in the colours of its kinds."""
+    """Draw one attractor's values over the parameter, coloured by its kind at each value."""
     panel.plot(x, values, "-", color="#c8c8c8", linewidth=0.8, zorder=1.5)
     for word in dict.fromkeys(words[words != ""]):
         of_kind = np.where(words == word, values, np.nan)
         panel.plot(x, of_kind, "-", color=kinds[word].colour, linewidth=1.4)
-        marked = of_kind if len(x) <= MAX_MARKED else np.where(isolated(of_kind), of_kind, np.nan)
+        marked = (
+            of_kind if len(x) <= MAX_MARKED else np.where(is_isolated(of_kind), of_kind, np.nan)
+        )
         style: Any = {"color": kinds[word].colour, "markersize": 3.5, "markeredgewidth": 0.0}
         panel.plot(x, marked, kinds[word].marker, **style)
 
 
-def isolated(values: np.ndarray) -> np.ndarray:
-    """Return which values have no neighbour to draw a line to."""
+def is_isolated(values: np.ndarray) -> np.ndarray:
+    """Return a Boolean array: values without a neighbour to which a line could be drawn."""
     exists = np.concatenate([[False], np.isfinite(values), [False]])
     result: np.ndarray = exists[1:-1] & ~exists[:-2] & ~exists[2:]
     return result
 
 
 def use_log_scale(axes: Axes) -> None:
-    """Set a logarithmic scale with plain numbers for the parameter."""
+    """Set a logarithmic x axis with plain numbers."""
     axes.set_xscale("log")
     axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 1.5, 2.0, 3.0, 5.0, 7.0)))
     axes.xaxis.set_major_formatter("{x:g}")

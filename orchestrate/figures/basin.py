@@ -1,4 +1,4 @@
-"""Basins of attraction in a plane of starts."""
+"""Draw basins of attraction in a plane of start states."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
 from ..units import scale_of, units_of
-from .labels import gap_name, orbit_label, symbol, title_from_attributes, unit_sign
-from .style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, XI_REL, panels, set_title, styled
+from .labels import gap_name, orbit_label, symbol, title_from_attributes, typeset_unit
+from .style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, XI_REL, make_panels, set_title, styled
 
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, RED)  # of the most frequent attractors
 OTHER = "#bbbbbb"
@@ -21,7 +21,7 @@ STATE = ("x1", "x2", "v1", "v2")
 
 @styled
 def draw(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", "")) -> Figure:
-    """Draw the plane, each start in the colour of its attractor.
+    """Draw basins: each start in the colour of the attractor it leads to; return the figure.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ def draw(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", "")) -
     names : (str, str)
         Of both axes; by default those of the coordinates, with their units.
     """
-    figure, (plane,) = panels(1, 1, (6.4, 5.6))
+    figure, (plane,) = make_panels(1, 1, (6.4, 5.6))
     y, x = map(str, data.attractor_of.dims)
     labels = data.attractor_of.where(data.attractor_of >= 0).values.clip(max=len(COLOURS))
     shades = ListedColormap([*COLOURS, OTHER])
@@ -51,22 +51,22 @@ def draw(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", "")) -
 
 
 def coordinate_scale(data: xr.Dataset, name: str) -> tuple[float, str]:
-    """Return the divisor of a coordinate of the plane, and its label."""
+    """Return the divisor to display units and the axis label of a coordinate of the plane."""
     unit = "m/s" if name.startswith("v") else "m"
     if name == "phase":
         return 1.0, symbol(name)
     factor, word = scale_of(data, unit)
     words = gap_name(data) if name == "x_rel" else symbol(name).rpartition(" in ")[0]
-    return factor, f"{words} in {unit_sign(word)}"
+    return factor, f"{words} in {typeset_unit(word)}"
 
 
 def mark_attractors(plane: Axes, data: xr.Dataset) -> None:
-    """Mark a state on each attractor by a cross, projected along what the plane does not vary."""
+    """Mark a state of each attractor by a cross, projected on the plane."""
     y, x = map(str, data.attractor_of.dims)
     if "state" not in data or "phase" in (x, y):
         return
     columns = dict(zip(STATE, data.state.values.T, strict=True))
-    columns |= {"x_rel": gap_of(data, columns), "v_rel": columns["v2"] - columns["v1"]}
+    columns |= {"x_rel": gap_from_states(data, columns), "v_rel": columns["v2"] - columns["v1"]}
     right, up = (coordinate_scale(data, name)[0] for name in (x, y))
     limits = plane.get_xlim(), plane.get_ylim()
     style: Any = {
@@ -78,21 +78,21 @@ def mark_attractors(plane: Axes, data: xr.Dataset) -> None:
     for index in range(data.sizes["attractor"]):
         colour = COLOURS[index] if index < len(COLOURS) else OTHER
         style["markerfacecolor"] = colour
-        place = columns[x][index] / right, columns[y][index] / up
-        plane.plot(*place, "X", **style)
+        position = columns[x][index] / right, columns[y][index] / up
+        plane.plot(*position, "X", **style)
     plane.set(xlim=limits[0], ylim=limits[1])
     plane.plot([], [], "X", **{**style, "markerfacecolor": "white"}, label="states on them")
 
 
-def gap_of(data: xr.Dataset, columns: dict[str, np.ndarray]) -> np.ndarray:
-    """Return the gap between the faces in some states."""
+def gap_from_states(data: xr.Dataset, columns: dict[str, np.ndarray]) -> np.ndarray:
+    """Return the gap between the faces, m, of states given as a dict of coordinate arrays."""
     clearance = 0.0 if data.attrs.get("bonded") else float(data.attrs.get("clearance", 0.0))
     gap: np.ndarray = columns["x2"] - columns["x1"] + clearance
     return gap
 
 
 def label_attractors(plane: Axes, data: xr.Dataset) -> None:
-    """Add a legend entry for each attractor that has a colour, and one for the rest."""
+    """Add a legend with period, impacts and share of each coloured attractor."""
     for index, colour in zip(range(data.sizes["attractor"]), COLOURS, strict=False):
         part = data.isel(attractor=index)
         n, impacts = float(part.multiplicity), float(part.impacts_per_period)

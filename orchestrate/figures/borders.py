@@ -1,4 +1,4 @@
-"""Where windows begin and end over two parameters: a curve for each bifurcation."""
+"""Draw bifurcation curves over two parameters."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from ..flags import flag_words
 from .labels import title_from_attributes
 from .scales import parameter_scale
-from .style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, panels, styled
+from .style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, make_panels, styled
 
 MARKERS = ("*", "D", "o", "s", "^", "P", "v", "X", "<", ">", "h")  # by number of the point's kind
 COLOURS = {
@@ -26,7 +26,7 @@ COLOURS = {
 
 @styled
 def draw(*curves: xr.Dataset, title: str = "") -> Figure:
-    """Draw bifurcations over two parameters.
+    """Draw bifurcation curves over two parameters, with codimension-two points; return the figure.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def draw(*curves: xr.Dataset, title: str = "") -> Figure:
         Of :func:`orchestrate.border`, all over the same two parameters.
     title : str
     """
-    figure, (plane,) = panels(1, 1, (9.6, 4.4))
+    figure, (plane,) = make_panels(1, 1, (9.6, 4.4))
     first, second = (str(name) for name in curves[0].attrs["over"])
     (x_unit, x_label), (y_unit, y_label) = (
         parameter_scale(curves[0], name) for name in (first, second)
@@ -57,7 +57,7 @@ def draw(*curves: xr.Dataset, title: str = "") -> Figure:
 def draw_points(
     plane: Axes, curve: xr.Dataset, axes: Iterable[tuple[str, float]], shown: set[str]
 ) -> None:
-    """Draw a marker at each point of codimension two; each kind once in the legend.
+    """Draw a marker at each codimension-two point; each kind once in the legend.
 
     Parameters
     ----------

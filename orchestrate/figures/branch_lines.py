@@ -1,4 +1,4 @@
-"""Lines of branches, solid where orbits are stable and dashed where not, and their bifurcations."""
+"""Draw branches as lines, solid where orbits are stable and dashed where not."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ MARKERS = {  # by the bifurcation's kind
 }
 
 
-def draw_lines(
+def draw_branch(
     plane: Axes,
     x: np.ndarray,
     rows: np.ndarray,
     stable: np.ndarray,
     colours: tuple[str, str] = (BLUE, RED),
 ) -> None:
-    """Draw lines along a branch.
+    """Draw a branch's values as lines: solid where stable, dashed where unstable.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def draw_lines(
 
 
 def draw_bifurcations(plane: Axes, branch: xr.Dataset, x: np.ndarray, rows: np.ndarray) -> None:
-    """Draw a marker at each bifurcation, by its kind.
+    """Draw a marker of the bifurcation's kind at each bifurcation of a branch.
 
     Parameters
     ----------

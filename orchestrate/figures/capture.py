@@ -1,4 +1,4 @@
-"""The capture map: voltages from rest that pass the resonance, are captured, or are undecided."""
+"""Draw capture maps: voltages from rest that pass the resonance, are captured or undecided."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .style import BLACK, GREEN, GREY, ORANGE, legend_under, panels, set_title, styled
+from .style import BLACK, GREEN, GREY, ORANGE, legend_under, make_panels, set_title, styled
 
 PASSED, UNDECIDED = GREEN, ORANGE
 FOLD: Any = {"color": GREY, "linewidth": 1.0, "linestyle": ":", "label": "fold, averaged theory"}
@@ -18,7 +18,7 @@ FOLD: Any = {"color": GREY, "linewidth": 1.0, "linestyle": ":", "label": "fold, 
 
 @styled
 def draw(maps: Mapping[str, xr.Dataset], title: str = "") -> Figure:
-    """Draw capture maps, one per column.
+    """Draw capture maps, one column per structure; return the figure.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ def draw(maps: Mapping[str, xr.Dataset], title: str = "") -> Figure:
         Of :func:`orchestrate.capture`, by what they are, such as ``"bonded"``.
     title : str
     """
-    figure, axes = panels(1, len(maps), (5.5 * len(maps), 4.5), sharex=True, sharey=True)
+    figure, axes = make_panels(1, len(maps), (5.5 * len(maps), 4.5), sharex=True, sharey=True)
     for panel, (name, data) in zip(axes, maps.items(), strict=True):
         over = {str(dim) for dim in data.passes.dims} - {"voltage"}
         panel.set_title(name)
@@ -34,14 +34,14 @@ def draw(maps: Mapping[str, xr.Dataset], title: str = "") -> Figure:
         if over:
             draw_map(panel, data, over.pop())
         else:
-            draw_line(panel, data)
+            draw_passage_times(panel, data)
         panel.label_outer()
         legend_under(panel, columns=4)
     set_title(figure, title)
     return figure
 
 
-def kinds_of(data: xr.Dataset) -> dict[str, tuple[np.ndarray, dict[str, Any]]]:
+def split_by_outcome(data: xr.Dataset) -> dict[str, tuple[np.ndarray, dict[str, Any]]]:
     """Return the starts that pass, are captured or are undecided, with their marks."""
     passed = data.passes.values > 0
     undecided = data.decision.isin(["undecided", "settled at the resonance"]).values
@@ -53,19 +53,19 @@ def kinds_of(data: xr.Dataset) -> dict[str, tuple[np.ndarray, dict[str, Any]]]:
     return {name: kind for name, kind in kinds.items() if kind[0].any()}
 
 
-def is_wide(data: xr.Dataset) -> bool:
-    """Return whether undecided starts leave the threshold's interval wider than the tolerance."""
+def is_threshold_uncertain(data: xr.Dataset) -> bool:
+    """Return whether undecided starts leave the threshold less exact than the tolerance."""
     return bool((data.border_high - data.border_low > data.border.attrs["tolerance"]).any())
 
 
 def draw_map(axes: Axes, data: xr.Dataset, over: str) -> None:
-    """Draw passed, captured and undecided over voltage and parameter, the border, and the fold."""
+    """Draw passed, captured and undecided starts over voltage and parameter, with the threshold."""
     data = data.transpose(over, "voltage")
     volts, values = np.meshgrid(data.voltage.values, data[over].values)
-    for name, (chosen, mark) in kinds_of(data).items():
+    for name, (chosen, mark) in split_by_outcome(data).items():
         axes.scatter(volts[chosen], values[chosen], s=22, linewidths=0.8, label=name, **mark)
     axes.plot(data.border, data[over], "-", color=BLACK, linewidth=1.2, label="border")
-    if is_wide(data):
+    if is_threshold_uncertain(data):
         interval: Any = {"color": UNDECIDED, "alpha": 0.3, "linewidth": 0.0}
         ends = data.border_low, data.border_high
         axes.fill_betweenx(data[over], *ends, label="undecided between", **interval)
@@ -76,11 +76,11 @@ def draw_map(axes: Axes, data: xr.Dataset, over: str) -> None:
     axes.set_ylabel(over.replace("_", " ") + ("" if unit == "1" else f" in {unit}"))
 
 
-def draw_line(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the time of the passage over the voltage."""
+def draw_passage_times(axes: Axes, data: xr.Dataset) -> None:
+    """Draw the time at which the resonance is passed over the starting voltage."""
     volts = data.voltage.values
     low: Any = {"transform": axes.get_xaxis_transform(), "clip_on": False, "linestyle": "none"}
-    for name, (chosen, mark) in kinds_of(data).items():
+    for name, (chosen, mark) in split_by_outcome(data).items():
         if name == "passes":
             axes.plot(volts[chosen], data.passage_time.values[chosen], label=name, **mark)
         else:
@@ -88,7 +88,7 @@ def draw_line(axes: Axes, data: xr.Dataset) -> None:
     border = float(data.border)
     if np.isfinite(border):
         axes.axvline(border, color=BLACK, linewidth=1.0, label=f"border, {border:.4f} V")
-    if is_wide(data):
+    if is_threshold_uncertain(data):
         ends = float(data.border_low), float(data.border_high)
         axes.axvspan(*ends, color=UNDECIDED, alpha=0.3, linewidth=0.0, label="undecided between")
     if volts[0] <= float(data.fold) <= volts[-1]:

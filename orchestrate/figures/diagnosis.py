@@ -1,4 +1,4 @@
-"""Pictures of the diagnosis: a record over its fits, signs over their floors, a test's plan."""
+"""Draw a diagnosis: measured orders over fits, signs over noise floors, a test's plan."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from matplotlib.patches import Rectangle
 
 from ..units import as_shown
 from .labels import plain_title
-from .scales import unit_text, with_unit
+from .scales import label_with_unit, typeset_array_unit
 from .style import (
     BLACK,
     BLUE,
@@ -24,7 +24,7 @@ from .style import (
     RED,
     SKY,
     legend_below,
-    panels,
+    make_panels,
     set_title,
     styled,
 )
@@ -40,7 +40,7 @@ HEIGHT = 0.8  # of all bars of a sign
 
 @styled
 def draw_signs(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw signs over their noise floors and over the values of sound structures.
+    """Draw delamination signs as bars relative to noise and to a sound structure's values.
 
     Parameters
     ----------
@@ -50,18 +50,18 @@ def draw_signs(data: xr.Dataset, title: str = "") -> Figure:
         By default the answer's own.
     """
     signs = [str(sign) for sign in data.sign.values]
-    figure, (axes,) = panels(1, 1, (8.0, 1.6 + 0.32 * len(signs)))
+    figure, (axes,) = make_panels(1, 1, (8.0, 1.6 + 0.32 * len(signs)))
     usual = np.fmax(data.floor, data.sound_highest)
     ratio = (data.value / usual).where(data.exceeds >= 0)
     channels = [str(channel) for channel in data.channel.values]
     share = HEIGHT / len(channels)
     for number, channel in enumerate(channels):
-        place = np.arange(len(signs)) + share * (number - 0.5 * (len(channels) - 1))
+        positions = np.arange(len(signs)) + share * (number - 0.5 * (len(channels) - 1))
         values = ratio.sel(channel=channel).values
         label = CHANNELS.get(channel, channel)
         colour = COLOURS[number % len(COLOURS)]
-        axes.barh(place, np.nan_to_num(values), share, color=colour, label=label)
-        write_values(axes, place, values, data.value.sel(channel=channel).values)
+        axes.barh(positions, np.nan_to_num(values), share, color=colour, label=label)
+        write_values(axes, positions, values, data.value.sel(channel=channel).values)
     lines: Any = {"linewidth": 1.0, "zorder": 3}
     axes.axvline(1.0, color=GREY, label="noise and a sound structure", **lines)
     axes.axvline(LIMIT, color=RED, linestyle="--", label="from here it stands out", **lines)
@@ -77,7 +77,7 @@ def draw_signs(data: xr.Dataset, title: str = "") -> Figure:
 
 
 def write_values(axes: Axes, place: np.ndarray, ratios: np.ndarray, values: np.ndarray) -> None:
-    """Write each sign's own number at the end of its bar."""
+    """Write each sign's own value at the end of its bar, or that the record lacks it."""
     for y, ratio, value in zip(place, ratios, values, strict=True):
         known = np.isfinite(ratio)
         text = f"{value:.3g}" if known else "not in this record"
@@ -90,7 +90,7 @@ def write_values(axes: Axes, place: np.ndarray, ratios: np.ndarray, values: np.n
 
 @styled
 def draw_plan(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw where in frequency and level a delamination shows, and what preload hides it.
+    """Draw over frequency and level where a test would show a delamination; return the figure.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def draw_plan(data: xr.Dataset, title: str = "") -> Figure:
         By default the answer's own.
     """
     size = (8.0, 6.2)
-    figure, (plane, below) = panels(2, 1, size, sharex=True, height_ratios=(1.5, 1.0))
+    figure, (plane, below) = make_panels(2, 1, size, sharex=True, height_ratios=(1.5, 1.0))
     data = as_shown(data)
     limit = float(data.threshold)
     if data.sizes["level"] > 1:
@@ -110,9 +110,9 @@ def draw_plan(data: xr.Dataset, title: str = "") -> Figure:
     for number, level in enumerate(data.level.values):
         line: Any = {"color": COLOURS[number % len(COLOURS)], "linewidth": 1.1}
         force = data.closing_force.isel(level=number)
-        label = f"at {level:.3g} {unit_text(data.level)}"
+        label = f"at {level:.3g} {typeset_array_unit(data.level)}"
         below.semilogy(data.frequency, force, label=label, **line)
-    across = with_unit("frequency of the box", data.frequency)
+    across = label_with_unit("frequency of the box", data.frequency)
     below.set(xlabel=across, ylabel="preload that keeps\nit shut, in N")
     legend_below(figure, [plane, below], 4)
     set_title(figure, title or plain_title(str(data.attrs["title"])))
@@ -120,7 +120,7 @@ def draw_plan(data: xr.Dataset, title: str = "") -> Figure:
 
 
 def draw_map(figure: Figure, plane: Axes, data: xr.Dataset, limit: float) -> None:
-    """Draw the distance by orders 2 and 3 over frequency and level, and the recommended sweep."""
+    """Draw the distance by orders 2 and 3 over frequency and level, with the recommended sweep."""
     values = data.distance_harmonics
     top = max(float(values.max()), 10.0 * limit)
     norm = LogNorm(1e-4 * top, top)
@@ -144,7 +144,7 @@ def draw_map(figure: Figure, plane: Axes, data: xr.Dataset, limit: float) -> Non
             label="recommended sweep",
         )
     )
-    plane.set(yscale="log", ylabel=with_unit("level of the box", data.level))
+    plane.set(yscale="log", ylabel=label_with_unit("level of the box", data.level))
     plane.set_ylim(float(data.level.min()) / 1.3, float(data.level.max()) * 1.3)
     plane.grid(visible=False)
     words = "difference by orders 2 and 3\nin standard deviations of the noise"
@@ -152,7 +152,7 @@ def draw_map(figure: Figure, plane: Axes, data: xr.Dataset, limit: float) -> Non
 
 
 def draw_distances(plane: Axes, data: xr.Dataset, limit: float) -> None:
-    """Draw the distances at one level."""
+    """Draw the distances by orders 1 to 3 over frequency, at the first level."""
     at = data.isel(level=0)
     plane.semilogy(at.frequency, at.distance_harmonics, color=BLUE, label="orders 2 and 3")
     plane.semilogy(at.frequency, at.distance_first, color=ORANGE, label="order 1")
@@ -165,7 +165,7 @@ def draw_distances(plane: Axes, data: xr.Dataset, limit: float) -> None:
 
 @styled
 def draw_detect(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw the orders of a record over those of the fits, a column a sensor.
+    """Draw a record's orders over frequency with those of the fits, one column per sensor.
 
     Parameters
     ----------
@@ -174,11 +174,11 @@ def draw_detect(data: xr.Dataset, title: str = "") -> Figure:
     title : str
         By default the answer's own.
     """
-    data = by_hypothesis(as_shown(data))
+    data = with_hypothesis_dimension(as_shown(data))
     channels = [str(channel) for channel in data.channel.values]
     orders = [float(order) for order in data.order.values]
     rows, columns = len(orders), len(channels)
-    figure, axes = panels(rows, columns, (1.5 + 6.0 * columns, 0.9 + 1.9 * rows), sharex=True)
+    figure, axes = make_panels(rows, columns, (1.5 + 6.0 * columns, 0.9 + 1.9 * rows), sharex=True)
     shown = best_fits(data)
     for place, (order, channel) in enumerate((n, name) for n in orders for name in channels):
         plane = axes[place]
@@ -196,18 +196,18 @@ def draw_detect(data: xr.Dataset, title: str = "") -> Figure:
         plane.set_yscale("log")
         limit_decades(plane, at.measured.values)
         if place % columns == 0:
-            plane.set_ylabel(f"order {order:g}\nin {unit_text(data.measured)}")
+            plane.set_ylabel(f"order {order:g}\nin {typeset_array_unit(data.measured)}")
         if place < columns:
             plane.set_title(CHANNELS.get(channel, channel))
     for plane in axes[-columns:]:
-        plane.set_xlabel(with_unit("frequency of the excitation", data.frequency))
+        plane.set_xlabel(label_with_unit("frequency of the excitation", data.frequency))
     legend_below(figure, axes, 3)
     set_title(figure, title or str(data.attrs.get("title", "")))
     return figure
 
 
-def by_hypothesis(data: xr.Dataset) -> xr.Dataset:
-    """Return an answer with the dimension ``hypothesis``, even if it has one only."""
+def with_hypothesis_dimension(data: xr.Dataset) -> xr.Dataset:
+    """Return a result with the dimension ``hypothesis``, added if it has a single fit."""
     if "hypothesis" in data.dims:
         return data
     fitted = {name: data[name] for name in ("fitted", "misfit", "misfit_at") if name in data}
@@ -218,7 +218,7 @@ def by_hypothesis(data: xr.Dataset) -> xr.Dataset:
 
 
 def best_fits(data: xr.Dataset) -> list[str]:
-    """Return the fits to draw: the best delaminated, the best sound and the bonded one."""
+    """Return the names of the fits to draw: best delaminated, best sound, and bonded."""
     order = np.argsort(data.misfit.values, kind="stable")
     ordered = [str(name) for name in data.hypothesis.values[order]]
     parted = [name for name in ordered if name.startswith(PARTED)][:1]
@@ -227,7 +227,7 @@ def best_fits(data: xr.Dataset) -> list[str]:
 
 
 def limit_decades(plane: Axes, values: np.ndarray) -> None:
-    """Limit a logarithmic axis to the decades of the measured values."""
+    """Limit a logarithmic y axis to the decades of the measured values."""
     known = values[np.isfinite(values) & (values > 0.0)]
     if len(known):
         plane.set_ylim(0.3 * np.quantile(known, 0.02), 3.0 * known.max())
@@ -235,7 +235,7 @@ def limit_decades(plane: Axes, values: np.ndarray) -> None:
 
 @styled
 def draw_misfit(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw how far each fit is from the record, over the frequency.
+    """Draw each fit's misfit to the record over frequency; return the figure.
 
     Parameters
     ----------
@@ -244,7 +244,7 @@ def draw_misfit(data: xr.Dataset, title: str = "") -> Figure:
     title : str
         By default the answer's own.
     """
-    figure, (axes,) = panels(1, 1, (8.0, 3.4))
+    figure, (axes,) = make_panels(1, 1, (8.0, 3.4))
     data = as_shown(data)
     for number, name in enumerate(best_fits(data)):
         one = data.sel(hypothesis=name)
@@ -252,7 +252,7 @@ def draw_misfit(data: xr.Dataset, title: str = "") -> Figure:
         words = f"{name}: {float(one.misfit):.3g}"
         axes.semilogy(one.frequency, one.misfit_at, label=words, **line)
     axes.axhline(1.0, color=GREY, linewidth=0.8)
-    across = with_unit("frequency of the excitation", data.frequency)
+    across = label_with_unit("frequency of the excitation", data.frequency)
     axes.set(xlabel=across, ylabel="misfit over its usual size")
     legend_below(figure, [axes], 2)
     set_title(figure, title or str(data.attrs.get("title", "")))

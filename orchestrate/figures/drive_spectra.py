@@ -1,4 +1,4 @@
-"""Figure 3: acceleration spectra at resonance, semi-logarithmic, undamaged above delaminated."""
+"""Draw acceleration spectra on a motor at resonance (Figure 3), bonded above delaminated."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ..units import units_of, with_units
-from .labels import frequency_text
+from .labels import format_frequency
 from .marks import draw_stems
 from .scales import acceleration_scale
-from .style import panels, set_title, styled
+from .style import make_panels, set_title, styled
 from .weak_drive import COLOURS
 
 FLOOR = 1e-6  # of the largest amplitude: the lower end of the axis
@@ -17,7 +17,7 @@ FLOOR = 1e-6  # of the largest amplitude: the lower end of the axis
 
 @styled
 def draw(data: xr.Dataset, mass: int = 1, title: str = "") -> Figure:
-    """Draw spectra one below the other.
+    """Draw one mass' acceleration spectra of both structures, one below the other.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ def draw(data: xr.Dataset, mass: int = 1, title: str = "") -> Figure:
         What is shown: set and volts.
     """
     count = data.sizes["kind"]
-    figure, axes = panels(count, 1, (10, 3.5 * count), sharex=True, sharey=True)
+    figure, axes = make_panels(count, 1, (10, 3.5 * count), sharex=True, sharey=True)
     turning = data if units_of(data).frequency else with_units(data, "rad/s")
     felt, unit = acceleration_scale(data)
     shown = data.acceleration.sel(mass=mass) / felt
@@ -37,7 +37,7 @@ def draw(data: xr.Dataset, mass: int = 1, title: str = "") -> Figure:
     for panel, kind in zip(axes, map(str, data.kind.values), strict=True):
         amplitude = shown.sel(kind=kind).values
         draw_stems(panel, data.order.values, amplitude, FLOOR * top, color=COLOURS[kind])
-        speed = frequency_text(turning, float(data.speed.sel(kind=kind)))
+        speed = format_frequency(turning, float(data.speed.sel(kind=kind)))
         panel.set(title=f"{kind}, {speed}", ylabel=f"acceleration in {unit}")
         panel.set_ylim(FLOOR * top, 2.0 * top)
     axes[-1].set_xlabel(r"frequency over the motor's speed $\Omega$")

@@ -1,4 +1,4 @@
-"""Figures on disk, each whole or not at all."""
+"""Save figures to PNG, PDF or SVG files atomically."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from ..files import write_whole
-from .style import XI_REL, panels, style
+from .style import XI_REL, make_panels, style_context
 
 UNDATED: dict[str, dict[str, Any]] = {  # the same figure is the same bytes, today and tomorrow
     "pdf": {"CreationDate": None},
@@ -19,24 +19,24 @@ UNDATED: dict[str, dict[str, Any]] = {  # the same figure is the same bytes, tod
 }
 
 
-def prepare() -> None:
+def warm_up_matplotlib() -> None:
     """Draw a small figure so that the first real one does not wait for fonts and formulas."""
-    with style():
-        figure, (axes,) = panels(1, 1, (1.0, 1.0))
+    with style_context():
+        figure, (axes,) = make_panels(1, 1, (1.0, 1.0))
         axes.set_xlabel(XI_REL)
         figure.savefig(io.BytesIO(), format="png")
 
 
-def png_of(figure: Figure) -> bytes:
+def png_bytes(figure: Figure) -> bytes:
     """Return a figure as the bytes of a PNG file."""
     file = io.BytesIO()
-    with style():
+    with style_context():
         figure.savefig(file, format="png", metadata=UNDATED["png"])
     return file.getvalue()
 
 
-def size_of(png: bytes) -> dict[str, int]:
-    """Return width and height of a PNG picture in pixels, from its header."""
+def png_size(png: bytes) -> dict[str, int]:
+    """Return width and height of a PNG picture in pixels, read from its header."""
     width, height = (int.from_bytes(png[start : start + 4], "big") for start in (16, 20))
     return {"width": width, "height": height}
 
@@ -44,7 +44,7 @@ def size_of(png: bytes) -> dict[str, int]:
 def save(
     figure: Figure, path: str | Path, formats: Iterable[str] = ("png",), **options: Any
 ) -> list[Path]:
-    """Write a figure in each format, every file whole or not at all.
+    """Save a figure in each format atomically; return the paths.
 
     Parameters
     ----------
@@ -71,7 +71,8 @@ def save(
         target = Path(f"{path}.{ending}")
 
         def write(temporary: Path, ending: str = ending) -> None:
-            with style():
+            """Save the figure in one format to a temporary path."""
+            with style_context():
                 figure.savefig(temporary, format=ending, metadata=UNDATED.get(ending), **options)
 
         write_whole(target, write)

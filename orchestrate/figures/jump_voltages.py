@@ -1,4 +1,4 @@
-"""Jump voltages: those of ramps over their rate, and the lines that lead to rate 0."""
+"""Draw jump voltages over ramp rates, with the lines extrapolated to rate 0."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from .style import panels, set_title, styled
+from .style import make_panels, set_title, styled
 from .weak_drive import COLOURS
 
 EXPONENT = 2.0 / 3.0
@@ -16,7 +16,7 @@ EXPONENT = 2.0 / 3.0
 
 @styled
 def draw(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw jump voltages, one panel per direction.
+    """Draw jump voltages over the ramp rate, one panel per direction; return the figure.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
     """
     known = np.isfinite(data.voltage).any(["rate", "structure"])
     jumps = [str(jump) for jump in data.jump.values if known.sel(jump=jump)] or ["up"]
-    figure, axes = panels(1, len(jumps), (6.0 * len(jumps), 4.5))
+    figure, axes = make_panels(1, len(jumps), (6.0 * len(jumps), 4.5))
     lag = data.rate.values**EXPONENT
     for panel, jump in zip(axes, jumps, strict=True):
         for structure in map(str, data.structure.values):

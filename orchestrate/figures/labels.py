@@ -1,4 +1,4 @@
-"""Text in pictures and legends: parameters, structures, and kinds of responses."""
+"""Format labels, titles and legend texts of pictures: parameters, structures, responses."""
 
 from __future__ import annotations
 
@@ -58,14 +58,14 @@ PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
 def symbol(name: str) -> str:
-    """Return a parameter's symbol for an axis; without one, its name with its unit."""
+    """Return a parameter's mathematical symbol for an axis; without one, its name with unit."""
     unit = STRUCTURE[name].unit if name in STRUCTURE else "1"
     ending = f" in {unit}" if unit != "1" else ""
     return SYMBOLS.get(name, name.replace("_", " ") + ending)
 
 
 def format_parameters(values: Mapping[str, float]) -> str:
-    """Format parameters with their values, for a title."""
+    """Format a dict of parameters as a title text, ``e = 0.7, D = 0.005``."""
     parts = []
     for name, value in values.items():
         letter, _, unit = symbol(name).partition(" in ")
@@ -74,7 +74,7 @@ def format_parameters(values: Mapping[str, float]) -> str:
 
 
 def title_from_attributes(data: xr.Dataset, shown_elsewhere: Iterable[str] = ()) -> str:
-    r"""Format a dataset's structure and excitation for a title: e, D, and non-default parameters.
+    r"""Return a title from a dataset's structure and excitation: e, D and unusual parameters.
 
     A structure that is not in the paper's units is described by its halves: frequencies in Hz,
     damping ratios at them in per cent.
@@ -92,11 +92,11 @@ def title_from_attributes(data: xr.Dataset, shown_elsewhere: Iterable[str] = ())
     >>> title_from_attributes(xr.Dataset(attrs=attributes))
     '$e$ = 0.7, $D$ = 0.005, $\\mu$ = 2'
     """
-    known = {name: float(value) for name, value in data.attrs.items() if is_number(value)}
+    known = {name: float(value) for name, value in data.attrs.items() if is_finite_number(value)}
     shown = {*map(str, data.dims), *shown_elsewhere}
     values = {"e": known["e"]} if "e" in known else {}
     by_halves = is_in_si(known) and not shown & HALF_PARAMETERS
-    values |= {} if by_halves else ratios(known)
+    values |= {} if by_halves else paper_ratios(known)
     values |= {"gamma": known["gamma"]} if "gamma" in known else {}
     left_at_usual = {name for name, value in USUAL_VALUES.items() if values.get(name) == value}
     moved = {"D", "D1", "D2"} if "D" in shown else set()
@@ -108,23 +108,27 @@ def title_from_attributes(data: xr.Dataset, shown_elsewhere: Iterable[str] = ())
         text = ", ".join(filter(None, [format_halves(known), text]))
     if not known.get("bonded"):
         added = {name: known[name] for name in ADDED if known.get(name) and name not in shown}
-        text = ", ".join(filter(None, [text, *(added_text(*item, data) for item in added.items())]))
-    shaken = [words for name, words in excitation_texts(data, known).items() if name not in shown]
+        text = ", ".join(
+            filter(None, [text, *(format_added_parameter(*item, data) for item in added.items())])
+        )
+    shaken = [words for name, words in format_excitation(data, known).items() if name not in shown]
     return ", ".join(filter(None, [text, "bonded" if known.get("bonded") else "", *shaken]))
 
 
 def gap_name(data: xr.Dataset) -> str:
-    """Return the gap's label for an axis: with a clearance it is not ``x2 - x1`` alone."""
+    """Return the gap's name for an axis label; with a clearance it is not ``x2 - x1`` alone."""
     return "gap" if data.attrs.get("clearance") else "gap $x_2 - x_1$"
 
 
-def added_text(name: str, value: float, data: xr.Dataset) -> str:
-    """Format a parameter that is not in the paper; such as the clearance."""
-    return clearance_text(value, data) if name == "clearance" else format_parameters({name: value})
+def format_added_parameter(name: str, value: float, data: xr.Dataset) -> str:
+    """Format a parameter that is not in the paper, such as the clearance, for a title."""
+    return (
+        format_clearance(value, data) if name == "clearance" else format_parameters({name: value})
+    )
 
 
-def clearance_text(clearance: float, data: xr.Dataset) -> str:
-    """Format a gap or a preload.
+def format_clearance(clearance: float, data: xr.Dataset) -> str:
+    """Format a clearance as a gap or, if negative, as a preload.
 
     Examples
     --------
@@ -132,25 +136,25 @@ def clearance_text(clearance: float, data: xr.Dataset) -> str:
     ('clearance 1.5 mm', 'pressed together by 20 µm')
     """
     words = "clearance" if clearance > 0.0 else "pressed together by"
-    return f"{words} {length_text(data, abs(clearance))}"
+    return f"{words} {format_length(data, abs(clearance))}"
 
 
-def unit_sign(unit: str) -> str:
-    """Return a unit as a picture has it: ``µm/s``, ``m/s$^2$``, ``g$^2$/Hz``."""
+def typeset_unit(unit: str) -> str:
+    """Return a unit as Matplotlib text: ``µm/s``, ``m/s$^2$``, ``g$^2$/Hz``."""
     return UNIT_SIGNS.get(unit, unit.replace("um", "µm") if unit.startswith("um") else unit)
 
 
-def length_text(data: xr.Dataset, length: float) -> str:
-    """Format a length in the unit that an answer is shown in, or with an SI prefix."""
+def format_length(data: xr.Dataset, length: float) -> str:
+    """Format a length in a dataset's display unit, or with an SI prefix."""
     if units_of(data).length:
         factor, word = scale_of(data, "m")
-        return f"{length / factor:.4g} {unit_sign(word)}"
-    factor, letter = prefix(length)
+        return f"{length / factor:.4g} {typeset_unit(word)}"
+    factor, letter = si_prefix(length)
     return f"{length / factor:.4g} {letter}m"
 
 
-def frequency_text(data: xr.Dataset, frequency: float) -> str:
-    """Format a frequency in rad/s as an answer is shown, in Hz where nothing is asked for."""
+def format_frequency(data: xr.Dataset, frequency: float) -> str:
+    """Format a frequency given in rad/s in a dataset's display unit, by default Hz."""
     factor, word = scale_of(data, "rad/s") if units_of(data).frequency else (TURN, "Hz")
     if word == "eta":
         return format_parameters({"eta": float(f"{frequency / factor:.5g}")})
@@ -158,20 +162,20 @@ def frequency_text(data: xr.Dataset, frequency: float) -> str:
     return f"{letter} = {frequency / factor:.5g} {word}"
 
 
-def excitation_texts(data: xr.Dataset, known: Mapping[str, float]) -> dict[str, str]:
-    """Format frequency and amplitude of the box's motion, those that are one number."""
+def format_excitation(data: xr.Dataset, known: Mapping[str, float]) -> dict[str, str]:
+    """Return texts of the excitation's frequency and amplitude, where each is one number."""
     units, texts = units_of(data), {}
     if "eta" in known:
         omega = omega_of(data)
         by_unit = units.frequency not in ("", "eta") and math.isfinite(omega)
         eta = known["eta"]
         texts["eta"] = (
-            frequency_text(data, eta * omega) if by_unit else format_parameters({"eta": eta})
+            format_frequency(data, eta * omega) if by_unit else format_parameters({"eta": eta})
         )
     if "frequency" in known:
-        texts["frequency"] = frequency_text(data, known["frequency"])
+        texts["frequency"] = format_frequency(data, known["frequency"])
     if "amplitude" in known:
-        texts["amplitude"] = f"$a$ = {length_text(data, known['amplitude'])}"
+        texts["amplitude"] = f"$a$ = {format_length(data, known['amplitude'])}"
     elif "frequency" in data.dims and "amplitude" in data.coords:
         level = (data.amplitude * data.frequency**2).values
         if math.isclose(level.min(), level.max(), rel_tol=1e-9):
@@ -181,8 +185,8 @@ def excitation_texts(data: xr.Dataset, known: Mapping[str, float]) -> dict[str, 
     return texts
 
 
-def prefix(largest: float) -> tuple[float, str]:
-    """Return the factor and the letter of the largest SI prefix that leaves a length at least 1.
+def si_prefix(largest: float) -> tuple[float, str]:
+    """Return factor and letter of the largest SI prefix in which a length is at least 1.
 
     Examples
     --------
@@ -192,7 +196,7 @@ def prefix(largest: float) -> tuple[float, str]:
     return next(((f, name) for f, name in PREFIXES if largest >= f), PREFIXES[0])
 
 
-def is_number(value: Any) -> bool:
+def is_finite_number(value: Any) -> bool:
     """Return whether an attribute is one finite number."""
     try:
         return not isinstance(value, str) and math.isfinite(value)
@@ -200,8 +204,8 @@ def is_number(value: Any) -> bool:
         return False
 
 
-def ratios(known: Mapping[str, float]) -> dict[str, float]:
-    """Return the paper's numbers (6) to (8) of a structure in SI, as far as they are known."""
+def paper_ratios(known: Mapping[str, float]) -> dict[str, float]:
+    """Return the paper's ratios (6) to (8) of a structure in SI, as far as attributes tell."""
     if not {"m1", "m2", "k1", "k2", "d1", "d2"} <= set(known):
         return {}
     m1, m2, k1, k2 = (known[name] for name in ("m1", "m2", "k1", "k2"))
@@ -212,12 +216,12 @@ def ratios(known: Mapping[str, float]) -> dict[str, float]:
 
 
 def is_in_si(known: Mapping[str, float]) -> bool:
-    """Return whether a structure has a frequency of its own, not the paper's 1 rad/s."""
-    return ratios(known).get("omega", 1.0) != 1.0
+    """Return whether a structure's omega, from its parameters, differs from the paper's 1 rad/s."""
+    return paper_ratios(known).get("omega", 1.0) != 1.0
 
 
 def format_halves(known: Mapping[str, float]) -> str:
-    r"""Format natural frequency and damping ratio of each half alone, and the ratio of the masses.
+    r"""Format each half's natural frequency and damping ratio, and the mass ratio.
 
     Examples
     --------
@@ -234,15 +238,15 @@ def format_halves(known: Mapping[str, float]) -> str:
     return ", ".join([*frequencies, *damping, *masses])
 
 
-def kind_of(multiplicity: int) -> str:
-    """Return a response's kind in the paper's words: ``T``, ``2T`` or not periodic."""
+def format_period(multiplicity: int) -> str:
+    """Return a response's period in the paper's words: ``T``, ``2T`` or "not periodic"."""
     if multiplicity == 0:
         return "not periodic"
     return "$T$" if multiplicity == 1 else f"${multiplicity}T$"
 
 
 def orbit_label(multiplicity: float, impacts_per_period: float) -> str:
-    """Format a periodic motion for a legend: "2T, 3 impacts"; an empty string if not periodic."""
+    """Format an orbit for a legend: "2T, 3 impacts"; empty if it is not periodic."""
     n = round(multiplicity)
     if not n:
         return ""
@@ -251,7 +255,7 @@ def orbit_label(multiplicity: float, impacts_per_period: float) -> str:
 
 
 def plain_title(title: str) -> str:
-    """Write out the structure's short name at the end of a title, which is made for files.
+    """Return a title with the structure's file-name label written out for a reader.
 
     Examples
     --------
@@ -264,11 +268,11 @@ def plain_title(title: str) -> str:
     parts = [PART_OF_LABEL.fullmatch(part) for part in label.split("_")]
     if not words or not all(parts):
         return title
-    return ", ".join([words, *(write_part(part[0]) for part in parts if part)])
+    return ", ".join([words, *(expand_label_part(part[0]) for part in parts if part)])
 
 
-def write_part(part: str) -> str:
-    """Write out a part of a structure's short name, such as ``f42-55``."""
+def expand_label_part(part: str) -> str:
+    """Return one part of a structure's file-name label, such as ``f42-55``, as words."""
     match = PART_OF_LABEL.fullmatch(part)
     if match is None or not match["values"]:
         return part

@@ -1,4 +1,4 @@
-"""Largest Lyapunov exponents over a parameter, coloured by verdict."""
+"""Draw largest Lyapunov exponents over a parameter, coloured by verdict."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 
 from ..flags import flag_words
 from .labels import title_from_attributes
-from .scales import along, parameter_of
-from .style import BLACK, BLUE, RED, legend_below, panels, styled
+from .scales import axis_values, varied_dimension
+from .style import BLACK, BLUE, RED, legend_below, make_panels, styled
 
 VERDICTS = {1: (RED, "o"), 0: (BLUE, "s"), -1: (BLACK, ".")}  # chaotic, neutral, periodic
 
@@ -21,7 +21,7 @@ VERDICTS = {1: (RED, "o"), 0: (BLUE, "s"), -1: (BLACK, ".")}  # chaotic, neutral
 def draw(
     *cases: xr.Dataset, title: str = "", titles: tuple[str, ...] = (), lowest: float = -0.1
 ) -> Figure:
-    """Draw one panel per case; a bar is one standard error, up and down.
+    """Draw exponents with standard errors, one panel per dataset; return the figure.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def draw(
         End of the axis; exponents below it are marked at its edge.
     """
     size = (9.6, 0.6 + 2.2 * len(cases))
-    figure, axes = panels(len(cases), 1, size, sharex=True, sharey=True)
+    figure, axes = make_panels(len(cases), 1, size, sharex=True, sharey=True)
     highest = max(float(data.exponent.max()) for data in cases)
     minimum = min(float(data.exponent.min()) for data in cases)
     lowest = min(max(1.2 * minimum, lowest), -0.01)
@@ -45,15 +45,15 @@ def draw(
         draw_case(plane, data, lowest)
         plane.axhline(0.0, color="0.5", linewidth=0.8)
         plane.set(ylabel=r"$\lambda$ per unit of $\tau$", title=words)
-    axes[-1].set_xlabel(along(cases[-1], parameter_of(cases[-1].exponent)).label)
+    axes[-1].set_xlabel(axis_values(cases[-1], varied_dimension(cases[-1].exponent)).label)
     legend_below(figure, axes, 6, title="bars: one standard error")
     return figure
 
 
 def draw_case(axes: Axes, data: xr.Dataset, lowest: float) -> None:
-    """Draw the exponents of one case by verdict, each verdict in the legend."""
-    names, parameter = flag_words(data.verdict.attrs), parameter_of(data.exponent)
-    x = along(data, parameter).values
+    """Draw one dataset's exponents by verdict, each verdict in the legend."""
+    names, parameter = flag_words(data.verdict.attrs), varied_dimension(data.exponent)
+    x = axis_values(data, parameter).values
     size = float(np.clip(1000.0 / len(x), 2.0, 4.0))
     for verdict, (colour, shape) in VERDICTS.items():
         of_verdict = data.verdict.values == verdict

@@ -1,12 +1,12 @@
-"""The unstable manifold of a saddle: gap and its rate at phase 0."""
+"""Draw the unstable manifold of a saddle: gap rate over gap at phase 0."""
 
 from __future__ import annotations
 
 import xarray as xr
 from matplotlib.figure import Figure
 
-from .labels import prefix, title_from_attributes
-from .style import BLACK, BLUE, RED, legend_below, panels, set_title, styled
+from .labels import si_prefix, title_from_attributes
+from .style import BLACK, BLUE, RED, legend_below, make_panels, set_title, styled
 
 COLOURS = {"+": BLUE, "-": RED}
 WORDS = {"+": "where the gap grows from the saddle on", "-": "where it falls"}
@@ -14,7 +14,7 @@ WORDS = {"+": "where the gap grows from the saddle on", "-": "where it falls"}
 
 @styled
 def draw(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw both sides of a manifold, broken where it is not continuous.
+    """Draw both sides of a manifold, broken where it is discontinuous; return the figure.
 
     Parameters
     ----------
@@ -23,9 +23,9 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
     title : str
         By default the structure and the excitation.
     """
-    figure, (plane,) = panels(1, 1, (7.4, 5.6))
-    factor, letter = prefix(float(data.x_rel.max()))
-    pace, speed_letter = prefix(float(abs(data.v_rel).max()))
+    figure, (plane,) = make_panels(1, 1, (7.4, 5.6))
+    factor, letter = si_prefix(float(data.x_rel.max()))
+    pace, speed_letter = si_prefix(float(abs(data.v_rel).max()))
     for side in map(str, data.side.values):
         part = data.sel(side=side)
         (line,) = plane.plot(part.x_rel / factor, part.v_rel / pace, label=WORDS[side])

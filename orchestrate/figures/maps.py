@@ -1,4 +1,4 @@
-"""Maps over two parameters: impacts, multiplicity, largest gap and impulse, exponent."""
+"""Draw maps over two parameters: impacts, multiplicity, largest gap, impulse, exponent."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
 from .labels import title_from_attributes
-from .scales import along
+from .scales import axis_values
 from .style import (
     BLACK,
     GREEN,
@@ -22,7 +22,7 @@ from .style import (
     SKY,
     XI_REL,
     YELLOW,
-    panels,
+    make_panels,
     set_title,
     styled,
 )
@@ -46,7 +46,7 @@ NOTHING = "#d9d9d9"  # no impacts
 
 @styled
 def draw(*maps: xr.Dataset, title: str = "") -> Figure:
-    """Draw one row of maps per dataset.
+    """Draw maps over two parameters, one row per dataset; return the figure.
 
     Parameters
     ----------
@@ -58,14 +58,14 @@ def draw(*maps: xr.Dataset, title: str = "") -> Figure:
     """
     columns = [name for name in COLUMNS if all(name in data for data in maps)]
     size = (max(3.1 * len(columns), 4.5), 0.4 + 2.8 * len(maps))
-    figure, axes = panels(len(maps), len(columns), size)
+    figure, axes = make_panels(len(maps), len(columns), size)
     set_title(figure, title or (title_from_attributes(maps[0]) if len(maps) == 1 else ""))
     for row, data in enumerate(maps):
         first, second = map(str, data[columns[0]].dims)
         up, right = (second, first) if first in FREQUENCIES else (first, second)
         for column, name in enumerate(columns):
             plane = axes[row * len(columns) + column]
-            sides = along(data, right), along(data, up)
+            sides = axis_values(data, right), axis_values(data, up)
             draw_map(plane, data[name].transpose(up, right), sides[0].values, sides[1].values)
             words = "" if column or title or len(maps) == 1 else title_from_attributes(data)
             plane.set_title("\n".join(filter(None, [words, COLUMNS[name]])))
@@ -74,7 +74,7 @@ def draw(*maps: xr.Dataset, title: str = "") -> Figure:
 
 
 def draw_map(plane: Axes, data: xr.DataArray, x: np.ndarray, y: np.ndarray) -> None:
-    """Draw one map with its colour bar; a parameter in equal ratios on a logarithmic axis."""
+    """Draw one map with its colour bar; a y axis in equal ratios becomes logarithmic."""
     values, shades = colour_scale(str(data.name), data.values)
     picture = plane.pcolormesh(x, y, values, rasterized=True, **shades)
     bar = plane.figure.colorbar(picture, ax=plane)
@@ -93,7 +93,7 @@ def draw_map(plane: Axes, data: xr.DataArray, x: np.ndarray, y: np.ndarray) -> N
 
 
 def colour_scale(name: str, values: np.ndarray) -> tuple[np.ndarray, dict[str, Any]]:
-    """Return a quantity's values, 0 as NaN on a logarithmic scale, and the scale as keywords."""
+    """Return a quantity's values for colouring, and colour map and norm as keywords."""
     if name == "multiplicity":
         shown = np.where(values == 0, 9, np.minimum(values, 8))
         return shown, {"vmin": 0.5, "vmax": 9.5, "cmap": ListedColormap(SHADES)}

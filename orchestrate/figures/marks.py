@@ -1,4 +1,4 @@
-"""Marks for few values and for many, large enough to be seen; lines of spectra as stems."""
+"""Draw samples, steps and spectral lines so that few and many values are visible."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ MAX_STEMS = 80  # of a spectrum, in full width
 SHADES = ((1, 0.35), (3, 0.6), (8, 1.0))  # from so many samples in a cell on: opacity
 
 
-class Marks(NamedTuple):
-    """Style in which values are marked.
+class MarkStyle(NamedTuple):
+    """Colour, size and filling of marks at values.
 
     Attributes
     ----------
@@ -30,8 +30,8 @@ class Marks(NamedTuple):
     filled: bool = True
 
 
-def mark(count: int, marks: Marks) -> dict[str, Any]:
-    """Return the line and marker style for ``count`` values side by side."""
+def marker_keywords(count: int, marks: MarkStyle) -> dict[str, Any]:
+    """Return Matplotlib's line and marker keywords for ``count`` values side by side."""
     style = {"linestyle": "none", "color": marks.colour}
     if count > MAX_DISTINCT and marks.size <= 1.0:
         return {**style, "marker": ","}
@@ -44,7 +44,7 @@ def mark(count: int, marks: Marks) -> dict[str, Any]:
 
 
 def one_per_cell(axes: Axes, x: np.ndarray, samples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return one sample of each cell of a panel that has any, and the number of samples in it.
+    """Return one sample's index per occupied cell of a panel, and the samples in each cell.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def one_per_cell(axes: Axes, x: np.ndarray, samples: np.ndarray) -> tuple[np.nda
 
 
 def cell_index(axis: Axis, values: np.ndarray, count: int) -> np.ndarray:
-    """Return which of ``count`` equal parts of an axis each value falls into."""
+    """Return in which of ``count`` equal parts of an axis each value lies."""
     change = axis.get_transform().transform
     first, last = change(axis.get_view_interval())
     position = (change(values.ravel()) - first) * (count / (last - first))
@@ -78,9 +78,9 @@ def cell_index(axis: Axis, values: np.ndarray, count: int) -> np.ndarray:
 
 
 def draw_samples(
-    axes: Axes, x: np.ndarray, samples: np.ndarray, marks: Marks, label: str = ""
+    axes: Axes, x: np.ndarray, samples: np.ndarray, marks: MarkStyle, label: str = ""
 ) -> None:
-    """Draw samples over their parameter, darker where there are more; scales are set before.
+    """Draw samples over their parameter, darker where many coincide; set scales before.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def draw_samples(
     label : str
     """
     gaps, each = samples.ravel(), samples.shape[1]
-    style = {**mark(len(x), marks), "rasterized": True}
+    style = {**marker_keywords(len(x), marks), "rasterized": True}
     if len(x) <= MAX_DISTINCT:
         axes.plot(np.repeat(x, each), gaps, **style, alpha=0.8, label=label)
         return
@@ -107,12 +107,12 @@ def draw_samples(
 def draw_steps(
     axes: Axes, x: np.ndarray, values: np.ndarray, colour: str, width: float = 1.0, **more: Any
 ) -> None:
-    """Draw a quantity that is constant in pieces, with its values marked where they are few."""
+    """Draw a piecewise constant quantity as steps, with marks where values are few."""
     order = np.argsort(x, kind="stable")
     axes.plot(x[order], values[order], color=colour, linewidth=width, drawstyle="steps-mid", **more)
     if len(x) <= MAX_DISTINCT:
         more = {**more, "label": None}
-        axes.plot(x, values, **mark(len(x), Marks(colour, 0.7)), **more)
+        axes.plot(x, values, **marker_keywords(len(x), MarkStyle(colour, 0.7)), **more)
 
 
 def draw_stems(
@@ -123,7 +123,7 @@ def draw_stems(
     width: float = 1.5,
     **style: Any,
 ) -> None:
-    """Draw the lines of a spectrum as stems on a logarithmic axis that begins at a floor.
+    """Draw a spectrum's lines as stems on a logarithmic axis that begins at a floor.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A motion in time: both masses, gap, impacts and contact force; phase planes and spectrum."""
+"""Draw a motion in time: displacements, gap, contact force, phase planes and spectrum."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..constants import TURN
 from ..units import units_of
 from .labels import gap_name, title_from_attributes
 from .marks import draw_stems
-from .scales import acceleration_scale, frequency_scale, in_si, length_scale
+from .scales import acceleration_scale, frequency_scale, has_frequency_unit, length_scale
 from .style import BLACK, BLUE, GREY, RED, set_title, styled, write_in_panel
 
 LAYOUT: list[Any] = [["masses", "phases"], ["gap", "relative"], ["force", "spectrum"]]
@@ -31,7 +31,7 @@ MIN_PERIODS = 4  # periods that a spectrum takes
 
 @styled
 def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) -> Figure:
-    """Draw a motion over the periods of the excitation, with its phase planes and spectrum.
+    """Draw a simulated motion: histories, phase planes and spectrum; return the figure.
 
     Parameters
     ----------
@@ -48,12 +48,12 @@ def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) ->
     reach = max(float(np.abs(data[name]).max()) for name in ("x1", "x2"))
     factor, letter = length_scale(data, reach)
     draw_histories(axes, data, factor, letter)
-    draw_planes(axes["phases"], axes["relative"], data, factor, letter)
+    draw_phase_planes(axes["phases"], axes["relative"], data, factor, letter)
     top = draw_spectrum(axes["spectrum"], data, MASSES)
     if bonded is not None:
         axes["masses"].plot(time_axis(data, bonded)[0], bonded.x1 / factor, **GLUED)
         axes["phases"].plot(
-            bonded.x1 / factor, bonded.v1 / length_scale(data, speed_of(data))[0], **GLUED
+            bonded.x1 / factor, bonded.v1 / length_scale(data, largest_speed(data))[0], **GLUED
         )
         top = max(top, draw_spectrum(axes["spectrum"], bonded, (("1", GLUED),)))
     axes["spectrum"].set_ylim(SPECTRUM_FLOOR * (top or 1.0), 2.0 * (top or 1.0))
@@ -64,9 +64,9 @@ def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) ->
 
 
 def draw_histories(axes: Mapping[str, Axes], data: xr.Dataset, factor: float, letter: str) -> None:
-    """Draw both masses, the gap with its impacts, and the contact force."""
+    """Draw both displacements, the gap with its impacts, and the contact force over time."""
     turns, instants = time_axis(data, data)
-    time, gap, _ = relative(data)
+    time, gap, _ = relative_motion(data)
     for number, style in MASSES:
         axes["masses"].plot(turns, data[f"x{number}"] / factor, **style)
     axes["masses"].set_ylabel(f"displacement in {letter}m")
@@ -88,30 +88,32 @@ def draw_histories(axes: Mapping[str, Axes], data: xr.Dataset, factor: float, le
 
 
 def time_axis(data: xr.Dataset, motion: xr.Dataset) -> tuple[np.ndarray, str]:
-    """Return a motion's instants in the answer's unit, periods or s, and the axis' label."""
+    """Return a motion's times in the display unit (periods or s), and the axis label."""
     if units_of(data).time == "s":
         return motion.time.values, "time in s"
     return motion.periods_done.values, "time in periods, $t/T$"
 
 
-def draw_planes(masses: Axes, plane: Axes, data: xr.Dataset, factor: float, letter: str) -> None:
-    """Draw the phase planes of both masses, and of their relative motion."""
-    slow, prefixed = length_scale(data, speed_of(data))
+def draw_phase_planes(
+    masses: Axes, plane: Axes, data: xr.Dataset, factor: float, letter: str
+) -> None:
+    """Draw the phase planes of both masses and of their relative motion."""
+    slow, prefixed = length_scale(data, largest_speed(data))
     for number, style in MASSES:
         masses.plot(data[f"x{number}"] / factor, data[f"v{number}"] / slow, **style)
     masses.set(xlabel=f"displacement in {letter}m", ylabel=f"velocity in {prefixed}m/s")
-    _, gap, rate = relative(data)
+    _, gap, rate = relative_motion(data)
     plane.plot(gap / factor, rate / slow, color=BLACK, linewidth=0.8)
     plane.set(xlabel=f"gap in {letter}m", ylabel=f"gap velocity in {prefixed}m/s")
 
 
-def speed_of(data: xr.Dataset) -> float:
-    """Return the largest speed of a mass."""
+def largest_speed(data: xr.Dataset) -> float:
+    """Return the largest speed of either mass, m/s."""
     return max(float(np.abs(data[name]).max()) for name in ("v1", "v2"))
 
 
-def relative(data: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return time, gap and gap velocity, with both sides of each impact (14) among the points."""
+def relative_motion(data: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return time, gap and gap velocity, with points before and after each impact (14)."""
     at, closing = data.impact_time.values, data.impact_velocity.values
     after = np.where(data.sticks.values == 1, 0.0, float(data.attrs.get("e", 0.0)) * closing)
     time = np.concatenate([data.time.values, at, at])
@@ -124,7 +126,7 @@ def relative(data: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def draw_spectrum(
     axes: Axes, data: xr.Dataset, masses: Iterable[tuple[str, dict[str, Any]]], highest: float = 20
 ) -> float:
-    """Draw amplitudes of accelerations in the box, impulses included; return the largest."""
+    """Draw amplitude spectra of accelerations in the box; return the largest amplitude."""
     turns, time = data.periods_done.values, data.time.values
     periods = float(turns[-1] - turns[0])
     if periods < MIN_PERIODS:
@@ -135,31 +137,35 @@ def draw_spectrum(
     base, top = periods / (time[-1] - time[0]), 0.0
     (turn, word), (felt, unit_felt) = frequency_scale(data), acceleration_scale(data)
     for number, style in masses:
-        frequency, amplitude = spectrum(data[f"x{number}"].values[1:], time[1] - time[0])
+        frequency, amplitude = acceleration_spectrum(
+            data[f"x{number}"].values[1:], time[1] - time[0]
+        )
         shown = (frequency > 0.25 * base) & (frequency <= highest * base)
         felt_amplitude = amplitude / felt
         top = max(top, float(felt_amplitude[shown].max(initial=0.0)))
-        lines = frequency * (TURN / turn if in_si(data) else 1.0 / base)
-        peaks = shown & is_line(amplitude)
+        lines = frequency * (TURN / turn if has_frequency_unit(data) else 1.0 / base)
+        peaks = shown & is_local_maximum(amplitude)
         stem = {name: style[name] for name in ("color", "alpha", "zorder") if name in style}
         floor = 1e-3 * SPECTRUM_FLOOR * float(felt_amplitude[shown].max(initial=0.0))  # unseen
         width = STEM_WIDTHS[style["color"]]
         draw_stems(axes, lines[peaks], felt_amplitude[peaks], floor, width, **stem)
-    unit = f"in {word}" if in_si(data) else r"over $\Omega/2\pi$"
+    unit = f"in {word}" if has_frequency_unit(data) else r"over $\Omega/2\pi$"
     axes.set(xlabel=f"frequency {unit}", ylabel=f"acceleration in {unit_felt}")
     return top
 
 
-def is_line(amplitude: np.ndarray) -> np.ndarray:
-    """Return where amplitudes are larger than their neighbours: a window makes three of a line."""
+def is_local_maximum(amplitude: np.ndarray) -> np.ndarray:
+    """Return a Boolean array: amplitudes larger than both neighbours (a window widens lines)."""
     above = np.full(len(amplitude), True)
     above[1:] &= amplitude[1:] > amplitude[:-1]
     above[:-1] &= amplitude[:-1] >= amplitude[1:]
     return above
 
 
-def spectrum(displacement: np.ndarray, interval: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return frequencies in Hz, and amplitudes of acceleration from a displacement (Hann window).
+def acceleration_spectrum(
+    displacement: np.ndarray, interval: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return frequencies, Hz, and acceleration amplitudes from displacements (Hann window).
 
     An impulse is a kink of the displacement, so it is in them.
     """

@@ -1,4 +1,4 @@
-"""Orbit diagrams (Figures 6, 10, 11): samples of the gap over a parameter, impacts below."""
+"""Draw orbit diagrams (Figures 6, 10, 11): samples of the gap and impacts over a parameter."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .labels import title_from_attributes
-from .marks import Marks, draw_samples, draw_steps
+from .marks import MarkStyle, draw_samples, draw_steps
 from .overlay import Overlay
-from .scales import along, gap_unit, gaps, parameter_of
-from .style import BLACK, BLUE, GREY, RED, legend_below, panels, styled, write_in_panel
+from .scales import axis_values, displayed_gaps, gap_scale, varied_dimension
+from .style import BLACK, BLUE, GREY, RED, legend_below, make_panels, styled, write_in_panel
 
-MARKS = {"up": Marks(BLUE, 2.0, filled=False), "down": Marks(RED)}  # down lies on up
+MARKS = {"up": MarkStyle(BLUE, 2.0, filled=False), "down": MarkStyle(RED)}  # down lies on up
 WIDTHS = {"up": 2.6, "down": 1.0}
 
 
@@ -24,7 +24,7 @@ WIDTHS = {"up": 2.6, "down": 1.0}
 def draw(
     data: xr.Dataset, title: str = "", decades: int = 6, overlay: Sequence[xr.Dataset] = ()
 ) -> Figure:
-    """Draw an orbit diagram in the paper's manner; all samples are in it.
+    """Draw an orbit diagram with all samples, as in the paper; return the figure.
 
     Parameters
     ----------
@@ -44,18 +44,18 @@ def draw(
         Where a branch is of another structure, over another parameter, or of another motion of the
         box.
     """
-    figure, (top, bottom) = panels(2, 1, (9.6, 6.4), sharex=True, height_ratios=(3, 1))
-    parameter = parameter_of(data.impacts_per_period)
+    figure, (top, bottom) = make_panels(2, 1, (9.6, 6.4), sharex=True, height_ratios=(3, 1))
+    parameter = varied_dimension(data.impacts_per_period)
     branches = [Overlay(branch, data, parameter) for branch in overlay]
-    (shown, label), (factor, _) = gaps(data, data.xi_rel), gap_unit(data, data.xi_rel)
-    x, name = along(data, parameter)
+    (shown, label), (factor, _) = displayed_gaps(data, data.xi_rel), gap_scale(data, data.xi_rel)
+    x, name = axis_values(data, parameter)
     low, high = float(x.min()), float(x.max())
     bottom.set_xlim((low, high) if high > low else (low - 0.5, high + 0.5))
     lines = [branch.gaps(factor).ravel() for branch in branches]
     set_gap_scale(top, np.concatenate([shown.values.ravel(), *lines]), decades)
     both = "direction" in data.dims
     marks = {} if branches else MARKS
-    usual = Marks(GREY if branches else BLACK)
+    usual = MarkStyle(GREY if branches else BLACK)
     for direction in map(str, data.direction.values) if both else ("",):
         part = {"direction": direction} if both else {}
         samples = shown.sel(part).transpose(parameter, "sample").values
@@ -79,7 +79,7 @@ def draw(
 
 
 def set_gap_scale(axes: Axes, samples: np.ndarray, decades: int = 6) -> None:
-    """Set a logarithmic axis of gaps that is linear in its lowest part, so that 0 is on it."""
+    """Set a logarithmic gap axis that is linear near 0, so that 0 is on it."""
     largest = float(samples.max(initial=0.0))
     if largest <= 0.0:
         axes.set_ylim(-0.05, 1.0)
@@ -99,7 +99,7 @@ def set_gap_scale(axes: Axes, samples: np.ndarray, decades: int = 6) -> None:
 
 
 def set_impact_scale(axes: Axes, impacts: np.ndarray) -> None:
-    """Set an axis for numbers of impacts; a text where there are none."""
+    """Set the axis of impacts per period; write "no impacts" if there are none."""
     above_zero = impacts[impacts > 0.0]
     if not above_zero.size:
         axes.set_ylim(0.0, 1.0)

@@ -1,4 +1,4 @@
-"""Branches over responses: whether both belong together, and a branch in the responses' units."""
+"""Draw branches over responses: check that both belong together, and convert units."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from matplotlib.axes import Axes
 from ..errors import InputError
 from ..structures.ranges import OF_LENGTH, STRUCTURE
 from ..units import omega_of
-from .branch_lines import draw_bifurcations, draw_lines
-from .scales import ETA, acceleration_scale, along, frequency_scale, parameter_scale
+from .branch_lines import draw_bifurcations, draw_branch
+from .scales import ETA, acceleration_scale, axis_values, frequency_scale, parameter_scale
 from .style import BLUE, RED
 
 SAME = 1e-9  # relative: numbers that are nearer than this are one
@@ -34,8 +34,8 @@ MOVED = {  # by a parameter that is none of SI
 ALIKE = ({"eta", "frequency"}, {"level", "amplitude"})  # names of what is one axis
 
 
-def why_unfit(branch: xr.Dataset, over: str, parameters: Mapping[str, Any]) -> str:
-    """Say why an answer is no branch of a structure over a parameter; empty where it is one.
+def explain_mismatch(branch: xr.Dataset, over: str, parameters: Mapping[str, Any]) -> str:
+    """Return a text on why a dataset is no branch of this structure and parameter; else "".
 
     Parameters
     ----------
@@ -62,8 +62,8 @@ def why_unfit(branch: xr.Dataset, over: str, parameters: Mapping[str, Any]) -> s
     return ""
 
 
-def why_shaken_otherwise(branch: xr.Dataset, data: xr.Dataset, over: str) -> str:
-    """Say why a branch belongs to another motion of the box; empty where it does not.
+def explain_other_excitation(branch: xr.Dataset, data: xr.Dataset, over: str) -> str:
+    """Return a text on why a branch has another excitation than the responses; else "".
 
     The box's amplitude does not matter where everything grows with it, as without a clearance.
     """
@@ -85,12 +85,12 @@ def why_shaken_otherwise(branch: xr.Dataset, data: xr.Dataset, over: str) -> str
 
 
 def differ(some: np.ndarray, others: np.ndarray) -> bool:
-    """Return whether values are not all the same number."""
+    """Return whether two arrays hold more than one number, apart from rounding."""
     return not np.allclose(np.append(some, others), some[0], rtol=SAME, atol=0.0)
 
 
 def amplitude_at(data: xr.Dataset, frequency: np.ndarray) -> np.ndarray:
-    """Return the box's amplitude of some responses at frequencies between theirs, m.
+    """Return the box's amplitude, m, interpolated to frequencies between the responses'.
 
     Where the level is held, exactly that; else linear between the responses.
     """
@@ -104,7 +104,7 @@ def amplitude_at(data: xr.Dataset, frequency: np.ndarray) -> np.ndarray:
 
 
 class Overlay:
-    """A branch over responses, in their units.
+    """A branch with the units of the responses over which it is drawn.
 
     Parameters
     ----------
@@ -125,19 +125,19 @@ class Overlay:
         parameters = {key: data.attrs[key] for key in SI if key in data.attrs}
         if "structure" in data.dims:  # of both
             parameters.pop("bonded", None)
-        why = why_unfit(branch, parameter, parameters)
-        why = why or why_shaken_otherwise(branch, data, parameter)
+        why = explain_mismatch(branch, parameter, parameters)
+        why = why or explain_other_excitation(branch, data, parameter)
         if why:
             raise InputError(f"overlay: {why}")
         self.branch, self.data, self.parameter = branch, data, parameter
 
     def x(self, values: xr.DataArray) -> np.ndarray:
-        """Return values of the branch's parameter as the responses' axis has them."""
+        """Return values of the branch's parameter in the units of the responses' axis."""
         name, numbers = str(self.branch.attrs["over"]), values.values
         if name in ALIKE[0]:
             omega = omega_of(self.branch)
             frequency = numbers * omega if name == "eta" else numbers
-            on_ratios = along(self.data, self.parameter).label == ETA
+            on_ratios = axis_values(self.data, self.parameter).label == ETA
             return np.asarray(frequency / (omega if on_ratios else frequency_scale(self.data)[0]))
         if self.parameter == "level":
             accelerations = numbers * self.branch.frequency.values[0] ** 2
@@ -145,7 +145,7 @@ class Overlay:
         return np.asarray(numbers / parameter_scale(self.data, self.parameter)[0])
 
     def scale(self, factor: float) -> np.ndarray:
-        """Return what lengths over a eta^2 are multiplied by, at each point of the branch.
+        """Return factors from lengths over a eta^2 to the axis' unit, one per branch point.
 
         Parameters
         ----------
@@ -163,13 +163,13 @@ class Overlay:
     def draw(
         self, plane: Axes, name: str, factor: float, colours: tuple[str, str] = (BLUE, RED)
     ) -> None:
-        """Draw a length of the orbits, such as ``xi_rel``; ``factor`` as in :meth:`scale`."""
+        """Draw a length of the orbits, such as ``xi_rel``, as lines; ``factor``: the axis' unit."""
         rows = np.atleast_2d(self.branch[name].transpose(..., "point").values * self.scale(factor))
         x = self.x(self.branch[str(self.branch.attrs["over"])])
-        draw_lines(plane, x, rows, self.branch.stable.values == 1, colours)
+        draw_branch(plane, x, rows, self.branch.stable.values == 1, colours)
 
     def mark(self, plane: Axes, name: str, factor: float) -> None:
-        """Draw the bifurcations at a length of the orbits; ``factor`` as in :meth:`scale`."""
+        """Draw the branch's bifurcations at a length of the orbits; ``factor``: the axis' unit."""
         if not self.branch.sizes.get("bifurcation"):
             return
         scale, values = self.scale(factor), self.branch[f"bifurcation_{name}"]
@@ -178,6 +178,6 @@ class Overlay:
         draw_bifurcations(plane, self.branch, self.x(self.branch.bifurcation_value), rows)
 
     def gaps(self, factor: float) -> np.ndarray:
-        """Return the gaps at phase 0, as an axis shows them."""
+        """Return the branch's gaps at phase 0 in the unit of an axis."""
         samples = self.branch.xi_rel.transpose("sample", "point").values
         return np.asarray(samples * self.scale(factor))

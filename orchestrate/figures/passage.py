@@ -1,4 +1,4 @@
-"""The passage through the resonance: speed, motion, where the power goes, spectra over time."""
+"""Draw a passage through the resonance: speed, motion, powers and spectra over time."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from matplotlib.figure import Figure
 from ..constants import TURN
 from ..units import as_shown, scale_of
 from .powers import ACCOUNTS, draw_powers
-from .scales import acceleration_scale, with_unit
-from .style import BLUE, GREY, panels, set_title, styled
-from .weak_drive import COLOURS, jump_texts, outcome
+from .scales import acceleration_scale, label_with_unit
+from .style import BLUE, GREY, make_panels, set_title, styled
+from .weak_drive import COLOURS, format_passage, jump_texts
 
 MAX_REPETITION = 4  # revolutions after which a motion is seen to repeat
 CALM_SHARE = 0.9  # of the revolutions: the others belong to the jump
@@ -27,7 +27,7 @@ FLOOR = 1e-4  # of the largest line: the lower end of the colours
 def draw(
     runs: Mapping[str, xr.Dataset], spectra: Mapping[str, xr.Dataset], title: str = ""
 ) -> Figure:
-    """Draw passages, one per column.
+    """Draw passages, one column per structure; return the figure.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def draw(
         What is shown: set, rate, volts.
     """
     count = len(runs)
-    figure, axes = panels(5, count, (6.5 * count + 1.0, 14), sharex="col", sharey="row")
+    figure, axes = make_panels(5, count, (6.5 * count + 1.0, 14), sharex="col", sharey="row")
     shown = {name: as_shown(data) for name, data in runs.items()}
     felt, unit = acceleration_scale(next(iter(runs.values())))
     top = max(float(spectrum.acceleration.max()) for spectrum in spectra.values()) / felt
@@ -61,8 +61,8 @@ def draw(
         column_axes[3].set_title(f"means of {turns}, twice")
         column_axes[4].set_xlabel(f"time {words} in s")
         column_axes[4].set_xlim(time[0], time[-1])
-    speed, place = with_unit("speed", data.speed), with_unit("$x_1$", data.x1)
-    labels = (speed, "voltage in V", place, "power in W", "multiple of the speed")
+    speed, displacement = label_with_unit("speed", data.speed), label_with_unit("$x_1$", data.x1)
+    labels = (speed, "voltage in V", displacement, "power in W", "multiple of the speed")
     for panel, label in zip(axes[::count], labels, strict=True):
         panel.set_ylabel(label)
     for row in (0, 3):
@@ -74,7 +74,7 @@ def draw(
 
 
 def time_origin(data: xr.Dataset) -> tuple[float, str]:
-    """Return the time in s that counts as 0, and its name."""
+    """Return the time, s, at which a passage's axis has 0, and its name."""
     jumps = data.jump_time.values
     known = np.flatnonzero(np.isfinite(jumps))
     if known.size:
@@ -84,12 +84,12 @@ def time_origin(data: xr.Dataset) -> tuple[float, str]:
 
 
 def format_jumps(data: xr.Dataset) -> str:
-    """Format the jumps, or whether the resonance is passed."""
-    return ", ".join(f"jump {text}" for text in jump_texts(data)) or outcome(data)
+    """Format a run's jumps for a title, or whether it passes the resonance."""
+    return ", ".join(f"jump {text}" for text in jump_texts(data)) or format_passage(data)
 
 
 def repeats_after(data: xr.Dataset) -> int:
-    """Return the number of revolutions after which impact losses repeat best; 1 without impacts."""
+    """Return the number of revolutions after which impact losses repeat best; 1 without any."""
     angle = np.maximum.accumulate(np.abs(data.angle.values))
     turns = ((angle - angle[0]) // TURN).astype(int)
     first = np.unique(turns, return_index=True)[1]
@@ -102,7 +102,7 @@ def repeats_after(data: xr.Dataset) -> int:
 
 
 def revolution_means(data: xr.Dataset, count: int = 1) -> dict[str, np.ndarray]:
-    """Return running means: speed over one revolution, powers over ``count``; NaN at the ends.
+    """Return running means: speed over one revolution, powers over ``count``; NaN at ends.
 
     Means of powers are averaged twice: single ones would jump when an impact enters a little late.
     """
@@ -112,7 +112,7 @@ def revolution_means(data: xr.Dataset, count: int = 1) -> dict[str, np.ndarray]:
 
 
 def smooth_edges(angle: np.ndarray, means: np.ndarray, count: int) -> np.ndarray:
-    """Average means of ``count`` revolutions once more; NaN at the ends."""
+    """Return means over ``count`` revolutions, averaged once more; NaN at the ends."""
     from scipy.integrate import cumulative_trapezoid
 
     distance, half = np.maximum.accumulate(angle), 0.5 * count * TURN
@@ -127,7 +127,7 @@ def smooth_edges(angle: np.ndarray, means: np.ndarray, count: int) -> np.ndarray
 
 
 def means_over(data: xr.Dataset, count: int) -> dict[str, np.ndarray]:
-    """Return mean speed and powers of ``count`` revolutions around each sample; NaN at the ends."""
+    """Return mean speed and powers of ``count`` revolutions around each sample; NaN at ends."""
     angle, time, half = np.abs(data.angle.values), data.time.values, 0.5 * count * TURN
     distance = np.maximum.accumulate(angle)
     before, after = (np.interp(angle + side, distance, time) for side in (-half, half))
@@ -144,7 +144,7 @@ def means_over(data: xr.Dataset, count: int) -> dict[str, np.ndarray]:
 def draw_speed(
     axes: Axes, time: np.ndarray, data: xr.Dataset, revolution: Mapping[str, np.ndarray]
 ) -> None:
-    """Draw the speed at each instant, and its mean over a revolution."""
+    """Draw the speed at each instant and its mean over a revolution."""
     instant: Any = {"color": BLUE, "linewidth": 0.4, "alpha": 0.6, "label": "at the instant"}
     axes.plot(time, np.abs(data.speed), **instant)
     mean: Any = {"color": "k", "linewidth": 1.2, "label": "mean of a revolution"}

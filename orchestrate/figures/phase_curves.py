@@ -1,4 +1,4 @@
-"""Phase curves of both masses: one response in its three states (Figure 5), several (Figure 12)."""
+"""Draw phase curves of both masses: three states (Figure 5), several responses (Figure 12)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..flags import flag_words
-from .curve_data import panel_of, relative
+from .curve_data import relative_motion, select_panel
 from .style import (
     BLACK,
     BLUE,
@@ -19,7 +19,7 @@ from .style import (
     XI_REL,
     XI_REL_RATE,
     legend_below,
-    panels,
+    make_panels,
     styled,
 )
 
@@ -29,20 +29,20 @@ CONTACT = 2
 
 @styled
 def draw_states(data: xr.Dataset) -> Figure:
-    """Draw both phase planes of one response: of the masses, and of their relative motion.
+    """Draw one response's phase planes, coloured by state (Figure 5); return the figure.
 
     Parameters
     ----------
     data : xarray.Dataset
         Curves with one panel, see :mod:`.curve_data`.
     """
-    figure, (left, right) = panels(1, 2, (8.5, 4.2))
+    figure, (left, right) = make_panels(1, 2, (8.5, 4.2))
     state, kind = data.state.values, data.kind.values
-    _, gap, rate = relative(data, 0)
+    _, gap, rate = relative_motion(data, 0)
     names = flag_words(data.kind.attrs)
-    draw_kinds(left, (state[:, 0], state[:, 2]), kind, "-", names)
-    draw_kinds(left, (state[:, 1], state[:, 3]), kind, "--", names)
-    draw_kinds(right, (gap, rate), kind, "-", names, dotted=True)
+    draw_by_state(left, (state[:, 0], state[:, 2]), kind, "-", names)
+    draw_by_state(left, (state[:, 1], state[:, 3]), kind, "--", names)
+    draw_by_state(right, (gap, rate), kind, "-", names, dotted=True)
     title = r"(a) both masses: solid $\xi_1$, dashed $\xi_2$"
     left.set(title=title, xlabel=r"$\xi_i$", ylabel=r"$\xi'_i$")
     right.set(title="(b) relative motion", xlabel=XI_REL, ylabel=XI_REL_RATE)
@@ -50,7 +50,7 @@ def draw_states(data: xr.Dataset) -> Figure:
     return figure
 
 
-def draw_kinds(
+def draw_by_state(
     axes: Axes,
     curve: tuple[np.ndarray, np.ndarray],
     kind: np.ndarray,
@@ -58,7 +58,7 @@ def draw_kinds(
     names: dict[int, str],
     dotted: bool = False,
 ) -> None:
-    """Draw a curve in the colours of its states; contact is a thick line, or a dot if a point."""
+    """Draw a curve in the colours of its states; contact as a thick line, or a dot."""
     for index, colour in enumerate(KIND_COLOURS):
         of_kind = np.where(kind == index, 1.0, np.nan)
         contact = index == CONTACT
@@ -71,7 +71,7 @@ def draw_kinds(
 
 @styled
 def draw_masses(data: xr.Dataset) -> Figure:
-    """Draw the phase planes of both masses, one panel per response, on one scale.
+    """Draw both masses' phase planes, one panel per response on one scale (Figure 12).
 
     Parameters
     ----------
@@ -79,10 +79,10 @@ def draw_masses(data: xr.Dataset) -> Figure:
         Curves, see :mod:`.curve_data`.
     """
     count = data.sizes["panel"]
-    figure, axes = panels(1, count, (3.3 * count, 3.7))
+    figure, axes = make_panels(1, count, (3.3 * count, 3.7))
     reach = 1.08 * float(np.abs(data.state).max())
     for index, plane in enumerate(axes):
-        state = panel_of(data, index).state.values
+        state = select_panel(data, index).state.values
         plane.plot(state[:, 0], state[:, 2], "-", color=BLACK, linewidth=1.0, label=r"$m_1$")
         plane.plot(state[:, 1], state[:, 3], ":", color=RED, linewidth=1.4, label=r"$m_2$")
         e, D, eta = (float(data[name][index]) for name in ("e", "D", "eta"))

@@ -1,4 +1,4 @@
-"""The picture of an answer, whatever was asked: chosen by the question that the dataset names."""
+"""Public ``plot``: choose the picture of any result by the function that made it."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ EXPECTED = (
 
 
 def plot(*answers: xr.Dataset, title: str = "", part: str = "", units: str | Units = "") -> Figure:
-    """Draw an answer, or several that belong into one picture; return the figure.
+    """Draw one result, or several that belong in one picture; return the figure.
 
     Parameters
     ----------
@@ -123,31 +123,31 @@ def plot(*answers: xr.Dataset, title: str = "", part: str = "", units: str | Uni
     ``orchestrate.figures.style.STYLE``, as settings of Matplotlib: what is changed there holds for
     every picture from then on.
     """
-    kinds = [question_of(answer) for answer in answers]
+    kinds = [function_name(answer) for answer in answers]
     answers = tuple(with_units(answer, units) for answer in answers)
     several = set(kinds)
     if part:
         return plot_part(answers, several, part, title)
     if len(answers) == 1 and kinds[0] in analysis.DRAW:
         return analysis.draw(answers[0], title=title)
-    told = {"title": title} if title else {}
+    keywords = {"title": title} if title else {}
     if len(answers) == 1 and kinds[0] in DRAW:
-        return DRAW[kinds[0]](answers[0], **told)
+        return DRAW[kinds[0]](answers[0], **keywords)
     if len(several) == 1 and kinds[0] in SEVERAL:
-        return SEVERAL[kinds[0]](*answers, **told)
+        return SEVERAL[kinds[0]](*answers, **keywords)
     (below, *more) = sorted(several - {"branch"}) or [""]
     if "branch" in several and below in OVERLAY and not more and kinds.count(below) == 1:
         parts = [answer for answer, kind in zip(answers, kinds, strict=True) if kind == "branch"]
-        return OVERLAY[below](answers[kinds.index(below)], overlay=parts, **told)
+        return OVERLAY[below](answers[kinds.index(below)], overlay=parts, **keywords)
     if len(several) == 1 and kinds[0] in BESIDE and len(answers) == 2:
         delaminated, bonded = sorted(answers, key=is_bonded)
         if is_bonded(bonded) and not is_bonded(delaminated):
-            return BESIDE[kinds[0]](delaminated, bonded=bonded, **told)
+            return BESIDE[kinds[0]](delaminated, bonded=bonded, **keywords)
     return plot_drive(answers, kinds, title)
 
 
 def plot_part(answers: Sequence[xr.Dataset], kinds: set[str], part: str, title: str) -> Figure:
-    """Draw a picture that is not the first one of its answers."""
+    """Draw a further picture of results, such as the jumps of runs, by its name ``part``."""
     if part not in PARTS or kinds != {"couple"}:
         asked = f"part={part!r} of {' and '.join(sorted(kinds))}"
         raise InputError(f"plot: {asked}; expected {' or '.join(map(repr, PARTS))} of couple")
@@ -156,7 +156,7 @@ def plot_part(answers: Sequence[xr.Dataset], kinds: set[str], part: str, title: 
 
 
 def plot_drive(answers: Sequence[xr.Dataset], kinds: Sequence[str], title: str) -> Figure:
-    """Draw answers on the weak drive, of one structure or of both."""
+    """Draw results on the weak drive, of one structure or of both."""
     of_drive = [kind for kind in kinds if kind in OF_BOTH]
     runs = {
         "bonded" if is_bonded(answer) else "delaminated": answer
@@ -172,8 +172,8 @@ def plot_drive(answers: Sequence[xr.Dataset], kinds: Sequence[str], title: str) 
     raise InputError(f"plot: no picture of {' and '.join(kinds) or 'nothing'}; {EXPECTED}")
 
 
-def question_of(answer: object) -> str:
-    """Return the name of the public function that gave an answer.
+def function_name(answer: object) -> str:
+    """Return the name of the public function that made a result.
 
     Raises
     ------
@@ -192,5 +192,5 @@ def question_of(answer: object) -> str:
 
 
 def is_bonded(answer: xr.Dataset) -> bool:
-    """Return whether an answer is of the undamaged (bonded) structure."""
+    """Return whether a result is of the undamaged (bonded) structure."""
     return bool(answer.attrs.get("bonded", False))

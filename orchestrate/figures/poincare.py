@@ -1,4 +1,4 @@
-"""A Poincaré section: gap and its rate, or impacts and releases by the phase of the box."""
+"""Draw a Poincaré section at a phase of the box, at impacts or at releases."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from matplotlib.ticker import FuncFormatter, MultipleLocator
 from ..constants import TURN
 from .labels import title_from_attributes
 from .scales import length_scale
-from .style import BLACK, RED, panels, set_title, styled
+from .style import BLACK, RED, make_panels, set_title, styled
 
 POINTS: dict[str, Any] = {"linestyle": "none", "marker": ".", "markeredgewidth": 0.0}
 LEAST_HALF = 0.05  # of an axis, over its middle
@@ -21,7 +21,7 @@ SHARES = {0.0: "0", 0.25: "π/2", 0.5: "π", 0.75: "3π/2", 1.0: "2π"}  # of a 
 
 @styled
 def draw(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw the section of a motion.
+    """Draw a motion's Poincaré section; return the figure.
 
     Parameters
     ----------
@@ -31,14 +31,14 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
     title : str
         By default the structure and the excitation.
     """
-    figure, (plane,) = panels(1, 1, (6.4, 5.0))
+    figure, (plane,) = make_panels(1, 1, (6.4, 5.0))
     DRAW[str(data.attrs["at"])](plane, data, marker_size(data.sizes["point"]))
-    widen(plane)
+    widen_narrow_limits(plane)
     set_title(figure, title or title_from_attributes(data))
     return figure
 
 
-def widen(plane: Axes) -> None:
+def widen_narrow_limits(plane: Axes) -> None:
     """Widen axes with nearly constant values, so that a periodic motion shows as a point."""
     for low, high, put in (
         (*plane.get_xlim(), plane.set_xlim),
@@ -50,12 +50,12 @@ def widen(plane: Axes) -> None:
 
 
 def marker_size(count: int) -> float:
-    """Return a dot's size: smaller where there are many."""
+    """Return a marker size for ``count`` points: smaller where there are many."""
     return 2.0 if count > 2000 else 4.0 if count > 200 else 7.0
 
 
 def draw_phase(plane: Axes, data: xr.Dataset, size: float) -> None:
-    """Draw the gap and its rate, once a period."""
+    """Draw gap rate over gap, one point per period."""
     factor, letter = length_scale(data, float(data.x_rel.max()) if data.sizes["point"] else 1.0)
     pace, speed_letter = length_scale(
         data, float(abs(data.v_rel).max()) if data.sizes["point"] else 1.0
@@ -65,7 +65,7 @@ def draw_phase(plane: Axes, data: xr.Dataset, size: float) -> None:
 
 
 def draw_impacts(plane: Axes, data: xr.Dataset, size: float) -> None:
-    """Draw closing speeds by the phase of the box; those that begin permanent contact in red."""
+    """Draw closing velocities over the box's phase; red where permanent contact begins."""
     sticks = data.sticks.values.astype(bool)
     factor, letter = length_scale(
         data, float(data.impact_velocity.max()) if data.sizes["point"] else 1.0
@@ -83,7 +83,7 @@ def draw_impacts(plane: Axes, data: xr.Dataset, size: float) -> None:
 
 
 def draw_releases(plane: Axes, data: xr.Dataset, size: float) -> None:
-    """Draw the common velocity of both masses by the phase of the box."""
+    """Draw both masses' common velocity at releases over the box's phase."""
     factor, letter = length_scale(data, float(abs(data.v1).max()) if data.sizes["point"] else 1.0)
     plane.plot(data.phase / TURN, data.v1 / factor, color=BLACK, markersize=size, **POINTS)
     plane.set_ylabel(f"velocity of both masses in {letter}m/s")
@@ -91,7 +91,7 @@ def draw_releases(plane: Axes, data: xr.Dataset, size: float) -> None:
 
 
 def label_phase(plane: Axes) -> None:
-    """Label an axis of the box's phase, in turns, by parts of 2 pi."""
+    """Label an x axis of the box's phase, given in turns, by multiples of pi."""
     plane.set(xlim=(0.0, 1.0), xlabel="phase of the box in rad")
     plane.xaxis.set_major_locator(MultipleLocator(0.25))
     plane.xaxis.set_major_formatter(FuncFormatter(lambda turn, _: SHARES.get(turn, "")))

@@ -1,4 +1,4 @@
-"""Where the motor's power goes, in all pictures of the weak drive."""
+"""Draw the motor's power and where it goes, for all pictures of the weak drive."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ POWER_REVOLUTIONS = 2  # that powers are averaged over: a motion may repeat afte
 
 
 def mean_powers(revolutions: xr.Dataset) -> dict[str, np.ndarray]:
-    """Return the mean powers over ``POWER_REVOLUTIONS`` that follow each other, by account, W."""
+    """Return mean powers, W, by account, each over ``POWER_REVOLUTIONS`` revolutions."""
     time = revolutions.time.values
     span = time[POWER_REVOLUTIONS:] - time[:-POWER_REVOLUTIONS]
     energies = {account: revolutions[account].values for account in ACCOUNTS}
@@ -31,7 +31,7 @@ def mean_powers(revolutions: xr.Dataset) -> dict[str, np.ndarray]:
 
 
 def draw_powers(axes: Axes, along: np.ndarray, powers: Mapping[str, np.ndarray]) -> None:
-    """Draw the power of the motor, and where it goes, along time or speed."""
+    """Draw the motor's power and its losses by account, over time or speed."""
     axes.plot(along, powers["motor"], "k", linewidth=1.6, label="motor")
     for account, label in SINKS.items():
         axes.plot(along, powers[account], linewidth=1.0, label=label)

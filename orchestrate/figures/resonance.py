@@ -1,4 +1,4 @@
-"""Resonance curves: amplitude and acceleration of both masses, bonded against delaminated."""
+"""Draw resonance curves: amplitude and acceleration, bonded against delaminated."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .labels import title_from_attributes
-from .marks import MAX_DISTINCT, Marks, mark
+from .marks import MAX_DISTINCT, MarkStyle, marker_keywords
 from .overlay import Overlay
-from .scales import Along, acceleration_scale, along, length_scale, parameter_of
+from .scales import AxisValues, acceleration_scale, axis_values, length_scale, varied_dimension
 from .style import (
     BLACK,
     BLUE,
@@ -24,7 +24,7 @@ from .style import (
     styled,
     write_plain_numbers,
 )
-from .threshold import THRESHOLD, finite
+from .threshold import THRESHOLD, hide_infinite
 
 COLOURS = {"delaminated": RED, "bonded": BLUE}
 STYLES: dict[str, Any] = {  # down lies on up
@@ -46,7 +46,7 @@ LENGTHS = {"x1_max": "xi1_max", "x2_max": "xi2_max", "x_rel_max": "xi_rel_max"} 
 
 @styled
 def draw(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] = ()) -> Figure:
-    """Draw resonance curves, their peaks and their jumps.
+    """Draw resonance curves with their peaks and jumps; return the figure.
 
     Parameters
     ----------
@@ -73,8 +73,8 @@ def draw(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] = ()) 
         figure.set_figheight(9.4)
     axes = figure.subplot_mosaic(rows, sharex=True)
     set_title(figure, title or title_from_attributes(data))
-    parameter = parameter_of(data[rows[0][0]])
-    x = along(data, parameter)
+    parameter = varied_dimension(data[rows[0][0]])
+    x = axis_values(data, parameter)
     branches = [Overlay(branch, data, parameter) for branch in overlay]
     for name, plane in axes.items():
         if name == THRESHOLD:
@@ -83,7 +83,7 @@ def draw(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] = ()) 
         draw_quantity(plane, data, data[name], x)
         draw_peaks(plane, data, name, parameter, x)
         if name in LENGTHS and branches:
-            draw_branches(plane, branches, name, unit_of(data, data[name])[0])
+            draw_overlay(plane, branches, name, display_unit(data, data[name])[0])
     if "x_rel_max" in axes:
         draw_jumps(axes["x_rel_max"], data, parameter, x)
     for name in (name for row in rows[-2:] for name in row):  # panels of two widths
@@ -93,8 +93,8 @@ def draw(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] = ()) 
     return figure
 
 
-def draw_branches(axes: Axes, branches: Sequence[Overlay], name: str, factor: float) -> None:
-    """Draw branches over curves, within the frequencies of these; bifurcations in the gap."""
+def draw_overlay(axes: Axes, branches: Sequence[Overlay], name: str, factor: float) -> None:
+    """Draw branches over the curves within their frequency range; bifurcations in the gap."""
     span = axes.get_xlim()
     for branch in branches:
         branch.draw(axes, LENGTHS[name], factor, (BLACK, BLACK))
@@ -103,10 +103,10 @@ def draw_branches(axes: Axes, branches: Sequence[Overlay], name: str, factor: fl
     axes.set_xlim(span)
 
 
-def draw_quantity(axes: Axes, data: xr.Dataset, values: xr.DataArray, x: Along) -> None:
-    """Draw one quantity's curves, with each structure's largest value; bonded there is no gap."""
+def draw_quantity(axes: Axes, data: xr.Dataset, values: xr.DataArray, x: AxisValues) -> None:
+    """Draw one quantity's curves and list each structure's maximum; no gap if bonded."""
     name = str(values.name)
-    factor, unit = unit_of(data, values)
+    factor, unit = display_unit(data, values)
     largest: dict[str, tuple[float, float]] = {}
     for words, part in curves_with_labels(values):
         curve = part.values / factor
@@ -117,7 +117,7 @@ def draw_quantity(axes: Axes, data: xr.Dataset, values: xr.DataArray, x: Along) 
         colour = COLOURS.get(structure, BLACK)
         axes.plot(x.values, curve, **style, color=colour, label=words)
         if len(x.values) <= MAX_DISTINCT // 4:
-            axes.plot(x.values, curve, **mark(len(x.values), Marks(colour, 0.6)))
+            axes.plot(x.values, curve, **marker_keywords(len(x.values), MarkStyle(colour, 0.6)))
         at = int(np.nanargmax(curve))
         largest[structure] = max(largest.get(structure, (0.0, 0.0)), (curve[at], x.values[at]))
     axes.set(yscale="log", ylabel=NAMES[name].format(unit))
@@ -126,11 +126,11 @@ def draw_quantity(axes: Axes, data: xr.Dataset, values: xr.DataArray, x: Along) 
     list_largest(axes, largest, unit, x)
 
 
-def draw_threshold(axes: Axes, data: xr.Dataset, x: Along) -> None:
-    """Draw the box's acceleration, and the one at which the linear response opens or touches."""
+def draw_threshold(axes: Axes, data: xr.Dataset, x: AxisValues) -> None:
+    """Draw the box's acceleration and the threshold at which the gap opens or closes."""
     level = (data.amplitude * data.frequency**2).broadcast_like(data[THRESHOLD]).values
     factor, unit = acceleration_scale(data)
-    threshold, event = finite(data[THRESHOLD]) / factor, data[THRESHOLD].attrs["event"]
+    threshold, event = hide_infinite(data[THRESHOLD]) / factor, data[THRESHOLD].attrs["event"]
     level = level / factor
     axes.plot(x.values, threshold, color=BLACK, linewidth=1.2, label=f"level at which it {event}")
     axes.plot(x.values, level, color=GREY, linewidth=1.2, linestyle="-.", label="level of the box")
@@ -142,8 +142,8 @@ def draw_threshold(axes: Axes, data: xr.Dataset, x: Along) -> None:
     write_plain_numbers(axes)
 
 
-def unit_of(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
-    """Return the divisor of a quantity, and its unit."""
+def display_unit(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
+    """Return the divisor from SI and the display unit of a quantity."""
     if str(values.name).startswith("a"):
         return acceleration_scale(data)
     factor, letter = length_scale(data, float(values.max()))
@@ -151,7 +151,7 @@ def unit_of(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
 
 
 def curves_with_labels(values: xr.DataArray) -> list[tuple[str, xr.DataArray]]:
-    """Return each structure's and each direction's curve, with its legend entry."""
+    """Return each structure's and direction's curve, with its legend label."""
     curves = [("", values)]
     for name in ("structure", "direction"):
         if name in values.dims:
@@ -163,11 +163,11 @@ def curves_with_labels(values: xr.DataArray) -> list[tuple[str, xr.DataArray]]:
     return curves
 
 
-def draw_peaks(axes: Axes, data: xr.Dataset, name: str, parameter: str, x: Along) -> None:
-    """Draw a triangle on each peak, but not where responses are irregular."""
+def draw_peaks(axes: Axes, data: xr.Dataset, name: str, parameter: str, x: AxisValues) -> None:
+    """Draw a triangle on each resonance peak, except where responses are irregular."""
     if not data.sizes.get("peak"):
         return
-    factor, _ = unit_of(data, data[name])
+    factor, _ = display_unit(data, data[name])
     for i in range(data.sizes["peak"]):
         peak = data.isel(peak=i)
         if "peak_irregular" in data and bool(peak.peak_irregular):
@@ -179,8 +179,8 @@ def draw_peaks(axes: Axes, data: xr.Dataset, name: str, parameter: str, x: Along
             axes.plot(at, height, "v", color=colour, markersize=6.0, markeredgecolor="white")
 
 
-def draw_jumps(axes: Axes, data: xr.Dataset, parameter: str, x: Along) -> None:
-    """Draw a dotted line at each jump of the gap, with its frequency and its direction."""
+def draw_jumps(axes: Axes, data: xr.Dataset, parameter: str, x: AxisValues) -> None:
+    """Draw a dotted line at each jump of the gap, with its frequency and direction."""
     count = data.sizes.get("jump", 0)
     if count:
         axes.set_ylim(bottom=axes.get_ylim()[0] / 4.0)  # room for words below the curves
@@ -195,16 +195,16 @@ def draw_jumps(axes: Axes, data: xr.Dataset, parameter: str, x: Along) -> None:
         axes.text(at, 0.02, words, ha=side, transform=axes.get_xaxis_transform(), **text_style)
 
 
-def axis_position(value: float, parameter: xr.DataArray, x: Along) -> float:
-    """Return the position of a parameter's value on the axis."""
+def axis_position(value: float, parameter: xr.DataArray, x: AxisValues) -> float:
+    """Return a parameter's value in the unit of the axis."""
     order = np.argsort(parameter.values)
     return float(np.interp(value, parameter.values[order], x.values[order]))
 
 
 def list_largest(
-    axes: Axes, largest: Mapping[str, tuple[float, float]], unit: str, x: Along
+    axes: Axes, largest: Mapping[str, tuple[float, float]], unit: str, x: AxisValues
 ) -> None:
-    """Write each structure's largest value and its place in a corner of the panel."""
+    """Write each structure's largest value and its frequency into a panel's corner."""
     middle = float(np.mean(axes.get_xlim()))
     right = all(at < middle for _, at in largest.values())
     for row, (structure, (value, at)) in enumerate(largest.items()):

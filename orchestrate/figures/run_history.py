@@ -1,4 +1,4 @@
-"""A run whose voltage is no ramp: speed, voltage, amplitude, impacts and power over time."""
+"""Draw a coupled run over time: speed, voltage, amplitude, impacts and power."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 
 from ..units import as_shown, scale_of
 from .powers import POWER_REVOLUTIONS, draw_powers, mean_powers
-from .scales import with_unit
-from .style import BLUE, GREY, panels, set_title, styled
-from .weak_drive import COLOURS, outcome
+from .scales import label_with_unit
+from .style import BLUE, GREY, make_panels, set_title, styled
+from .weak_drive import COLOURS, format_passage
 
 ROWS = {
     "speed": "mean speed",
@@ -24,7 +24,7 @@ ROWS = {
 
 @styled
 def draw(runs: Mapping[str, xr.Dataset], resonance: float, title: str = "") -> Figure:
-    """Draw runs over time, one per column.
+    """Draw coupled runs over time, one column per structure; return the figure.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def draw(runs: Mapping[str, xr.Dataset], resonance: float, title: str = "") -> F
         What is shown: set, volts, controller.
     """
     count, rows = len(runs), len(ROWS) + 1
-    figure, axes = panels(rows, count, (6.5 * count, 2.6 * rows), sharex=True, sharey="row")
+    figure, axes = make_panels(rows, count, (6.5 * count, 2.6 * rows), sharex=True, sharey="row")
     shown = {name: as_shown(data) for name, data in runs.items()}
     for column, (name, data) in enumerate(shown.items()):
         column_axes = axes[column::count]
@@ -51,14 +51,14 @@ def draw(runs: Mapping[str, xr.Dataset], resonance: float, title: str = "") -> F
             linestyle="--",
             label="resonance",
         )
-        column_axes[0].set_title(f"{name}: {outcome(data)}")
+        column_axes[0].set_title(f"{name}: {format_passage(data)}")
         time = data.time.values
         middle = 0.5 * (time[POWER_REVOLUTIONS:] + time[:-POWER_REVOLUTIONS])
         draw_powers(column_axes[-1], middle, mean_powers(data))
         column_axes[-1].set_xlabel("time in s")
     *first, impacts, power = axes[::count]
     for panel, what in zip(first, ROWS, strict=False):
-        panel.set_ylabel(with_unit(ROWS[what], data[what]))
+        panel.set_ylabel(label_with_unit(ROWS[what], data[what]))
     impacts.set_ylabel(ROWS["impacts"])
     power.set_ylabel("power in W")
     axes[0].legend(loc="best")

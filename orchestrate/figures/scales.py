@@ -1,6 +1,4 @@
-"""Units of axes: those that an answer is shown in; else hertz and metres for a structure in SI, and
-the paper's ratios.
-"""
+"""Convert values to the display units of axes, and label the axes with them."""
 
 from __future__ import annotations
 
@@ -10,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from ..units import FACTORS, OVER_OMEGA, has_own_frequency, omega_of, scale_of, units_of
-from .labels import gap_name, prefix, symbol, unit_sign
+from .labels import gap_name, si_prefix, symbol, typeset_unit
 from .style import XI_REL
 
 ETA = symbol("eta")
@@ -22,8 +20,8 @@ FREQUENCIES = {
 }
 
 
-class Along(NamedTuple):
-    """Values and label of a horizontal axis.
+class AxisValues(NamedTuple):
+    """Values and label of a horizontal axis, in display units.
 
     Attributes
     ----------
@@ -40,13 +38,13 @@ class Along(NamedTuple):
         return f"{value:.5g} {unit}".rstrip()
 
 
-def parameter_of(data: xr.DataArray) -> str:
-    """Return the dimension that a quantity runs along, beside the direction and the structure."""
+def varied_dimension(data: xr.DataArray) -> str:
+    """Return the name of an array's dimension besides direction and structure."""
     (name,) = (str(name) for name in data.dims if name not in ("direction", "structure"))
     return name
 
 
-def in_si(data: xr.Dataset) -> bool:
+def has_frequency_unit(data: xr.Dataset) -> bool:
     """Return whether frequencies are shown with a unit, not as ratios eta."""
     if units_of(data).frequency:
         return units_of(data).frequency != "eta"
@@ -54,22 +52,22 @@ def in_si(data: xr.Dataset) -> bool:
 
 
 def frequency_scale(data: xr.Dataset) -> tuple[float, str]:
-    """Return the divisor of frequencies in rad/s and their unit, Hz by default."""
+    """Return the divisor from rad/s to the display unit of frequencies, and that unit."""
     if units_of(data).frequency:
         return scale_of(data, "rad/s")
     return FACTORS["frequency"]["Hz"], "Hz"
 
 
 def length_scale(data: xr.Dataset, largest: float) -> tuple[float, str]:
-    """Return the divisor of lengths or velocities, and the prefix of their unit."""
+    """Return the divisor from m (or m/s) to the display unit, and its SI prefix."""
     factor, word = scale_of(data, "m")
     if not units_of(data).length:
-        return prefix(largest)
+        return si_prefix(largest)
     return factor, word.removesuffix("m").replace("u", "µ")
 
 
 def acceleration_scale(data: xr.Dataset, usual: str = "m/s2") -> tuple[float, str]:
-    """Return the divisor of accelerations, and their unit for an axis.
+    """Return the divisor from m/s2 to the display unit, and that unit for an axis.
 
     Parameters
     ----------
@@ -78,40 +76,40 @@ def acceleration_scale(data: xr.Dataset, usual: str = "m/s2") -> tuple[float, st
         The unit where none is asked for.
     """
     word = units_of(data).acceleration or usual
-    return FACTORS["acceleration"][word], unit_sign(word)
+    return FACTORS["acceleration"][word], typeset_unit(word)
 
 
-def with_unit(words: str, array: xr.DataArray) -> str:
-    """Return an axis' label with the unit of what it shows, see :func:`.units.as_shown`."""
+def label_with_unit(words: str, array: xr.DataArray) -> str:
+    """Return an axis label with the array's unit; "over omega" for ratios."""
     if array.attrs.get("units") == OVER_OMEGA:
         return rf"{words} over $\omega$"
-    return f"{words} in {unit_text(array)}" if "units" in array.attrs else words
+    return f"{words} in {typeset_array_unit(array)}" if "units" in array.attrs else words
 
 
-def unit_text(array: xr.DataArray) -> str:
-    """Return the unit of what is shown, as a picture has it: ``m/s$^2$``, ``g$^2$/Hz``."""
-    return unit_sign(str(array.attrs["units"]))
+def typeset_array_unit(array: xr.DataArray) -> str:
+    """Return an array's unit as Matplotlib text: ``m/s$^2$``, ``g$^2$/Hz``."""
+    return typeset_unit(str(array.attrs["units"]))
 
 
-def along(data: xr.Dataset, parameter: str) -> Along:
-    """Return the parameter's values as they are shown, and the axis' label."""
+def axis_values(data: xr.Dataset, parameter: str) -> AxisValues:
+    """Return a parameter's values in display units, and the axis label."""
     if parameter in ("eta", "frequency"):
         factor, word = frequency_scale(data)
         if word == "eta" and "eta" in data.coords:
-            return Along(data.eta.values, ETA)
-        if in_si(data) and "frequency" in data.coords:
-            return Along(data.frequency.values / factor, FREQUENCIES[word])
+            return AxisValues(data.eta.values, ETA)
+        if has_frequency_unit(data) and "frequency" in data.coords:
+            return AxisValues(data.frequency.values / factor, FREQUENCIES[word])
     if parameter == "level":
         factor, word = acceleration_scale(data, "g")
-        return Along(data.level.values / factor, f"peak acceleration of the box in {word}")
+        return AxisValues(data.level.values / factor, f"peak acceleration of the box in {word}")
     factor, label = parameter_scale(data, parameter)
-    return Along(data[parameter].values / factor, label)
+    return AxisValues(data[parameter].values / factor, label)
 
 
 def parameter_scale(data: xr.Dataset, parameter: str) -> tuple[float, str]:
-    """Return the divisor of a parameter's values, and the label of its axis."""
+    """Return the divisor of a parameter's values to display units, and its axis label."""
     factor, word = frequency_scale(data)
-    if parameter == "frequency" and (in_si(data) or word == "eta"):
+    if parameter == "frequency" and (has_frequency_unit(data) or word == "eta"):
         return factor, FREQUENCIES[word]
     if parameter == "eta" and units_of(data).frequency not in ("", "eta"):
         return factor / omega_of(data), FREQUENCIES[word]
@@ -121,12 +119,12 @@ def parameter_scale(data: xr.Dataset, parameter: str) -> tuple[float, str]:
     return 1.0, symbol(parameter)
 
 
-def gap_unit(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
-    """Return what an axis of gaps is in, in m (0: over a eta^2), and its label.
+def gap_scale(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
+    """Return the unit of an axis of gaps, m (0: gaps are shown over a eta^2), and its label.
 
     It is in m for a structure in SI, or where a unit of length is asked for.
     """
-    asked = in_si(data) or units_of(data).length
+    asked = has_frequency_unit(data) or units_of(data).length
     if not (asked and {"amplitude", "eta"} <= set(data.coords)):
         return 0.0, XI_REL
     largest = float((values * data.amplitude * data.eta**2).max())
@@ -134,7 +132,7 @@ def gap_unit(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
     return factor, f"{gap_name(data)} in {name}m"
 
 
-def gaps(data: xr.Dataset, values: xr.DataArray) -> tuple[xr.DataArray, str]:
-    """Return gaps over a eta^2 as an axis shows them, with its label, see :func:`gap_unit`."""
-    factor, label = gap_unit(data, values)
+def displayed_gaps(data: xr.Dataset, values: xr.DataArray) -> tuple[xr.DataArray, str]:
+    """Convert gaps over a eta^2 to display units; return them and the axis label."""
+    factor, label = gap_scale(data, values)
     return (values * data.amplitude * data.eta**2 / factor if factor else values), label

@@ -1,4 +1,4 @@
-"""A record of the laboratory: envelopes of accelerations and gap over the time, and the impacts."""
+"""Draw a laboratory time history: envelopes of accelerations and gap, and impacts."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ MASSES: tuple[tuple[str, dict[str, Any]], ...] = (
 
 @styled
 def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) -> Figure:
-    """Draw a laboratory record: accelerations of box and masses, the gap and the impacts.
+    """Draw a laboratory record: accelerations, gap and impulses over time; return the figure.
 
     Parameters
     ----------
@@ -38,17 +38,17 @@ def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) ->
     rows = figure.subplots(4, 1, sharex=True, height_ratios=(1.0, 1.6, 1.2, 1.2))
     set_title(figure, title or f"{data.attrs['excitation']}; {title_from_attributes(data)}")
     box, masses, gap, impacts = rows
-    felt, unit = acceleration_scale(data)
-    envelope(box, data, "box_acceleration", felt, color=BLACK)
+    scale, unit = acceleration_scale(data)
+    draw_signal(box, data, "box_acceleration", scale, color=BLACK)
     box.set_ylabel(f"box in {unit}")
     for name, style in MASSES:
-        envelope(masses, data, name, felt, alpha=0.55, **style)
+        draw_signal(masses, data, name, scale, alpha=0.55, **style)
     if bonded is not None:
-        outline(masses, bonded, felt)
+        draw_bonded_envelope(masses, bonded, scale)
     masses.set_ylabel(f"masses in {unit}")
     masses.legend(ncols=3, loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.2)
     factor, letter = length_scale(data, float(data.x_rel.max()))
-    envelope(gap, data, "x_rel", factor, color=BLACK)
+    draw_signal(gap, data, "x_rel", factor, color=BLACK)
     gap.set_ylabel(f"gap in {letter}m")
     draw_impacts(impacts, data)
     impacts.set(xlabel="time in s", xlim=(0.0, float(data.time[-1])))
@@ -67,23 +67,25 @@ def draw_impacts(axes: Axes, data: xr.Dataset) -> None:
     axes.set_ylim(bottom=0.0)
 
 
-def outline(axes: Axes, bonded: xr.Dataset, felt: float) -> None:
-    """Draw the bonded structure's acceleration by its lower and upper envelope."""
-    time, low, high = extremes(bonded.time.values, bonded.a1_abs.values / felt)
+def draw_bonded_envelope(axes: Axes, bonded: xr.Dataset, felt: float) -> None:
+    """Draw the lower and upper envelope of the bonded structure's acceleration."""
+    time, low, high = local_extremes(bonded.time.values, bonded.a1_abs.values / felt)
     axes.plot(time, high, color=BLACK, linewidth=0.9, label="both, bonded")
     axes.plot(time, low, color=BLACK, linewidth=0.9)
 
 
-def extremes(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Divide a signal into equal parts; return each one's time, least and largest value."""
+def local_extremes(
+    time: np.ndarray, values: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Split a signal into equal parts; return each part's time, smallest and largest value."""
     edges = np.linspace(0, len(time), min(COLUMNS, len(time)) + 1).astype(int)[:-1]
     return time[edges], np.minimum.reduceat(values, edges), np.maximum.reduceat(values, edges)
 
 
-def envelope(axes: Axes, data: xr.Dataset, name: str, factor: float, **style: Any) -> None:
-    """Draw a signal; if it is long, the band between its least and largest values."""
+def draw_signal(axes: Axes, data: xr.Dataset, name: str, factor: float, **style: Any) -> None:
+    """Draw a signal as a line, or as the band between its extremes if it is long."""
     time, values = data.time.values, data[name].values / factor
     if len(time) <= SHORT:
         axes.plot(time, values, linewidth=1.0, **{**style, "alpha": 1.0})
         return
-    axes.fill_between(*extremes(time, values), linewidth=0.4, **style)
+    axes.fill_between(*local_extremes(time, values), linewidth=0.4, **style)

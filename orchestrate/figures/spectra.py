@@ -1,4 +1,4 @@
-"""Amplitude spectra under harmonic excitation, bonded beside delaminated."""
+"""Draw amplitude spectra under harmonic excitation, bonded beside delaminated."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 
 from .labels import title_from_attributes
 from .marks import draw_stems
-from .scales import acceleration_scale, frequency_scale, in_si
-from .style import BLACK, BLUE, ORANGE, legend_below, panels, set_title, styled
+from .scales import acceleration_scale, frequency_scale, has_frequency_unit
+from .style import BLACK, BLUE, ORANGE, legend_below, make_panels, set_title, styled
 
 SIDES: tuple[dict[str, dict[str, Any]], ...] = (  # left and right; a thin line lies on a wide one
     {"bonded": {"color": BLUE, "width": 2.6, "label": "bonded"}},
@@ -28,7 +28,7 @@ SIDES: tuple[dict[str, dict[str, Any]], ...] = (  # left and right; a thin line 
 
 @styled
 def draw(data: xr.Dataset, title: str = "", mass: int = 1, decades: int = 4) -> Figure:
-    """Draw one row per frequency, the bonded structure left and the delaminated one right.
+    """Draw spectra, one row per frequency, bonded left and delaminated right.
 
     Parameters
     ----------
@@ -45,7 +45,9 @@ def draw(data: xr.Dataset, title: str = "", mass: int = 1, decades: int = 4) -> 
     shown = data.acceleration.sel(mass=mass) / felt
     along = str(shown.dims[0])
     count = data.sizes[along]
-    figure, axes = panels(count, 2, (9.6, 0.9 + 2.1 * count), sharex=not in_si(data), sharey="row")
+    figure, axes = make_panels(
+        count, 2, (9.6, 0.9 + 2.1 * count), sharex=not has_frequency_unit(data), sharey="row"
+    )
     set_title(figure, title or title_from_attributes(data))
     for index in range(count):
         part = shown.isel({along: index})
@@ -55,8 +57,8 @@ def draw(data: xr.Dataset, title: str = "", mass: int = 1, decades: int = 4) -> 
             draw_panel(plane, data, part, kinds, floor)
         axes[2 * index].set_ylim(floor, 2.0 * top)
         axes[2 * index].set_ylabel(f"acceleration\nof mass {mass} in {unit}")
-    for plane in axes if in_si(data) else axes[-2:]:
-        unit = f"in {frequency_scale(data)[1]}" if in_si(data) else r"over $\Omega$"
+    for plane in axes if has_frequency_unit(data) else axes[-2:]:
+        unit = f"in {frequency_scale(data)[1]}" if has_frequency_unit(data) else r"over $\Omega$"
         plane.set_xlabel(f"frequency of the line {unit}")
     columns = sum(map(len, SIDES))
     left_out = f"what is below {10.0**-decades:g} of the largest line is left out"
@@ -71,8 +73,8 @@ def draw_panel(
     kinds: dict[str, dict[str, Any]],
     floor: float,
 ) -> None:
-    """Draw the spectra of some structures (bonded, delaminated) at one frequency."""
-    si, (turn, unit) = in_si(data), frequency_scale(data)
+    """Draw the spectra of one or both structures at one frequency."""
+    si, (turn, unit) = has_frequency_unit(data), frequency_scale(data)
     speed = float(amplitudes.frequency)
     lines = data.order.values * (speed / turn if si else 1.0)
     for kind, style in kinds.items():

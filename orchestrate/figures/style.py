@@ -1,4 +1,4 @@
-"""Style of all pictures, in force while one is drawn and no longer.
+"""Matplotlib style, panels, titles and legends that all pictures share.
 
 ``STYLE`` is the one place of what pictures have in common, as settings of Matplotlib: change an
 entry of it and all pictures follow, those of commands and reports too.
@@ -57,26 +57,27 @@ NO_BREAK_SPACE = "\xa0"  # a space that no line breaks at
 Arguments = ParamSpec("Arguments")
 
 
-def style() -> AbstractContextManager[None]:
-    """Return a context in which our settings replace the user's matplotlib settings."""
+def style_context() -> AbstractContextManager[None]:
+    """Return a context manager that applies our Matplotlib settings in place of the user's."""
     return matplotlib.style.context(STYLE, after_reset=True)
 
 
 def styled(draw: Callable[Arguments, Figure]) -> Callable[Arguments, Figure]:
-    """Decorate a drawing function so that it draws in our style."""
+    """Decorate a drawing function so that our Matplotlib settings hold while it draws."""
 
     @functools.wraps(draw)
     def drawn(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Figure:
-        with style():
+        """Call the drawing function under our Matplotlib settings."""
+        with style_context():
             return draw(*args, **kwargs)
 
     return drawn
 
 
-def panels(
+def make_panels(
     rows: int, columns: int, size: tuple[float, float], **more: Any
 ) -> tuple[Figure, list[Axes]]:
-    """Make a figure of panels; return it and its axes as a flat list, row by row.
+    """Make a figure with a grid of axes; return it and the axes row by row.
 
     Parameters
     ----------
@@ -92,7 +93,7 @@ def panels(
 
 
 def set_title(figure: Figure, title: str) -> None:
-    """Write a title above all panels, on as many lines as it needs."""
+    """Write a title above all panels, broken after commas into lines that fit."""
     if title:
         letters = int(LETTERS_AN_INCH * figure.get_figwidth())
         parts = title.replace(" ", NO_BREAK_SPACE).replace(
@@ -103,7 +104,7 @@ def set_title(figure: Figure, title: str) -> None:
 
 
 def legend_below(figure: Figure, axes: Iterable[Axes], columns: int = 4, **more: Any) -> None:
-    """Draw one legend for some panels, below them, where it covers nothing; each entry once.
+    """Draw one legend for several panels below the figure; each label once.
 
     Parameters
     ----------
@@ -124,21 +125,21 @@ def legend_below(figure: Figure, axes: Iterable[Axes], columns: int = 4, **more:
 
 
 def legend_under(axes: Axes, columns: int = 3) -> None:
-    """Draw the legend of one panel below it, where it covers nothing."""
+    """Draw one panel's legend below the panel."""
     if axes.get_legend_handles_labels()[0]:
         below: Any = {"loc": "upper center", "bbox_to_anchor": (0.5, UNDER), "frameon": False}
         axes.legend(ncols=columns, **below)
 
 
 def write_in_panel(axes: Axes, words: str) -> None:
-    """Write a text in the middle of a panel that has nothing to show, nor numbers."""
+    """Write a text in the middle of a panel that has nothing to show."""
     axes.set_yticks([])
     middle: Any = {"transform": axes.transAxes, "ha": "center", "va": "center"}
     axes.text(0.5, 0.5, words, color=GREY, fontsize=11, **middle)
 
 
 def write_plain_numbers(axes: Axes) -> None:
-    """Label a logarithmic axis by numbers, 0.02, not powers of ten; few enough to be read."""
+    """Label a logarithmic y axis with plain numbers such as 0.02, few enough to read."""
     low, high = axes.get_ylim()
     axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 300.0 * low else (1.0,)))
     axes.yaxis.set_major_formatter("{x:g}")

@@ -1,4 +1,4 @@
-"""The level at which a pressed structure first opens, or an open one first touches."""
+"""Draw the excitation level at which a structure first opens or touches."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .labels import title_from_attributes
-from .scales import acceleration_scale, along, frequency_scale
-from .style import BLACK, panels, set_title, styled, write_plain_numbers
+from .scales import acceleration_scale, axis_values, frequency_scale
+from .style import BLACK, make_panels, set_title, styled, write_plain_numbers
 
 THRESHOLD = "threshold_acceleration"
 LOWEST = "lowest_threshold"
 
 
-def finite(threshold: xr.DataArray) -> np.ndarray:
-    """Return a threshold as it is drawn: no line where no level opens or joins the halves."""
+def hide_infinite(threshold: xr.DataArray) -> np.ndarray:
+    """Return a threshold with NaN where no level opens or closes the gap."""
     return np.where(np.isfinite(threshold.values), threshold.values, np.nan)
 
 
 @styled
 def draw(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw the level over the frequency, in g and Hz.
+    """Draw the threshold level over frequency, in g and Hz; return the figure.
 
     Parameters
     ----------
@@ -33,11 +33,11 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
     title : str
         By default the structure.
     """
-    figure, (plane,) = panels(1, 1, (6.4, 4.2))
+    figure, (plane,) = make_panels(1, 1, (6.4, 4.2))
     set_title(figure, title or title_from_attributes(data, ("eta", "frequency")))
     factor, unit = acceleration_scale(data, "g")
-    level = finite(data[THRESHOLD]) / factor
-    x = along(data, str(data[THRESHOLD].dims[0]))
+    level = hide_infinite(data[THRESHOLD]) / factor
+    x = axis_values(data, str(data[THRESHOLD].dims[0]))
     mark = "o-" if level.size < 2 else "-"
     plane.plot(x.values, level, mark, color=BLACK, label=f"it first {data.attrs['event']}")
     mark_lowest(plane, data)

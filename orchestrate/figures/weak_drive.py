@@ -1,4 +1,4 @@
-"""Figure 2, the Sommerfeld effect, as two pictures: the ramp, and the jumps.
+"""Draw runs of the weak drive (Figure 2, Sommerfeld effect): ramps and their jumps.
 
 The ramp has speed, amplitude, impacts, and where the motor's power goes; the jumps are speed and
 amplitude over time.
@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 from ..units import as_shown, omega_of
 from .powers import POWER_REVOLUTIONS, draw_powers, mean_powers
-from .scales import with_unit
+from .scales import label_with_unit
 from .style import (
     BLACK,
     BLUE,
@@ -24,7 +24,7 @@ from .style import (
     RED,
     legend_below,
     legend_under,
-    panels,
+    make_panels,
     set_title,
     styled,
     write_in_panel,
@@ -50,7 +50,7 @@ def draw(
     branches: xr.Dataset | None = None,
     title: str = "",
 ) -> Figure:
-    """Draw runs of one drive.
+    """Draw voltage ramps: speed, amplitude, impacts and power; return the figure.
 
     Parameters
     ----------
@@ -63,8 +63,8 @@ def draw(
     title : str
         What is shown: set, rate, volts.
     """
-    shown = {name: without_beginning(as_shown(data)) for name, data in runs.items()}
-    figure, axes = panels(2, 2, (11, 9.4))
+    shown = {name: drop_spin_up(as_shown(data)) for name, data in runs.items()}
+    figure, axes = make_panels(2, 2, (11, 9.4))
     for name, data in shown.items():
         for part, style, direction in split_directions(data):
             label = f"{name}, {direction}"
@@ -80,7 +80,7 @@ def draw(
         draw_branches(axes, as_shown(branches).sel(structure=list(runs)))
     set_title(figure, title)
     name = list(runs)[-1]
-    draw_powers_way_there(axes[3], shown[name], name)
+    draw_outward_powers(axes[3], shown[name], name)
     axes[0].set_title("\n".join(filter(None, (format_jumps(*item) for item in runs.items()))))
     label_axes(axes, shown[name])
     legend_below(figure, axes[:2], title="upper panels")
@@ -92,7 +92,7 @@ def draw(
 
 @styled
 def draw_jumps(runs: Mapping[str, xr.Dataset], title: str = "") -> Figure:
-    """Draw speed and amplitude over time around the jumps, one row a direction.
+    """Draw speed and amplitude over time around jumps, one row per direction.
 
     Parameters
     ----------
@@ -102,8 +102,10 @@ def draw_jumps(runs: Mapping[str, xr.Dataset], title: str = "") -> Figure:
         What is shown: set, rate, volts.
     """
     shown = {name: as_shown(data) for name, data in runs.items()}
-    jumps = jumps_of(shown)
-    figure, axes = panels(max(len(jumps), 1), len(HISTORIES), (10, 0.8 + 3.6 * max(len(jumps), 1)))
+    jumps = jump_directions(shown)
+    figure, axes = make_panels(
+        max(len(jumps), 1), len(HISTORIES), (10, 0.8 + 3.6 * max(len(jumps), 1))
+    )
     for row, jump in enumerate(jumps):
         for panel, what in zip(axes[len(HISTORIES) * row :], HISTORIES, strict=False):
             draw_histories(panel, shown, jump, what)
@@ -114,14 +116,18 @@ def draw_jumps(runs: Mapping[str, xr.Dataset], title: str = "") -> Figure:
     return figure
 
 
-def jumps_of(runs: Mapping[str, xr.Dataset]) -> list[str]:
-    """Return the directions in which one of the runs jumps."""
+def jump_directions(runs: Mapping[str, xr.Dataset]) -> list[str]:
+    """Return the directions, "up" and "down", in which any of the runs jumps."""
     directions = ("up", "down")
-    return [way for way in directions if any(jumped(data, way) for data in runs.values())]
+    return [
+        direction
+        for direction in directions
+        if any(has_jump(data, direction) for data in runs.values())
+    ]
 
 
 def draw_theory(axes: Sequence[Axes], theory: xr.Dataset) -> None:
-    """Draw the averaged theory: dash-dotted where it is stable, dotted where it is unstable."""
+    """Draw the averaged theory: dash-dotted where stable, dotted where unstable."""
     stable = theory.stable.values
     for part, style, what in ((stable, "-.", "stable"), (~stable, ":", "unstable")):
         line: Any = {"color": BLACK, "linewidth": 1.0, "label": f"{THEORY}, {what}"}
@@ -130,8 +136,8 @@ def draw_theory(axes: Sequence[Axes], theory: xr.Dataset) -> None:
         axes[1].plot(theory.speed, amplitude, style, **line)
 
 
-def without_beginning(data: xr.Dataset) -> xr.Dataset:
-    """Return a run from the end of the first constant voltage: no spin-up, no settling."""
+def drop_spin_up(data: xr.Dataset) -> xr.Dataset:
+    """Return a run without its beginning: no spin-up, no time at the first voltage."""
     change = np.abs(np.diff(data.voltage.values))
     holds = change <= 1e-3 * change.max(initial=0.0)
     if not holds.any() or holds.all():
@@ -143,17 +149,17 @@ def without_beginning(data: xr.Dataset) -> xr.Dataset:
     return data.isel(revolution=slice(end, None)) if early else data
 
 
-def jumped(data: xr.Dataset, direction: str) -> bool:
-    """Return whether there is a jump up or down."""
+def has_jump(data: xr.Dataset, direction: str) -> bool:
+    """Return whether a run jumps in a direction."""
     return bool(np.isfinite(float(data.jumps.sel(jump=direction))))
 
 
 def jump_texts(data: xr.Dataset) -> list[str]:
-    """Format each jump of a run, and each direction that is undecided."""
+    """Return a text for each jump of a run, and for each undecided direction."""
     jumps = [
         f"{direction} at {float(data.jumps.sel(jump=direction)):.4f} V"
         for direction in ("up", "down")
-        if jumped(data, direction)
+        if has_jump(data, direction)
     ]
     undecided = [f"{direction} undecided" for direction in undecided_directions(data)]
     further = [
@@ -164,7 +170,7 @@ def jump_texts(data: xr.Dataset) -> list[str]:
 
 
 def further_jumps(data: xr.Dataset) -> list[tuple[str, float, bool]]:
-    """Return direction and voltage of each further jump, and whether it is sure."""
+    """Return direction and voltage of each further jump, and whether it is certain."""
     if "further_decided" not in data:
         return []
     jumps = []
@@ -179,12 +185,12 @@ def further_jumps(data: xr.Dataset) -> list[tuple[str, float, bool]]:
 
 
 def format_jumps(name: str, data: xr.Dataset) -> str:
-    """Format the jumps of a run."""
+    """Format a run's jumps in one line after its name."""
     return f"{name}: jump {', '.join(jump_texts(data))}" if jump_texts(data) else f"{name}: no jump"
 
 
-def outcome(data: xr.Dataset) -> str:
-    """Format whether a run passes the resonance."""
+def format_passage(data: xr.Dataset) -> str:
+    """Format whether, and from what time on, a run is beyond the resonance."""
     passed = float(data.passage_time)
     if np.isfinite(passed):
         return f"beyond the resonance from {passed:.4g} s on"
@@ -192,13 +198,13 @@ def outcome(data: xr.Dataset) -> str:
 
 
 def undecided_directions(data: xr.Dataset) -> list[str]:
-    """Return directions in which the held-voltage test leaves undecided whether the speed jumps."""
+    """Return the directions for which the held-voltage test is undecided about a jump."""
     decided = zip(data.jump.values, data.decided.values, strict=True)
     return [str(direction) for direction, decision in decided if decision == "undecided"]
 
 
 def split_directions(data: xr.Dataset) -> list[tuple[np.ndarray, str, str]]:
-    """Return the revolutions of each direction of the voltage, with line style and name."""
+    """Return a run's revolutions there and back as index arrays, each with style and name."""
     voltage = data.voltage.values
     turn = int(np.argmax(np.abs(voltage - voltage[0])))
     outward, back = np.arange(0, turn + 1), np.arange(turn + 1, len(voltage))
@@ -210,7 +216,7 @@ def split_directions(data: xr.Dataset) -> list[tuple[np.ndarray, str, str]]:
 
 @styled
 def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
-    """Draw branches of stationary motions alone, without runs.
+    """Draw branches of stationary motions without runs; return the figure.
 
     Parameters
     ----------
@@ -218,7 +224,7 @@ def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
         Of :func:`orchestrate.drive_branch`.
     title : str
     """
-    figure, axes = panels(1, 2, (12, 5))
+    figure, axes = make_panels(1, 2, (12, 5))
     branches = as_shown(branches)
     draw_branches(axes, branches)
     for name in branches.structure.values:
@@ -229,7 +235,7 @@ def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
             marker = MARKS.get(str(kind), "o")
             axes[0].plot(at.bifurcation_voltage, at.bifurcation_speed, marker, **mark)
             axes[1].plot(at.bifurcation_speed, at.bifurcation_amplitude, marker, **mark)
-    speed, amplitude = (label_of(branches, name) for name in HISTORIES)
+    speed, amplitude = (history_label(branches, name) for name in HISTORIES)
     axes[0].set(xlabel="voltage in V", ylabel=speed)
     axes[1].set(xlabel=speed, ylabel=amplitude)
     legend_below(figure, axes[:1])
@@ -238,7 +244,7 @@ def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
 
 
 def draw_branches(axes: Sequence[Axes], branches: xr.Dataset) -> None:
-    """Draw stationary motions, thin and pale under the ramps: dotted where they are unstable."""
+    """Draw stationary motions thick and pale under the ramps, dotted where unstable."""
     for name in branches.structure.values:
         for i, leg in enumerate(branches.leg.values):
             branch = branches.sel(structure=name, leg=leg)
@@ -255,12 +261,12 @@ def draw_branches(axes: Sequence[Axes], branches: xr.Dataset) -> None:
 
 
 def running_mean(values: np.ndarray, count: int = IMPACT_REVOLUTIONS) -> np.ndarray:
-    """Return the running mean."""
+    """Return the running mean of an array over ``count`` values."""
     return np.convolve(values, np.full(count, 1.0 / count), "valid")
 
 
 def draw_impacts(axes: Axes, data: xr.Dataset, direction: str) -> None:
-    """Draw the impacts of each revolution, and their running mean."""
+    """Draw the impacts per revolution over the speed in one direction, and their running mean."""
     speed, count = data.speed.values, data.impacts.values
     colour, style = (
         (COLOURS["delaminated"], "-") if direction == "there" else (COLOUR_OF_RETURN, "--")
@@ -276,7 +282,7 @@ def draw_impacts(axes: Axes, data: xr.Dataset, direction: str) -> None:
 
 
 def mark_jumps(axes: Axes, data: xr.Dataset, name: str) -> None:
-    """Mark the voltages at which the speed jumps."""
+    """Mark the voltages of jumps by lines, undecided ones by a band."""
     for value in data.jumps.values:
         if np.isfinite(value):
             axes.axvline(value, color=COLOURS[name], linewidth=0.6, alpha=0.6)
@@ -292,23 +298,23 @@ def mark_jumps(axes: Axes, data: xr.Dataset, name: str) -> None:
 
 
 def draw_histories(axes: Axes, runs: Mapping[str, xr.Dataset], jump: str, what: str) -> None:
-    """Draw speed or amplitude over time around a jump."""
+    """Draw speed or amplitude over time around one direction's jump, for all runs."""
     for name, data in runs.items():
         at = data.sel(jump=jump)
-        if not jumped(data, jump):
+        if not has_jump(data, jump):
             continue
         span = TIME_AROUND_JUMP / omega_of(data)
         time = data.time.values - float(at.jump_time)
         near = np.abs(time) < span
         label = f"{name}, {float(at.jumps):.4f} V"
         axes.plot(time[near], data[what].values[near], color=COLOURS[name], label=label)
-        axes.set_ylabel(label_of(data, what))
+        axes.set_ylabel(history_label(data, what))
     axes.set_xlabel(f"time from the jump {jump} in s")
     legend_under(axes)
 
 
-def draw_powers_way_there(axes: Axes, data: xr.Dataset, name: str) -> None:
-    """Draw the mean power of the motor and where it goes, against the speed, one way."""
+def draw_outward_powers(axes: Axes, data: xr.Dataset, name: str) -> None:
+    """Draw the motor's mean power and where it goes over speed, until the voltage returns."""
     outward = split_directions(data)[0][0]
     if len(outward) < 3 * POWER_REVOLUTIONS:
         return
@@ -324,14 +330,14 @@ def draw_powers_way_there(axes: Axes, data: xr.Dataset, name: str) -> None:
     axes.set_title(f"power on the way there, {name}\n{means}")
 
 
-def label_of(data: xr.Dataset, name: str) -> str:
-    """Return the label of an axis of speeds or amplitudes, with the unit that they are shown in."""
-    return with_unit(HISTORIES[name], data[name])
+def history_label(data: xr.Dataset, name: str) -> str:
+    """Return the axis label of speed or amplitude with its display unit."""
+    return label_with_unit(HISTORIES[name], data[name])
 
 
 def label_axes(axes: Sequence[Axes], data: xr.Dataset) -> None:
-    """Label all axes."""
-    speed, amplitude = (label_of(data, name) for name in HISTORIES)
+    """Label the four panels' axes."""
+    speed, amplitude = (history_label(data, name) for name in HISTORIES)
     axes[0].set(xlabel="voltage in V", ylabel=speed)
     axes[1].set(xlabel=speed, ylabel=amplitude)
     axes[2].set(xlabel=speed, ylabel="impacts in a revolution")
@@ -339,9 +345,10 @@ def label_axes(axes: Sequence[Axes], data: xr.Dataset) -> None:
 
 
 def limit_axes(axes: Sequence[Axes], runs: Sequence[xr.Dataset]) -> None:
-    """Limit the axes to the computed runs: the theory goes on."""
+    """Limit the axes to the runs: the theory's curves extend beyond them."""
 
     def ends(name: str) -> tuple[float, float]:
+        """Return the smallest and largest value of a variable in all runs."""
         values = np.concatenate([data[name].values for data in runs])
         return (values.min(), values.max()) if values.size else (0.0, 1.0)
 

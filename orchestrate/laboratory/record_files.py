@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import InputError
-from ..files import check_name, write_whole
+from ..files import check_path_encoding, write_whole
 from ..structures.ranges import Quantity
 from .columns import Column, Columns, converted_channels
 from .record import CHANNELS, checked_record
@@ -146,7 +146,7 @@ def write_record(data: xr.Dataset, path: str | os.PathLike[str], *, binary: bool
     """
     path = Path(path)
     kind = file_kind(path)
-    check_name(path)
+    check_path_encoding(path)
     channels = [name for name in CHANNELS if name in getattr(data, "variables", {})]
     if not channels or "sample_rate" not in data.attrs:
         raise InputError("data: expected a record, with a channel and the attribute sample_rate")

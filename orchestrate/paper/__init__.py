@@ -1,1 +1,1 @@
-"""The paper: a client of the public questions, its pictures, and a table of its claims."""
+"""Recompute the paper: the plan of its figures, its claims with verdicts, and a report."""

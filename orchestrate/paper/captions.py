@@ -1,4 +1,4 @@
-"""What the report says about each picture: its title, its caption, and how it was computed."""
+"""Titles, captions and methods of the pictures in the paper's report."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Caption:
-    """The words beside a picture.
+    """Texts beside a picture: its title, its caption, and how it was computed.
 
     Attributes
     ----------
@@ -35,8 +35,8 @@ CURVES = (
 )
 
 
-def orbit(number: int, e: float, D: float) -> Caption:
-    """Return the caption of an orbit diagram."""
+def orbit_diagram_caption(number: int, e: float, D: float) -> Caption:
+    """Return the caption of the orbit diagram with a figure number, e and D."""
     text = (
         f"Bifurcation diagram for e = {e:g}, D = {D:g}: all stroboscopic samples of the gap, and "
         "below them the impacts per excitation period. The axis is logarithmic down to its grey "
@@ -53,7 +53,7 @@ CAPTIONS = {
         "Started from the up-sweep's response at eta = 0.4; one period, states sampled inside the "
         "FMU and both sides of each impact.",
     ),
-    "6": orbit(6, 0.7, 0.005),
+    "6": orbit_diagram_caption(6, 0.7, 0.005),
     "7": Caption(
         "Figure 7",
         "Multiplicity of periodic responses at the relative resonance peaks of the windows T, 2T, "
@@ -72,8 +72,8 @@ CAPTIONS = {
         "Typical phase curves in the second irregular region 2.61 < eta < 3.77; T, nT: periodic.",
         CURVES,
     ),
-    "10": orbit(10, 0.7, 0.05),
-    "11": orbit(11, 0.3, 0.005),
+    "10": orbit_diagram_caption(10, 0.7, 0.05),
+    "11": orbit_diagram_caption(11, 0.3, 0.005),
     "12": Caption(
         "Figure 12",
         "Phase curves of both masses at the main resonance peak: (a) close to elastic impact, low "

@@ -1,4 +1,4 @@
-"""The paper's three structures, and the ranges of the maps around the first of them."""
+"""The paper's three structures, and the parameter ranges of the maps around the first."""
 
 from __future__ import annotations
 
@@ -18,6 +18,6 @@ MAP_ETAS = (0.4, 2.2)
 
 
 def map_values(parameter: str, count: int) -> np.ndarray:
-    """Return the values of a parameter along the side of its map."""
+    """Return ``count`` values of a parameter over the range of its map."""
     low, high = MAPS[parameter]
     return (np.geomspace if parameter == "D" else np.linspace)(low, high, count)

@@ -1,4 +1,4 @@
-"""Chattering (16): impacts without end whose times in between shrink by e each.
+"""Job of chattering sequences (16): intervals between impacts that shrink by e each time.
 
 Both masses lie together, pressed by their springs under a slow excitation near its crest, and one
 is kicked off. What follows depends on e alone: each flight is shorter than the one before by the
@@ -36,7 +36,7 @@ NUMBERS = {
 
 @dataclass(frozen=True, kw_only=True)
 class ChatteringJob(Job):
-    """Sequences of impacts from one kick, over restitution and gamma.
+    """Job: impacts after one kick until sticking, for each restitution and gamma.
 
     Attributes
     ----------
@@ -60,11 +60,11 @@ class ChatteringJob(Job):
     item: ClassVar[str] = "sequence"
 
     def count(self) -> int:
-        """Return the number of sequences."""
+        """Return the number of sequences: restitutions times gammas."""
         return len(self.restitutions) * len(self.gammas)
 
     def items(self, inputs: Inputs) -> Sequence[Structure]:
-        """Return the structures."""
+        """Return a structure for each pair of restitution and gamma."""
         return [
             self.structure.replace(e=e, gamma=gamma)
             for e in self.restitutions
@@ -74,10 +74,10 @@ class ChatteringJob(Job):
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Structure], previous: Table | None
     ) -> Table:
-        """Compute one sequence."""
+        """Simulate one structure's sequence; return its count, interval ratios and times."""
         (structure,) = items
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            impacts, point = self.sequence(instance, structure)
+            impacts, point = self.simulate_kick(instance, structure)
         times = impacts.time * structure.omega
         between = np.diff(times)
         clear = between[between > 1e8 * np.finfo(float).eps * times[-1]] if len(times) else between
@@ -93,8 +93,8 @@ class ChatteringJob(Job):
         ]
         return {"rows": np.array([row], dtype=float)}
 
-    def sequence(self, instance: EventInstance, structure: Structure) -> tuple[Impacts, Point]:
-        """Return impacts until the masses stick, a quarter period at most, and their point."""
+    def simulate_kick(self, instance: EventInstance, structure: Structure) -> tuple[Impacts, Point]:
+        """Simulate from a kick until the masses stick, at most a quarter period; return impacts."""
         crest = 0.5 * np.pi
         point = Point(structure, Excitation.nondimensional(self.eta, structure, crest))
         middle = point.length * (1.0 + structure.mu) / (1.0 + structure.kappa)  # (6) without rates
@@ -112,7 +112,7 @@ class ChatteringJob(Job):
         return cut, point
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return the results over restitution and gamma."""
+        """Return the sequences' numbers as a dataset over restitution and gamma."""
         import xarray as xr
 
         dims = "e", "gamma"

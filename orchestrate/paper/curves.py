@@ -1,4 +1,4 @@
-"""The curves of Figures 5, 7, 8, 9 and 12: responses of the up-sweeps, followed further."""
+"""Jobs of the curves in Figures 5, 7, 8, 9 and 12: sweep responses traced in time."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ..response.questions import Point
 from ..response.relative_resonance import follow_to_peak
 from ..running.job import Inputs, Job, Table
 from ..structures import Excitation, Structure
-from .windows import relative_peak, window
+from .sweep_windows import relative_peak, window
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,7 +29,7 @@ NUMBERS = ("e", "D", "eta", "multiplicity")  # of a panel
 
 @dataclass(frozen=True)
 class Panel:
-    """What one curve shows.
+    """One response to trace: structure, frequency ratio, start state and multiplicity.
 
     Attributes
     ----------
@@ -48,17 +48,17 @@ class Panel:
 
     @property
     def point(self) -> Point:
-        """Structure and excitation of the panel."""
+        """Structure and excitation of the panel, as a ``Point``."""
         excitation = Excitation.nondimensional(self.eta, self.structure)
         return Point(self.structure, excitation)
 
     def numbers(self) -> list[float]:
-        """Return the panel's numbers in the order of ``NUMBERS``."""
+        """Return e, D, eta and multiplicity as a list."""
         return [self.structure.e, self.structure.get("D"), self.eta, self.multiplicity]
 
 
 def panel_at(sweep: xr.Dataset, structure: Structure, eta: float) -> Panel:
-    """Return a sweep's response at one of its frequencies, found to within half a step."""
+    """Return the panel of a sweep's response nearest to a frequency ratio."""
     row = sweep.sel(eta=eta, method="nearest")
     start = tuple(map(float, row.end_state.values))
     return Panel(structure, float(row.eta), start, int(row.multiplicity))
@@ -66,7 +66,7 @@ def panel_at(sweep: xr.Dataset, structure: Structure, eta: float) -> Panel:
 
 @dataclass(frozen=True, kw_only=True)
 class CurvesJob(Job):
-    """Curves of one figure, a panel each; subclasses say which responses they show.
+    """Base of jobs that trace the curves of a figure, one panel each.
 
     Attributes
     ----------
@@ -88,15 +88,15 @@ class CurvesJob(Job):
     item: ClassVar[str] = "curve"
 
     def needs(self) -> tuple[str, ...]:
-        """Return the name of the job of the sweeps, in a tuple."""
+        """Return the names of the sweep jobs whose results it needs."""
         return self.sweeps
 
     @abstractmethod
     def panels(self, sweeps: Sequence[xr.Dataset]) -> list[Panel]:
-        """Return the responses."""
+        """Return the panels to trace, chosen from the sweeps' results."""
 
-    def settled(self, fmu: Path, panel: Panel) -> Panel:
-        """Compute the response that a panel shows, in a worker, with its multiplicity."""
+    def settle_panel(self, fmu: Path, panel: Panel) -> Panel:
+        """Run a panel's response until it is settled; return the panel with its multiplicity."""
         settling = AttractorSettings(transient=self.skip, settle=0.0)
         with Instance(fmu) as instance:
             response, _ = run_until_settled(instance, panel.point, panel.start, settling)
@@ -109,9 +109,9 @@ class CurvesJob(Job):
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[tuple[int, Panel]], previous: Table | None
     ) -> Table:
-        """Compute one panel."""
+        """Settle and trace one panel's response; return its times, states and kinds of state."""
         ((index, panel),) = items
-        panel = self.settled(fmus[OSCILLATOR], panel)
+        panel = self.settle_panel(fmus[OSCILLATOR], panel)
         settings = self.skip, self.keep, self.points
         curve = simulate_curve(fmus[OSCILLATOR], panel.point, panel.start, *settings)
         return {
@@ -123,7 +123,7 @@ class CurvesJob(Job):
         }
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return points one after the other, with their panels."""
+        """Return a dataset of all curves' points, one after the other, with their panel numbers."""
         import xarray as xr
 
         time = "non-dimensional time from the first period shown"
@@ -146,7 +146,7 @@ class CurvesJob(Job):
 
 @dataclass(frozen=True, kw_only=True)
 class CurvesAtFrequencies(CurvesJob):
-    """Figures 5, 8 and 9: the first sweep's responses at given frequencies.
+    """Job of Figures 5, 8 and 9: the first sweep's responses at chosen frequencies.
 
     Attributes
     ----------
@@ -160,20 +160,20 @@ class CurvesAtFrequencies(CurvesJob):
         return len(self.etas)
 
     def panels(self, sweeps: Sequence[xr.Dataset]) -> list[Panel]:
-        """Return the responses nearest to them."""
+        """Return the sweep's responses nearest to the frequencies."""
         return [panel_at(sweeps[0], self.structures[0], eta) for eta in self.etas]
 
 
 @dataclass(frozen=True, kw_only=True)
 class CurvesAtPeaks(CurvesJob):
-    """Figure 12: each sweep's response at its largest gap."""
+    """Job of Figure 12: each sweep's response at its largest gap."""
 
     def count(self) -> int:
         """Return the number of sweeps."""
         return len(self.sweeps)
 
     def panels(self, sweeps: Sequence[xr.Dataset]) -> list[Panel]:
-        """Return the response at each sweep's main peak."""
+        """Return each sweep's response at its largest gap."""
         return [
             panel_at(sweep, structure, float(sweep.xi_rel_max.idxmax()))
             for sweep, structure in zip(sweeps, self.structures, strict=True)
@@ -182,7 +182,7 @@ class CurvesAtPeaks(CurvesJob):
 
 @dataclass(frozen=True, kw_only=True)
 class CurvesInWindows(CurvesJob):
-    """Figure 7: the relative resonance peaks of the windows T, 2T, ... with one impact.
+    """Job of Figure 7: relative peaks of the windows T, 2T, ... with one impact.
 
     Attributes
     ----------
@@ -196,7 +196,7 @@ class CurvesInWindows(CurvesJob):
         return self.windows
 
     def panels(self, sweeps: Sequence[xr.Dataset]) -> list[Panel]:
-        """Return the peaks; where a window has none, its last response with the multiplicity -n."""
+        """Return each window's peak; without one, its last response with multiplicity -n."""
         sweep, structure, panels = sweeps[0], self.structures[0], []
         for n in range(1, self.windows + 1):
             peak = relative_peak(sweep, n)
@@ -205,11 +205,11 @@ class CurvesInWindows(CurvesJob):
             panels.append(panel if peak is not None else replace(panel, multiplicity=-n))
         return panels
 
-    def settled(self, fmu: Path, panel: Panel) -> Panel:
-        """Follow a panel without a peak upwards to one beyond the sweep."""
+    def settle_panel(self, fmu: Path, panel: Panel) -> Panel:
+        """Follow a panel without a peak upwards beyond the sweep to its peak."""
         n = -panel.multiplicity
         if n <= 0:
-            return super().settled(fmu, panel)
+            return super().settle_panel(fmu, panel)
         with Instance(fmu) as instance:
             peak = follow_to_peak(instance, panel.structure, panel.eta, panel.start, n)
         return replace(panel, eta=peak.eta, start=peak.state, multiplicity=n)

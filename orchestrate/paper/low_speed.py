@@ -1,4 +1,4 @@
-"""Impacts that speed alone would let stick (17), and structures whose masses never knock.
+"""Job: counts of slow impacts that would stick by speed alone (17); alike halves.
 
 The printed inequality (17) knows the parting velocity alone. Where the contact force (18) would
 have to pull, the masses part again: an impact as slow as that is counted here.
@@ -34,8 +34,8 @@ COUNTS = {
 }
 
 
-def points() -> tuple[Point, ...]:
-    """Return points: Figure 6's structure at some frequencies, then structures of alike halves."""
+def make_points() -> tuple[Point, ...]:
+    """Return Figure 6's structure at several frequencies, then structures of alike halves."""
     etas = np.round(np.arange(0.45, 8.0, 0.15), 3).tolist()
     alike = [ELASTIC.replace(mu=mu, kappa=kappa) for mu, kappa in ((1, 1), (2, 2), (2, 2.2))]
     points_along = [Point(ELASTIC, Excitation.nondimensional(eta, ELASTIC)) for eta in etas]
@@ -44,7 +44,7 @@ def points() -> tuple[Point, ...]:
 
 @dataclass(frozen=True, kw_only=True)
 class LowSpeedJob(Job):
-    """Counts of impacts, from rest.
+    """Job: counts of impacts, sticking and slow impacts of motions from rest.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class LowSpeedJob(Job):
         Of (17), in units of the largest velocity of the gap (section 3).
     """
 
-    points: tuple[Point, ...] = points()
+    points: tuple[Point, ...] = make_points()
     periods: int = 2000
     gamma: float = 1e-4
     chunk_size: ClassVar[int] = 10
@@ -64,18 +64,18 @@ class LowSpeedJob(Job):
         return len(self.points)
 
     def items(self, inputs: Inputs) -> Sequence[Point]:
-        """Return the structures under their excitations."""
+        """Return the structures with their excitations."""
         return self.points
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
     ) -> Table:
-        """Compute some motions."""
+        """Simulate some motions; return how many impacts of each kind they have."""
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            return {"rows": np.array([self.counted(instance, point) for point in items])}
+            return {"rows": np.array([self.count_events(instance, point) for point in items])}
 
-    def counted(self, instance: EventInstance, point: Point) -> list[int]:
-        """Count events of one motion; return the counts in the order of ``COUNTS``."""
+    def count_events(self, instance: EventInstance, point: Point) -> list[int]:
+        """Simulate one motion and count its events, in the order of ``COUNTS``."""
         begin(instance, *point, REST)
         impacts = follow_impacts(instance, point, REST, self.periods)
         form = ClosedForm.from_structure(*point)
@@ -87,7 +87,7 @@ class LowSpeedJob(Job):
         return [len(state), int(impacts.sticks.sum()), int(slow.sum()), int(pulled.sum())]
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return the counts over the motions."""
+        """Return the counts as a dataset over the motions."""
         import xarray as xr
 
         variables = column_variables("motion", COUNTS, table["rows"].T)

@@ -1,4 +1,4 @@
-"""The response with a map's largest impulse, followed for longer than the map's few periods."""
+"""Job: impact statistics of the response with a map's largest impulse, in a longer run."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..dynamics.variational import period_in_tau
 from ..response.labels import flags, variable
 from ..running.job import Inputs, Table
 from ..structures import Structure
-from .derived import DerivedJob
+from .derived_job import DerivedJob
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class MapPeakJob(DerivedJob):
-    """The response at the largest impulse of a map, impact by impact.
+    """Job: longer run at the point of a map with the largest impulse.
 
     The largest impulse of an irregular response depends on how long it is followed; and of many
     points with few periods each, that with the largest one is chosen for its chance too.
@@ -45,15 +45,15 @@ class MapPeakJob(DerivedJob):
     periods: int = 10_000
 
     def needs(self) -> tuple[str, ...]:
-        """Return the name of the job of the map, in a tuple."""
+        """Return the name of the map's job, in a tuple."""
         return (self.map,)
 
     def count(self) -> int:
-        """Return one response."""
+        """Return 1: one response."""
         return 1
 
-    def question(self, inputs: Inputs) -> ImpactStatisticsJob:
-        """Return where the map's impulse is largest."""
+    def derived_job(self, inputs: Inputs) -> ImpactStatisticsJob:
+        """Return the impact-statistics job at the point of the map's largest impulse."""
         impulses = inputs[self.map].impulse_max
         best = impulses.where(impulses == impulses.max(), drop=True)
         changed = self.structure.replace(**{self.parameter: float(best[self.parameter][0])})
@@ -67,7 +67,7 @@ class MapPeakJob(DerivedJob):
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Return the response's statistics, its largest impulse (15), and its verdict."""
-        structure = self.question(inputs).structure
+        structure = self.derived_job(inputs).structure
         answer = super().dataset(table, inputs)
         factor = (1.0 + structure.e) * structure.mu / (1.0 + structure.mu)
         floor = np.log(WANDER) / (self.periods * period_in_tau(float(answer.eta[0])))

@@ -1,4 +1,4 @@
-"""Each part's picture, drawn from the files of its results."""
+"""Draw the pictures of the report's parts from their stored results."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ FORMATS = ("png", "pdf")
 
 
 def draw_basin(data: xr.Dataset) -> Figure:
-    """Draw the plane of starts at the frequency that its job has chosen."""
+    """Draw the basin at the frequency that its job has chosen; return the figure."""
     replaced = "frequency", "amplitude"
     title = rf"{title_from_attributes(data, replaced)}, $\eta$ = {float(data.eta):.3f}"
     return basin.draw(data, title, (f"{XI_REL}(0)", f"{XI_REL_RATE}(0)"))
@@ -54,7 +54,7 @@ DRAW: Mapping[str, Callable[..., Figure]] = {  # from the results of a part to i
 
 
 def is_current(part: Part, output: Path) -> bool:
-    """Return whether a part's pictures are there, and no older than its data."""
+    """Return whether a part's pictures exist and are no older than its data."""
     pictures = [output / f"{part.picture}.{ending}" for ending in FORMATS]
     if not all(picture.is_file() for picture in pictures):
         return False
@@ -63,7 +63,7 @@ def is_current(part: Part, output: Path) -> bool:
 
 
 def draw_part(part: Part, output: Path) -> Path:
-    """Draw a part from its data files, where it is not drawn yet; returns the path of its PNG."""
+    """Draw a part from its stored results unless it is current; return the path of its PNG."""
     if is_current(part, output):
         return output / f"{part.picture}.{FORMATS[0]}"
     figure = DRAW[part.name](*[load(output / f"{job}.nc") for job in part.jobs])
@@ -71,7 +71,7 @@ def draw_part(part: Part, output: Path) -> Path:
 
 
 def draw_all(parts: Sequence[Part], output: Path, processes: int) -> dict[str, Path]:
-    """Draw parts side by side; the paths of their PNG files, by the parts' names."""
+    """Draw parts in parallel processes; return a dict from part to PNG path."""
     waiting = [part for part in parts if not is_current(part, output)]
     if min(len(waiting), processes) < 2:
         return {part.name: draw_part(part, output) for part in parts}

@@ -1,4 +1,4 @@
-"""What the paper consists of: jobs after those they need, and what the report shows of them."""
+"""The plan of the paper's reproduction: its jobs in order, and the report's parts."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ from ..running.job import Job
 from ..structures import Drive, Excitation, Structure
 from ..weak_drive import averaged
 from ..weak_drive.couple import CoupleJob, couple_job, schedule_of, scheme_of
-from .basin import EvenBasinJob
 from .cases import CASES, MAP_ETAS, MAPS, ORBITS, RIG, map_values
 from .chattering import ChatteringJob
+from .contact_limits import ContactLimitJob
 from .curves import CurvesAtFrequencies, CurvesAtPeaks, CurvesInWindows
-from .gamma import GammaJob
-from .largest import LargestJob
-from .limits import LimitsJob
+from .largest_exponents import LargestExponentJob
+from .later_responses import LaterJob
 from .low_speed import LowSpeedJob
 from .map_peaks import MapPeakJob
 from .resolution import Resolution
-from .settled import SettledJob
+from .settled_responses import SettledJob
 from .spectra import PeakSpectraJob
-from .transients import LaterJob
+from .stability_limits import LimitsJob
+from .two_attractor_basin import TwoAttractorBasinJob
 
 Followers = TypeVar("Followers", bound=StartStatesQuestion)
 FIRST_REGION = (0.45, 0.49, 0.59, 0.63, 0.70, 0.80, 0.88, 1.047, 1.08, 1.13, 1.24, 1.31)
@@ -43,7 +43,7 @@ SECOND_REGION = (2.60, 2.65, 2.69, 2.737, 2.83, 2.92, 3.05, 3.17, 3.30, 3.49, 3.
 
 @dataclass(frozen=True)
 class Part:
-    """A part of the report.
+    """A part of the report: its name, its picture, and the jobs whose results it shows.
 
     Attributes
     ----------
@@ -62,13 +62,13 @@ class Part:
 
 @dataclass(frozen=True)
 class Plan:
-    """Jobs by name in an order that respects their needs, and parts by name."""
+    """All jobs of the paper's reproduction, in the order of their needs, and its report's parts."""
 
     jobs: dict[str, Job]
     parts: dict[str, Part]
 
-    def needed(self, parts: Iterable[Part]) -> list[Job]:
-        """Return jobs that parts need, in order."""
+    def jobs_for(self, parts: Iterable[Part]) -> list[Job]:
+        """Return the jobs whose results the parts need, in order."""
         wanted = {job for part in parts for job in part.jobs}
         for job in reversed(self.jobs.values()):
             if job.name in wanted:
@@ -76,7 +76,7 @@ class Plan:
         return [job for job in self.jobs.values() if job.name in wanted]
 
     def choose(self, names: Sequence[str] | None) -> list[Part]:
-        """Return parts by their names, all by default.
+        """Return the report's parts with these names, all by default; raise for unknown names.
 
         Raises
         ------
@@ -94,7 +94,7 @@ class Plan:
 
 
 def sweep_job(structure: Structure, direction: str, resolution: Resolution) -> SweepJob:
-    """Return the sweep of a structure, ``up`` or ``down``."""
+    """Return the sweep job of a structure, ``up`` or ``down``, by the paper's protocol."""
     return SweepJob(
         name=f"orbit_{structure.label()}_{direction}",
         structure=structure,
@@ -105,21 +105,26 @@ def sweep_job(structure: Structure, direction: str, resolution: Resolution) -> S
     )
 
 
-def follow(kind: type[Followers], sweep: SweepJob, name: str, **fields: Any) -> Followers:
-    """Return a job that goes on from a sweep's responses, of another name."""
-    given: Any = {"structure": sweep.structure, "eta": sweep.eta, "follows": sweep.name, **fields}
-    return kind(name=sweep.name.replace("orbit", name), **given)
+def make_onward_job(kind: type[Followers], sweep: SweepJob, name: str, **fields: Any) -> Followers:
+    """Return a job of a class that continues a sweep's responses."""
+    keywords: Any = {
+        "structure": sweep.structure,
+        "eta": sweep.eta,
+        "follows": sweep.name,
+        **fields,
+    }
+    return kind(name=sweep.name.replace("orbit", name), **keywords)
 
 
 def settled_job(sweep: SweepJob, resolution: Resolution) -> SettledJob:
-    """Make the job that settles every fifth response of an up-sweep from eta = 0.43 on."""
+    """Return the job that runs every fifth up-sweep response from eta = 0.43 until it repeats."""
     etas = tuple(eta for eta in resolution.etas() if eta >= 0.43)[::5]
     settings = AttractorSettings(transient=0, settle=0.0, longest=resolution.longest)
-    return follow(SettledJob, sweep, "settled", eta=etas, settings=settings)
+    return make_onward_job(SettledJob, sweep, "settled", eta=etas, settings=settings)
 
 
 def later_jobs(sweep: SweepJob, resolution: Resolution) -> list[LaterJob]:
-    """Return jobs that continue a sweep's responses: all for some time, a random few for longer."""
+    """Return jobs that run a sweep's responses on: all for some time, a few for longer."""
     done = sweep.transient + sweep.samples
     few = np.random.default_rng(500).choice(np.array(resolution.etas()), FEW, replace=False)
     asked = {
@@ -127,13 +132,15 @@ def later_jobs(sweep: SweepJob, resolution: Resolution) -> list[LaterJob]:
         "latest": (tuple(np.sort(few).tolist()), resolution.latest),
     }
     return [
-        follow(LaterJob, sweep, name, eta=etas, transient=first - 1 - done, samples=sweep.samples)
+        make_onward_job(
+            LaterJob, sweep, name, eta=etas, transient=first - 1 - done, samples=sweep.samples
+        )
         for name, (etas, first) in asked.items()
     ]
 
 
 def exponent_job(settled: SettledJob, resolution: Resolution) -> LyapunovJob:
-    """Return exponents of settled responses: chaos that dies out is gone."""
+    """Return the job of Lyapunov exponents that starts from settled responses."""
     return LyapunovJob(
         name=f"exponent_{settled.structure.label()}",
         structure=settled.structure,
@@ -144,10 +151,12 @@ def exponent_job(settled: SettledJob, resolution: Resolution) -> LyapunovJob:
     )
 
 
-def own_runs(sweep: SweepJob, settled: Sequence[SettledJob], resolution: Resolution) -> list[Job]:
-    """Return jobs that compute maxima once more: exponents by region, impulses of the maps."""
+def repeat_jobs(
+    sweep: SweepJob, settled: Sequence[SettledJob], resolution: Resolution
+) -> list[Job]:
+    """Return jobs that compute maxima again by longer runs: exponents and map impulses."""
     jobs: list[Job] = [
-        LargestJob(
+        LargestExponentJob(
             name=job.name.replace("settled", "largest").removesuffix("_up"),
             case=case,
             structure=job.structure,
@@ -172,7 +181,7 @@ def own_runs(sweep: SweepJob, settled: Sequence[SettledJob], resolution: Resolut
 
 
 def ramp_jobs(resolution: Resolution) -> list[CoupleJob]:
-    """Return the set ``rig`` on a slow ramp up through its resonance, bonded and delaminated."""
+    """Return the jobs of slow voltage ramps of the set ``rig``, bonded and delaminated."""
     structure, drive = Structure.from_file(RIG), Drive.from_file(RIG)
     volts = drive.volts(structure)
     ends = tuple(share * averaged.folds(structure, drive)[0].eta0 * volts for share in (0.55, 1.02))
@@ -185,10 +194,12 @@ def ramp_jobs(resolution: Resolution) -> list[CoupleJob]:
     ]
 
 
-def basin_job(attractors: AttractorsJob, sweep: SweepJob, resolution: Resolution) -> EvenBasinJob:
-    """Return gap and gap velocity around the two attractors, up to three times the largest gap."""
+def basin_job(
+    attractors: AttractorsJob, sweep: SweepJob, resolution: Resolution
+) -> TwoAttractorBasinJob:
+    """Return the basin job in gap and gap velocity around the two attractors."""
     side = resolution.basin
-    return EvenBasinJob(
+    return TwoAttractorBasinJob(
         name="basin",
         structure=sweep.structure,
         excitation=Excitation.nondimensional(1.0, sweep.structure),  # replaced by what is found
@@ -201,7 +212,7 @@ def basin_job(attractors: AttractorsJob, sweep: SweepJob, resolution: Resolution
 
 
 def curve_jobs(ups: Sequence[SweepJob], resolution: Resolution) -> dict[str, Job]:
-    """Return the curves of Figures 5, 7, 8, 9 and 12, by number."""
+    """Return the jobs of the curves in Figures 5, 7, 8, 9 and 12, by figure number."""
     skip, keep = resolution.skip, resolution.keep
     first: Any = {"sweeps": (ups[0].name,), "structures": (ups[0].structure,), "skip": skip}
     every: Any = {
@@ -219,20 +230,20 @@ def curve_jobs(ups: Sequence[SweepJob], resolution: Resolution) -> dict[str, Job
     }
 
 
-def names_of(jobs: Iterable[Job]) -> tuple[str, ...]:
+def job_names(jobs: Iterable[Job]) -> tuple[str, ...]:
     """Return the names of jobs, in their order."""
     return tuple(job.name for job in jobs)
 
 
-def make(resolution: Resolution) -> Plan:
-    """Return the plan at a resolution."""
+def make_plan(resolution: Resolution) -> Plan:
+    """Return the plan of all jobs and parts at a resolution."""
     ups = [sweep_job(structure, "up", resolution) for structure in CASES.values()]
     downs = [sweep_job(structure, "down", resolution) for structure in CASES.values()]
     counted: Any = {"transient": 0, "periods": resolution.steady}
-    statistics = [follow(ImpactStatisticsJob, sweep, "steady", **counted) for sweep in ups]
+    statistics = [make_onward_job(ImpactStatisticsJob, sweep, "steady", **counted) for sweep in ups]
     curves = curve_jobs(ups, resolution)
-    limits = LimitsJob(name="limits", sweeps=names_of(ups))
-    own: list[Job] = [GammaJob(name="gamma"), limits, LowSpeedJob(name="low_speed")]
+    limits = LimitsJob(name="limits", sweeps=job_names(ups))
+    own: list[Job] = [ContactLimitJob(name="gamma"), limits, LowSpeedJob(name="low_speed")]
     own += [ChatteringJob(name="chattering"), *later_jobs(ups[0], resolution)]
     own += ramp_jobs(resolution)
     settled = [settled_job(sweep, resolution) for sweep in ups]
@@ -242,12 +253,12 @@ def make(resolution: Resolution) -> Plan:
         **{number: [job] for number, job in curves.items()},
     }
     beyond = [job for some in further.values() for job in some]
-    beyond += own_runs(ups[0], settled, resolution)
+    beyond += repeat_jobs(ups[0], settled, resolution)
     evidence = [*ups, *downs, *statistics, *own, *settled, *beyond]
     evidence += [curves[number] for number in ("5", "7", "12")]
-    parts = [Part("claims", "", names_of(evidence))]
-    parts += [Part(n, f"figure{n}", names_of(shown[n])) for n in sorted(shown, key=int)]
-    parts += [Part(name, name, names_of(some)) for name, some in further.items()]
+    parts = [Part("claims", "", job_names(evidence))]
+    parts += [Part(n, f"figure{n}", job_names(shown[n])) for n in sorted(shown, key=int)]
+    parts += [Part(name, name, job_names(some)) for name, some in further.items()]
     jobs = [*ups, *downs, *statistics, *curves.values(), *own, *settled, *beyond]
     return Plan({job.name: job for job in jobs}, {part.name: part for part in parts})
 
@@ -255,7 +266,7 @@ def make(resolution: Resolution) -> Plan:
 def further_jobs(
     ups: Sequence[SweepJob], settled: Sequence[SettledJob], resolution: Resolution
 ) -> dict[str, list[Job]]:
-    """Make the jobs beyond the paper's figures, by part."""
+    """Return the jobs beyond the paper's figures, by part of the report."""
     first = ups[0]
     attractors = AttractorsJob(
         name="attractors",

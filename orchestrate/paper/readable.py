@@ -1,4 +1,4 @@
-"""Sentences a person reads: words and signs in place of nan, True, inf and +-."""
+"""Make sentences readable: words and signs in place of nan, True, inf and +-."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ MEANT = {"nan": "not found", "True": "yes", "False": "no", "inf": "without bound
 
 
 def plain(text: str) -> str:
-    """Return a sentence for people.
+    """Return a sentence with nan, True, inf and +- replaced by words and signs.
 
     Examples
     --------

@@ -1,10 +1,10 @@
-"""Frequencies between two exact limits: windows of one or two impacts, and what lies between."""
+"""Frequency regions between exact limits: windows of one or two impacts, and between."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from .limits import windows_of
+from .stability_limits import stable_windows_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -18,7 +18,7 @@ COUNT = 2 * len(WINDOWS)
 
 
 class Region(NamedTuple):
-    """Frequencies between two limits of one-impact windows.
+    """Frequencies between two limits of windows, with the windows' names.
 
     Attributes
     ----------
@@ -33,24 +33,24 @@ class Region(NamedTuple):
 
     @property
     def is_window(self) -> bool:
-        """Return whether one orbit is stable in the whole region."""
+        """Whether one orbit is stable in the whole region."""
         return " to " not in self.name
 
     @property
     def adds_a_period(self) -> bool:
-        """Return whether it lies between the windows nT and (n+1)T, each with one impact."""
+        """Whether the region lies between windows nT and (n+1)T, each with one impact."""
         before, _, after = self.name.partition(" to ")
         return before.endswith("T/1") and after.endswith("T/1")
 
 
 def nearest_window(limits: xr.Dataset, case: str, orbit: str, inside: float) -> StableWindow:
-    """Return the stable window of an orbit that holds a frequency, or is nearest to it."""
-    windows = windows_of(limits, case, orbit)
+    """Return the stable window of an orbit around a frequency, or nearest to it."""
+    windows = stable_windows_of(limits, case, orbit)
     return min(windows, key=lambda one: max(one.low - inside, inside - one.high, 0.0))
 
 
-def regions(limits: xr.Dataset, case: str) -> list[Region]:
-    """Return windows with two impacts and one, and the regions between them, up to eta = 8.
+def list_regions(limits: xr.Dataset, case: str) -> list[Region]:
+    """Return a case's windows and the regions between them, up to eta = 8.
 
     Irregular regions of the paper are between the exact limits of two windows.
 

@@ -1,4 +1,4 @@
-"""The report: one HTML page that needs no network, with the claims and each picture."""
+"""Write the paper's report: one HTML page with claims and pictures."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
-from ..figures.files import size_of
+from ..figures.files import png_size
 from ..files import write_whole
 from ..running.store import now
 from ..version import __version__
@@ -45,10 +45,10 @@ COLUMNS = {  # of both tables, with their headings
 }
 
 
-def write(
+def write_report(
     output: Path, pictures: Mapping[str, Path], parts: Mapping[str, Part], content: dict[str, Any]
 ) -> Path:
-    """Write ``report.html``.
+    """Write ``report.html`` with claims, answers and pictures; return its path.
 
     Parameters
     ----------
@@ -75,8 +75,8 @@ def write(
     resolution = content["resolution"]
     first = resolution.transient
     shown = {
-        **summary(content["claims"]),
-        "figures": [entry(parts[name], picture) for name, picture in pictures.items()],
+        **summarize_verdicts(content["claims"]),
+        "figures": [picture_entry(parts[name], picture) for name, picture in pictures.items()],
         "columns": COLUMNS,
         "words": WORDS,
         "paper": PAPER,
@@ -87,11 +87,11 @@ def write(
         "sampled": f"$n = {first}(1){first + resolution.samples}$",
     }
     page = environment.get_template("report.html.j2").render(**shown, **content)
-    return write_whole(output / "report.html", lambda place: place.write_bytes(page.encode()))
+    return write_whole(output / "report.html", lambda path: path.write_bytes(page.encode()))
 
 
-def summary(claims: Sequence[Mapping[str, str]]) -> dict[str, Any]:
-    """Return how many claims have which verdict, and those that differ from the paper."""
+def summarize_verdicts(claims: Sequence[Mapping[str, str]]) -> dict[str, Any]:
+    """Return counts of claims by verdict, and the claims that differ from the paper."""
     numbered = [{**row, "number": number} for number, row in enumerate(claims, 1)]
     return {
         "counts": {verdict: sum(row["verdict"] == verdict for row in claims) for verdict in WORDS},
@@ -99,8 +99,8 @@ def summary(claims: Sequence[Mapping[str, str]]) -> dict[str, Any]:
     }
 
 
-def entry(part: Part, picture: Path) -> dict[str, Any]:
-    """Return what the page shows of a part."""
+def picture_entry(part: Part, picture: Path) -> dict[str, Any]:
+    """Return caption, picture and data files of a part, for the page's template."""
     caption = CAPTIONS[part.name]
     content = picture.read_bytes()
     return {
@@ -111,5 +111,5 @@ def entry(part: Part, picture: Path) -> dict[str, Any]:
         "method": caption.method,
         "picture": base64.b64encode(content).decode(),
         "data": [f"{name}.nc" for name in part.jobs],
-        **size_of(content),
+        **png_size(content),
     }

@@ -1,4 +1,4 @@
-"""The paper computed anew: results, pictures, claims and a report, in one folder."""
+"""Reproduce the paper into one folder: results, pictures, claims and a report."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ NOTHING: Mapping[str, Any] = {"claims": [], "regions": [], "answers": []}
 
 
 @dataclass(frozen=True)
-class Outcome:
-    """What has come of it.
+class Reproduction:
+    """Claims with verdicts, paths of the pictures and of the report.
 
     Attributes
     ----------
@@ -45,8 +45,8 @@ def reproduce(
     resolution: Resolution,
     figures: Sequence[str] | None,
     running: Mapping[str, object],
-) -> Outcome:
-    """Compute the paper or some parts of it; what is there already stays.
+) -> Reproduction:
+    """Compute the paper, or some figures; reuse stored results; write pictures and report.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def reproduce(
         Folder of the results.
     resolution : Resolution
     figures : sequence of str, optional
-        Names of parts, see :func:`.plan.make`; all by default.
+        Names of parts, see :func:`.plan.make_plan`; all by default.
     running : mapping
         Keywords of :class:`orchestrate.running.options.Running` but ``store``.
 
@@ -62,26 +62,28 @@ def reproduce(
     -------
     Outcome
     """
-    whole = plan.make(resolution)
+    whole = plan.make_plan(resolution)
     parts = whole.choose(figures)
     options, find = RunOptions.from_keywords(running), finder(running)
-    answer_all(whole.needed(parts), output, options, find)
+    answer_all(whole.jobs_for(parts), output, options, find)
     drawn = [part for part in parts if part.picture]
     pictures = draw_all(drawn, output, options.processes)
     asked = [part for part in parts if not part.picture]
-    found = check_claims(output, asked[0].jobs, resolution.decides) if asked else NOTHING
-    content = {"resolution": resolution, "fmu": find(OSCILLATOR), **found}
-    return Outcome(found, pictures, report.write(output, pictures, whole.parts, content))
+    checked = check_claims(output, asked[0].jobs, resolution.decides) if asked else NOTHING
+    content = {"resolution": resolution, "fmu": find(OSCILLATOR), **checked}
+    return Reproduction(
+        checked, pictures, report.write_report(output, pictures, whole.parts, content)
+    )
 
 
 def check_claims(output: Path, names: Sequence[str], full: bool) -> dict[str, Any]:
-    """Return the claims, and what goes beyond them, kept beside the report as JSON too."""
+    """Check the claims against stored results; write them as JSON and return them."""
     data = {name: load(output / f"{name}.nc") for name in names}
-    found = {
-        "claims": claims.table(data, full),
-        "regions": answers.regions(data),
-        "answers": answers.sentences(data),
+    checked = {
+        "claims": claims.check_all_claims(data, full),
+        "regions": answers.region_rows(data),
+        "answers": answers.answer_sentences(data),
     }
-    text = json.dumps(found, indent=1, ensure_ascii=False) + "\n"
-    write_whole(output / "claims.json", lambda place: place.write_text(text, encoding="utf-8"))
-    return found
+    text = json.dumps(checked, indent=1, ensure_ascii=False) + "\n"
+    write_whole(output / "claims.json", lambda path: path.write_text(text, encoding="utf-8"))
+    return checked

@@ -1,4 +1,4 @@
-"""How finely the paper is computed: in full as printed, or reduced for a quick look."""
+"""Sizes of the paper's computations: in full as printed, or reduced for a quick look."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Resolution:
-    """Sizes of all that is computed.
+    """Numbers of frequencies, periods, starts and grid points of all computations.
 
     Attributes
     ----------
@@ -70,11 +70,11 @@ class Resolution:
     map_keep: int = 60
 
     def etas(self) -> tuple[float, ...]:
-        """Return the paper's 0.1 <= eta <= 8.0 by 0.001, upwards."""
+        """Return the frequency ratios of the sweeps: 0.1 to 8.0, by 0.001 in full."""
         return tuple(float(eta) for eta in np.arange(100, 8001) / 1000.0)
 
     def attractor_etas(self) -> tuple[float, ...]:
-        """Return the frequencies of the random starts: dense around 1.07 to 1.37."""
+        """Return the frequency ratios of the random starts, dense from 1.07 to 1.37."""
         step, fine = self.attractor_step, self.fine_step
         ranges = [(0.44, 1.4, step), (1.06, 1.38, fine), (1.4, 8.0, 10 * step)]
         etas = np.concatenate([np.arange(*ends) for ends in ranges])

@@ -1,4 +1,4 @@
-"""Spectra at the delaminated structure's main peak, and at two other frequencies."""
+"""Job: spectra at the main peak of a sweep and at two other frequencies."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from ..response.spectra import SpectraJob
 from ..running.job import Inputs
 from ..structures import Structure
-from .derived import DerivedJob
+from .derived_job import DerivedJob
 
 
 @dataclass(frozen=True, kw_only=True)
 class PeakSpectraJob(DerivedJob):
-    """Spectra at the largest gap of a sweep, and elsewhere.
+    """Job: spectra at the largest gap of a sweep and at other frequencies.
 
     Attributes
     ----------
@@ -28,14 +28,14 @@ class PeakSpectraJob(DerivedJob):
     others: tuple[float, ...] = (0.4, 1.13)
 
     def needs(self) -> tuple[str, ...]:
-        """Return the name of the job of the sweep, in a tuple."""
+        """Return the name of the sweep's job, in a tuple."""
         return (self.sweep,)
 
     def count(self) -> int:
         """Return the number of frequencies."""
         return 1 + len(self.others)
 
-    def question(self, inputs: Inputs) -> SpectraJob:
-        """Return their spectra."""
+    def derived_job(self, inputs: Inputs) -> SpectraJob:
+        """Return the spectra job at the sweep's peak and the other frequencies."""
         peak = float(inputs[self.sweep].xi_rel_max.idxmax())
         return SpectraJob(name=self.name, structure=self.structure, eta=(peak, *self.others))

@@ -1,4 +1,4 @@
-r"""Formulas in plain sentences as MathML, which browsers show without any script.
+r"""Convert formulas in plain sentences to MathML, which browsers show without a script.
 
 What the paper's letters are called in plain text, in claims, captions and answers, becomes a
 formula: ``xi_Rel``, ``eta``, ``e = 0.7``, ``1e-4``; so does what stands between dollars, in LaTeX.
@@ -45,13 +45,13 @@ def mathml(latex: str) -> Markup:
     return Markup(tex2mathml(latex).replace("\n", ""))
 
 
-def latex_of(match: re.Match[str]) -> str:
-    """Return the LaTeX of a formula found in a sentence."""
+def match_to_latex(match: re.Match[str]) -> str:
+    """Return the LaTeX of a regular expression's match of a formula."""
     return match.expand(LATEX[int(str(match.lastgroup).removeprefix("word"))])
 
 
 def typeset(text: str) -> Markup:
-    r"""Return a sentence as HTML, its formulas typeset.
+    r"""Return a sentence as HTML with its formulas as MathML.
 
     Examples
     --------
@@ -60,6 +60,6 @@ def typeset(text: str) -> Markup:
     """
     parts, end, text = [], 0, plain(text)
     for match in FORMULA.finditer(text):
-        parts += [escape(text[end : match.start()]), mathml(latex_of(match))]
+        parts += [escape(text[end : match.start()]), mathml(match_to_latex(match))]
         end = match.end()
     return Markup("").join([*parts, escape(text[end:])])

@@ -1,4 +1,4 @@
-"""Reports: stored answers as one HTML page, for a person who reads, prints and signs it.
+"""Write stored results as one HTML report for a person to read, print and sign.
 
 ==================  ===============================================================================
 module              idea

@@ -1,4 +1,4 @@
-"""The sections of any answer: its picture, its single numbers, its table of signs."""
+"""Report sections of any result: its picture, its scalar numbers, its signs."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from ..errors import InputError
-from ..figures.plot import plot, question_of
+from ..figures.plot import function_name, plot
 from ..units import OVER_OMEGA, as_shown, scale_of
-from .page import Picture, Section, Table, text_of
+from .page import Picture, Section, Table, format_number
 from .verdict import verdict_sections
 
 if TYPE_CHECKING:
@@ -18,50 +18,52 @@ WORDS = {-1: "not in this record", 0: "no", 1: "yes"}
 MOST_ROWS = 60
 
 
-def sections_of(answer: xr.Dataset) -> list[Section]:
-    """Return the sections of an answer."""
-    kind = question_of(answer)
+def result_sections(answer: xr.Dataset) -> list[Section]:
+    """Return all report sections of a result."""
+    kind = function_name(answer)
     if kind == "detect":
         return verdict_sections(answer)
     if kind == "signs":
         return [signs_section(answer)]
-    return [study_section(answer)]
+    return [picture_section(answer)]
 
 
-def picture_of(answer: xr.Dataset, words: str) -> Picture | None:
-    """Draw the picture of an answer; None if that kind of answer has no picture."""
+def draw_result(answer: xr.Dataset, words: str) -> Picture | None:
+    """Return the picture of a result for the page; None if there is none of its kind."""
     try:
         return Picture.from_figure(plot(answer), words)
     except InputError:
         return None
 
 
-def study_section(answer: xr.Dataset) -> Section:
-    """Return a section with the picture and the numbers of an answer."""
-    title = str(answer.attrs.get("title") or question_of(answer))
+def picture_section(answer: xr.Dataset) -> Section:
+    """Return a section with a result's picture and scalar numbers."""
+    title = str(answer.attrs.get("title") or function_name(answer))
     tables = [table for table in (scalar_table(answer), parameter_table(answer)) if table.rows]
-    return Section(title, picture=picture_of(answer, title), tables=tables)
+    return Section(title, picture=draw_result(answer, title), tables=tables)
 
 
 def scalar_table(answer: xr.Dataset) -> Table:
-    """Return a table of all scalar variables of an answer."""
+    """Return a table of all scalar variables of a result."""
     rows = []
     for name, array in as_shown(answer).data_vars.items():
         if not array.dims and array.dtype.kind in "iufb":
-            value = text_of(float(array), str(array.attrs.get("units", "")), 5)
-            rows.append((str(name), str(array.attrs.get("long_name", "")), word_of(array) or value))
+            value = format_number(float(array), str(array.attrs.get("units", "")), 5)
+            rows.append(
+                (str(name), str(array.attrs.get("long_name", "")), flag_word(array) or value)
+            )
     return Table(("name", "what it is", "value"), rows[:MOST_ROWS])
 
 
-def word_of(array: xr.DataArray) -> str:
-    """Return the word that a flag stands for; empty if the variable is no flag."""
+def flag_word(array: xr.DataArray) -> str:
+    """Return the word that a scalar flag variable stands for; empty if it is no flag."""
     words = str(array.attrs.get("flag_meanings", "")).split()
     numbers = [int(number) for number in array.attrs.get("flag_values", [])]
     return words[numbers.index(int(array))] if words and int(array) in numbers else ""
 
 
 def parameter_table(answer: xr.Dataset) -> Table:
-    """Return a table of structure and excitation, from an answer's attributes."""
+    """Return a table of structure and excitation, from a result's attributes."""
     from ..structures.ranges import EXCITATION, STRUCTURE
 
     known = {**STRUCTURE, **EXCITATION}
@@ -71,27 +73,27 @@ def parameter_table(answer: xr.Dataset) -> Table:
             factor, unit = scale_of(answer, quantity.unit)
             value = float(answer.attrs[name]) / factor
             shown = OVER_OMEGA if unit == "eta" else unit
-            rows.append((name, quantity.description, text_of(value, shown, 6)))
+            rows.append((name, quantity.description, format_number(value, shown, 6)))
     return Table(("parameter", "what it is", "value"), rows)
 
 
 def is_known(one: xr.Dataset) -> bool:
-    """Return whether the record decides a sign for any sensor."""
+    """Return whether a sign's verdict is known for any sensor."""
     return bool((one.exceeds >= 0).any())
 
 
-def in_a_row(values: Iterable[float]) -> str:
-    """Format the numbers of several sensors for one cell."""
-    return " · ".join(text_of(float(value)) for value in values)
+def format_sensors(values: Iterable[float]) -> str:
+    """Format one number per sensor for a table's cell."""
+    return " · ".join(format_number(float(value)) for value in values)
 
 
 def signs_section(answer: xr.Dataset) -> Section:
-    """Return a section on signs: values, noise floors, and what else moves those that stand out."""
+    """Return a section on signs: values, noise floors, and other causes of those that stand out."""
     shown = [one for sign in answer.sign.values if is_known(one := answer.sel(sign=sign))]
     rows = [
         (
             str(one.meaning.values),
-            *(in_a_row(one[name].values) for name in ("value", "floor", "sound_highest")),
+            *(format_sensors(one[name].values) for name in ("value", "floor", "sound_highest")),
             " · ".join(WORDS[int(number)] for number in one.exceeds.values),
         )
         for one in shown
@@ -115,6 +117,6 @@ def signs_section(answer: xr.Dataset) -> Section:
         "Signs that need no model",
         [text, origin],
         moved,
-        picture_of(answer, "Signs of the record over what noise and a sound structure show"),
+        draw_result(answer, "Signs of the record over what noise and a sound structure show"),
         [Table(columns, rows, frozenset(marked))],
     )

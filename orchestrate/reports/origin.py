@@ -1,4 +1,4 @@
-"""Where answers come from: their questions, the FMUs, the versions, their identities."""
+"""Report section on the results' origin: calls, FMUs, versions and identities."""
 
 from __future__ import annotations
 
@@ -18,19 +18,21 @@ BY_RECORD = ("detect", "fit")  # their question is the record, which has a diges
 LONGEST = 160  # letters of an attribute
 
 
-def origin(answers: Sequence[xr.Dataset]) -> Section:
-    """Return a section with versions and identities of all answers of a page."""
+def origin_section(answers: Sequence[xr.Dataset]) -> Section:
+    """Return a section with versions and identities of all results of a page."""
     rows: list[tuple[str, str]] = []
     for number, answer in enumerate(answers, 1):
         begin = f"{number}. " if len(answers) > 1 else ""
-        rows += [(begin + name, text) for name, text in described(answer)]
-    versions = ", ".join(f"{name} {found}" for name in PACKAGES if (found := installed(name)))
+        rows += [(begin + name, text) for name, text in describe_origin(answer)]
+    versions = ", ".join(
+        f"{name} {found}" for name in PACKAGES if (found := installed_version(name))
+    )
     rows.append(("versions", f"Python {platform.python_version()}, {versions}"))
     return Section("Where it comes from", tables=[Table(("what", "value"), rows)])
 
 
-def described(answer: xr.Dataset) -> list[tuple[str, str]]:
-    """Return what an answer's attributes say of its origin, as names with texts."""
+def describe_origin(answer: xr.Dataset) -> list[tuple[str, str]]:
+    """Return pairs of a name and a text on a result's origin, from its attributes."""
     attributes = {str(name): str(text) for name, text in answer.attrs.items()}
     shown = [
         ("title", "title"),
@@ -40,11 +42,11 @@ def described(answer: xr.Dataset) -> list[tuple[str, str]]:
         ("sensors", "sensors"),
         ("source", "computed by"),
     ]
-    rows = [(label, shortened(attributes[name])) for name, label in shown if attributes.get(name)]
+    rows = [(label, shorten(attributes[name])) for name, label in shown if attributes.get(name)]
     if "history" in attributes:
         rows.append(("computed on", attributes["history"].partition(": ")[0]))
     if "call" in attributes and attributes.get("analysis") not in BY_RECORD:
-        rows.append(("what was asked", shortened(attributes["call"])))
+        rows.append(("what was asked", shorten(attributes["call"])))
     for name in sorted(attributes):
         if name.startswith("fmu_guid"):
             model = attributes.get(name.replace("guid", "model"), "")
@@ -55,13 +57,13 @@ def described(answer: xr.Dataset) -> list[tuple[str, str]]:
     return rows
 
 
-def shortened(text: str) -> str:
-    """Shorten a text to a length that fits a page."""
+def shorten(text: str) -> str:
+    """Return a text shortened to a length that fits the page."""
     return text if len(text) <= LONGEST else f"{text[:LONGEST]} ..."
 
 
-def installed(name: str) -> str:
-    """Return the version of a package; empty if it is not installed."""
+def installed_version(name: str) -> str:
+    """Return a package's installed version; empty if it is not installed."""
     try:
         return version(name)
     except PackageNotFoundError:

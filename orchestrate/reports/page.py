@@ -1,4 +1,4 @@
-"""What a page is made of, and its HTML: no network, no script, all texts escaped."""
+"""Report page: sections, tables, pictures and verdict, rendered as HTML without scripts."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
-from ..figures.files import png_of, size_of
+from ..figures.files import png_bytes, png_size
 from ..running.store import now
 from ..version import __version__
 
@@ -22,7 +22,7 @@ TONES = ("bad", "good", "unclear", "open")  # of a verdict, for its colour
 
 @dataclass(frozen=True)
 class Picture:
-    """A picture inside the page, as PNG with a text.
+    """PNG picture inside the page, with a text for those who cannot see it.
 
     Attributes
     ----------
@@ -36,8 +36,8 @@ class Picture:
 
     @classmethod
     def from_figure(cls, figure: Any, words: str) -> Picture:
-        """Make a picture from a :class:`matplotlib.figure.Figure`."""
-        return cls(png_of(figure), words)
+        """Return a ``Picture`` of a Matplotlib figure."""
+        return cls(png_bytes(figure), words)
 
     @property
     def source(self) -> str:
@@ -47,12 +47,12 @@ class Picture:
     @property
     def size(self) -> dict[str, int]:
         """Width and height in pixels."""
-        return size_of(self.png)
+        return png_size(self.png)
 
 
 @dataclass(frozen=True)
 class Table:
-    """A table of texts.
+    """A table of texts: column titles, rows, highlighted rows and a caption.
 
     Attributes
     ----------
@@ -93,7 +93,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Verdict:
-    """The verdict at the top of the page.
+    """The verdict at the top of the page: a word, a sentence, and a tone for its colour.
 
     Attributes
     ----------
@@ -110,7 +110,7 @@ class Verdict:
 
 @dataclass(frozen=True)
 class Page:
-    """A report: all that its HTML is made of.
+    """A report page: title, metadata, verdict, sections, and whether it has room to sign.
 
     Attributes
     ----------
@@ -130,7 +130,7 @@ class Page:
     signed: bool = False
 
     def html(self) -> str:
-        """Return the page as HTML."""
+        """Render the page as HTML text."""
         environment = jinja2.Environment(
             loader=jinja2.PackageLoader("orchestrate.reports"),
             autoescape=True,
@@ -147,7 +147,7 @@ class Page:
 
 
 def content_security_policy(style: str) -> str:
-    """Return the policy for the browser: own pictures, own style, nothing else."""
+    """Return the page's Content-Security-Policy: own pictures and style, nothing else."""
     digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
     allowed = f"default-src 'none'; style-src 'sha256-{digest}'; img-src data:"
     return f"{allowed}; base-uri 'none'; form-action 'none'"
@@ -156,7 +156,7 @@ def content_security_policy(style: str) -> str:
 # -- numbers as texts -----------------------------------------------------------------------------
 
 
-def text_of(value: float, unit: str = "", digits: int = 3) -> str:
+def format_number(value: float, unit: str = "", digits: int = 3) -> str:
     """Format a number with its unit; a dash for NaN or infinity.
 
     Examples
@@ -166,12 +166,12 @@ def text_of(value: float, unit: str = "", digits: int = 3) -> str:
     """
     if not math.isfinite(value):
         return MISSING
-    factor, shown = scaled(abs(value), unit)
+    factor, shown = display_scale(abs(value), unit)
     return f"{value / factor:.{digits}g} {shown}".rstrip()
 
 
-def with_error(value: float, error: float, unit: str = "") -> str:
-    """Format a number with its standard error, to two digits of the error.
+def format_with_error(value: float, error: float, unit: str = "") -> str:
+    """Format a number with its standard error, rounded to two digits of the error.
 
     Examples
     --------
@@ -181,15 +181,15 @@ def with_error(value: float, error: float, unit: str = "") -> str:
     ('8438 ± 120 N/m', '-0.34 ± 0.44 µm')
     """
     if not (math.isfinite(error) and error > 0.0):
-        return text_of(value, unit, 4)
-    factor, shown = scaled(max(abs(value), error), unit)
+        return format_number(value, unit, 4)
+    factor, shown = display_scale(max(abs(value), error), unit)
     value, error = value / factor, error / factor
     places = max(0, 1 - math.floor(math.log10(error)))
     return f"{value:.{places}f} ± {error:.{places}f} {shown}".rstrip()
 
 
-def scaled(size: float, unit: str) -> tuple[float, str]:
-    """Return the factor and the unit that a number is shown in: short lengths in micrometres."""
+def display_scale(size: float, unit: str) -> tuple[float, str]:
+    """Return divisor and unit for showing a number: short lengths in micrometres."""
     if unit == "m" and 0.0 < size < 1e-3:
         return 1e-6, "µm"
     return 1.0, "" if unit == "1" else unit.replace("s2", "s²")

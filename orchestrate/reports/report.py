@@ -1,4 +1,4 @@
-"""Answers in, one page out."""
+"""Public ``report``: write results as one HTML page."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import InputError
-from ..figures.plot import question_of
+from ..figures.plot import function_name
 from ..files import write_whole
 from ..units import Units, with_units
-from .answers import sections_of
-from .origin import origin
+from .answers import result_sections
+from .origin import origin_section
 from .page import Page
-from .verdict import verdict_of
+from .verdict import make_verdict
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,7 +26,7 @@ def report(
     notes: str = "",
     units: str | Units = "",
 ) -> Path:
-    """Write answers as one HTML page, for a person who reads, prints and signs it.
+    """Write results as one HTML page to read, print and sign; return its path.
 
     Parameters
     ----------
@@ -69,20 +69,20 @@ def report(
     shown = [with_units(answer, units) for answer in answers]
     ordered = sorted(shown, key=lambda answer: not is_verdict(answer))
     first = ordered[0]
-    sections = [section for answer in ordered for section in sections_of(answer)]
-    heading = title or str(first.attrs.get("title") or question_of(first))
+    sections = [section for answer in ordered for section in result_sections(answer)]
+    heading = title or str(first.attrs.get("title") or function_name(first))
     record = str(first.attrs.get("record_file", ""))
     page = Page(
         heading,
         notes or (record if record not in heading else ""),
-        [*sections, origin(ordered)],
-        verdict_of(first) if is_verdict(first) else None,
+        [*sections, origin_section(ordered)],
+        make_verdict(first) if is_verdict(first) else None,
         signed=is_verdict(first),
     )
     text = page.html().encode()
-    return write_whole(Path(output), lambda place: place.write_bytes(text))
+    return write_whole(Path(output), lambda path: path.write_bytes(text))
 
 
 def is_verdict(answer: xr.Dataset) -> bool:
-    """Return whether an answer is a verdict on a beam."""
-    return question_of(answer) == "detect"
+    """Return whether a result is a verdict of ``detect`` on a beam."""
+    return function_name(answer) == "detect"

@@ -1,4 +1,4 @@
-"""The sections of a verdict on a beam."""
+"""Report sections of a verdict on a beam: statement, evidence, fits, parameters."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from ..constants import TURN
 from ..figures.diagnosis import PARTED, draw_detect, draw_misfit
 from ..units import scale_of, units_of, with_units
-from .page import MISSING, Picture, Section, Table, Verdict, text_of, with_error
+from .page import MISSING, Picture, Section, Table, Verdict, format_number, format_with_error
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,81 +34,83 @@ NAMES_OF_CHANNELS = (
 BEST = 3  # hypotheses in the table of parameters
 
 
-def verdict_of(answer: xr.Dataset) -> Verdict:
-    """Return the verdict in one sentence."""
+def make_verdict(answer: xr.Dataset) -> Verdict:
+    """Return the verdict of a ``detect`` result: its word and one sentence."""
     word = str(answer.verdict.values)
     return Verdict(
         f"{word[0].upper()}{word[1:]}.", SENTENCES[word](answer), TONES.get(word, "open")
     )
 
 
-def range_text(answer: xr.Dataset) -> str:
+def format_range(answer: xr.Dataset) -> str:
     """Format the levels and frequencies that the record covers."""
     felt, unit = scale_of(answer, "m/s2")
-    level = f"{text_of(number(answer, 'level_high') / felt)} {unit.replace('m/s2', 'm/s²')}"
-    ends = number(answer, "frequency_low"), number(answer, "frequency_high")
+    level = f"{format_number(scalar(answer, 'level_high') / felt)} {unit.replace('m/s2', 'm/s²')}"
+    ends = scalar(answer, "frequency_low"), scalar(answer, "frequency_high")
     return f"up to {level} over {frequencies_text(answer, *ends)}"
 
 
-def delaminated(answer: xr.Dataset) -> str:
-    """Format the statement on a delaminated beam."""
-    ratio = number(answer, "ratio")
-    better = "" if math.isnan(ratio) else f", {text_of(ratio)} times closer than any sound one"
-    apart = "the faces are seen to move apart, and " if number(answer, "faces_apart") > 1.0 else ""
+def delaminated_statement(answer: xr.Dataset) -> str:
+    """Return the statement on a delaminated beam."""
+    ratio = scalar(answer, "ratio")
+    better = (
+        "" if math.isnan(ratio) else f", {format_number(ratio)} times closer than any sound one"
+    )
+    apart = "the faces are seen to move apart, and " if scalar(answer, "faces_apart") > 1.0 else ""
     return (
         f"The record is that of two halves that part and strike each other: {apart}the delaminated "
         f"structure describes it{better}."
     )
 
 
-def no_opening(answer: xr.Dataset) -> str:
-    """Format the statement where nothing opens; it never says that the beam is intact."""
-    smallest = number(answer, "smallest_opening")
+def no_opening_statement(answer: xr.Dataset) -> str:
+    """Return the statement for no opening seen; it never says that the beam is intact."""
+    smallest = scalar(answer, "smallest_opening")
     seen = ""
     if math.isfinite(smallest):
         shown = answer if units_of(answer).length else with_units(answer, "um")
         factor, unit = scale_of(shown, "m")
-        opening = f"{text_of(smallest / factor)} {unit.replace('um', 'µm')}"
+        opening = f"{format_number(smallest / factor)} {unit.replace('um', 'µm')}"
         seen = (
             f" Faces at the sensor that part by {opening} or more would have been seen; away from "
             "it an opening may be larger."
         )
-    return f"No opening of the faces was seen {range_text(answer)}.{seen}"
+    return f"No opening of the faces was seen {format_range(answer)}.{seen}"
 
 
-def not_described(answer: xr.Dataset) -> str:
-    """Format the statement where no hypothesis fits."""
+def not_described_statement(answer: xr.Dataset) -> str:
+    """Return the statement for a record that no hypothesis fits."""
     return (
         "None of the structures that were tried, sound or delaminated, describes this record: "
         "the beam, its clamp or the sensors do something else."
     )
 
 
-def undecided(answer: xr.Dataset) -> str:
-    """Format the statement where the evidence does not suffice."""
+def undecided_statement(answer: xr.Dataset) -> str:
+    """Return the statement that the record does not suffice for a decision."""
     return "This record does not tell a delaminated beam from a sound one."
 
 
 SENTENCES = {
-    "delaminated": delaminated,
-    "no opening seen": no_opening,
-    "not described": not_described,
-    "undecided": undecided,
+    "delaminated": delaminated_statement,
+    "no opening seen": no_opening_statement,
+    "not described": not_described_statement,
+    "undecided": undecided_statement,
 }
 
 
-def number(answer: xr.Dataset, name: str) -> float:
-    """Return a scalar variable of an answer; NaN if it has none of that name."""
+def scalar(answer: xr.Dataset, name: str) -> float:
+    """Return a scalar variable of a result by its name; NaN if the result lacks it."""
     return float(answer[name]) if name in answer else math.nan
 
 
 def verdict_sections(answer: xr.Dataset) -> list[Section]:
-    """Return all sections on which a verdict rests."""
+    """Return all report sections on which a verdict rests."""
     made = [
-        decision(answer),
+        decision_section(answer),
         measured_record(answer),
-        *(fits(answer), misfits(answer), parameters(answer)),
-        assumed(answer),
+        *(fits_section(answer), misfit_section(answer), parameter_section(answer)),
+        assumption_section(answer),
     ]
     return [section for section in made if section is not None]
 
@@ -137,13 +139,13 @@ def measured_record(answer: xr.Dataset) -> Section | None:
 
 def known_text(answer: xr.Dataset, name: str, unit: str, digits: int) -> str:
     """Format a scalar variable in its own unit; empty if the answer has none of that name."""
-    value = number(answer, name)
-    return text_of(value, unit, digits) if math.isfinite(value) else ""
+    value = scalar(answer, name)
+    return format_number(value, unit, digits) if math.isfinite(value) else ""
 
 
 def sweep_text(answer: xr.Dataset) -> str:
     """Format the range and direction of the sweep, and the part of it that was compared."""
-    low, high = number(answer, "sweep_low"), number(answer, "sweep_high")
+    low, high = scalar(answer, "sweep_low"), scalar(answer, "sweep_high")
     if not math.isfinite(low + high):
         return ""
     direction = {"up": "upwards", "down": "downwards", "up and down": "up and down"}
@@ -158,40 +160,40 @@ def sweep_text(answer: xr.Dataset) -> str:
 def frequencies_text(answer: xr.Dataset, low: float, high: float) -> str:
     """Format a range of frequencies in Hz in the units that were asked for."""
     turn, word = scale_of(answer, "Hz")
-    first, last = (text_of(end / turn, digits=4) for end in (low, high))
+    first, last = (format_number(end / turn, digits=4) for end in (low, high))
     return f"{first} to {last} {'Omega/omega' if word == 'eta' else word}"
 
 
 def level_text(answer: xr.Dataset) -> str:
     """Format the range of the base's levels in the units that were asked for."""
-    ends = [number(answer, name) for name in ("level_low", "level_high")]
+    ends = [scalar(answer, name) for name in ("level_low", "level_high")]
     if not all(map(math.isfinite, ends)):
         return ""
     felt, unit = scale_of(answer, "m/s2")
-    low, high = (text_of(end / felt) for end in ends)
+    low, high = (format_number(end / felt) for end in ends)
     return f"{low} to {high} {unit.replace('m/s2', 'm/s²')} (peak)"
 
 
-def decision(answer: xr.Dataset) -> Section:
-    """Return a section on what decided, and what would change it."""
+def decision_section(answer: xr.Dataset) -> Section:
+    """Return a section on what decided the verdict and what would change it."""
     reason, settle = (str(answer.attrs.get(name, "")) for name in ("reason", "settle"))
-    points = [f"What decided: {full(reason)}"] if reason else []
-    odds = number(answer, "odds")
+    points = [f"What decided: {make_sentence(reason)}"] if reason else []
+    odds = scalar(answer, "odds")
     simulated = str(answer.attrs.get("simulated", ""))
     if simulated:
-        points.append(f"{full(simulated)} Both models were fitted to each simulated record.")
+        points.append(f"{make_sentence(simulated)} Both models were fitted to each of them.")
     elif math.isfinite(odds) and odds > 0.0:
         points.append(
-            f"The odds of the delaminated against the best sound structure are {ratio_of(odds)}. "
-            "They were counted in records put together of blocks of this one, by how often the "
-            "ratio of misfits is large enough to decide."
+            "The odds of the delaminated against the best sound structure are "
+            f"{format_odds(odds)}. They were counted in records put together of blocks of this "
+            "one, by how often the ratio of misfits is large enough to decide."
         )
     if settle:
-        points.append(f"What would change or settle it: {full(settle)}")
+        points.append(f"What would change or settle it: {make_sentence(settle)}")
     return Section("Why", [WORTH], points)
 
 
-def ratio_of(odds: float) -> str:
+def format_odds(odds: float) -> str:
     """Format odds as a ratio, "24 to 1".
 
     Examples
@@ -203,8 +205,8 @@ def ratio_of(odds: float) -> str:
     return f"{larger} to 1" if odds >= 1.0 else f"1 to {larger}"
 
 
-def full(words: str) -> str:
-    """Make a sentence of words: a capital at the beginning, a full stop at the end.
+def make_sentence(words: str) -> str:
+    """Return words as a sentence, with a capital at the beginning and a full stop.
 
     Examples
     --------
@@ -214,20 +216,20 @@ def full(words: str) -> str:
     return f"{words[:1].upper()}{words[1:].rstrip('.')}."
 
 
-def fits(answer: xr.Dataset) -> Section | None:
-    """Return a section with the measurement over the fits; None if the answer has no fits."""
+def fits_section(answer: xr.Dataset) -> Section | None:
+    """Return a section with the measurement over the fits; None without fits."""
     if "measured" not in answer or "fitted" not in answer:
         return None
     words = "What was measured, and what the best structures of each kind do, order by order"
     return Section(
         "The measurement over the fits",
         picture=Picture.from_figure(draw_detect(answer), words),
-        tables=[hypotheses(answer)],
+        tables=[hypothesis_table(answer)],
     )
 
 
-def misfits(answer: xr.Dataset) -> Section | None:
-    """Return a section with the misfit over frequency; None if the answer has none."""
+def misfit_section(answer: xr.Dataset) -> Section | None:
+    """Return a section with the misfit over frequency; None without it."""
     if "misfit_at" not in answer:
         return None
     words = "Misfit of each structure over the frequency of the excitation"
@@ -239,50 +241,52 @@ def misfits(answer: xr.Dataset) -> Section | None:
     return Section("Where the structures differ from the measurement", [text], picture=picture)
 
 
-def hypotheses(answer: xr.Dataset) -> Table:
-    """Return a table of the hypotheses, the best first."""
+def hypothesis_table(answer: xr.Dataset) -> Table:
+    """Return a table of the hypotheses, the best fit first."""
     ordered = answer.sortby("misfit")
     rows = []
     for position in range(ordered.sizes["hypothesis"]):
         one = ordered.isel(hypothesis=position)
-        row = [str(one.hypothesis.values), text_of(float(one.misfit))]
+        row = [str(one.hypothesis.values), format_number(float(one.misfit))]
         row.append(f"{int(np.isfinite(one.minima).sum())}" if "minima" in one else MISSING)
-        row.append(text_of(number(one, "evaluations"), digits=6))
+        row.append(format_number(scalar(one, "evaluations"), digits=6))
         rows.append(tuple(row))
     columns = ("structure", "misfit", "minima found", "motions computed")
-    return Table(columns, rows, frozenset(decided(answer, [row[0] for row in rows])[:1]))
+    return Table(
+        columns, rows, frozenset(deciding_hypotheses(answer, [row[0] for row in rows])[:1])
+    )
 
 
-def decided(answer: xr.Dataset, names: Sequence[str]) -> list[int]:
+def deciding_hypotheses(answer: xr.Dataset, names: Sequence[str]) -> list[int]:
     """Return the indices of the hypotheses on which the verdict rests."""
     parted = {"delaminated": True, "no opening seen": False}.get(str(answer.verdict.values))
-    return [place for place, name in enumerate(names) if name.startswith(PARTED) == parted]
+    return [index for index, name in enumerate(names) if name.startswith(PARTED) == parted]
 
 
-def parameters(answer: xr.Dataset) -> Section | None:
+def parameter_section(answer: xr.Dataset) -> Section | None:
     """Return a section with the best structures' parameters and errors; None without any."""
     if "value" not in answer or "parameter" not in answer.dims:
         return None
-    shown = by_misfit(answer)
+    shown = sort_by_misfit(answer)
     names = [str(one.hypothesis.values) if "hypothesis" in one.coords else "value" for one in shown]
     units = dict(zip(answer.parameter.values, answer.unit.values, strict=True))
     meaning = dict(zip(answer.parameter.values, answer.meaning.values, strict=True))
     rows = [
         (
             f"{name}, {meaning[name]}",
-            *(parameter_text(one.sel(parameter=name), str(units[name])) for one in shown),
+            *(format_parameter(one.sel(parameter=name), str(units[name])) for one in shown),
         )
         for name in answer.parameter.values
     ]
     columns = [0] + [
-        place for place in range(1, 1 + len(shown)) if any(row[place] != MISSING for row in rows)
+        column for column in range(1, 1 + len(shown)) if any(row[column] != MISSING for row in rows)
     ][:BEST]
     known = [
-        tuple(row[place] for place in columns)
+        tuple(row[column] for column in columns)
         for row in rows
-        if any(row[place] != MISSING for place in columns[1:])
+        if any(row[column] != MISSING for column in columns[1:])
     ]
-    heads = ("parameter", *(names[place - 1] for place in columns[1:]))
+    heads = ("parameter", *(names[column - 1] for column in columns[1:]))
     text = (
         "Errors are standard errors from blocks of the record and from what the structure misses. "
         f"What a structure does not have, or the record does not hold, has a dash ({MISSING})."
@@ -292,36 +296,36 @@ def parameters(answer: xr.Dataset) -> Section | None:
     return Section("Parameters", [text], tables=[Table(heads, known)])
 
 
-def by_misfit(answer: xr.Dataset) -> list[xr.Dataset]:
-    """Return the hypotheses of an answer one by one, the best first."""
+def sort_by_misfit(answer: xr.Dataset) -> list[xr.Dataset]:
+    """Return the hypotheses of a result one by one, the best fit first."""
     if "hypothesis" not in answer.dims:
         return [answer]
     ordered = answer.sortby("misfit")
     return [ordered.isel(hypothesis=position) for position in range(ordered.sizes["hypothesis"])]
 
 
-def parameter_text(at: xr.Dataset, unit: str) -> str:
+def format_parameter(at: xr.Dataset, unit: str) -> str:
     """Format a parameter of one hypothesis with its error; a dash if it has none."""
     factor, word = scale_of(at, unit)
     if word == "eta":  # a half's own frequency is no ratio to itself
         factor, word = 1.0, unit
-    value, error = float(at.value) / factor, number(at, "standard_error") / factor
-    return with_error(value, error, word) if math.isfinite(value) else MISSING
+    value, error = float(at.value) / factor, scalar(at, "standard_error") / factor
+    return format_with_error(value, error, word) if math.isfinite(value) else MISSING
 
 
-def assumed(answer: xr.Dataset) -> Section:
-    """Return a section with the assumptions."""
+def assumption_section(answer: xr.Dataset) -> Section:
+    """Return a section with the verdict's assumptions."""
     own = [text.strip() for text in str(answer.attrs.get("assumed", "")).split(";")]
-    points = [*ALWAYS_ASSUMED, *guessed(answer), *map(full, filter(None, own))]
+    points = [*ALWAYS_ASSUMED, *describe_guess(answer), *map(make_sentence, filter(None, own))]
     return Section("What was assumed", points=points)
 
 
-def guessed(answer: xr.Dataset) -> list[str]:
-    """Return lines on the guess that the search began with; its masses were kept."""
+def describe_guess(answer: xr.Dataset) -> list[str]:
+    """Return lines on the guess with which the search began; its masses were kept."""
     numbers = {name: float(answer.attrs.get(name, math.nan)) for name in ("m1", "m2", "k1", "k2")}
     if not all(value > 0.0 for value in numbers.values()):
         return []
-    masses = " and ".join(text_of(numbers[name], "kg") for name in ("m1", "m2"))
+    masses = " and ".join(format_number(numbers[name], "kg") for name in ("m1", "m2"))
     halves = (math.sqrt(numbers[f"k{i}"] / numbers[f"m{i}"]) / TURN for i in (1, 2))
-    frequencies = " and ".join(text_of(f, "Hz") for f in halves)
+    frequencies = " and ".join(format_number(f, "Hz") for f in halves)
     return [f"Guessed of both halves: masses of {masses}, which were kept, and {frequencies}."]

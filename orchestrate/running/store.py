@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import InputError, StaleError, StoreError
-from ..files import check_name, open_folder, write_whole
+from ..files import check_path_encoding, open_folder, write_whole
 from .checksum import ATTRIBUTE, checksum
 from .identity import Identity, difference, same_question
 from .job import Table
@@ -152,7 +152,7 @@ class Disk(Store):
 
     def __init__(self, path: Path, identity: Identity, options: RunOptions) -> None:
         self.path, self.identity, self.options = path, identity, options
-        check_name(path)
+        check_path_encoding(path)
         self.begun = now()
         open_folder(path.parent)
         if path.is_dir():
@@ -285,7 +285,7 @@ def load(path: Path) -> xr.Dataset:
     """
     import xarray as xr
 
-    check_name(path)
+    check_path_encoding(path)
     try:
         data = xr.load_dataset(path, engine="netcdf4")
         stored_checksum = data.attrs.pop(ATTRIBUTE, None)

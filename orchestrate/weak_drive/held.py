@@ -208,8 +208,9 @@ class HeldVoltageTest:
     def for_further_jumps(self) -> HeldVoltageTest:
         """Return this test, its checkpoints shared, for jumps beside the passing's."""
         test, settings = copy(self), self.settings
-        least = {"two_motions": settings.further_motions, "smallest_jump": settings.further_jump}
-        test.settings = replace(settings, **least)
+        test.settings = replace(
+            settings, two_motions=settings.further_motions, smallest_jump=settings.further_jump
+        )
         return test
 
     def add_checkpoints(self, table: Table, every: int, steps: int) -> None:
@@ -454,9 +455,10 @@ class HeldVoltageTest:
         have fallen into it by chance, where it exists in a narrow range of voltages: where it ends
         then says nothing of the motion that a ramp follows. So it is reached anew from there.
         """
-        first = next((j for j in range(i - 1, -1, -1) if self.is_irregular(points[j])), None)
-        before = points[first or 0]
-        for _ in range(0 if first is None else self.settings.again):
+        irregular = [j for j in range(i) if self.is_irregular(points[j])]
+        first = irregular[-1] if irregular else 0
+        before = points[first]
+        for _ in range(self.settings.again if irregular else 0):
             before = self.step_from(before, before.voltage)
             path = [before]
             for point in points[first + 1 : i + 1]:

@@ -66,8 +66,8 @@ def test_nothing_comes_from_elsewhere_and_no_link_is_broken(site):
     """No script, style, font or picture is taken from the network."""
     checked = Site(site)
     assert len(checked.pages) > 40
-    assert checked.from_other_hosts() == []
-    assert checked.broken() == []
+    assert checked.external_resources() == []
+    assert checked.broken_links() == []
 
 
 @pytest.mark.slow

@@ -82,13 +82,13 @@ def importer_of(fmus, tmp_path_factory):
         pytest.skip("the importers are run on Linux")
 
     def make(version):
-        if importers.compiler() is None:
+        if importers.c_compiler() is None:
             pytest.skip("there is no C compiler")
         if version not in made:
             folder = tmp_path_factory.mktemp(version)
             program = importers.compile_importer(version, fmus[version], folder)
             made[version] = importers.Importer(
-                program, importers.binary(fmus[version], version, folder), version
+                program, importers.unpack_binary(fmus[version], version, folder), version
             )
         return made[version]
 

@@ -58,7 +58,7 @@ def functions_of_header(version):
 
 
 def test_linux_binary_exports_fmi_and_imports_libc(fmus, version, tmp_path):
-    elf = Elf(importers.binary(fmus[version], version, tmp_path).read_bytes())
+    elf = Elf(importers.unpack_binary(fmus[version], version, tmp_path).read_bytes())
     assert len(elf.exports) > 30
     assert elf.exports == functions_of_header(version)
     assert elf.imports <= LIBC | LOADER
@@ -71,7 +71,7 @@ def test_windows_binary_exports_fmi_and_imports_the_system(fmus, version, tmp_pa
     with zipfile.ZipFile(fmus[version]) as archive:
         if not [name for name in archive.namelist() if name.endswith(".dll")]:
             pytest.skip("this FMU was made without ziglang")
-    pe = Pe(importers.binary(fmus[version], version, tmp_path, windows=True).read_bytes())
+    pe = Pe(importers.unpack_binary(fmus[version], version, tmp_path, windows=True).read_bytes())
     assert pe.machine == 0x8664
     assert pe.exports == functions_of_header(version)
     for library in pe.imports:
@@ -83,12 +83,12 @@ def test_windows_binary_exports_fmi_and_imports_the_system(fmus, version, tmp_pa
 
 def test_there_is_no_global_state_to_share(version, kernel_objects, tmp_path):
     """No object file has data that could be written: instances and threads cannot meet."""
-    if importers.compiler() is None:
+    if importers.c_compiler() is None:
         pytest.skip("there is no C compiler")
     importers.rebuild_shim(version, tmp_path, kernel_objects, options=())
-    units = importers.units(version)
+    units = importers.shim_files(version)
     for unit in units:
-        importers.run_compiler([*importers.compiler(), "-fPIC", "-O2", "-c", unit], tmp_path)
+        importers.run_compiler([*importers.c_compiler(), "-fPIC", "-O2", "-c", unit], tmp_path)
     for name in [unit.replace(".c", ".o") for unit in units] + ["kernel.o"]:
         writable = Elf((tmp_path / name).read_bytes()).writable
         assert sum(writable.values()) == 0, (name, writable)
@@ -107,12 +107,12 @@ def test_two_builds_have_the_same_bytes(fmus, version, hide, tmp_path):
 @pytest.mark.skipif(WINE is None, reason="wine is not installed")
 def test_windows_binary_has_the_same_bits(fmus, importer_of, version, tmp_path):
     """Slow at the first use of ziglang and wine: both prepare themselves for minutes."""
-    command = importers.ziglang("x86_64-windows-gnu")
+    command = importers.zig_compiler("x86_64-windows-gnu")
     if command is None:
         pytest.skip("the importer for Windows is compiled by ziglang")
     program = importers.compile_importer(version, fmus[version], tmp_path / "importer", command)
     windows = importers.Importer(
-        program, importers.binary(fmus[version], version, tmp_path, windows=True), version
+        program, importers.unpack_binary(fmus[version], version, tmp_path, windows=True), version
     )
     wine = {
         "env": {**os.environ, "WINEPREFIX": str(tmp_path / "prefix"), "WINEDEBUG": "-all"},

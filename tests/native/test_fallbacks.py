@@ -75,7 +75,7 @@ def test_without_ziglang_the_own_compiler_makes_fmus_for_its_platform(
     times = [64.0 * k for k in range(65)]
     for version in ("fmi2", "fmi3"):
         assert validate_fmu(str(made[version])) == []
-        binary = importers.binary(made[version], version, tmp_path)
+        binary = importers.unpack_binary(made[version], version, tmp_path)
         own = importers.Importer(importer_of(version).program, binary, version)
         expected = importer_of(version).simulate(COMMON, times, **harmonic(1.13))
         assert own.simulate(COMMON, times, **harmonic(1.13)) == expected

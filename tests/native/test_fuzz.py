@@ -40,7 +40,7 @@ def importer_of_model(request, exported, fmus, tmp_path_factory):
         pytest.skip("there is no C compiler")
     path, folder = exported / version / f"{model}.fmu", tmp_path_factory.mktemp("model")
     program = importers.compile_importer(version, path, folder / "importer")
-    return importers.Importer(program, importers.binary(path, version, folder), version)
+    return importers.Importer(program, importers.unpack_binary(path, version, folder), version)
 
 
 def is_shaker(importer):
@@ -98,7 +98,7 @@ def test_no_leak_and_no_error_under_valgrind(importer_of_model):
 @pytest.mark.parametrize("sanitizer", [importers.SANITIZE, ("-fsanitize=thread",)], ids=["a", "t"])
 def test_no_error_with_sanitizers_in_the_shim(exported, fmus, tmp_path, version, model, sanitizer):
     """Address, undefined behaviour and leaks; or threads."""
-    importer = importers.checked(version, model, exported, tmp_path, sanitizer)
+    importer = importers.importer_with_sanitizer(version, model, exported, tmp_path, sanitizer)
     for mode in (
         ("hostile",),
         ("random", 5, 2000),
@@ -118,7 +118,9 @@ def test_the_hostile_tests_reach_the_whole_shim(exported, fmus, tmp_path, versio
     lines, branches, left = {}, {}, []
     for model in MODELS:
         folder = tmp_path / model
-        importer = importers.checked(version, model, exported, folder, ("--coverage",))
+        importer = importers.importer_with_sanitizer(
+            version, model, exported, folder, ("--coverage",)
+        )
         importer.run("random", 11, 4000, timeout=1800)
         importer.run("many", 50, 40, 400)
         importer.run("forge")
@@ -126,7 +128,7 @@ def test_the_hostile_tests_reach_the_whole_shim(exported, fmus, tmp_path, versio
         if model == "TwoMassImpactOscillator":
             importer.run("simulate", "x1", "e=0.5", times=[0.0, 1.0])
             importer.run("corrupt", 64, "nan")
-        for unit in importers.units(version):
+        for unit in importers.shim_files(version):
             importers.read_coverage(folder / "shim", unit, lines, branches)
     for found, what in ((lines, "lines"), (branches, "branches")):
         left += [key for key, taken in found.items() if not taken]
@@ -148,7 +150,7 @@ def test_a_coverage_guided_fuzzer_finds_nothing(exported, fmus, tmp_path, versio
     library = importers.rebuild_shim(
         version,
         tmp_path / "shim",
-        importers.kernel(model),
+        importers.kernel_objects(model),
         (f"-fsanitize=fuzzer-no-link,{guards}", "-fno-sanitize-recover=all"),
         forms.MODELS[model],
         ("clang",),

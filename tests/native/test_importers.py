@@ -9,7 +9,7 @@ import subprocess
 import pytest
 
 from fmu_src.kernels.oscillator import memory as at
-from tools.importers import Importer, binary, compile_importer, ziglang
+from tools.importers import Importer, compile_importer, unpack_binary, zig_compiler
 
 from .slave import COMMON, harmonic, slave
 
@@ -69,10 +69,10 @@ def test_importer_compiled_by_ziglang(fmus, importer, tmp_path):
     """What is compiled where the machine has no C compiler; and another compiler's eye on the
     importer.
     """
-    if ziglang() is None:
+    if zig_compiler() is None:
         pytest.skip("ziglang is not installed")
     other = Importer(
-        compile_importer(importer.version, fmus[importer.version], tmp_path, ziglang()),
+        compile_importer(importer.version, fmus[importer.version], tmp_path, zig_compiler()),
         importer.library,
         importer.version,
     )
@@ -117,7 +117,7 @@ def test_two_versions_in_one_process_do_not_meet(fmus, importer_of, tmp_path):
         ",".join(COMMON),
         *(f"{name}={value.hex()}" for name, value in harmonic(1.13).items()),
         times=times,
-        env={"LD_PRELOAD": str(binary(fmus["fmi3"], "fmi3", tmp_path))},
+        env={"LD_PRELOAD": str(unpack_binary(fmus["fmi3"], "fmi3", tmp_path))},
     )
     rows = [
         [float.fromhex(cell) for cell in line.split()]

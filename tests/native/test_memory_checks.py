@@ -104,7 +104,7 @@ def test_threads_do_not_meet(checked):
 
 
 def test_no_number_is_cast_that_has_no_integer(fmus, kernel_objects, tmp_path):
-    if importers.compiler() is None:
+    if importers.c_compiler() is None:
         pytest.skip("there is no C compiler")
     program = importers.compile_importer("fmi2", fmus["fmi2"], tmp_path / "importer")
     # traps: no library of the sanitizer is needed

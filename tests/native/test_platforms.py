@@ -171,10 +171,10 @@ def test_the_arm_binary_has_the_same_bits(everywhere, version, name, tmp_path):
     path = everywhere / version / f"{name}.fmu"
     own = importers.Importer(
         importers.compile_importer(version, path, tmp_path / "own"),
-        importers.binary(path, version, tmp_path),
+        importers.unpack_binary(path, version, tmp_path),
         version,
     )
-    command = importers.ziglang("aarch64-linux-gnu.2.28")
+    command = importers.zig_compiler("aarch64-linux-gnu.2.28")
     program = importers.compile_importer(version, path, tmp_path / "importer", command)
     with zipfile.ZipFile(path) as archive:
         binary = archive.extract(f"binaries/aarch64-linux/{name}.so", tmp_path)

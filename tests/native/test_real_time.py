@@ -27,7 +27,7 @@ TOKEN = re.compile(r'#define MODEL_TOKEN "([^"]*)"')
 
 def needs(*programs):
     """Skip where a program is missing."""
-    absent = sources.missing(*programs)
+    absent = sources.missing_programs(*programs)
     return pytest.mark.skipif(bool(absent), reason=f"expected {', '.join(absent)} on this machine")
 
 
@@ -57,7 +57,7 @@ def test_nothing_is_allocated_after_instantiation(folders, version, tmp_path):
     flags = ["-O0", "-std=c99", "-fno-builtin-malloc", *second]
     command = ["gcc", *flags, f"-I{folder}", *sources.c_files(folder), program, "-lm", "-o", "run"]
     subprocess.run(command, cwd=tmp_path, check=True)
-    before, after, events = map(int, sources.run(tmp_path / "run").split())
+    before, after, events = map(int, sources.run_command(tmp_path / "run").split())
     assert before == 2  # the instance, and its name
     assert after == 0
     assert events > 1000
@@ -66,7 +66,7 @@ def test_nothing_is_allocated_after_instantiation(folders, version, tmp_path):
 @pytest.fixture(scope="module")
 def graphs(folders):
     """Call graphs by FMI version and model."""
-    if sources.missing("gcc"):
+    if sources.missing_programs("gcc"):
         pytest.skip("expected gcc")
     return {key: footprint.call_graph(folder, "gcc", "-O0") for key, folder in folders.items()}
 
@@ -78,15 +78,15 @@ def test_no_function_calls_itself(graphs, version, model):
     called = [name for name in graph.sizes if re.search(rf"\b{version}\w+$", name)]
     assert f"{version}DoStep" in called
     for name in graph.sizes:
-        assert graph.deepest(name) < 32768
+        assert graph.stack_bytes(name) < 32768
 
 
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("version", VERSIONS)
 def test_a_step_calls_nothing_that_allocates_waits_or_writes(graphs, version, model):
     graph = graphs[version, model]
-    assert graph.outside(f"{version}DoStep", footprint.MESSAGES) <= OF_A_STEP
-    everything = set().union(*(graph.outside(name) for name in graph.sizes))
+    assert graph.library_functions(f"{version}DoStep", footprint.MESSAGES) <= OF_A_STEP
+    everything = set().union(*(graph.library_functions(name) for name in graph.sizes))
     assert {name.removeprefix("__builtin_") for name in everything} <= {
         *LIBRARY,
         footprint.INDIRECT,
@@ -99,32 +99,32 @@ def test_a_circle_of_calls_is_seen():
         {"a.c:one": {"a.c:two"}, "a.c:two": {"a.c:end", "a.c:one"}},
     )
     with pytest.raises(RecursionError, match=r"a.c:one -> a.c:two -> a.c:one"):
-        graph.deepest("a.c:one")
-    assert graph.deepest("a.c:two", without=("one",)) == 96
+        graph.stack_bytes("a.c:one")
+    assert graph.stack_bytes("a.c:two", without=("one",)) == 96
 
 
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("version", VERSIONS)
 def test_no_compiler_warns(folders, version, model):
     """Without optimisation, which takes a moment; with it in the slow test."""
-    compilers = [name for name in ("gcc", "clang") if not sources.missing(name)]
+    compilers = [name for name in ("gcc", "clang") if not sources.missing_programs(name)]
     if not compilers:
         pytest.skip("expected gcc or clang on this machine")
     for compiler in compilers:
         files = sources.c_files(folders[version, model])
-        sources.run(compiler, *WARNINGS, "-fsyntax-only", *files)
+        sources.run_command(compiler, *WARNINGS, "-fsyntax-only", *files)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("version", VERSIONS)
 def test_no_compiler_warns_where_it_looks_closely(folders, version, model, tmp_path):
-    compilers = [name for name in ("gcc", "clang") if not sources.missing(name)]
+    compilers = [name for name in ("gcc", "clang") if not sources.missing_programs(name)]
     if not compilers:
         pytest.skip("expected gcc or clang on this machine")
     for compiler in compilers:
         for file in sources.c_files(folders[version, model]):
-            sources.run(compiler, *WARNINGS, "-O2", "-c", file, "-o", tmp_path / "a.o")
+            sources.run_command(compiler, *WARNINGS, "-O2", "-c", file, "-o", tmp_path / "a.o")
 
 
 @pytest.mark.slow
@@ -189,8 +189,8 @@ def test_no_global_variable_changes(folders, version, tmp_path):
     """All that is global can lie in read-only memory."""
     for file in sources.c_files(folders[version, MODELS[0]]):
         made = tmp_path / f"{file.stem}.o"
-        sources.run("gcc", "-O0", "-std=c99", "-fno-pie", "-c", file, "-o", made)
-        kinds = sources.run("nm", "--defined-only", made).split()[1::3]
+        sources.run_command("gcc", "-O0", "-std=c99", "-fno-pie", "-c", file, "-o", made)
+        kinds = sources.run_command("nm", "--defined-only", made).split()[1::3]
         assert kinds and set(kinds) <= set("TtRr"), file.name
 
 
@@ -208,12 +208,14 @@ def test_sources_of_several_fmus_are_linked_into_one_program(folders, fmus, tmp_
         tokens.append(TOKEN.search((folder / "model.h").read_text("utf-8")).group(1))
         for file in sources.c_files(folder):
             objects.append(tmp_path / f"{prefix}-{file.stem}.o")
-            sources.run("gcc", "-O0", *sources.BITS, define, "-c", file, "-o", objects[-1])
-            names = sources.run("nm", "-g", "--defined-only", objects[-1]).split()[2::3]
+            sources.run_command("gcc", "-O0", *sources.BITS, define, "-c", file, "-o", objects[-1])
+            names = sources.run_command("nm", "-g", "--defined-only", objects[-1]).split()[2::3]
             assert names and all(name.startswith(f"{prefix}_") for name in names), file.name
     program = tmp_path / "together"
-    sources.run("gcc", "-std=c99", HERE / "linked_together.c", *objects, "-lm", "-o", program)
-    second, third, speed = sources.run(program, *tokens).split()
+    sources.run_command(
+        "gcc", "-std=c99", HERE / "linked_together.c", *objects, "-lm", "-o", program
+    )
+    second, third, speed = sources.run_command(program, *tokens).split()
     with slave(fmus["fmi3"]) as fmu:
         fmu.start()
         for time in range(1, 101):
@@ -236,19 +238,19 @@ def stated(machine, what):
 def test_the_manual_states_the_stack(folders, machine):
     """As upper bounds, by the call graph, for another version of the compiler too."""
     compiler, *flags = footprint.MACHINES[machine]
-    if sources.missing(compiler):
+    if sources.missing_programs(compiler):
         pytest.skip(f"expected {compiler} on this machine")
     graph = footprint.call_graph(folders["fmi3", MODELS[0]], compiler, *flags, "-O2")
     for what, name in footprint.CALLS.items():
-        assert 0.6 * stated(machine, what) < graph.deepest(name, footprint.MESSAGES)
-        assert graph.deepest(name, footprint.MESSAGES) <= stated(machine, what), what
-    assert graph.deepest(footprint.CALLS["a step"]) <= stated(machine, "a refusal")
+        assert 0.6 * stated(machine, what) < graph.stack_bytes(name, footprint.MESSAGES)
+        assert graph.stack_bytes(name, footprint.MESSAGES) <= stated(machine, what), what
+    assert graph.stack_bytes(footprint.CALLS["a step"]) <= stated(machine, "a refusal")
 
 
 @needs("gcc")
 def test_the_manual_states_the_memory(folders, tmp_path):
     """Of an instance, as the program prints it; the trajectory is the one of the bare targets."""
-    result = targets.on_desktop(folders["fmi3", MODELS[0]], tmp_path, "-O0")
+    result = targets.run_on_desktop(folders["fmi3", MODELS[0]], tmp_path, "-O0")
     assert int(result["impacts"]) > 4000
     assert int(result["instance"]) == stated("x86-64", "an instance")
     text = MANUAL.read_text("utf-8")
@@ -266,8 +268,8 @@ def same_motion(one, other):
 def test_a_bare_cortex_m7_has_the_bits_of_the_desktop(folders, optimisation, tmp_path):
     """And takes the stack and the memory that the manual states."""
     folder = folders["fmi3", MODELS[0]]
-    result = targets.on_cortex_m7(folder, tmp_path, optimisation)
-    assert same_motion(result, targets.on_desktop(folder, tmp_path))
+    result = targets.run_on_cortex_m7(folder, tmp_path, optimisation)
+    assert same_motion(result, targets.run_on_desktop(folder, tmp_path))
     if optimisation == "-O2":
         assert int(result["instance"]) == stated("Cortex-M7", "an instance")
         assert int(result["stack"]) <= stated("Cortex-M7", "a step") + 1024  # main's own
@@ -280,8 +282,8 @@ def test_a_bare_cortex_m7_has_the_bits_of_the_desktop(folders, optimisation, tmp
 def test_riscv_has_the_bits_of_the_desktop(folders, standard, tmp_path):
     """gcc fuses there unless it is told not to: the sources tell it themselves."""
     folder = folders["fmi3", MODELS[0]]
-    result = targets.on_riscv64(folder, tmp_path, standard=standard)
-    assert same_motion(result, targets.on_desktop(folder, tmp_path))
+    result = targets.run_on_riscv64(folder, tmp_path, standard=standard)
+    assert same_motion(result, targets.run_on_desktop(folder, tmp_path))
 
 
 @pytest.mark.slow
@@ -293,4 +295,4 @@ def test_riscv_without_what_the_sources_tell_is_refused(folders, tmp_path):
     lines = kernel.read_text("utf-8").splitlines(keepends=True)
     kernel.write_text("".join(line for line in lines if "GCC optimize" not in line), "utf-8")
     with pytest.raises(RuntimeError, match="numbers differ from the model's"):
-        targets.on_riscv64(folder, tmp_path, standard=("-std=gnu99",))
+        targets.run_on_riscv64(folder, tmp_path, standard=("-std=gnu99",))

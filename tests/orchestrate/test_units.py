@@ -76,7 +76,7 @@ def test_grammar():
     assert str(Units.from_text("mm Hz,g ; s".replace(" ;", ","))) == "Hz, mm, g, s"
     assert Units.from_text("µm, HZ, m/s^2") == Units("Hz", "um", "m/s2")
     assert Units.from_text("") == Units()
-    assert Units("rpm").completed(Units("Hz", "mm")) == Units("rpm", "mm")
+    assert Units("rpm").with_defaults(Units("Hz", "mm")) == Units("rpm", "mm")
     for text, words in (("stone", "stone; expected"), ("Hz, rpm", "Hz and rpm; expected one")):
         with pytest.raises(InputError, match=f"units {text}: {words}"):
             Units.from_text(text)

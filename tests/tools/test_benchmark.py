@@ -13,12 +13,12 @@ from tools import benchmark, sampled_solver, shake_benchmark
 
 
 def test_periods_and_impacts(exported):
-    seconds, impacts = benchmark.periods(find(OSCILLATOR).path, 0.4, 20)
+    seconds, impacts = benchmark.time_periods(find(OSCILLATOR).path, 0.4, 20)
     assert 0.0 < seconds < 5.0 and impacts == 20 * 30
 
 
 def test_a_quiet_step(exported):
-    assert 0.0 < benchmark.quiet_step(find(OSCILLATOR).path, 100) < 1e-2
+    assert 0.0 < benchmark.time_quiet_step(find(OSCILLATOR).path, 100) < 1e-2
 
 
 def test_one_measurement_in_a_process_of_its_own(exported, capsys, monkeypatch):
@@ -32,15 +32,17 @@ PAPER = Structure.nondimensional(e=0.7, D=0.005, kappa=1.2)
 
 
 def test_the_sampled_solver_moves_as_the_fmu_does(exported):
-    flight, contact = sampled_solver.motions(PAPER, partial(benchmark.harmonic, 0.4))
+    flight, contact = sampled_solver.equations_of_motion(
+        PAPER, partial(benchmark.harmonic_acceleration, 0.4)
+    )
     assert flight(0.0, [1.0, 0.0, 1.0, 0.0]) == pytest.approx([0.0, -1.0, 0.0, -1.2])
     assert contact(0.0, [1.0, 0.0, 1.0, 0.0]) == pytest.approx([0.0, -1.1, 0.0, -1.1])
 
 
 def test_the_sampled_solver_finds_the_impacts_of_a_shaken_beam(exported):
     """Up to where a chaotic motion forgets the start, by their number."""
-    seconds, impacts = shake_benchmark.solver_seconds(0.3)
-    ours, expected = shake_benchmark.our_seconds(0.3)
+    seconds, impacts = shake_benchmark.time_solver(0.3)
+    ours, expected = shake_benchmark.time_shake(0.3)
     assert seconds > 0.0 and ours > 0.0
     assert impacts == pytest.approx(expected, rel=0.3) and expected > 10
 

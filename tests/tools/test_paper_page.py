@@ -15,9 +15,9 @@ from tools.marked import MARK
 def test_the_page_is_made_from_the_claims(page):
     found = json.loads(paper_page.CLAIMS.read_text("utf-8"))
     text = page.read_text("utf-8")
-    assert paper_page.page(text, found) == text
+    assert paper_page.fill_page(text, found) == text
     other = {**found, "claims": found["claims"][1:]}
-    assert paper_page.page(text, other) != text
+    assert paper_page.fill_page(text, other) != text
 
 
 def test_all_that_was_computed_is_on_a_page():

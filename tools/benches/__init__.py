@@ -1,4 +1,4 @@
-"""Virtual benches: beams that are none of the package's models, shaken, with sensors on them.
+"""Virtual test benches: shaken beams by models other than the package's, with sensors.
 
 They judge what the package says of records: nothing of its dynamics is used here. Contacts are
 compliant (a penalty with a dashpot, Hunt and Crossley's law), the motion is integrated with small

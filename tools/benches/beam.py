@@ -1,4 +1,4 @@
-"""An Euler-Bernoulli beam of finite elements with a through-width delamination.
+"""Finite-element model of an Euler-Bernoulli beam with a through-width delamination.
 
 Over the delamination the beam is two beams, one upon the other, each with its own axis, that share
 the cross-sections where the delamination ends: the four beams of Mujumdar and Suryanarayan (Journal
@@ -92,7 +92,7 @@ class DelaminatedBeam:
     elements: int = 40
 
     def section(self, share: float) -> Section:
-        """Return the section of a share of the thickness."""
+        """Return the cross-section of a layer that has a share of the thickness."""
         h = share * self.thickness
         area = h * self.width
         inertia = self.width * h**3 / 12.0
@@ -125,7 +125,7 @@ class DelaminatedBeam:
         return np.asarray(self.is_delaminated & (share >= low) & (share <= high))
 
     @cached_property
-    def places(self) -> dict[tuple[int, int], int]:
+    def node_numbers(self) -> dict[tuple[int, int], int]:
         """Number of each pair (layer, node); layer 0 is the whole beam, 1 and 2 its halves."""
         inside = self.is_inside(self.nodes)
         pairs = []
@@ -133,7 +133,7 @@ class DelaminatedBeam:
             pairs += [(1, i), (2, i)] if split else [(0, i)]
         return {pair: number for number, pair in enumerate(pairs)}
 
-    def axis(self, layer: int) -> float:
+    def layer_height(self, layer: int) -> float:
         """Return the height of a layer's axis above the whole beam's, m."""
         return {0: 0.0, 1: 1.0 - self.share, 2: -self.share}[layer] * 0.5 * self.thickness
 
@@ -147,50 +147,52 @@ class DelaminatedBeam:
 
         The pull is the inertia times a unit displacement of base and beam.
         """
-        size = 3 * len(self.places)
+        size = 3 * len(self.node_numbers)
         stiffness, inertia = np.zeros((size, size)), np.zeros((size, size))
         sections, inside = self.sections(), self.is_inside(self.nodes)
         for i, length in enumerate(np.diff(self.nodes)):
             for layer in (1, 2) if inside[i] and inside[i + 1] else (0,):
-                to = np.concatenate([self.placed(layer, i), self.placed(layer, i + 1)])
+                to = np.concatenate(
+                    [self.node_selector(layer, i), self.node_selector(layer, i + 1)]
+                )
                 used = np.flatnonzero(to.any(axis=0))
                 to, where = to[:, used], np.ix_(used, used)
                 stiffness[where] += to.T @ sections[layer].stiffness(length) @ to
                 inertia[where] += to.T @ sections[layer].inertia(length) @ to
-        kept, rigid = self.kept(), np.zeros(size)
+        kept, rigid = self.constraint_matrix(), np.zeros(size)
         rigid[DEFLECTION::3] = 1.0
         return kept.T @ stiffness @ kept, kept.T @ inertia @ kept, kept.T @ inertia @ rigid
 
-    def placed(self, layer: int, node: int) -> Floats:
-        """Return the (3, all) matrix that gives a layer's displacements at a node.
+    def node_selector(self, layer: int, node: int) -> Floats:
+        """Return the (3, all) matrix that selects a layer's displacements at a node.
 
         Where the whole beam ends at a node that belongs to the layers, they are those of layer 1,
         referred to its own axis.
         """
-        size = 3 * len(self.places)
-        known = (layer, node) in self.places
-        number = self.places[layer, node] if known else self.places[1, node]
+        size = 3 * len(self.node_numbers)
+        known = (layer, node) in self.node_numbers
+        number = self.node_numbers[layer, node] if known else self.node_numbers[1, node]
         matrix = np.zeros((3, size))
         matrix[:, 3 * number : 3 * number + 3] = np.eye(3)
         if not known:  # the axial displacement at the height z is u - z slope
-            matrix[AXIAL, 3 * number + SLOPE] = self.axis(1) - self.axis(layer)
+            matrix[AXIAL, 3 * number + SLOPE] = self.layer_height(1) - self.layer_height(layer)
         return matrix
 
-    def kept(self) -> Floats:
+    def constraint_matrix(self) -> Floats:
         """Return the (all, free) matrix of the constraints by clamps and delamination tips."""
-        size = 3 * len(self.places)
+        size = 3 * len(self.node_numbers)
         matrix, dropped = np.eye(size), []
         inside, last = self.is_inside(self.nodes), len(self.nodes) - 1
         clamped = {0, last} if self.clamped_both else {0}
-        for (layer, node), number in self.places.items():
+        for (layer, node), number in self.node_numbers.items():
             own = slice(3 * number, 3 * number + 3)
             if node in clamped:
                 matrix[own] = 0.0
                 dropped += [3 * number + i for i in range(3)]
             elif layer == 2 and self.is_tip(node, inside):
-                above = 3 * self.places[1, node]
+                above = 3 * self.node_numbers[1, node]
                 matrix[own] = matrix[above : above + 3]
-                matrix[own.start, above + SLOPE] = self.axis(1) - self.axis(2)
+                matrix[own.start, above + SLOPE] = self.layer_height(1) - self.layer_height(2)
                 dropped += [3 * number + i for i in range(3)]
         return np.delete(matrix, dropped, axis=1)
 
@@ -213,19 +215,19 @@ class DelaminatedBeam:
         """
         stiffness, inertia, pull = self.matrices
         squares, shapes = eigh(stiffness, inertia, subset_by_index=[0, count - 1])
-        return np.sqrt(squares), self.kept() @ shapes, shapes.T @ pull
+        return np.sqrt(squares), self.constraint_matrix() @ shapes, shapes.T @ pull
 
     def deflection_rows(self, shapes: Floats, layer: int, places: Floats) -> Floats:
         """Return a layer's deflections at positions by modes, shape (places, modes)."""
         values = []
         for node in range(len(self.nodes)):
-            known = (layer, node) if (layer, node) in self.places else (0, node)
-            values.append(shapes[3 * self.places[known] + DEFLECTION])
+            known = (layer, node) if (layer, node) in self.node_numbers else (0, node)
+            values.append(shapes[3 * self.node_numbers[known] + DEFLECTION])
         table = np.array(values)
         return np.array([np.interp(places, self.nodes, column) for column in table.T]).T
 
-    def where_it_moves_as_one(self) -> float:
-        """Return the position at which mode 1 moves as a mass on a spring would, m."""
+    def single_mass_position(self) -> float:
+        """Return the position at which mode 1 moves like a mass on a spring, m."""
         whole = replace(self, first=0.0, last=0.0)
         _, shapes, participation = whole.modes(1)
         moved = participation[0] * whole.deflection_rows(shapes, 0, whole.nodes)[:, 0]
@@ -240,7 +242,7 @@ class DelaminatedBeam:
         sensor: float | None = None,
         contact_every: int = 1,
     ) -> ModalSystem:
-        """Return the beam as modes with contacts at the delamination's nodes.
+        """Return the beam as a ``ModalSystem`` with contacts at the delamination's nodes.
 
         Parameters
         ----------
@@ -251,13 +253,13 @@ class DelaminatedBeam:
         modes : int
         sensor : float, optional
             Place of the accelerometers on both faces, m; by default
-            :meth:`where_it_moves_as_one`.
+            :meth:`single_mass_position`.
         contact_every : int
             Nodes from one contact to the next.
         """
         frequency, shapes, participation = self.modes(modes)
-        place = np.array([self.where_it_moves_as_one() if sensor is None else sensor])
-        faces_rows = [self.deflection_rows(shapes, layer, place)[0] for layer in (1, 2)]
+        position = np.array([self.single_mass_position() if sensor is None else sensor])
+        faces_rows = [self.deflection_rows(shapes, layer, position)[0] for layer in (1, 2)]
         return ModalSystem(
             frequency=frequency,
             damping_ratio=np.full(modes, zeta),
@@ -267,14 +269,14 @@ class DelaminatedBeam:
         )
 
     def contacts(self, faces: Faces, shapes: Floats, every: int) -> Contacts | None:
-        """Return contacts at pairs of nodes; None without a delamination."""
+        """Return contacts between node pairs in the delamination; None without one."""
         inside = self.is_inside(self.nodes)
         apart = [i for i, split in enumerate(inside) if split and not self.is_tip(i, inside)]
         pairs = [i for i in reversed(apart) if i > 0][::every]
         if not pairs:
             return None
         upper, lower = (
-            np.array([shapes[3 * self.places[layer, i] + DEFLECTION] for i in pairs])
+            np.array([shapes[3 * self.node_numbers[layer, i] + DEFLECTION] for i in pairs])
             for layer in (1, 2)
         )
         upper_part, lower_part = self.section(self.share), self.section(1.0 - self.share)
@@ -284,7 +286,7 @@ class DelaminatedBeam:
 
 
 def intact_frequency(beam: DelaminatedBeam) -> float:
-    """Compute the intact beam's first natural frequency in closed form, Hz."""
+    """Return the intact beam's first natural frequency in closed form, Hz."""
     root = 4.730040744862704 if beam.clamped_both else 1.8751040687119611
     whole = beam.section(1.0)
     return root**2 / beam.length**2 * math.sqrt(whole.bending / whole.mass) / TURN

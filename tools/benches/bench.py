@@ -1,4 +1,4 @@
-"""A system on a shaker with sensors on it: what is recorded."""
+"""Virtual bench: shake a system by an excitation and record what its sensors read."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ BASE = 1.0 / 3000.0  # s: longest step, for what the base does
 
 @dataclass(frozen=True, kw_only=True)
 class Bench:
-    """A shaker with sensors: how a beam is measured.
+    """A shaker with an excitation and sensors on base and faces.
 
     Attributes
     ----------
@@ -45,14 +45,14 @@ class Bench:
     rate: float = 2000.0
     steps: float = STEPS
 
-    def factor_for(self, system: ModalSystem) -> int:
-        """Return the number of integration steps per sample."""
+    def steps_per_sample(self, system: ModalSystem) -> int:
+        """Return the number of integration steps per sample for a system."""
         fastest = math.sqrt(highest_stiffness(system)) / (2.0 * math.pi)
         return math.ceil(max(self.steps * fastest, 1.0 / BASE, 8.0 * self.rate) / self.rate)
 
-    def move(self, system: ModalSystem) -> tuple[Floats, Motion, int]:
-        """Compute the base's acceleration and the motion; return both, and the steps per sample."""
-        factor = self.factor_for(system)
+    def simulate(self, system: ModalSystem) -> tuple[Floats, Motion, int]:
+        """Integrate a system's motion; return base acceleration, motion and steps per sample."""
+        factor = self.steps_per_sample(system)
         step = 1.0 / (factor * self.rate)
         samples = int(self.excitation.duration * self.rate)
         base = np.empty(2 * samples * factor + 1)
@@ -64,7 +64,7 @@ class Bench:
         return base[::2], integrate(system, base, step), factor
 
     def measure(self, system: ModalSystem, seed: int) -> tuple[xr.Dataset, Motion]:
-        """Shake a system; return the record of what the sensors read, and the true motion.
+        """Shake a system; return the sensors' record as a dataset, and the true motion.
 
         Parameters
         ----------
@@ -78,7 +78,7 @@ class Bench:
         record : xarray.Dataset
         motion : Motion
         """
-        base, motion, factor = self.move(system)
+        base, motion, factor = self.simulate(system)
         rngs = np.random.default_rng(seed).spawn(3)
         fine = factor * self.rate
         signals = (base, *motion.acceleration)

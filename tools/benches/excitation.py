@@ -1,4 +1,4 @@
-"""What the base does, at any times: accelerations in m/s2."""
+"""Base accelerations of the virtual bench: swept and stepped sines, random noise."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ TURN = 2.0 * math.pi
 
 
 class Excitation(Protocol):
-    """Acceleration of a base over a duration in s."""
+    """Protocol of a base excitation: its duration, and its acceleration at any times."""
 
     @property
     def duration(self) -> float:
@@ -28,8 +28,8 @@ class Excitation(Protocol):
         ...
 
 
-def ramped(time: Floats, ramp: float, duration: float) -> Floats:
-    """Return a window that rises from 0 to 1 in the first ``ramp`` seconds and falls at the end."""
+def ramp_window(time: Floats, ramp: float, duration: float) -> Floats:
+    """Return a window that rises from 0 to 1 in ``ramp`` seconds and falls at the end."""
     values = np.ones(time.shape)
     ends = (time < ramp) | (time > duration - ramp)
     inside = np.clip(np.minimum(time[ends], duration - time[ends]) / ramp, 0.0, 1.0)
@@ -39,7 +39,7 @@ def ramped(time: Floats, ramp: float, duration: float) -> Floats:
 
 @dataclass(frozen=True)
 class Swept:
-    """A sine from ``first`` to ``last`` Hz, up or down, of the amplitude ``level`` in m/s2."""
+    """Sine swept from ``first`` to ``last`` Hz, with amplitude ``level`` in m/s2."""
 
     first: float
     last: float
@@ -58,12 +58,12 @@ class Swept:
 
     def __call__(self, time: Floats) -> Floats:
         """Return the acceleration at times, m/s2."""
-        return self.level * ramped(time, self.ramp, self.duration) * np.sin(self.phase(time))
+        return self.level * ramp_window(time, self.ramp, self.duration) * np.sin(self.phase(time))
 
 
 @dataclass(frozen=True)
 class Stepped:
-    """A sine in ``steps`` equal steps of frequency, equally long, with continuous phase."""
+    """Sine in ``steps`` equal steps of frequency, with continuous phase."""
 
     first: float
     last: float
@@ -79,12 +79,12 @@ class Stepped:
         number = np.minimum((time / held).astype(int), self.steps - 1)
         before = np.concatenate([[0.0], np.cumsum(frequency) * held])[number]
         turns = before + frequency[number] * (time - number * held)
-        return self.level * ramped(time, self.ramp, self.duration) * np.sin(TURN * turns)
+        return self.level * ramp_window(time, self.ramp, self.duration) * np.sin(TURN * turns)
 
 
 @dataclass(frozen=True)
 class Random:
-    """Normal noise of equal density between ``first`` and ``last`` Hz; ``level`` is its rms."""
+    """Gaussian noise of equal density between ``first`` and ``last`` Hz; ``level`` is its rms."""
 
     first: float
     last: float
@@ -95,7 +95,7 @@ class Random:
 
     @cached_property
     def spline(self) -> CubicSpline:
-        """Cubic spline through samples at twenty times the highest frequency."""
+        """Cubic spline through noise samples at twenty times the highest frequency."""
         rate = 20.0 * self.last
         count = int(rate * (self.duration + 2.0 * self.ramp)) + 8
         rng = np.random.default_rng(self.seed)
@@ -107,5 +107,5 @@ class Random:
 
     def __call__(self, time: Floats) -> Floats:
         """Return the acceleration at times, m/s2."""
-        ramp = ramped(time, self.ramp, self.duration)
+        ramp = ramp_window(time, self.ramp, self.duration)
         return np.asarray(self.level * ramp * self.spline(time))

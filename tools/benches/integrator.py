@@ -1,4 +1,4 @@
-"""Integration of a :class:`.system.ModalSystem` by the compiled steps of ``integrator.c``."""
+"""Integrate a :class:`.system.ModalSystem` in time by compiled steps (``integrator.c``)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import numpy as np
 
 from orchestrate.access.c_library import loaded_function
 
-from .system import LAWS, Floats, Frictions, ModalSystem, Motion, no_contacts, no_springs
+from .system import LAWS, Floats, Frictions, ModalSystem, Motion, empty_contacts, empty_springs
 
 SOURCE = Path(__file__).with_suffix(".c")
 NUMBERS = POINTER(c_double)
@@ -29,12 +29,12 @@ KEPT = 8  # numbers of a contact
 SETTLED = 40.0  # radians of the slowest mode after which a critically damped motion is at rest
 
 
-class Escaped(ArithmeticError):
-    """The motion has no bounds: a softening spring gave way, or the step is too long."""
+class UnboundedMotionError(ArithmeticError):
+    """Raised if a motion grows without bounds: a softening spring, or a step too long."""
 
 
 class CSystem(ctypes.Structure):
-    """The system as the library reads it."""
+    """C structure of a modal system, as the compiled library reads it."""
 
     _fields_ = [
         *((name, c_int) for name in COUNTS),
@@ -44,8 +44,8 @@ class CSystem(ctypes.Structure):
 
 
 @functools.cache
-def run_function() -> Any:
-    """Load the library's function, once per process.
+def load_library() -> Any:
+    """Return the compiled library's integration function; compile it once per process.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def run_function() -> Any:
 
 
 def pointer_to(values: Floats) -> Any:
-    """Return the address of contiguous numbers."""
+    """Return the C address of a contiguous array of numbers."""
     return values.ctypes.data_as(NUMBERS)
 
 
@@ -72,7 +72,7 @@ def integrate(
     position: Floats | None = None,
     velocity: Floats | None = None,
 ) -> Motion:
-    """Integrate a system's motion with equal steps.
+    """Integrate a system's motion over a base acceleration with equal steps; return it.
 
     Parameters
     ----------
@@ -93,18 +93,18 @@ def integrate(
     base = np.ascontiguousarray(base, dtype=float)
     q = np.array(position, dtype=float)
     v = np.zeros(system.modes) if velocity is None else np.array(velocity, dtype=float)
-    contacts = system.contacts or no_contacts(system.modes)
-    springs = system.springs or no_springs(system.modes)
+    contacts = system.contacts or empty_contacts(system.modes)
+    springs = system.springs or empty_springs(system.modes)
     steps, outputs = (len(base) - 1) // 2, len(system.output_rows)
     out = np.empty((steps + 1, outputs))
     kept, peaks = np.zeros((len(contacts.rows), KEPT)), np.zeros(len(springs.rows))
     kept[:, 0] = -np.inf
-    keep_alive, passed = passed_system(system)
+    keep_alive, passed = to_c_system(system)
     pointers = [pointer_to(array) for array in (base, q, v, out, kept, peaks)]
-    done = run_function()(byref(passed), steps, step, *pointers)
+    done = load_library()(byref(passed), steps, step, *pointers)
     del keep_alive
     if done != steps:
-        raise Escaped(f"after {done * step:.4g} s")
+        raise UnboundedMotionError(f"after {done * step:.4g} s")
     count, speed_in, speed_out = kept[:, 3], kept[:, 4], kept[:, 5]
     with np.errstate(invalid="ignore", divide="ignore"):
         restitution, closing = speed_out / speed_in, speed_in / count
@@ -113,11 +113,11 @@ def integrate(
     return Motion(acceleration, q, v, gap, force, opened, count, restitution, closing, peaks)
 
 
-def passed_system(system: ModalSystem) -> tuple[list[Floats], CSystem]:
-    """Return arrays to be kept alive, and the C structure of the system that points at them."""
+def to_c_system(system: ModalSystem) -> tuple[list[Floats], CSystem]:
+    """Return the C structure of a system, and the arrays that it points at."""
     n, empty = system.modes, np.zeros(0)
-    contacts = system.contacts or no_contacts(n)
-    springs = system.springs or no_springs(n)
+    contacts = system.contacts or empty_contacts(n)
+    springs = system.springs or empty_springs(n)
     frictions = system.frictions or Frictions(np.zeros((0, n)), empty, empty, empty)
     w = system.frequency
     arrays = [
@@ -135,7 +135,7 @@ def passed_system(system: ModalSystem) -> tuple[list[Floats], CSystem]:
 
 
 def equilibrium(system: ModalSystem) -> Floats:
-    """Compute the modes' positions at rest, as the end of a critically damped motion.
+    """Return the modes' positions at rest, as the end of a critically damped motion.
 
     Zero where no contact is closed there.
     """
@@ -154,11 +154,11 @@ def equilibrium(system: ModalSystem) -> Floats:
 
 
 def highest_stiffness(system: ModalSystem) -> float:
-    """Return a bound of the largest w**2 with all contacts closed, (rad/s)**2.
+    """Return a bound of the largest squared angular frequency, all contacts closed.
 
     For Hertz's law at a depth of 1 mm.
     """
-    contacts = system.contacts or no_contacts(system.modes)
+    contacts = system.contacts or empty_contacts(system.modes)
     stiffness = contacts.stiffness * (np.sqrt(1e-3) if contacts.law == "hertz" else 1.0)
     weighted = contacts.rows * np.sqrt(stiffness)[:, np.newaxis]
     closed = weighted.T @ weighted + np.diag(system.frequency**2)

@@ -1,4 +1,4 @@
-"""Two masses with compliant contact, a bonded one, and a bonded one in a rattling clamp."""
+"""Lumped models: two masses with compliant contact, a bonded beam, a rattling clamp."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ TURN = 2.0 * math.pi
 
 @dataclass(frozen=True, kw_only=True)
 class Faces:
-    """Contact law of two faces.
+    """Contact law of two faces: stiffness by frequency, restitution, clearance and friction.
 
     Attributes
     ----------
@@ -41,10 +41,10 @@ class Faces:
     friction: float = 0.0
 
     def contacts(self, rows: Floats, clearance: Floats, mass: float) -> Contacts:
-        """Return contacts along rows, between bodies of the reduced mass ``mass``, kg."""
+        """Return contacts along rows of modes, between bodies of reduced mass ``mass``, kg."""
         w = TURN * self.frequency
         if self.law == "linear":
-            damping = 2.0 * restitution.linear_ratio(self.restitution) * w * mass
+            damping = 2.0 * restitution.linear_damping_ratio(self.restitution) * w * mass
         else:
             damping = restitution.hunt_crossley_damping(self.restitution, self.speed)
         stiffness = mass * w * w
@@ -83,7 +83,7 @@ class Halves:
     zeta2: float = 0.008
 
     def delaminated(self, faces: Faces, cubic: float = 0.0) -> ModalSystem:
-        """Return a system of two masses that touch.
+        """Return a ``ModalSystem`` of two masses that touch by a contact law.
 
         Parameters
         ----------
@@ -108,7 +108,7 @@ class Halves:
         )
 
     def bonded(self, cubic: float = 0.0, friction: float = 0.0, sag: float = 0.0) -> ModalSystem:
-        """Return a system of one mass that carries both sensors.
+        """Return a ``ModalSystem`` of one mass that carries both sensors.
 
         Parameters
         ----------
@@ -119,7 +119,7 @@ class Halves:
         sag : float
             m from where the cubic spring is at its softest (or stiffest) to the place at rest.
         """
-        whole = self.whole()
+        whole = self.bonded_beam()
         row = np.array([[1.0 / math.sqrt(whole.mass)]])
         dry = Frictions(row, np.array([friction * whole.mass]), np.zeros(1), np.array([1e-3]))
         return ModalSystem(
@@ -133,17 +133,17 @@ class Halves:
             frictions=dry if friction else None,
         )
 
-    def whole(self) -> Whole:
-        """Return the bonded beam of both halves."""
+    def bonded_beam(self) -> BondedBeam:
+        """Return mass, frequency and damping of the bonded beam of both halves."""
         masses, turns = np.array([self.m1, self.m2]), TURN * np.array([self.f1, self.f2])
         mass, stiffness = masses.sum(), (masses * turns**2).sum()
         damper = (2.0 * masses * turns * [self.zeta1, self.zeta2]).sum()
         w = math.sqrt(stiffness / mass)
-        return Whole(float(mass), w / TURN, float(damper / (2.0 * mass * w)))
+        return BondedBeam(float(mass), w / TURN, float(damper / (2.0 * mass * w)))
 
     def in_rattling_clamp(self, clamp: Clamp) -> ModalSystem:
-        """Return a system of the bonded beam in a clamp with play."""
-        whole = self.whole()
+        """Return a ``ModalSystem`` of the bonded beam in a clamp with play."""
+        whole = self.bonded_beam()
         root = clamp.mass * whole.mass
         spring = whole.mass * (TURN * whole.f) ** 2
         centring = clamp.centring * spring
@@ -164,7 +164,7 @@ class Halves:
 
 
 @dataclass(frozen=True)
-class Whole:
+class BondedBeam:
     """A bonded beam: mass in kg, natural frequency in Hz, damping ratio."""
 
     mass: float
@@ -174,7 +174,7 @@ class Whole:
 
 @dataclass(frozen=True, kw_only=True)
 class Clamp:
-    """A clamp that the root of a sound beam knocks against.
+    """A clamp with play, which the root of a sound beam strikes.
 
     Attributes
     ----------
@@ -197,7 +197,7 @@ class Clamp:
     centring: float = 3.0
 
 
-def cubic_for(change: float, f: float, amplitude: float) -> float:
+def cubic_stiffness(change: float, f: float, amplitude: float) -> float:
     """Return the cubic stiffness over mass, N/(kg m3), for a relative change of frequency.
 
     By the first approximation of Duffing's oscillator, ``w**2 = w0**2 + 3/4 cubic amplitude**2``.
@@ -214,6 +214,6 @@ def cubic_for(change: float, f: float, amplitude: float) -> float:
     return 4.0 / 3.0 * (TURN * f) ** 2 * ((1.0 + change) ** 2 - 1.0) / amplitude**2
 
 
-def change_of(cubic: float, f: float, amplitude: float) -> float:
-    """Return the relative change of :func:`cubic_for` at another amplitude, m."""
+def frequency_change(cubic: float, f: float, amplitude: float) -> float:
+    """Return the relative change of frequency by a cubic spring at an amplitude, m."""
     return math.sqrt(max(1.0 + 0.75 * cubic * amplitude**2 / (TURN * f) ** 2, 0.0)) - 1.0

@@ -1,4 +1,4 @@
-"""Random beams on random benches, the truth about each, and a guess of it."""
+"""Draw random beams and benches, measure them, and state the truth and a guess of each."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from orchestrate import Structure
 from .beam import DelaminatedBeam
 from .bench import Bench
 from .excitation import Excitation, Random, Stepped, Swept
-from .integrator import Escaped
-from .lumped import TURN, Clamp, Faces, Halves, change_of, cubic_for
+from .integrator import UnboundedMotionError
+from .lumped import TURN, Clamp, Faces, Halves, cubic_stiffness, frequency_change
 from .sensors import Sensor
 from .system import ModalSystem, Motion
 
@@ -32,7 +32,7 @@ TRIES = 20  # of a softening beam whose motion escapes
 
 @dataclass(frozen=True)
 class Setup:
-    """How a beam was tested.
+    """Test conditions of a beam: level, noise, number of sensors, excitation.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class Setup:
 
 @dataclass(frozen=True, kw_only=True)
 class Truth:
-    """The truth about a specimen and its record.
+    """The true properties of a specimen and its measurement, to judge verdicts by.
 
     Attributes
     ----------
@@ -96,7 +96,7 @@ class Truth:
 
 @dataclass(frozen=True)
 class Case:
-    """A record, the guess of the beam before it is tested, and the truth."""
+    """A measured record, the guess of the beam before its test, and the truth."""
 
     record: xr.Dataset
     guess: Structure
@@ -105,7 +105,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Specimen:
-    """A beam, and what is known about it before it is tested."""
+    """A beam's modal system, and its true masses, frequencies and damping."""
 
     system: ModalSystem
     m1: float
@@ -122,7 +122,7 @@ class Specimen:
 
 @dataclass(frozen=True, kw_only=True)
 class Conditions:
-    """Conditions of a test; ranges are drawn from uniformly in the logarithm.
+    """Ranges from which a test's conditions are drawn, uniformly in the logarithm.
 
     Attributes
     ----------
@@ -147,156 +147,162 @@ class Conditions:
     off: float = 0.1
 
 
-def between(rng: np.random.Generator, low: float, high: float) -> float:
-    """Draw a number uniformly in its logarithm."""
+def draw_log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
+    """Draw a number between two bounds, uniformly in its logarithm."""
     return float(np.exp(rng.uniform(math.log(low), math.log(high))))
 
 
-def halves(rng: np.random.Generator) -> Halves:
-    """Draw two halves whose bonded beam is well inside the sweep."""
+def draw_halves(rng: np.random.Generator) -> Halves:
+    """Draw two halves whose bonded resonance is well inside the sweep."""
     middle, apart = rng.uniform(33.0, 62.0), rng.uniform(1.06, 1.4)
     slow, fast = middle / math.sqrt(apart), middle * math.sqrt(apart)
     f1, f2 = (slow, fast) if rng.random() < 0.5 else (fast, slow)
     m1 = rng.uniform(0.5, 3.0)
-    m2 = m1 * between(rng, 0.6, 1.67)
-    damping = between(rng, 0.004, 0.02)
-    second = damping * between(rng, 0.7, 1.4)
+    m2 = m1 * draw_log_uniform(rng, 0.6, 1.67)
+    damping = draw_log_uniform(rng, 0.004, 0.02)
+    second = damping * draw_log_uniform(rng, 0.7, 1.4)
     return Halves(m1=m1, m2=m2, f1=f1, f2=f2, zeta1=damping, zeta2=second)
 
 
-def faces(rng: np.random.Generator, clearance: float = 0.0) -> Faces:
+def draw_contact_law(rng: np.random.Generator, clearance: float = 0.0) -> Faces:
     """Draw a contact law; one in four slides with friction."""
     return Faces(
         law=str(rng.choice(["linear", "hunt-crossley", "hertz"])),
-        frequency=between(rng, 500.0, 1500.0),
+        frequency=draw_log_uniform(rng, 500.0, 1500.0),
         restitution=rng.uniform(0.35, 0.85),
         clearance=clearance,
         friction=rng.uniform(0.0, 0.3) if rng.random() < 0.25 else 0.0,
     )
 
 
-def split(own: Halves, touching: Faces) -> Specimen:
-    """Return a specimen of two masses that touch."""
+def two_mass_specimen(own: Halves, touching: Faces) -> Specimen:
+    """Return a specimen of two masses that touch by a contact law."""
     numbers = (own.m1, own.m2, own.f1, own.f2, own.zeta1, own.zeta2)
     return Specimen(own.delaminated(touching), *numbers, touching.clearance)
 
 
-def whole(own: Halves, system: ModalSystem, cubic: float = 0.0) -> Specimen:
-    """Return a specimen of a bonded beam: its modal system and the true numbers of it."""
-    one = own.whole()
+def bonded_specimen(own: Halves, system: ModalSystem, cubic: float = 0.0) -> Specimen:
+    """Return a specimen of a bonded beam with its modal system."""
+    one = own.bonded_beam()
     numbers = (own.m1, own.m2, one.f, one.f, one.zeta, one.zeta)
     return Specimen(system, *numbers, cubic=cubic, sound=True)
 
 
-def delaminated(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
-    """Draw a specimen of halves that lie upon each other."""
-    return split(halves(rng), faces(rng))
+def draw_delaminated(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
+    """Draw a specimen of two halves that touch at rest without force."""
+    return two_mass_specimen(draw_halves(rng), draw_contact_law(rng))
 
 
-def with_gap(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
-    """Draw halves with a gap of 0.1 to 2 mm at rest."""
-    return split(halves(rng), faces(rng, between(rng, 1e-4, 2e-3)))
+def draw_with_gap(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
+    """Draw a specimen of two halves with a gap of 0.1 to 2 mm at rest."""
+    return two_mass_specimen(
+        draw_halves(rng), draw_contact_law(rng, draw_log_uniform(rng, 1e-4, 2e-3))
+    )
 
 
-def preloaded(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
-    """Draw halves pressed together by 0.1 to 1.6 times the force that opens them at resonance."""
-    own = halves(rng)
+def draw_preloaded(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
+    """Draw halves pressed together by 0.1 to 1.6 times the force that opens at resonance."""
+    own = draw_halves(rng)
     k1, k2 = own.m1 * (TURN * own.f1) ** 2, own.m2 * (TURN * own.f2) ** 2
-    one = own.whole()
+    one = own.bonded_beam()
     peak = level / (2.0 * one.zeta)  # acceleration over the base
     force = own.m1 * peak * abs((own.f1 / one.f) ** 2 - 1.0)
     clearance = -rng.uniform(0.1, 1.6) * force * (1.0 / k1 + 1.0 / k2)
-    return split(own, faces(rng, clearance))
+    return two_mass_specimen(own, draw_contact_law(rng, clearance))
 
 
-def sound(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
-    """Draw a bonded beam."""
-    own = halves(rng)
-    return whole(own, own.bonded())
+def draw_sound(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
+    """Draw a bonded, linear beam."""
+    own = draw_halves(rng)
+    return bonded_specimen(own, own.bonded())
 
 
-def hardening(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
+def draw_hardening(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
     """Draw a bonded beam whose frequency at the peak is up to 30 % higher, or 15 % lower."""
-    own = halves(rng)
-    one = own.whole()
+    own = draw_halves(rng)
+    one = own.bonded_beam()
     change = rng.uniform(0.03, 0.3) if rng.random() < 0.7 else -rng.uniform(0.02, 0.15)
     peak = level / (2.0 * one.zeta * (TURN * one.f) ** 2 * (1.0 + change))
-    cubic = cubic_for(change, one.f, peak)
-    return whole(own, own.bonded(cubic=cubic), cubic)
+    cubic = cubic_stiffness(change, one.f, peak)
+    return bonded_specimen(own, own.bonded(cubic=cubic), cubic)
 
 
-def sagging(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
-    """Draw a bonded beam that hardens by up to 15 %, and is stiffer to one side."""
-    own = halves(rng)
-    one = own.whole()
+def draw_sagging(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
+    """Draw a bonded beam that hardens by up to 15 % and is stiffer to one side."""
+    own = draw_halves(rng)
+    one = own.bonded_beam()
     change = rng.uniform(0.02, 0.15)
     peak = level / (2.0 * one.zeta * (TURN * one.f) ** 2 * (1.0 + change))
-    cubic, sag = cubic_for(change, one.f, peak), peak * rng.uniform(0.1, 0.5)
-    found = whole(own, own.bonded(cubic=cubic, sag=sag), cubic)
+    cubic, sag = cubic_stiffness(change, one.f, peak), peak * rng.uniform(0.1, 0.5)
+    specimen = bonded_specimen(own, own.bonded(cubic=cubic, sag=sag), cubic)
     stiffer = math.sqrt(1.0 + 3.0 * cubic * sag**2 / (TURN * one.f) ** 2)
-    return replace(found, f1=one.f * stiffer, f2=one.f * stiffer)
+    return replace(specimen, f1=one.f * stiffer, f2=one.f * stiffer)
 
 
-def friction(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
-    """Draw a bonded beam with dry friction of 5 to 50 % of what moves it."""
-    own = halves(rng)
-    return whole(own, own.bonded(friction=level * rng.uniform(0.05, 0.5)))
+def draw_with_friction(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
+    """Draw a bonded beam with dry friction of 5 to 50 % of the driving force."""
+    own = draw_halves(rng)
+    return bonded_specimen(own, own.bonded(friction=level * rng.uniform(0.05, 0.5)))
 
 
-def clamp(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
-    """Draw a bonded beam in a clamp with play, pressed against one side of it or loose."""
-    own = halves(rng)
-    play = between(rng, 2e-5, 3e-4) * (-1.0 if rng.random() < 0.3 else 1.0)
-    stops = Faces(frequency=between(rng, 400.0, 1000.0), restitution=rng.uniform(0.3, 0.8))
+def draw_in_clamp(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
+    """Draw a bonded beam in a clamp with play, pressed against one side or loose."""
+    own = draw_halves(rng)
+    play = draw_log_uniform(rng, 2e-5, 3e-4) * (-1.0 if rng.random() < 0.3 else 1.0)
+    stops = Faces(frequency=draw_log_uniform(rng, 400.0, 1000.0), restitution=rng.uniform(0.3, 0.8))
     held = Clamp(
         faces=stops,
         play=play,
         both_sides=play > 0.0 and bool(rng.random() < 0.7),
         mass=rng.uniform(0.1, 0.5),
-        centring=between(rng, 0.3, 3.0),
+        centring=draw_log_uniform(rng, 0.3, 3.0),
     )
-    return whole(own, own.in_rattling_clamp(held))
+    return bonded_specimen(own, own.in_rattling_clamp(held))
 
 
-def elements(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
-    """Draw a cantilever of finite elements, delaminated from its free end on."""
+def draw_finite_elements(
+    rng: np.random.Generator, level: float, conditions: Conditions
+) -> Specimen:
+    """Draw a finite-element cantilever, delaminated from its free end on."""
     size = rng.uniform(*conditions.size)
     share = 0.5 + float(rng.choice([-1.0, 1.0])) * rng.uniform(0.03, 0.2)
     thickness = DelaminatedBeam.thickness * rng.uniform(0.9, 1.5)
     beam = DelaminatedBeam(first=1.0 - size, thickness=thickness, share=share)
-    touching = replace(faces(rng), law="hunt-crossley", friction=0.0)
-    system = beam.system(touching, between(rng, 0.005, 0.02), modes=12)
+    touching = replace(draw_contact_law(rng), law="hunt-crossley", friction=0.0)
+    system = beam.system(touching, draw_log_uniform(rng, 0.005, 0.02), modes=12)
     f1, f2 = system.frequency[:2] / TURN
     zeta = float(system.damping_ratio[0])
     return Specimen(system, share, 1.0 - share, float(f1), float(f2), zeta, zeta, size=size)
 
 
-def intact_elements(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
-    """Draw the same cantilever without a delamination."""
+def draw_intact_finite_elements(
+    rng: np.random.Generator, level: float, conditions: Conditions
+) -> Specimen:
+    """Draw a finite-element cantilever without a delamination."""
     thickness = DelaminatedBeam.thickness * rng.uniform(0.9, 1.5)
     beam = DelaminatedBeam(first=0.0, last=0.0, thickness=thickness)
-    system = beam.system(Faces(), between(rng, 0.005, 0.02), modes=4)
+    system = beam.system(Faces(), draw_log_uniform(rng, 0.005, 0.02), modes=4)
     f, zeta = float(system.frequency[0]) / TURN, float(system.damping_ratio[0])
     return Specimen(system, 0.5, 0.5, f, f, zeta, zeta, sound=True, size=0.0)
 
 
 Maker = Callable[[np.random.Generator, float, Conditions], Specimen]
 KINDS: Mapping[str, Maker] = {
-    "sound": sound,
-    "hardening": hardening,
-    "sagging": sagging,
-    "friction": friction,
-    "clamp": clamp,
-    "delaminated": delaminated,
-    "gap": with_gap,
-    "preloaded": preloaded,
-    "elements": elements,
-    "intact elements": intact_elements,
+    "sound": draw_sound,
+    "hardening": draw_hardening,
+    "sagging": draw_sagging,
+    "friction": draw_with_friction,
+    "clamp": draw_in_clamp,
+    "delaminated": draw_delaminated,
+    "gap": draw_with_gap,
+    "preloaded": draw_preloaded,
+    "elements": draw_finite_elements,
+    "intact elements": draw_intact_finite_elements,
 }
 
 
-def excitation(rng: np.random.Generator, name: str, level: float) -> tuple[str, Excitation]:
-    """Draw a base excitation of a kind, or of any kind; return its kind and it."""
+def draw_excitation(rng: np.random.Generator, name: str, level: float) -> tuple[str, Excitation]:
+    """Draw a base excitation of a kind, or of any kind; return the kind's name and it."""
     if name == "any":
         name = str(rng.choice(EXCITATIONS, p=(0.6, 0.15, 0.1, 0.1, 0.05)))
     ends = (LAST, FIRST) if name == "down" else (FIRST, LAST)
@@ -307,19 +313,20 @@ def excitation(rng: np.random.Generator, name: str, level: float) -> tuple[str, 
     return name, Swept(*ends, DURATION, level, log=name == "log")
 
 
-def sensor(rng: np.random.Generator, noise: float, bandwidth: float) -> Sensor:
-    """Draw a sensor: gain off by 3 %, a delay of up to 50 us beside the filter's."""
+def draw_sensor(rng: np.random.Generator, noise: float, bandwidth: float) -> Sensor:
+    """Draw a sensor with a gain error of up to 3 % and a delay of up to 50 us."""
     gain, delay = rng.uniform(0.97, 1.03), rng.uniform(0.0, 5e-5)
     return Sensor(bandwidth=bandwidth, gain=gain, delay=delay, noise=noise)
 
 
-def guess(rng: np.random.Generator, own: Specimen, off: float) -> Structure:
-    """Draw a guess: masses and frequencies off by some percent, damping up to a factor of two.
+def draw_guess(rng: np.random.Generator, own: Specimen, off: float) -> Structure:
+    """Draw a guess: true masses and frequencies with relative errors, damping by up to 2.
 
     Of a sound beam the guess has two halves a little apart, as one who asks has to assume.
     """
 
     def near(value: float) -> float:
+        """Return a value changed by a random relative error of at most ``off``."""
         return value * float(rng.uniform(1.0 - off, 1.0 + off))
 
     f1, f2 = own.f1, min(own.f2, MOST_APART * own.f1)
@@ -331,8 +338,8 @@ def guess(rng: np.random.Generator, own: Specimen, off: float) -> Structure:
         m2=near(own.m2),
         f1=near(f1),
         f2=near(f2),
-        zeta1=own.zeta1 * between(rng, 0.5, 2.0),
-        zeta2=own.zeta2 * between(rng, 0.5, 2.0),
+        zeta1=own.zeta1 * draw_log_uniform(rng, 0.5, 2.0),
+        zeta2=own.zeta2 * draw_log_uniform(rng, 0.5, 2.0),
         e=0.6,
     )
 
@@ -340,7 +347,7 @@ def guess(rng: np.random.Generator, own: Specimen, off: float) -> Structure:
 def draw(
     rng: np.random.Generator, kind: str, conditions: Conditions | None = None, rate: float = 2000.0
 ) -> Case:
-    """Draw a beam and a bench, shake, and record.
+    """Draw a beam and a bench and measure it; return record, guess and truth as a ``Case``.
 
     Parameters
     ----------
@@ -353,11 +360,14 @@ def draw(
         Samples of the record, Hz.
     """
     conditions = conditions or Conditions()
-    level, noise = between(rng, *conditions.level), between(rng, *conditions.noise)
-    name, shaker = excitation(rng, conditions.excitation, level)
+    level, noise = (
+        draw_log_uniform(rng, *conditions.level),
+        draw_log_uniform(rng, *conditions.noise),
+    )
+    name, shaker = draw_excitation(rng, conditions.excitation, level)
     count = conditions.sensors or int(rng.integers(1, 3))
-    bandwidth = between(rng, 1000.0, 4000.0)
-    box, face1, face2 = (sensor(rng, noise, bandwidth) for _ in range(3))
+    bandwidth = draw_log_uniform(rng, 1000.0, 4000.0)
+    box, face1, face2 = (draw_sensor(rng, noise, bandwidth) for _ in range(3))
     bench = Bench(
         excitation=shaker,
         box=replace(box, noise=min(noise, 0.02)),
@@ -370,15 +380,15 @@ def draw(
         own = KINDS[kind](rng, level, conditions)
         try:
             record, motion = bench.measure(own.system, int(rng.integers(1 << 31)))
-        except Escaped:
+        except UnboundedMotionError:
             continue
-        truth = truth_of(kind, own, motion, Setup(level, noise, count, name))
-        return Case(record, guess(rng, own, conditions.off), truth)
-    raise Escaped(f"{kind}: {TRIES} beams, and none whose motion stays bounded")
+        truth = make_truth(kind, own, motion, Setup(level, noise, count, name))
+        return Case(record, draw_guess(rng, own, conditions.off), truth)
+    raise UnboundedMotionError(f"{kind}: {TRIES} beams, and none whose motion stays bounded")
 
 
-def truth_of(kind: str, own: Specimen, motion: Motion, setup: Setup) -> Truth:
-    """Return the truth, by what was drawn and how it moved."""
+def make_truth(kind: str, own: Specimen, motion: Motion, setup: Setup) -> Truth:
+    """Return the truth of a specimen, from how it was drawn and how it moved."""
     two_masses = math.isnan(own.size) and len(motion.restitution) == 1
     peak = float(motion.spring_peaks.max()) if own.cubic else 0.0
     gap = float(motion.largest_gap.max()) if len(motion.largest_gap) else 0.0
@@ -394,7 +404,7 @@ def truth_of(kind: str, own: Specimen, motion: Motion, setup: Setup) -> Truth:
         clearance=own.clearance,
         restitution=float(motion.restitution[0]) if two_masses else math.nan,
         largest_gap=gap,
-        change=change_of(own.cubic, own.f1, peak),
+        change=frequency_change(own.cubic, own.f1, peak),
         size=own.size,
         setup=setup,
     )

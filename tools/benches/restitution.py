@@ -1,4 +1,4 @@
-"""What a contact law makes of a closing speed, in closed form, and the other way round."""
+"""Restitution coefficients of contact laws in closed form, and their inverses."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ import math
 from scipy.optimize import brentq
 
 
-def linear(ratio: float) -> float:
-    """Compute the restitution of a spring with a dashpot that never pulls.
+def linear_restitution(ratio: float) -> float:
+    """Return the restitution of a spring with a dashpot that never pulls, by damping ratio.
 
     Parameters
     ----------
@@ -23,13 +23,13 @@ def linear(ratio: float) -> float:
     return math.exp(-2.0 * math.acos(ratio) * ratio / math.sqrt(1.0 - ratio * ratio))
 
 
-def linear_ratio(e: float) -> float:
-    """Compute the damping ratio of :func:`linear` for a restitution above exp(-2)."""
-    return float(brentq(lambda ratio: linear(ratio) - e, 0.0, 1.0 - 1e-9))
+def linear_damping_ratio(e: float) -> float:
+    """Return the damping ratio that gives :func:`linear_restitution` a value above exp(-2)."""
+    return float(brentq(lambda ratio: linear_restitution(ratio) - e, 0.0, 1.0 - 1e-9))
 
 
-def hunt_crossley(damping: float, speed: float) -> float:
-    """Compute the restitution of ``k d**n (1 + damping d')`` at a closing speed, for any k, n.
+def hunt_crossley_restitution(damping: float, speed: float) -> float:
+    """Return the restitution of ``k d**n (1 + damping d')`` at a closing speed, any k and n.
 
     Notes
     -----
@@ -42,11 +42,14 @@ def hunt_crossley(damping: float, speed: float) -> float:
     high = min(1.0, (1.0 - 1e-15) / y)
 
     def balance(e: float) -> float:
+        """Return the energy balance's residual for a restitution; its root is the answer."""
         return y * (1.0 + e) - math.log1p(y) + math.log1p(-e * y)
 
     return float(brentq(balance, 0.0, high)) if balance(high) < 0.0 else high
 
 
 def hunt_crossley_damping(e: float, speed: float) -> float:
-    """Compute the damping, s/m, that gives a closing speed a restitution below 1."""
-    return float(brentq(lambda c: hunt_crossley(c, speed) - e, 1e-6 / speed, 100.0 / speed))
+    """Return the damping, s/m, that gives a restitution below 1 at a closing speed."""
+    return float(
+        brentq(lambda c: hunt_crossley_restitution(c, speed) - e, 1e-6 / speed, 100.0 / speed)
+    )

@@ -1,4 +1,4 @@
-"""Accelerometers and the digitiser behind them, by SciPy's filters at the integration's rate."""
+"""Simulate accelerometers and the digitiser behind them, by SciPy's filters."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ TAPS = 46  # of it, for each sample left out: 80 dB from 0.95 of half the sampli
 
 @dataclass(frozen=True, kw_only=True)
 class Sensor:
-    """One accelerometer.
+    """One accelerometer: bandwidth, gain, delay and noise.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class Sensor:
     noise: float = 0.01
 
     def read(self, signal: Floats, rate: float, factor: int, rng: np.random.Generator) -> Floats:
-        """Filter, delay, sample and add noise.
+        """Return the samples that the sensor gives of a signal: filtered, delayed, with noise.
 
         Parameters
         ----------
@@ -52,13 +52,13 @@ class Sensor:
         rng : numpy.random.Generator
         """
         sections = butter(self.order, self.bandwidth, fs=rate, output="sos")
-        taps = self.gain * delayed(against_aliasing(factor), self.delay * rate)
+        taps = self.gain * delay_filter(antialiasing_filter(factor), self.delay * rate)
         sampled = resample_poly(sosfilt(sections, signal), 1, factor, window=taps)
         rms = float(np.sqrt(np.mean(sampled**2)))
         return np.asarray(sampled + self.noise * rms * rng.normal(size=sampled.shape))
 
 
-def delayed(taps: Floats, steps: float) -> Floats:
+def delay_filter(taps: Floats, steps: float) -> Floats:
     """Return a symmetric filter delayed by some steps, linear between whole numbers."""
     whole, part = int(steps), steps % 1.0
     long = np.pad(taps, whole + 1)
@@ -66,7 +66,7 @@ def delayed(taps: Floats, steps: float) -> Floats:
 
 
 @functools.cache
-def against_aliasing(factor: int) -> Floats:
+def antialiasing_filter(factor: int) -> Floats:
     """Return a digitiser's symmetric anti-aliasing filter, whose delay is compensated."""
     count = 2 * (TAPS * factor // 2) + 1
     return np.asarray(firwin(count, PASSED / factor, window=("kaiser", 7.9)))

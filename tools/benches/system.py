@@ -1,4 +1,4 @@
-"""A structure as modes on a shaken base, with contacts, springs and friction on top of them."""
+"""Data of a shaken structure: linear modes with contacts, cubic springs and friction."""
 
 from __future__ import annotations
 
@@ -79,14 +79,14 @@ class Frictions:
     speed: Floats
 
 
-def no_contacts(modes: int) -> Contacts:
-    """Return contacts for a structure that has none."""
+def empty_contacts(modes: int) -> Contacts:
+    """Return a ``Contacts`` without any contact, for a number of modes."""
     empty = np.zeros(0)
     return Contacts(np.zeros((0, modes)), empty, empty, empty)
 
 
-def no_springs(modes: int) -> CubicSprings:
-    """Return cubic springs for a structure that has none."""
+def empty_springs(modes: int) -> CubicSprings:
+    """Return a ``CubicSprings`` without any spring, for a number of modes."""
     return CubicSprings(np.zeros((0, modes)), np.zeros(0), np.zeros(0))
 
 
@@ -124,7 +124,7 @@ class ModalSystem:
 
 @dataclass(frozen=True)
 class Motion:
-    """Result of an integration.
+    """Result of an integration: accelerations, peaks, gaps, impacts and restitution.
 
     Attributes
     ----------

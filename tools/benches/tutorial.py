@@ -1,4 +1,4 @@
-"""The records of the manual's tutorial: three beams on one shaker, as an analyser writes them."""
+"""Write the records of the manual's tutorial: three beams on one shaker, as CSV files."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ COLUMNS = "Time [s];Base [g];Acc 1 [g]\n"
 
 @dataclass(frozen=True)
 class Beam:
-    """A beam of the tutorial: its name, its system, and the seed of its noise."""
+    """A beam of the tutorial: its name, a maker of its system, and a seed of the noise."""
 
     name: str
     system: Callable[[], ModalSystem]
@@ -59,8 +59,8 @@ BEAMS: Mapping[str, Beam] = {
 }
 
 
-def text_of(record: xr.Dataset, name: str) -> str:
-    """Return a record as text: headings, semicolons, decimal commas, accelerations in g."""
+def format_record(record: xr.Dataset, name: str) -> str:
+    """Return a record as CSV text: headings, semicolons, decimal commas, in g."""
     head = HEADING.format(
         **{"first": SWEEP.first, "last": SWEEP.last, "duration": SWEEP.duration},
         **{"level": LEVEL, "name": name, "rate": RATE},
@@ -71,8 +71,8 @@ def text_of(record: xr.Dataset, name: str) -> str:
     return (head + COLUMNS + rows).replace(".", ",")
 
 
-def write(folder: Path = FOLDER, bench: Bench = BENCH) -> list[Path]:
-    """Shake the three beams and write the records; return their paths.
+def write_records(folder: Path = FOLDER, bench: Bench = BENCH) -> list[Path]:
+    """Shake the three beams and write their records; return the paths.
 
     Parameters
     ----------
@@ -85,5 +85,5 @@ def write(folder: Path = FOLDER, bench: Bench = BENCH) -> list[Path]:
     for stem, beam in BEAMS.items():
         record, _ = bench.measure(beam.system(), beam.seed)
         paths.append(folder / f"{stem}.csv")
-        paths[-1].write_text(text_of(record, beam.name), encoding="utf-8", newline="\n")
+        paths[-1].write_text(format_record(record, beam.name), encoding="utf-8", newline="\n")
     return paths

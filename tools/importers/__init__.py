@@ -1,6 +1,4 @@
-"""Importers in C for tests and campaigns, compiled against an FMU; and the FMU's shim rebuilt with
-checks inside.
-"""
+"""Compile C importers against an FMU, for tests; rebuild its C shim with sanitizers."""
 
 from __future__ import annotations
 
@@ -30,13 +28,13 @@ WARNINGS = ("-std=gnu11", "-Wall", "-Wextra", "-Werror", "-Wno-unused-function")
 
 
 def own_compiler() -> list[str] | None:
-    """Return the command of the machine's C compiler; None where there is none."""
+    """Return the command of the machine's C compiler; None without one."""
     own = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
     return [own] if own else None
 
 
-def ziglang(target: str = "native") -> list[str] | None:
-    """Return the command of ziglang's C compiler; None where it is not installed."""
+def zig_compiler(target: str = "native") -> list[str] | None:
+    """Return the command of ziglang's C compiler for a target; None if not installed."""
     return (
         [sys.executable, "-m", "ziglang", "cc", "-target", target]
         if importlib.util.find_spec("ziglang")
@@ -44,19 +42,19 @@ def ziglang(target: str = "native") -> list[str] | None:
     )
 
 
-def compiler() -> list[str] | None:
-    """Return the command of a C compiler for this machine; None where there is none."""
-    return own_compiler() or ziglang()
+def c_compiler() -> list[str] | None:
+    """Return the command of any C compiler for this machine; None without one."""
+    return own_compiler() or zig_compiler()
 
 
 def run_compiler(command: Sequence[object], folder: Path) -> None:
-    """Run a compiler in a folder; raise with what it prints where it fails."""
+    """Run a compiler in a folder; raise with its output if it fails."""
     done = subprocess.run([*map(str, command)], cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr[-4000:]
 
 
-def binary(fmu: Path, version: str, folder: Path, windows: bool = False) -> Path:
-    """Unpack an FMU's binary into a folder; return its path."""
+def unpack_binary(fmu: Path, version: str, folder: Path, windows: bool = False) -> Path:
+    """Unpack an FMU's binary of this machine into a folder; return its path."""
     suffix = ".dll" if windows else ".so"
     with zipfile.ZipFile(fmu) as archive:
         return Path(
@@ -65,7 +63,7 @@ def binary(fmu: Path, version: str, folder: Path, windows: bool = False) -> Path
 
 
 def names_header(fmu: Path) -> str:
-    """Return ``names.h``, what an importer knows of an FMU, from its model description."""
+    """Return the text of ``names.h``: an FMU's variables for the importer in C."""
     description = describe(fmu)
     rows, time = [], 0xFFFFFFFF
     for variable in description.variables.values():
@@ -74,7 +72,7 @@ def names_header(fmu: Path) -> str:
         if variable.type not in TYPES or variable.dimensions or variable.causality == "independent":
             continue
         settable = variable.causality in ("parameter", "input")
-        limits = [c_double(variable.min, -math.inf), c_double(variable.max, math.inf)]
+        limits = [c_literal(variable.min, -math.inf), c_literal(variable.max, math.inf)]
         cells = [
             f'"{variable.name}"',
             f"{variable.valueReference}u",
@@ -96,7 +94,7 @@ def names_header(fmu: Path) -> str:
     return "\n".join([*defines, "static const Name NAMES[] = {", *rows, "};", ""])
 
 
-def c_double(text: str | None, otherwise: float) -> str:
+def c_literal(text: str | None, otherwise: float) -> str:
     """Return a number of the model description as a C literal."""
     value = otherwise if text is None else float(text)
     return repr(value).replace("inf", "INFINITY") if math.isinf(value) else value.hex()
@@ -122,7 +120,7 @@ def compile_importer(
     libraries = [] if windows else ["-ldl", "-lpthread", "-lm"]
     run_compiler(
         [
-            *(command or compiler()),
+            *(command or c_compiler()),
             *WARNINGS,
             *options,
             f"-I{folder}",
@@ -136,8 +134,8 @@ def compile_importer(
     return target
 
 
-def units(version: str) -> list[str]:
-    """Return the names of the shim's C files."""
+def shim_files(version: str) -> list[str]:
+    """Return the names of the shim's C files for an FMI version."""
     return [name for name in native_form.shim_sources(version) if name.endswith(".c")]
 
 
@@ -160,12 +158,12 @@ def rebuild_shim(
     target = folder / "rebuilt.so"
     fixed = ("-shared", "-fPIC", "-fvisibility=hidden", "-g", "-O1", "-ffp-contract=off")
     command = [
-        *(command or compiler()),
+        *(command or c_compiler()),
         *fixed,
         *options,
         "-o",
         target,
-        *units(version),
+        *shim_files(version),
         "kernel.o",
     ]
     run_compiler(command, folder)
@@ -174,7 +172,7 @@ def rebuild_shim(
 
 @dataclass(frozen=True)
 class Importer:
-    """A compiled importer and the binary it loads."""
+    """A compiled importer program and the FMU's binary that it loads."""
 
     program: Path
     library: Path
@@ -190,7 +188,7 @@ class Importer:
         success: bool = True,
         env: Mapping[str, str] | None = None,
     ) -> subprocess.CompletedProcess[str]:
-        """Run a mode, with times or a text as standard input; return the completed process."""
+        """Run a mode of the program with times or a text as input; return the process."""
         command = [*under, self.program, self.library, *arguments]
         text += "".join(f"{float(time).hex()}\n" for time in times)
         done = subprocess.run(
@@ -214,7 +212,7 @@ class Importer:
         under: Sequence[str] = (),
         **values: float,
     ) -> list[list[float]]:
-        """Return outputs at each of ``times``, the first one being the start."""
+        """Return outputs at each of ``times``; the first one is the start."""
         settings = [f"{name}={float(value).hex()}" for name, value in values.items()]
         done = self.run("simulate", ",".join(names), *settings, under=under, times=times)
         return [
@@ -224,27 +222,29 @@ class Importer:
         ]
 
 
-def kernel(model: str) -> dict[str, bytes]:
+def kernel_objects(model: str) -> dict[str, bytes]:
     """Compile a model's kernel; return its object file by this machine's platform."""
     source = kernel_source(forms.MODELS[model])
     return {this_machine(): kernel_object(this_machine(), source)}
 
 
-def checked(
+def importer_with_sanitizer(
     version: str, model: str, exported: Path, folder: Path, sanitizer: Sequence[str]
 ) -> Importer:
-    """Compile importer and shim for a model, with a sanitizer in both."""
+    """Compile importer and shim of a model with a sanitizer in both; return the importer."""
     path = exported / version / f"{model}.fmu"
     options = ("-O1", "-g", *sanitizer)
     program = compile_importer(version, path, folder / "importer", options=options)
-    library = rebuild_shim(version, folder / "shim", kernel(model), sanitizer, forms.MODELS[model])
+    library = rebuild_shim(
+        version, folder / "shim", kernel_objects(model), sanitizer, forms.MODELS[model]
+    )
     return Importer(program, library, version)
 
 
 def read_coverage(
     folder: Path, unit: str, lines: dict[object, bool], branches: dict[object, bool]
 ) -> None:
-    """Add to ``lines`` and ``branches`` which ones of a C file were run and taken, by gcov."""
+    """Add a C file's executed lines and taken branches, by gcov, to two collections."""
     notes = next(folder.glob(f"*{Path(unit).stem}.gcda"))
     command = ["gcov", "-b", "-c", "-o", notes.name, unit]
     subprocess.run(command, cwd=folder, capture_output=True, check=True)

@@ -1,1 +1,1 @@
-"""Pictures inside the FMUs and their documentation."""
+"""Draw the pictures of README, manual and the FMUs' documentation."""

@@ -1,4 +1,4 @@
-"""The pictures of README and manual: ``python -m tools.pictures [NAME ...]`` draws them.
+"""Draw the pictures of README and manual: ``python -m tools.pictures [NAME ...]``.
 
 All of them, or those that are named. They are kept in the repository, small, since some take
 minutes; figures of the paper come from ``python -m orchestrate paper``, those of branches from
@@ -37,8 +37,8 @@ COMMANDS = {  # pictures that a command draws: name, its line, ending of the fil
 KEPT = ("figure6", "figure12", "lyapunov", "branches", "borders", "diagnosis")  # by other tools
 
 
-def verdict() -> Figure:
-    """What sensors read on two beams of the tutorial, and the verdict on each record."""
+def draw_verdict() -> Figure:
+    """Draw two beams' records of the tutorial with the verdict on each; return the figure."""
     guess = orchestrate.Structure.from_file(DOCS / "records" / "beam.toml")
     records = {}
     for name in ("b", "a"):
@@ -47,14 +47,14 @@ def verdict() -> Figure:
     return beam.draw_verdicts(records)
 
 
-def states() -> Figure:
-    """Draw a period of the paper's Figure 5, as a figure."""
+def draw_states() -> Figure:
+    """Draw a period of the paper's Figure 5 with its states; return the figure."""
     motion = orchestrate.simulate(PAPER, eta=0.4, transient=100, periods=1, points=1200)
     return theory.draw_states(motion)
 
 
-def engineer() -> Figure:
-    """Resonance curves of the tutorial's beam."""
+def draw_engineer_card() -> Figure:
+    """Draw resonance curves of the tutorial's beam as a small card; return the figure."""
     halves = {"m1": 1.5, "m2": 1.4, "f1": 11.9, "f2": 13.5, "zeta1": 0.005, "zeta2": 0.005}
     structure = orchestrate.Structure.from_halves(**halves, e=0.6)
     turns = 2.0 * np.pi * np.arange(10.0, 15.0, 0.05)
@@ -62,33 +62,33 @@ def engineer() -> Figure:
     return cards.draw_resonance(orchestrate.resonance(structure, **held, progress=False))
 
 
-def researcher() -> Figure:
-    """Draw a part of the paper's Figure 6, as a figure."""
+def draw_researcher_card() -> Figure:
+    """Draw a part of Figure 6's orbit diagram as a small card; return the figure."""
     eta = np.arange(0.9, 4.0, 0.004)
     return cards.draw_orbits(orchestrate.sweep(PAPER, eta=eta, samples=40, progress=False))
 
 
-def spectra() -> Figure:
-    """Spectra of ``quick`` while the motor hangs at the resonance."""
+def draw_spectra() -> Figure:
+    """Draw spectra of the set ``quick`` with the motor at resonance; return the figure."""
     structure = orchestrate.Structure.from_file("quick")
     drive = orchestrate.Drive.from_file("quick")
     return drive_spectra.draw(ask_drive_spectra(structure, drive, progress=False), title="quick")
 
 
 PICTURES: dict[str, Callable[[], Figure]] = {
-    "verdict": verdict,
+    "verdict": draw_verdict,
     "two_masses": beam.draw_two_masses,
-    "engineer": engineer,
-    "researcher": researcher,
+    "engineer": draw_engineer_card,
+    "researcher": draw_researcher_card,
     "fmu": fmu.draw_block,
-    "states": states,
+    "states": draw_states,
     "certificate": theory.draw_certificate,
-    "spectra": spectra,
+    "spectra": draw_spectra,
 }
 
 
-def by_command(line: str, ending: str) -> bytes:
-    """Run a command in a folder of its own and return the picture that it draws."""
+def draw_by_command(line: str, ending: str) -> bytes:
+    """Run a command in a temporary folder; return the bytes of the picture that it draws."""
     with TemporaryDirectory() as folder:
         if cli.main([*line.split(), "--output", folder]):
             raise SystemExit(f"{line}: failed")
@@ -98,19 +98,19 @@ def by_command(line: str, ending: str) -> bytes:
 
 
 def main(names: list[str]) -> None:
-    """Draw the pictures that are named, by default all that are not kept by other tools."""
+    """Draw the named pictures, by default all that no other tool writes."""
     for name in names or [*PICTURES, *COMMANDS]:
-        place = DOCS / f"{name}.png"
+        path = DOCS / f"{name}.png"
         if name in PICTURES:
-            save_small(PICTURES[name](), place)
+            save_small(PICTURES[name](), path)
         elif name in COMMANDS:
-            write_small(by_command(*COMMANDS[name]), place)
+            write_small(draw_by_command(*COMMANDS[name]), path)
         elif name in KEPT:
-            write_small(place.read_bytes(), place)
+            write_small(path.read_bytes(), path)
         else:
             expected = ", ".join([*PICTURES, *COMMANDS, *KEPT])
             raise SystemExit(f"{name}: no picture of the manual; expected one of {expected}")
-        print(place, place.stat().st_size)
+        print(path, path.stat().st_size)
 
 
 if __name__ == "__main__":

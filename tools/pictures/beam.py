@@ -1,4 +1,4 @@
-"""What the project is about, drawn by hand: a beam, its two halves, and what a sensor reads."""
+"""Draw the beam, its two halves, and sensor signals, for README and manual."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from matplotlib.patches import Polygon, Rectangle
 
 from orchestrate.figures.style import BLACK, BLUE, GREY, RED, styled
 
-from .oscillator import bare, damper, spring
+from .oscillator import draw_damper, draw_spring, hide_frame
 
 LENGTH, THICKNESS = 6.0, 0.5  # of the beam that is drawn
 SLIT = (2.2, 5.2)  # where its halves part
 VERDICTS: dict[str, Any] = {"no opening seen": BLUE, "delaminated": RED}
 
 
-def half(opening: float, side: int) -> np.ndarray:
-    """Outline of the upper half of a beam (side 1) or the lower one (-1), bent apart."""
+def half_outline(opening: float, side: int) -> np.ndarray:
+    """Return the outline of the upper (side 1) or lower half (-1) of a beam, bent apart."""
     x = np.linspace(0.0, LENGTH, 200)
     inside = np.clip((x - SLIT[0]) / (SLIT[1] - SLIT[0]), 0.0, 1.0)
     bend = side * opening * np.sin(np.pi * inside) ** 2
@@ -30,9 +30,11 @@ def half(opening: float, side: int) -> np.ndarray:
 
 
 def draw_beam(axes: Axes, opening: float, colour: str) -> None:
-    """Draw a beam on a shaker; its halves are apart where it is open."""
+    """Draw a beam on a shaker, its halves apart by an opening."""
     for side in (1, -1) if opening else ():
-        axes.add_patch(Polygon(half(opening, side), facecolor="0.85", edgecolor="k", lw=1.0))
+        axes.add_patch(
+            Polygon(half_outline(opening, side), facecolor="0.85", edgecolor="k", lw=1.0)
+        )
     if not opening:
         corner, size = (0.0, -THICKNESS), (LENGTH, 2.0 * THICKNESS)
         axes.add_patch(Rectangle(corner, *size, facecolor="0.85", edgecolor="k", lw=1.0))
@@ -41,12 +43,12 @@ def draw_beam(axes: Axes, opening: float, colour: str) -> None:
     axes.text(3.7, opening + THICKNESS + 0.6, "sensor", ha="center", fontsize=8, color=colour)
     axes.annotate("", (-1.35, 0.9), (-1.35, -0.9), arrowprops={"arrowstyle": "<->", "lw": 1.6})
     axes.text(-1.5, 0.0, "shaken", ha="right", va="center", fontsize=8, rotation=90)
-    bare(axes, (-2.1, LENGTH + 0.2), (-1.5, 2.0))
+    hide_frame(axes, (-2.1, LENGTH + 0.2), (-1.5, 2.0))
 
 
 @styled
 def draw_two_masses() -> Figure:
-    """Draw the beam that is open, and the two masses that stand for its halves."""
+    """Draw an open beam and the two masses that model its halves; return the figure."""
     figure = Figure(figsize=(9.0, 2.7), layout="constrained")
     left, right = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
     draw_beam(left, 0.55, RED)
@@ -56,15 +58,15 @@ def draw_two_masses() -> Figure:
         right.add_patch(Rectangle((x, 1.0), 1.6, 2.0, facecolor="0.85", edgecolor="k", lw=1.2))
         right.text(x + 0.8, 2.0, name, ha="center", va="center", fontsize=11)
     for x, stiffness, dashpot in ((0.0, "$k_1$", "$d_1$"), (7.1, "$k_2$", "$d_2$")):
-        spring(right, x, 2.5, 2.9)
-        damper(right, x, 1.5, 2.9)
+        draw_spring(right, x, 2.5, 2.9)
+        draw_damper(right, x, 1.5, 2.9)
         right.text(x + 1.45, 2.95, stiffness, ha="center", fontsize=10)
         right.text(x + 1.45, 0.62, dashpot, ha="center", fontsize=10)
     right.text(5.0, 2.25, "gap", ha="center", fontsize=9, color=RED)
     right.annotate("", (5.5, 2.0), (4.5, 2.0), arrowprops={"arrowstyle": "<->", "color": RED})
     right.annotate("", (6.4, -0.5), (3.6, -0.5), arrowprops={"arrowstyle": "<->", "lw": 1.6})
     right.text(6.7, -0.7, "shaken", fontsize=8)
-    bare(right, (-0.3, 10.3), (-1.1, 4.3))
+    hide_frame(right, (-0.3, 10.3), (-1.1, 4.3))
     right.set_title("its halves as two masses: they part and strike", fontsize=9)
     return figure
 
@@ -73,7 +75,7 @@ def draw_two_masses() -> Figure:
 def draw_verdicts(
     records: Mapping[str, xr.Dataset], begin: float = 12.0, span: float = 0.15
 ) -> Figure:
-    """Draw what a sensor reads on beams, and what the package says of each record.
+    """Draw sensor signals of beams with the verdict on each record; return the figure.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Small pictures for the first page of the manual, one for each reader, large letters in them."""
+"""Draw small pictures with large letters for the cards on the manual's first page."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from orchestrate.figures.style import BLACK, BLUE, RED, legend_below, panels, styled
+from orchestrate.figures.style import BLACK, BLUE, RED, legend_below, make_panels, styled
 
 SIZE = (3.8, 2.9)
 STYLES: dict[str, dict[str, Any]] = {
@@ -18,22 +18,22 @@ STYLES: dict[str, dict[str, Any]] = {
 }
 
 
-def card() -> tuple[Figure, Axes]:
-    """Make a figure with one panel; return both."""
-    figure, (axes,) = panels(1, 1, SIZE)
+def make_card() -> tuple[Figure, Axes]:
+    """Make a small figure with one panel; return both."""
+    figure, (axes,) = make_panels(1, 1, SIZE)
     return figure, axes
 
 
 @styled
 def draw_resonance(curves: xr.Dataset) -> Figure:
-    """Draw the amplitude of mass 1 over the frequency, on the way up.
+    """Draw mass 1's amplitude over rising frequency as a card; return the figure.
 
     Parameters
     ----------
     curves : xarray.Dataset
         Of :func:`orchestrate.resonance`.
     """
-    figure, axes = card()
+    figure, axes = make_card()
     for name, style in STYLES.items():
         amplitude = curves.x1_max.sel(structure=name, direction="up")
         axes.plot(curves.hertz, 1e3 * amplitude, linewidth=1.8, label=name, **style)
@@ -44,14 +44,14 @@ def draw_resonance(curves: xr.Dataset) -> Figure:
 
 @styled
 def draw_orbits(diagram: xr.Dataset) -> Figure:
-    """Draw an orbit diagram without its impacts.
+    """Draw an orbit diagram without its impacts as a card; return the figure.
 
     Parameters
     ----------
     diagram : xarray.Dataset
         Of :func:`orchestrate.sweep`.
     """
-    figure, axes = card()
+    figure, axes = make_card()
     eta = np.repeat(diagram.eta.values, diagram.sizes["sample"])
     dots: Any = {"color": BLACK, "markersize": 1.2, "alpha": 0.35, "markeredgewidth": 0.0}
     axes.plot(eta, diagram.xi_rel.values.ravel(), ".", **dots)

@@ -1,4 +1,4 @@
-"""The oscillator's FMU as a block: what goes in, what comes out."""
+"""Draw the oscillator's FMU as a block with inputs and outputs."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ OUTPUTS = ("x1, x2, v1, v2", "x_rel: gap", "contact_force", "box_force")
 
 @styled
 def draw_block() -> Figure:
-    """Draw the block with its most used variables."""
+    """Draw the FMU as a block with its most used variables; return the figure."""
     figure = Figure(figsize=(3.8, 2.9), layout="constrained")
     axes = figure.subplots()
     style: Any = {"boxstyle": "round,pad=0.1", "facecolor": "0.93", "edgecolor": "k", "lw": 1.6}

@@ -1,4 +1,4 @@
-"""The FMUs' icons."""
+"""Draw the icons of the FMUs."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ EDGE: dict[str, Any] = {"edgecolor": "#1b3a57", "linewidth": 2.5}
 
 
 def draw_icon(shaker: bool) -> Figure:
-    """Draw an icon that is recognizable at 64 pixels: no letters, thick lines.
+    """Draw a model's icon, recognizable at 64 pixels; return the figure.
 
     Two masses that touch between springs, or one with a disc and its unbalance on a spring.
     """

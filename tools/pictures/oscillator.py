@@ -1,4 +1,4 @@
-"""The pictures inside the oscillator's FMU: the system (the paper's Figure 4), an example run."""
+"""Draw the oscillator's documentation: the two masses (Figure 4) and an example run."""
 
 from __future__ import annotations
 
@@ -9,24 +9,24 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from orchestrate.figures.style import panels, styled
+from orchestrate.figures.style import make_panels, styled
 
 
-def sketch(width: float) -> tuple[Figure, Axes]:
-    """Make a figure for a drawing by hand, half as high as wide; return it and its axes."""
+def make_sketch(width: float) -> tuple[Figure, Axes]:
+    """Make a figure for a drawing, half as high as wide; return it and its axes."""
     figure = Figure(figsize=(width, width * 0.5))
     return figure, figure.add_subplot()
 
 
-def bare(axes: Axes, xlim: tuple[float, float], ylim: tuple[float, float]) -> None:
-    """Set equal scales and hide the frame."""
+def hide_frame(axes: Axes, xlim: tuple[float, float], ylim: tuple[float, float]) -> None:
+    """Set equal scales and limits, and hide the frame of the axes."""
     axes.set(xlim=xlim, ylim=ylim)
     axes.set_aspect("equal")
     axes.axis("off")
 
 
-def spring(axes: Axes, x: float, y: float, length: float) -> None:
-    """Draw a zigzag from (x, y) to the right."""
+def draw_spring(axes: Axes, x: float, y: float, length: float) -> None:
+    """Draw a spring as a zigzag from (x, y) to the right."""
     n = 9
     zigzag = [x + length * (0.15 + 0.7 * (i + 0.5) / n) for i in range(n)]
     xs = [x, x + 0.15 * length, *zigzag, x + 0.85 * length, x + length]
@@ -34,7 +34,7 @@ def spring(axes: Axes, x: float, y: float, length: float) -> None:
     axes.plot(xs, ys, "k", lw=1.4)
 
 
-def damper(axes: Axes, x: float, y: float, length: float) -> None:
+def draw_damper(axes: Axes, x: float, y: float, length: float) -> None:
     """Draw a dashpot from (x, y) to the right."""
     middle = x + 0.5 * length
     left, right = middle - 0.18, middle + 0.18
@@ -46,15 +46,15 @@ def damper(axes: Axes, x: float, y: float, length: float) -> None:
 
 @styled
 def draw_scheme(width: float = 4.8) -> Figure:
-    """Draw two masses in a shaken box (Figure 4)."""
-    figure, axes = sketch(width)
+    """Draw two masses in a shaken box (Figure 4); return the figure."""
+    figure, axes = make_sketch(width)
     axes.add_patch(Rectangle((0, 0), 10, 4, fill=False, lw=2.5))
     for x, name in ((3.4, "$m_1$"), (5.0, "$m_2$")):
         axes.add_patch(Rectangle((x, 1.1), 1.6, 1.8, facecolor="0.85", edgecolor="k", lw=1.6))
         axes.text(x + 0.8, 2.0, name, ha="center", va="center", fontsize=13)
     for x, stiffness, dashpot in ((0.0, "$k_1$", "$d_1$"), (6.6, "$k_2$", "$d_2$")):
-        spring(axes, x, 2.5, 3.4)
-        damper(axes, x, 1.5, 3.4)
+        draw_spring(axes, x, 2.5, 3.4)
+        draw_damper(axes, x, 1.5, 3.4)
         axes.text(x + 1.7, 2.95, stiffness, ha="center", fontsize=12)
         axes.text(x + 1.7, 0.75, dashpot, ha="center", fontsize=12)
     for x, name in ((3.5, "$x_1$"), (5.1, "$x_2$")):
@@ -62,13 +62,13 @@ def draw_scheme(width: float = 4.8) -> Figure:
         axes.text(x + 0.7, 3.45, name, ha="center", fontsize=11)
     axes.annotate("", (6.2, -0.55), (3.8, -0.55), arrowprops={"arrowstyle": "<->", "lw": 1.6})
     axes.text(5.0, -1.15, r"$a\,\sin\,\Omega t$", ha="center", fontsize=12)
-    bare(axes, (-0.2, 10.2), (-1.3, 4.2))
+    hide_frame(axes, (-0.2, 10.2), (-1.3, 4.2))
     return figure
 
 
 @styled
 def draw_example(times: np.ndarray, values: Mapping[str, np.ndarray]) -> Figure:
-    """Draw displacements, gap and permanent contact over time.
+    """Draw displacements, gap and permanent contact over time; return the figure.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def draw_example(times: np.ndarray, values: Mapping[str, np.ndarray]) -> Figure:
     values : mapping of ndarray
         ``x1``, ``x2``, ``x_rel``, ``in_contact``.
     """
-    figure, (top, bottom) = panels(2, 1, (9, 5), sharex=True)
+    figure, (top, bottom) = make_panels(2, 1, (9, 5), sharex=True)
     top.plot(times, values["x1"], label=r"$\xi_1$")
     top.plot(times, values["x2"], label=r"$\xi_2$", ls="--")
     bottom.plot(times, values["x_rel"], "k", label=r"$\xi_{Rel}$")

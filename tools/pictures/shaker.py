@@ -1,4 +1,4 @@
-"""The pictures inside the MotorShaker FMU: the mechanical system, and its reference run."""
+"""Draw the MotorShaker's documentation: the mechanical scheme and its reference run."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Rectangle
 
-from orchestrate.figures.style import panels, styled
+from orchestrate.figures.style import make_panels, styled
 
-from .oscillator import bare, damper, sketch, spring
+from .oscillator import draw_damper, draw_spring, hide_frame, make_sketch
 
 TEXTS = (
     *((1.5, 3.35, "$k_b$"), (1.5, 0.3, "$c_b$"), (3.5, 0.55, "$M_t$")),
@@ -18,11 +18,11 @@ TEXTS = (
 
 @styled
 def draw_shaker(width: float = 4.2) -> Figure:
-    """Draw a box on a spring and a damper, with a motor that turns an unbalance."""
-    figure, axes = sketch(width)
+    """Draw a box on spring and damper with a motor and unbalance; return the figure."""
+    figure, axes = make_sketch(width)
     axes.plot([0, 0], [0, 4], "k", lw=2.5)
-    spring(axes, 0.0, 2.9, 3.0)
-    damper(axes, 0.0, 1.1, 3.0)
+    draw_spring(axes, 0.0, 2.9, 3.0)
+    draw_damper(axes, 0.0, 1.1, 3.0)
     axes.add_patch(Rectangle((3.0, 0.2), 4.6, 3.6, fill=False, lw=2.5))
     axes.add_patch(Circle((5.3, 2.0), 1.2, facecolor="0.92", edgecolor="k", lw=1.6))
     axes.plot([5.3, 6.1], [2.0, 2.75], "k", lw=1.6)
@@ -31,20 +31,20 @@ def draw_shaker(width: float = 4.2) -> Figure:
         axes.text(x, y, text, ha="center", fontsize=12)
     axes.annotate("", (9.4, 2.0), (7.6, 2.0), arrowprops={"arrowstyle": "->", "lw": 1.6})
     axes.annotate("", (6.2, 4.4), (4.2, 4.4), arrowprops={"arrowstyle": "->"})
-    bare(axes, (-0.3, 9.8), (-0.1, 5.2))
+    hide_frame(axes, (-0.3, 9.8), (-0.1, 5.2))
     return figure
 
 
 @styled
 def draw_run_up(times: np.ndarray, speed: np.ndarray, position: np.ndarray) -> Figure:
-    """Draw speed of the rotor and position of the box over time.
+    """Draw rotor speed and box position over time; return the figure.
 
     Parameters
     ----------
     times, speed, position : ndarray
         s, rad/s, m.
     """
-    figure, (top, bottom) = panels(2, 1, (9, 5), sharex=True)
+    figure, (top, bottom) = make_panels(2, 1, (9, 5), sharex=True)
     top.plot(times, speed, "k", lw=1.0)
     top.set_ylabel(r"$\dot\varphi$ in rad/s")
     bottom.plot(times, 1e3 * position, "k", lw=0.6)

@@ -1,4 +1,4 @@
-"""Pictures of the manual on disk: a palette of few colours, so that the repository stays small."""
+"""Save pictures as PNG files with a small palette, to keep the repository small."""
 
 from __future__ import annotations
 
@@ -8,23 +8,24 @@ from pathlib import Path
 from matplotlib.figure import Figure
 from PIL import Image
 
-from orchestrate.figures.files import png_of
+from orchestrate.figures.files import png_bytes
 from orchestrate.files import write_whole
 
 COLOURS = 128  # more are not seen in lines and letters
 
 
 def save_small(figure: Figure, path: Path) -> None:
-    """Write a figure as a PNG file with a palette."""
-    write_small(png_of(figure), path)
+    """Save a figure as a PNG file with a palette of few colours."""
+    write_small(png_bytes(figure), path)
 
 
 def write_small(png: bytes, path: Path) -> None:
-    """Write a PNG file anew with a palette, whole or not at all."""
+    """Write PNG bytes to a file, reduced to a palette of few colours, atomically."""
     with Image.open(io.BytesIO(png)) as picture:
         few = picture.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
 
     def write(place: Path) -> None:
+        """Write the picture with a palette to a path."""
         few.save(place, format="png", optimize=True)
 
     write_whole(path, write)

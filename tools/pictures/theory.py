@@ -1,4 +1,4 @@
-"""Pictures of the page on theory: what states follow each other, and why no impact is missed."""
+"""Draw the pictures of the theory page: states of the motion, and certified roots."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from numpy.polynomial import Polynomial
 from scipy.optimize import brentq
 
-from orchestrate.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, RED, panels, styled
+from orchestrate.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, RED, make_panels, styled
 
 WAVES = ((0.5, 1.0, math.pi), (0.16, 3.0, 2.3))  # of the gap: amplitude, frequency, phase
 MEAN = 0.515
@@ -22,14 +22,14 @@ STEPS = 5  # towards the root that are drawn
 
 @styled
 def draw_states(data: xr.Dataset) -> Figure:
-    """Draw the gap and the contact force over a period, with the names of what happens.
+    """Draw gap and contact force over a period with the names of the states.
 
     Parameters
     ----------
     data : xarray.Dataset
         Of :func:`orchestrate.simulate`, one period with a permanent contact in it.
     """
-    figure, (gap, force) = panels(2, 1, (9.0, 4.6), sharex=True, height_ratios=(2, 1))
+    figure, (gap, force) = make_panels(2, 1, (9.0, 4.6), sharex=True, height_ratios=(2, 1))
     turns = data.periods_done.values - float(data.periods_done[0])
     gap.plot(turns, data.x_rel, color=BLACK, linewidth=1.3)
     at = np.interp(data.impact_time, data.time, turns)
@@ -56,33 +56,35 @@ def draw_states(data: xr.Dataset) -> Figure:
     return figure
 
 
-def derivative(time: float | np.ndarray, order: int) -> Any:
-    """Return a derivative of a gap that is made of two waves."""
+def wave_derivative(time: float | np.ndarray, order: int) -> Any:
+    """Return a derivative of a given order of an example gap of two waves."""
     mean = MEAN if order == 0 else 0.0
     waves = (a * k**order * np.sin(k * time + p + order * math.pi / 2.0) for a, k, p in WAVES)
     return mean + sum(waves)
 
 
 def safe_bound(time: float) -> Polynomial:
-    """Return a polynomial below the gap from a point on, by a bound of the second derivative.
+    """Return a polynomial below the gap from a time on, by a bound of its second derivative.
 
     The code has the fifth one's, and comes so close that no picture shows it.
     """
     largest = sum(a * k**2 for a, k, _ in WAVES)
-    return Polynomial([float(derivative(time, 0)), float(derivative(time, 1)), -0.5 * largest])
+    return Polynomial(
+        [float(wave_derivative(time, 0)), float(wave_derivative(time, 1)), -0.5 * largest]
+    )
 
 
 @styled
 def draw_certificate() -> Figure:
-    """Draw what sampling misses, and the steps that cannot miss it."""
-    figure, (sampled, certified) = panels(1, 2, (9.6, 3.4), sharey=True)
+    """Draw why sampling misses an impact and certified steps do not; return the figure."""
+    figure, (sampled, certified) = make_panels(1, 2, (9.6, 3.4), sharey=True)
     time = np.linspace(0.0, 3.4, 800)
     for panel in (sampled, certified):
-        panel.plot(time, derivative(time, 0), color=BLACK, linewidth=1.3, label="gap")
+        panel.plot(time, wave_derivative(time, 0), color=BLACK, linewidth=1.3, label="gap")
         panel.axhline(0.0, color=GREY, linewidth=0.8)
         panel.set(xlabel="time", xticks=[], ylim=(-0.18, 1.1))
     grid = np.linspace(0.0, 3.4, 6)
-    sampled.plot(grid, derivative(grid, 0), "o", color=RED, label="samples: all above 0")
+    sampled.plot(grid, wave_derivative(grid, 0), "o", color=RED, label="samples: all above 0")
     sampled.set_title("a solver that samples sees no impact")
     sampled.set_ylabel("gap")
     draw_steps(certified)
@@ -93,7 +95,7 @@ def draw_certificate() -> Figure:
 
 
 def draw_steps(axes: Axes) -> None:
-    """Draw the bounds from point to point, up to the root."""
+    """Draw the certified steps from bound to bound, up to the root."""
     now = 0.0
     for step in range(STEPS):
         bound = safe_bound(now)
@@ -101,7 +103,7 @@ def draw_steps(axes: Axes) -> None:
         along = np.linspace(0.0, length, 100)
         label = "bounds" if step == 0 else None
         axes.plot(now + along, bound(along), color=GREEN, linewidth=1.4, label=label)
-        axes.plot(now, derivative(now, 0), "o", color=GREEN, markersize=4)
+        axes.plot(now, wave_derivative(now, 0), "o", color=GREEN, markersize=4)
         now += length
-    root = brentq(derivative, now, DIP, args=(0,))
+    root = brentq(wave_derivative, now, DIP, args=(0,))
     axes.plot(root, 0.0, "*", color=RED, markersize=12, label="first root: the impact")

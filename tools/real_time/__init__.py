@@ -1,4 +1,4 @@
-"""What the manual says about real-time targets, measured: ``python -m tools.real_time``.
+"""Measure the FMU on real-time targets, for the manual: ``python -m tools.real_time``.
 
 ==================  ============================================================================
 module              idea

@@ -1,4 +1,4 @@
-"""Prints what the manual's page on real-time targets states: ``python -m tools.real_time``."""
+"""Print the results of the manual's page on real-time targets."""
 
 from __future__ import annotations
 
@@ -11,36 +11,36 @@ from pathlib import Path
 from orchestrate.access import OSCILLATOR, find
 
 from .footprint import MACHINES, stack_table
-from .sources import missing, unpack, version_of
-from .step_times import FREQUENCIES, PARTS, measure, row
-from .targets import all_targets
+from .sources import compiler_version, missing_programs, unpack
+from .step_times import FREQUENCIES, PARTS, measure_steps, table_row
+from .targets import run_on_all_targets
 
 
 def print_targets(sources: Path, folder: Path) -> None:
-    """Run the trajectory on each target, and print its results."""
-    for name, result in all_targets(sources, folder).items():
+    """Run the trajectory on each target and print its results."""
+    for name, result in run_on_all_targets(sources, folder).items():
         print(f"{name}: " + ", ".join(f"{key} {value}" for key, value in result.items()))
 
 
 def print_stack(sources: Path) -> None:
-    """Print a table of the bytes of stack of each call."""
-    if missing(*(compiler for compiler, *_ in MACHINES.values())):
+    """Print a table of the stack bytes of each kind of call."""
+    if missing_programs(*(compiler for compiler, *_ in MACHINES.values())):
         return
     for machine, calls in stack_table(sources, "-O2").items():
-        compiler = version_of(MACHINES[machine][0])
+        compiler = compiler_version(MACHINES[machine][0])
         print(f"stack, {machine} ({compiler}): {', '.join(f'{k} {v}' for k, v in calls.items())}")
 
 
 def print_times(fmu: Path, steps: int) -> None:
-    """Run steps and print a table of their times, us."""
+    """Run communication steps and print a table of their times, us."""
     columns = ["eta", "steps", *PARTS, "impacts", "contacts", "most evaluations"]
     print(f"| {' | '.join(columns)} |")
     print(f"|{'---|' * len(columns)}")
     rows = []
     for eta in FREQUENCIES:
-        rows.append(measure(fmu, eta, steps // len(FREQUENCIES)))
-        print(row(str(eta), rows[-1]), flush=True)
-    print(row("all", reduce(add, rows)))
+        rows.append(measure_steps(fmu, eta, steps // len(FREQUENCIES)))
+        print(table_row(str(eta), rows[-1]), flush=True)
+    print(table_row("all", reduce(add, rows)))
 
 
 def main() -> None:

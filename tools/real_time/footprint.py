@@ -1,4 +1,4 @@
-"""Bytes of stack that calls of the FMU take, by the call graph that gcc writes."""
+"""Compute the stack bytes of FMU calls from the call graph that gcc writes."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from .sources import BITS, CORTEX_M7, c_files, run
+from .sources import BITS, CORTEX_M7, c_files, run_command
 
 NODE = re.compile(r'node: \{ title: "([^"]+)" label: "([^"]*)"')
 EDGE = re.compile(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"')
@@ -30,13 +30,13 @@ MACHINES = {
 
 @dataclass(frozen=True)
 class CallGraph:
-    """Functions of all files, the bytes of stack each takes itself, and whom it calls."""
+    """Functions of all C files: their own stack bytes, and whom they call."""
 
     sizes: dict[str, int]
     called: dict[str, set[str]]
 
-    def deepest(self, function: str, without: tuple[str, ...] = ()) -> int:
-        """Return the bytes of stack of a call, those of the C library not counted.
+    def stack_bytes(self, function: str, without: tuple[str, ...] = ()) -> int:
+        """Return the stack bytes of a call, without those of the C library.
 
         Parameters
         ----------
@@ -49,20 +49,21 @@ class CallGraph:
         RecursionError
             Where a function calls itself, through others too.
         """
-        return self._deepest(function, without, ())
+        return self._stack_bytes(function, without, ())
 
-    def _deepest(self, function: str, without: tuple[str, ...], path: tuple[str, ...]) -> int:
+    def _stack_bytes(self, function: str, without: tuple[str, ...], path: tuple[str, ...]) -> int:
+        """Return the stack bytes of a call below a path of callers; raise at recursion."""
         if function in path:
             raise RecursionError(" -> ".join([*path, function]))
         inner = [
-            self._deepest(other, without, (*path, function))
+            self._stack_bytes(other, without, (*path, function))
             for other in self.called.get(function, ())
             if plain_name(other) not in without
         ]
         return self.sizes.get(function, 0) + max(inner, default=0)
 
-    def outside(self, function: str, without: tuple[str, ...] = ()) -> set[str]:
-        """Functions that a call reaches and that are not the FMU's: the C library's."""
+    def library_functions(self, function: str, without: tuple[str, ...] = ()) -> set[str]:
+        """Return the C library's functions that a call reaches."""
         reached: set[str] = set()
         waiting = [function]
         while waiting:
@@ -74,12 +75,12 @@ class CallGraph:
 
 
 def plain_name(title: str) -> str:
-    """Return a function's name: without its file, and without what gcc adds to a part of it."""
+    """Return a function's name without its file and gcc's suffixes."""
     return title.rpartition(":")[2].partition(".")[0]
 
 
 def call_graph(sources: Path, compiler: str, *flags: str) -> CallGraph:
-    """Return the call graph of an FMU's sources.
+    """Compile an FMU's sources by gcc and return their call graph.
 
     Raises
     ------
@@ -91,7 +92,7 @@ def call_graph(sources: Path, compiler: str, *flags: str) -> CallGraph:
     for file in c_files(sources):
         with tempfile.TemporaryDirectory() as folder:
             written = Path(folder) / "a.o"
-            run(compiler, *flags, *BITS, "-fcallgraph-info=su", "-c", file, "-o", written)
+            run_command(compiler, *flags, *BITS, "-fcallgraph-info=su", "-c", file, "-o", written)
             text = written.with_suffix(".ci").read_text("utf-8")
         for title, label in NODE.findall(text):
             size = SIZE.search(label)
@@ -105,13 +106,13 @@ def call_graph(sources: Path, compiler: str, *flags: str) -> CallGraph:
 
 
 def stack_table(sources: Path, *flags: str) -> dict[str, dict[str, int]]:
-    """Return bytes of stack by machine and by what a call is for.
+    """Return stack bytes of FMU calls, by machine and purpose.
 
     "a refusal" is a step with its message, but without what the C library's ``snprintf`` takes.
     """
     table = {}
     for machine, (compiler, *own) in MACHINES.items():
         graph = call_graph(sources, compiler, *own, *flags)
-        table[machine] = {what: graph.deepest(name, MESSAGES) for what, name in CALLS.items()}
-        table[machine]["a refusal"] = graph.deepest(CALLS["a step"])
+        table[machine] = {what: graph.stack_bytes(name, MESSAGES) for what, name in CALLS.items()}
+        table[machine]["a refusal"] = graph.stack_bytes(CALLS["a step"])
     return table

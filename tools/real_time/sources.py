@@ -1,4 +1,4 @@
-"""An FMU's C sources in a folder, and compilers for them."""
+"""Unpack and compile an FMU's C sources for real-time targets."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ CORTEX_M7 = ("-mcpu=cortex-m7", "-mthumb", "-mfpu=fpv5-d16", "-mfloat-abi=hard")
 
 
 def unpack(fmu: str | PathLike[str], folder: Path) -> Path:
-    """Return the FMU's ``sources/`` below a folder."""
+    """Unpack the FMU's ``sources/`` into a folder; return the path."""
     with zipfile.ZipFile(fmu) as archive:
         inside = [name for name in archive.namelist() if name.startswith("sources/")]
         archive.extractall(folder, inside)
@@ -23,17 +23,19 @@ def unpack(fmu: str | PathLike[str], folder: Path) -> Path:
 
 
 def c_files(sources: Path) -> list[Path]:
-    """Return the paths of the C files that are compiled."""
+    """Return the paths of an FMU's C files that are compiled."""
     return sorted(sources.glob("*.c"))
 
 
-def missing(*programs: str) -> list[str]:
+def missing_programs(*programs: str) -> list[str]:
     """Return those of some programs that this machine does not have."""
     return [program for program in programs if shutil.which(program) is None]
 
 
-def run(*command: str | PathLike[str], cwd: Path | None = None, timeout: float = 600.0) -> str:
-    """Return what a command prints.
+def run_command(
+    *command: str | PathLike[str], cwd: Path | None = None, timeout: float = 600.0
+) -> str:
+    """Run a command in a folder; return what it prints.
 
     Raises
     ------
@@ -46,13 +48,15 @@ def run(*command: str | PathLike[str], cwd: Path | None = None, timeout: float =
     return done.stdout
 
 
-def version_of(compiler: str) -> str:
-    """Name and version of a compiler, as it tells them."""
-    return run(compiler, "--version").splitlines()[0]
+def compiler_version(compiler: str) -> str:
+    """Return a compiler's name and version, as it prints them."""
+    return run_command(compiler, "--version").splitlines()[0]
 
 
-def build(sources: Path, programs: Sequence[str], target: Path, compiler: str, *flags: str) -> Path:
-    """Return the sources and C files of this folder as one program."""
+def compile_program(
+    sources: Path, programs: Sequence[str], target: Path, compiler: str, *flags: str
+) -> Path:
+    """Compile an FMU's sources and C files of this folder into a program; return its path."""
     own = [HERE / program for program in programs]
-    run(compiler, *flags, f"-I{sources}", *c_files(sources), *own, "-lm", "-o", target)
+    run_command(compiler, *flags, f"-I{sources}", *c_files(sources), *own, "-lm", "-o", target)
     return target

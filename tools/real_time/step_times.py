@@ -1,4 +1,4 @@
-"""Times of a hundred million communication steps at 10 kHz, each one measured."""
+"""Measure the time of each of 100 million communication steps at 10 kHz."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pathlib import Path
 from orchestrate.access import describe
 from orchestrate.structures import Structure
 
-from .sources import HERE, run
+from .sources import HERE, run_command
 
 BINARY = "binaries/x86_64-linux/TwoMassImpactOscillator.so"
 COUNTED = ("evaluations", "impact_count", "contact_count")
@@ -25,7 +25,7 @@ PARTS = {"median": 0.5, "99.9 %": 0.999, "99.999 %": 0.99999, "worst": 1.0}
 
 @dataclass(frozen=True)
 class StepTimes:
-    """Times of some steps.
+    """Histogram of the times of communication steps.
 
     Attributes
     ----------
@@ -58,8 +58,8 @@ class StepTimes:
         raise ValueError("expected steps")
 
 
-def measure(fmu: str | PathLike[str], eta: float, steps: int) -> StepTimes:
-    """Times of so many steps of the paper's structure, omega = 75 rad/s, at one frequency."""
+def measure_steps(fmu: str | PathLike[str], eta: float, steps: int) -> StepTimes:
+    """Time many steps of the paper's structure (omega = 75 rad/s) at one frequency."""
     beam = Structure.from_file("beam")
     values = {**beam.parameters(), "box_frequency": eta * beam.omega}
     values["box_amplitude"] = 1e-3 / eta**2
@@ -69,19 +69,21 @@ def measure(fmu: str | PathLike[str], eta: float, steps: int) -> StepTimes:
         known = describe(fmu)
         reference = {name: str(v.valueReference) for name, v in known.variables.items()}
         reals = {name for name in values if name not in ("bonded",)}
-        given = [part for name in reals for part in (reference[name], repr(float(values[name])))]
+        start_values = [
+            part for name in reals for part in (reference[name], repr(float(values[name])))
+        ]
         program = Path(folder) / "steps"
         options = ("-O2", "-std=gnu99", "-Wall", "-Wextra", "-Werror")
-        run("gcc", *options, HERE / "steps.c", "-ldl", "-o", program)
+        run_command("gcc", *options, HERE / "steps.c", "-ldl", "-o", program)
         order = [str(steps), repr(SIZE), str(RUNS), *(reference[name] for name in COUNTED)]
-        text = run(program, library, known.guid, *order, *given, timeout=3600.0)
+        text = run_command(program, library, known.guid, *order, *start_values, timeout=3600.0)
     lines = [line.split() for line in text.splitlines()]
     evaluations, impacts, contacts = (int(count) for _, count in lines[:3])
     times = Counter({int(time): int(count) for time, count in lines[3:]})
     return StepTimes(times, evaluations, impacts, contacts)
 
 
-def row(name: str, times: StepTimes) -> str:
+def table_row(name: str, times: StepTimes) -> str:
     """Return a row of the manual's table, times in microseconds."""
     parts = [f"{times.quantile(part) / 1000.0:.2f}" for part in PARTS.values()]
     counts = [f"{n:,}" for n in (times.impacts, times.contacts, times.evaluations)]

@@ -1,10 +1,10 @@
-"""One chaotic trajectory on a desktop, on a bare Cortex-M7 and on RISC-V: the same bits."""
+"""Run one chaotic trajectory on a desktop, a bare Cortex-M7 and RISC-V: same bits."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from .sources import BITS, CORTEX_M7, HERE, build, missing, run
+from .sources import BITS, CORTEX_M7, HERE, compile_program, missing_programs, run_command
 
 PROGRAM = "trajectory.c"
 TOOLS = {  # what each target needs
@@ -17,41 +17,43 @@ BARE = ("--specs=rdimon.specs", "-nostartfiles", "-T", str(HERE / "mps2-an500.ld
 BOARD = ("-M", "mps2-an500", "-nographic", "-semihosting-config", "enable=on,target=native")
 
 
-def printed(text: str) -> dict[str, str]:
-    """Return what the program said, by its names."""
+def parse_output(text: str) -> dict[str, str]:
+    """Return the values that the program printed, by name."""
     return dict(line.split(maxsplit=1) for line in text.splitlines())
 
 
-def on_desktop(sources: Path, folder: Path, *flags: str) -> dict[str, str]:
-    """Run the trajectory on this machine; return what the program prints, by name."""
-    program = build(sources, [PROGRAM], folder / "desktop", "gcc", "-O2", *BITS, *flags)
-    return printed(run(program))
+def run_on_desktop(sources: Path, folder: Path, *flags: str) -> dict[str, str]:
+    """Compile and run the trajectory on this machine; return its printed values."""
+    program = compile_program(sources, [PROGRAM], folder / "desktop", "gcc", "-O2", *BITS, *flags)
+    return parse_output(run_command(program))
 
 
-def on_cortex_m7(sources: Path, folder: Path, *flags: str) -> dict[str, str]:
-    """Return the trajectory on a bare Cortex-M7 under QEMU, and the bytes of the program."""
+def run_on_cortex_m7(sources: Path, folder: Path, *flags: str) -> dict[str, str]:
+    """Run the trajectory on a bare Cortex-M7 under QEMU; return values and program size."""
     options = ("-O2", *CORTEX_M7, *BITS, *SMALL, *BARE, "-DSTACK_PAINTED", *flags)
-    program = build(
+    program = compile_program(
         sources, [PROGRAM, "startup.c"], folder / "cortex-m7", "arm-none-eabi-gcc", *options
     )
-    result = printed(run("qemu-system-arm", *BOARD, "-kernel", program))
-    code, data, zeros = run("arm-none-eabi-size", program).splitlines()[1].split()[:3]
+    result = parse_output(run_command("qemu-system-arm", *BOARD, "-kernel", program))
+    code, data, zeros = run_command("arm-none-eabi-size", program).splitlines()[1].split()[:3]
     return {**result, "code": code, "data": data, "zeros": zeros}
 
 
-def on_riscv64(
+def run_on_riscv64(
     sources: Path, folder: Path, *flags: str, standard: tuple[str, ...] = BITS
 ) -> dict[str, str]:
-    """Return the trajectory on RISC-V 64 under QEMU."""
+    """Run the trajectory on RISC-V 64 under QEMU; return its printed values."""
     options = ("-O2", "-static", *standard, *flags)
-    program = build(sources, [PROGRAM], folder / "riscv64", "riscv64-linux-gnu-gcc", *options)
-    return printed(run("qemu-riscv64", program))
+    program = compile_program(
+        sources, [PROGRAM], folder / "riscv64", "riscv64-linux-gnu-gcc", *options
+    )
+    return parse_output(run_command("qemu-riscv64", program))
 
 
-RUNS = {"desktop": on_desktop, "Cortex-M7": on_cortex_m7, "RISC-V 64": on_riscv64}
+RUNS = {"desktop": run_on_desktop, "Cortex-M7": run_on_cortex_m7, "RISC-V 64": run_on_riscv64}
 
 
-def all_targets(sources: Path, folder: Path) -> dict[str, dict[str, str]]:
-    """Return the trajectory on each target whose tools are here."""
-    known = [name for name in RUNS if not missing(*TOOLS[name])]
+def run_on_all_targets(sources: Path, folder: Path) -> dict[str, dict[str, str]]:
+    """Run the trajectory on each target whose tools are installed; return values by target."""
+    known = [name for name in RUNS if not missing_programs(*TOOLS[name])]
     return {name: RUNS[name](sources, folder) for name in known}

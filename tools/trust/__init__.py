@@ -1,1 +1,1 @@
-"""The ledger of trust: campaigns against the project's own promises, and the records of them."""
+"""Ledger of trust: campaigns that try to break the project's promises, and their results."""

@@ -1,7 +1,7 @@
 """``python -m tools.trust list``, ``run CAMPAIGN --seed S --budget N``, ``keep``, ``page``.
 
-A run enters a record and writes the page anew. Of a run that was stopped, ``keep`` with the same
-seed and budget enters what was done: the record of a run with that smaller budget.
+A run enters a entry and writes the page anew. Of a run that was stopped, ``keep`` with the same
+seed and budget enters what was done: the entry of a run with that smaller budget.
 """
 
 from __future__ import annotations
@@ -21,82 +21,84 @@ from orchestrate.running.provenance import with_provenance
 from orchestrate.running.runner import answer
 from orchestrate.running.store import open_store
 
-from . import ledger_page, records
+from . import ledger_file, ledger_page
 from .campaign import Campaign
-from .job import CampaignJob, sources
+from .job import CampaignJob, sources_digest
 from .registry import CAMPAIGNS
 
 STORE = Path(__file__).resolve().parents[2] / "results" / "trust"
 
 
-def listed() -> None:
+def print_campaigns() -> None:
     """Print the campaigns with their targets."""
     for campaign in CAMPAIGNS.values():
         print(f"{campaign.name:10s}{campaign.target:>14,} {campaign.unit}: {campaign.title}")
 
 
-def run(
+def run_campaign(
     campaign: Campaign, seed: int, budget: int, store: Path = STORE, **running: object
-) -> records.Record:
-    """Run a campaign, or go on with it; a batch that was done is not done again."""
-    job = job_of(campaign, seed, budget)
-    place = store / f"{campaign.name}-{seed}-{budget}-{job.sources[:6]}.nc"
-    result = answer(job, {"store": place, **running}, finder(running))
-    return records.record_of(campaign.name, seed, budget, result)
+) -> ledger_file.LedgerEntry:
+    """Run a campaign, or continue it; finished batches are reused; return its ledger entry."""
+    job = make_job(campaign, seed, budget)
+    path = store / f"{campaign.name}-{seed}-{budget}-{job.sources[:6]}.nc"
+    result = answer(job, {"store": path, **running}, finder(running))
+    return ledger_file.make_entry(campaign.name, seed, budget, result)
 
 
-def keep(campaign: Campaign, seed: int, budget: int, store: Path = STORE) -> records.Record:
-    """Return the record of the first batches of a run that was stopped, without a gap.
+def keep_partial_run(
+    campaign: Campaign, seed: int, budget: int, store: Path = STORE
+) -> ledger_file.LedgerEntry:
+    """Return a ledger entry for the first finished batches of a run that was stopped.
 
     Raises
     ------
     InputError
         Where the first batch is not there.
     """
-    job = job_of(campaign, seed, budget)
-    place = store / f"{campaign.name}-{seed}-{budget}-{job.sources[:6]}.nc"
+    job = make_job(campaign, seed, budget)
+    path = store / f"{campaign.name}-{seed}-{budget}-{job.sources[:6]}.nc"
     find = finder({})
     fmus = {model: find(model) for model in job.models}
     identity = identity_of(job, fmus, {})
-    kept = open_store(job.name, identity, RunOptions.from_keywords({"store": place}))
+    kept = open_store(job.name, identity, RunOptions.from_keywords({"store": path}))
     try:
         done = Progress(job, kept, identity, fmus).done_chunks
         count = next(number for number in range(len(done) + 1) if number not in done)
         if not count:
-            raise InputError(f"{place}: holds no batch; expected a run that was begun")
+            raise InputError(f"{path}: holds no batch; expected a run that was begun")
         part = replace(job, budget=min(count * job.chunk_size * campaign.batch, budget))
         result = part.dataset(kept.table(count), {})
         result = with_provenance(result, part, identity, fmus, kept.begun)
     finally:
         kept.close()
-    return records.record_of(campaign.name, seed, part.budget, result)
+    return ledger_file.make_entry(campaign.name, seed, part.budget, result)
 
 
-def job_of(campaign: Campaign, seed: int, budget: int) -> CampaignJob:
-    """Return a run of a campaign as a job that the package's runner takes."""
+def make_job(campaign: Campaign, seed: int, budget: int) -> CampaignJob:
+    """Return a run of a campaign as a ``CampaignJob`` for the package's runner."""
     return CampaignJob(
         name=campaign.name,
         campaign=campaign.name,
         seed=seed,
         budget=budget,
         size=campaign.batch,
-        sources=sources(),
+        sources=sources_digest(),
     )
 
 
 def write_page() -> None:
-    """Write the page and its pictures, from all records."""
-    ledger_page.draw(records.read())
-    text = ledger_page.text(records.read())
-    write_whole(ledger_page.PAGE, lambda place: place.write_text(text, "utf-8"))
+    """Write docs/trust.md and its pictures from all ledger entries."""
+    ledger_page.draw_pictures(ledger_file.read_entries())
+    text = ledger_page.page_text(ledger_file.read_entries())
+    write_whole(ledger_page.PAGE, lambda path: path.write_text(text, "utf-8"))
 
 
-def parse(arguments: list[str] | None) -> argparse.Namespace:
-    """Parse the command line."""
+def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
+    """Parse the command line's arguments."""
     parser = argparse.ArgumentParser(prog="python -m tools.trust", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
     commands.add_parser("list", help="campaigns and their targets")
-    commands.add_parser("page", help="write docs/trust.md from the records")
+    commands.add_parser("page", help="write docs/trust.md from the entries")
     one = commands.add_parser("run", help="run a campaign, or go on with it")
     part = commands.add_parser("keep", help="enter what a run has done that was stopped")
     for parser_of in (one, part):
@@ -111,9 +113,9 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the command line; return 1 if a campaign had findings."""
-    options = parse(arguments)
+    options = parse_arguments(arguments)
     if options.command == "list":
-        listed()
+        print_campaigns()
         return 0
     if options.command == "page":
         write_page()
@@ -121,18 +123,18 @@ def main(arguments: list[str] | None = None) -> int:
     what = CAMPAIGNS[options.campaign], options.seed, options.budget
     try:
         if options.command == "keep":
-            record = keep(*what)
+            entry = keep_partial_run(*what)
         else:
             running = {"jobs": options.jobs, "cluster": options.cluster, "force": options.force}
-            record = run(*what, **running)
+            entry = run_campaign(*what, **running)
     except VibroimpactError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
-    records.append(record)
+    ledger_file.append_entry(entry)
     write_page()
-    print(f"{record.done:,} done, {record.findings} findings, {record.seconds:.1f} s")
-    print("\n".join(record.notes))
-    return 1 if record.findings else 0
+    print(f"{entry.done:,} done, {entry.findings} findings, {entry.seconds:.1f} s")
+    print("\n".join(entry.notes))
+    return 1 if entry.findings else 0
 
 
 if __name__ == "__main__":

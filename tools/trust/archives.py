@@ -1,4 +1,4 @@
-"""FMUs as an enemy would make them, by a seed."""
+"""Write hostile FMU archives, each from a seeded random generator."""
 
 from __future__ import annotations
 
@@ -18,14 +18,16 @@ BOMB = 5 << 28  # bytes that come out of one
 CROWD = 70_000  # files
 
 
-def content(fmu: Path) -> dict[str, bytes]:
-    """Return the files in an FMU by name."""
+def read_archive(fmu: Path) -> dict[str, bytes]:
+    """Return a dict from name to bytes of the files in an FMU."""
     with zipfile.ZipFile(fmu) as archive:
         return {name: archive.read(name) for name in archive.namelist()}
 
 
-def pack(place: Path, files: dict[str, bytes], attributes: dict[str, int] | None = None) -> None:
-    """Write an FMU of files; ``attributes`` say which of them are links."""
+def write_archive(
+    place: Path, files: dict[str, bytes], attributes: dict[str, int] | None = None
+) -> None:
+    """Write files as an FMU archive; ``attributes`` say which of them are links."""
     with zipfile.ZipFile(place, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, data in files.items():
             entry = zipfile.ZipInfo(name)
@@ -35,7 +37,7 @@ def pack(place: Path, files: dict[str, bytes], attributes: dict[str, int] | None
             archive.writestr(entry, data)
 
 
-def traversal(fmu: Path, place: Path, chance: random.Random) -> None:
+def write_path_traversal(fmu: Path, place: Path, chance: random.Random) -> None:
     """Write an FMU with a file whose path leads out of the archive."""
     ups = "../" * chance.randint(1, 12)
     name = chance.choice(
@@ -52,32 +54,32 @@ def traversal(fmu: Path, place: Path, chance: random.Random) -> None:
             "./../escaped",
         )
     )
-    pack(place, {**content(fmu), name: b"escaped"})
+    write_archive(place, {**read_archive(fmu), name: b"escaped"})
 
 
-def link(fmu: Path, place: Path, chance: random.Random) -> None:
-    """Write an FMU with a link out of the archive, and a file behind it."""
+def write_symlink(fmu: Path, place: Path, chance: random.Random) -> None:
+    """Write an FMU with a symbolic link out of the archive, and a file behind it."""
     name = chance.choice(("resources", "binaries/out", "link"))
     target = chance.choice(("/tmp", "../..", "/etc/passwd", ".")).encode()
-    files = {**content(fmu), name: target, f"{name}/escaped": b"escaped"}
+    files = {**read_archive(fmu), name: target, f"{name}/escaped": b"escaped"}
     if chance.random() < 0.5:
         files.pop(f"{name}/escaped")
-    pack(place, files, {name: LINK})
+    write_archive(place, files, {name: LINK})
 
 
-def bomb(fmu: Path, place: Path, chance: random.Random) -> None:
-    """Write an FMU of a megabyte that unpacks to more than one gigabyte, in one file or in many."""
-    place.write_bytes(made_bomb(fmu, chance.randrange(3)))
+def write_zip_bomb(fmu: Path, place: Path, chance: random.Random) -> None:
+    """Write an FMU of a megabyte that unpacks to over one gigabyte, in one file or many."""
+    place.write_bytes(make_bomb_files(fmu, chance.randrange(3)))
 
 
 @functools.cache
-def made_bomb(fmu: Path, kind: int) -> bytes:
+def make_bomb_files(fmu: Path, kind: int) -> bytes:
     """Return one large file, many of them, or a large one that claims to be small."""
     zeros, stream = bytes(1 << 24), io.BytesIO()
     count = BOMB >> 24
     files, parts = (count, 1) if kind == 1 else (1, count)
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
-        for name, data in content(fmu).items():
+        for name, data in read_archive(fmu).items():
             archive.writestr(name, data)
         for i in range(files):
             with archive.open(f"resources/{i}", "w") as file:
@@ -88,15 +90,15 @@ def made_bomb(fmu: Path, kind: int) -> bytes:
     return data.replace(said, struct.pack("<I", 16)) if kind == 2 else data
 
 
-def crowd(fmu: Path, place: Path, chance: random.Random) -> None:
+def write_many_files(fmu: Path, place: Path, chance: random.Random) -> None:
     """Write an FMU with more files than any model has."""
     extra = {f"resources/{i:x}": b"" for i in range(CROWD)}
-    pack(place, {**content(fmu), **extra})
+    write_archive(place, {**read_archive(fmu), **extra})
 
 
-def entities(fmu: Path, place: Path, chance: random.Random) -> None:
-    """Write an FMU whose XML grows while it is read, or reads other files."""
-    files = content(fmu)
+def write_xml_entities(fmu: Path, place: Path, chance: random.Random) -> None:
+    """Write an FMU whose XML grows as it is parsed, or includes other files."""
+    files = read_archive(fmu)
     levels = "".join(
         f'<!ENTITY e{i} "{"&e" + str(i - 1) + ";" if i else "lol"}'
         f'{("&e" + str(i - 1) + ";") * 9 if i else ""}">'
@@ -111,12 +113,12 @@ def entities(fmu: Path, place: Path, chance: random.Random) -> None:
     text = files[XML].decode()
     text = re.sub(r"(<\?xml[^>]*>)", rf"\1<!DOCTYPE f [{document}]>", text, count=1)
     files[XML] = re.sub(r'description="[^"]*"', f'description="{name}"', text, count=1).encode()
-    pack(place, files)
+    write_archive(place, files)
 
 
-def name_in_xml(fmu: Path, place: Path, chance: random.Random) -> None:
-    """Write an FMU with a name that is a path, has a line break, or is markup."""
-    files = content(fmu)
+def write_bad_name(fmu: Path, place: Path, chance: random.Random) -> None:
+    """Write an FMU whose model name is a path, has a line break, or is markup."""
+    files = read_archive(fmu)
     text = files[XML].decode()
     attribute = chance.choice(("modelIdentifier", "modelName", "instantiationToken", "fmiVersion"))
     value = chance.choice(
@@ -132,23 +134,23 @@ def name_in_xml(fmu: Path, place: Path, chance: random.Random) -> None:
         )
     )
     changed = re.sub(rf'(\b{attribute}=")[^"]*', lambda m: m[1] + value, text, count=1)
-    pack(place, {**files, XML: changed.encode()})
+    write_archive(place, {**files, XML: changed.encode()})
 
 
-def nested(fmu: Path, place: Path, chance: random.Random) -> None:
-    """Write an FMU with deeply nested elements, or huge attributes."""
-    files = content(fmu)
+def write_deep_xml(fmu: Path, place: Path, chance: random.Random) -> None:
+    """Write an FMU with deeply nested elements or huge attributes."""
+    files = read_archive(fmu)
     depth = chance.choice((1000, 100_000))
     if chance.random() < 0.5:
         body = b"<a>" * depth + b"</a>" * depth
     else:
         body = b'<a b="' + b"x" * (depth * 1000) + b'"/>'
     files[XML] = files[XML].replace(b"<ModelVariables>", b"<ModelVariables>" + body)
-    pack(place, files)
+    write_archive(place, files)
 
 
-def damaged(fmu: Path, place: Path, chance: random.Random) -> None:
-    """Write an FMU that is cut short, or has bytes changed."""
+def write_damaged(fmu: Path, place: Path, chance: random.Random) -> None:
+    """Write a copy of an FMU that is cut short or has bytes changed."""
     data = bytearray(fmu.read_bytes())
     if chance.random() < 0.4:
         place.write_bytes(data[: chance.randrange(len(data))])
@@ -160,25 +162,29 @@ def damaged(fmu: Path, place: Path, chance: random.Random) -> None:
     place.write_bytes(data)
 
 
-def foreign(fmu: Path, place: Path, chance: random.Random) -> None:
+def write_not_an_fmu(fmu: Path, place: Path, chance: random.Random) -> None:
     """Write a file that is no archive, or an archive that lacks parts of an FMU."""
-    files = content(fmu)
+    files = read_archive(fmu)
     kind = chance.randrange(5)
     if kind == 0:
         place.write_bytes(chance.randbytes(chance.randrange(10_000)))
     elif kind == 1:
-        pack(place, {name: data for name, data in files.items() if name != XML})
+        write_archive(place, {name: data for name, data in files.items() if name != XML})
     elif kind == 2:
-        pack(place, {XML: chance.choice((b"", b"<", b"\xff\xfe<a/>", b"<html/>", b"\0" * 1000))})
+        write_archive(
+            place, {XML: chance.choice((b"", b"<", b"\xff\xfe<a/>", b"<html/>", b"\0" * 1000))}
+        )
     elif kind == 3:
-        pack(place, {n: d for n, d in files.items() if not n.startswith("binaries/")})
+        write_archive(place, {n: d for n, d in files.items() if not n.startswith("binaries/")})
     else:
-        pack(place, {n: chance.randbytes(99) if "binaries" in n else d for n, d in files.items()})
+        write_archive(
+            place, {n: chance.randbytes(99) if "binaries" in n else d for n, d in files.items()}
+        )
 
 
-def twice(fmu: Path, place: Path, chance: random.Random) -> None:
-    """Write an FMU with two descriptions of one name, which readers may choose from."""
-    files = content(fmu)
+def write_two_descriptions(fmu: Path, place: Path, chance: random.Random) -> None:
+    """Write an FMU with two model descriptions of the same name."""
+    files = read_archive(fmu)
     other = files[XML].replace(b'modelName="', b'modelName="Another')
     with zipfile.ZipFile(place, "w") as archive:
         for name, data in files.items():
@@ -191,14 +197,14 @@ def twice(fmu: Path, place: Path, chance: random.Random) -> None:
 
 
 KINDS: dict[str, Make] = {
-    "path traversal": traversal,
-    "link": link,
-    "bomb": bomb,
-    "crowd of files": crowd,
-    "entities": entities,
-    "name in the description": name_in_xml,
-    "nesting": nested,
-    "damaged archive": damaged,
-    "no FMU": foreign,
-    "a name twice": twice,
+    "path traversal": write_path_traversal,
+    "link": write_symlink,
+    "bomb": write_zip_bomb,
+    "crowd of files": write_many_files,
+    "entities": write_xml_entities,
+    "name in the description": write_bad_name,
+    "nesting": write_deep_xml,
+    "damaged archive": write_damaged,
+    "no FMU": write_not_an_fmu,
+    "a name twice": write_two_descriptions,
 }

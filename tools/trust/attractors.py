@@ -1,4 +1,4 @@
-"""Attractors of random structures, each checked without the code that decided what it is."""
+"""Campaign on attractors: random structures, each attractor checked by independent code."""
 
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ from orchestrate.access import EventInstance, Instance, begin
 from orchestrate.errors import InputError
 from orchestrate.structures import Excitation, Structure
 
-from .campaign import Campaign, Outcome
+from ..benches.recipe import draw_log_uniform
+from .campaign import BatchOutcome, Campaign
 
 STARTS = 16  # random ones at each of two neighbouring frequencies
 NEIGHBOUR = 1.003  # ratio of these
@@ -32,8 +33,8 @@ Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Drawn:
-    """A random structure and two frequency ratios."""
+class DrawnStructure:
+    """A random structure with two frequency ratios."""
 
     structure: Structure
     etas: tuple[float, float]
@@ -42,22 +43,17 @@ class Drawn:
         return f"{self.structure!r}, eta = {self.etas[0]!r}"
 
 
-def draw(rng: np.random.Generator) -> Drawn:
-    """Draw a random structure and two frequency ratios, with light damping as in the paper."""
-    mu, kappa = (decade(rng, 0.3, 4.0) for _ in range(2))
-    one, two = (decade(rng, 0.003, 0.06) for _ in range(2))
+def draw(rng: np.random.Generator) -> DrawnStructure:
+    """Draw a random structure and two frequency ratios, lightly damped as in the paper."""
+    mu, kappa = (draw_log_uniform(rng, 0.3, 4.0) for _ in range(2))
+    one, two = (draw_log_uniform(rng, 0.003, 0.06) for _ in range(2))
     e, eta = float(rng.uniform(0.02, 0.95)), float(rng.uniform(0.3, 4.0))
     structure = Structure.nondimensional(mu=mu, kappa=kappa, D1=one, D2=two, e=e)
-    return Drawn(structure, (eta, NEIGHBOUR * eta))
+    return DrawnStructure(structure, (eta, NEIGHBOUR * eta))
 
 
-def decade(rng: np.random.Generator, low: float, high: float) -> float:
-    """Draw a number uniformly in its logarithm."""
-    return float(np.exp(rng.uniform(math.log(low), math.log(high))))
-
-
-class Motion:
-    """A periodic attractor as it is reported, and its motion by the FMU.
+class ReportedMotion:
+    """A periodic attractor as reported, with its motion simulated by the FMU.
 
     Parameters
     ----------
@@ -74,12 +70,12 @@ class Motion:
         self.periods = int(reported.multiplicity)
         self.impacts = float(reported.impacts_per_period) * self.periods
         self.state: Floats = reported.state.values
-        self.states = self.strobed()
+        self.states = self.stroboscopic_states()
         lengths = self.states / (1.0, 1.0, self.excitation.frequency, self.excitation.frequency)
         self.size = float(np.abs(lengths).max())
         self.gap = float(reported.xi_rel_max) * self.excitation.length(structure)
 
-    def strobed(self) -> Floats:
+    def stroboscopic_states(self) -> Floats:
         """Return the states at phase 0 after 0, 1, ... periods."""
         states, period = [self.state], self.excitation.period
         with Instance(self.fmu) as instance:
@@ -89,29 +85,30 @@ class Motion:
                 states.append(np.array(instance.get("x1", "x2", "v1", "v2")))
         return np.array(states)
 
-    def away(self, one: Floats, other: Floats) -> float:
-        """Return the distance of two states over the motion's size; of gaps over the gap."""
+    def distance(self, one: Floats, other: Floats) -> float:
+        """Return the distance of two states relative to the motion's size; of gaps to the gap's."""
         frequency = self.excitation.frequency
         x1, x2, v1, v2 = (one - other) / (1.0, 1.0, frequency, frequency)
         size, gap = self.size or 1.0, max(self.gap, 1e-6 * self.size) or 1.0
         return float(max(abs(np.array([x1, x2, v1, v2])).max() / size, abs(x2 - x1) / gap))
 
-    def wrong(self) -> Iterator[str]:
-        """Yield what is wrong with what is reported of it."""
+    def problems(self) -> Iterator[str]:
+        """Yield a text for each way in which the FMU contradicts the reported attractor."""
         n = self.periods
-        closes = self.away(self.states[n], self.states[0])
+        closes = self.distance(self.states[n], self.states[0])
         if closes > RETURNS:
             yield f"the FMU does not return after {n} T"
         for part in (part for part in range(1, n) if n % part == 0):
-            if self.away(self.states[part], self.states[0]) < max(EARLIER, TIMES * closes):
+            if self.distance(self.states[part], self.states[0]) < max(EARLIER, TIMES * closes):
                 yield f"the FMU returns after {part} T already, not {n} T"
         if abs(self.impacts - round(self.impacts)) > 1e-9:
             yield f"{self.impacts!r} impacts in {n} T are no whole number"
-        if self.counted() != TURNS * round(self.impacts):
-            yield f"{self.counted()} impacts in {TURNS} times {n} T, not {TURNS} x {self.impacts:g}"
-        yield from self.wrong_by_orbit()
+        count = self.count_impacts()
+        if count != TURNS * round(self.impacts):
+            yield f"{count} impacts in {TURNS} times {n} T, not {TURNS} x {self.impacts:g}"
+        yield from self.orbit_problems()
 
-    def counted(self) -> int:
+    def count_impacts(self) -> int:
         """Count impacts over some periods, from the middle of the longest flight or contact."""
         span = self.periods * self.excitation.period
         with EventInstance(self.fmu) as instance:
@@ -126,8 +123,8 @@ class Motion:
         begun = begun % span
         return int(((times > begun) & (times <= begun + TURNS * span)).sum())
 
-    def wrong_by_orbit(self) -> Iterator[str]:
-        """Yield what Newton's method from its state at phase 0 does not confirm."""
+    def orbit_problems(self) -> Iterator[str]:
+        """Yield texts on what Newton's method from its state at phase 0 does not confirm."""
         if not math.isfinite(float(self.reported.multiplier)):
             return
         quiet: Any = {"progress": False, "jobs": 1, "fmu": self.fmu}
@@ -145,16 +142,16 @@ class Motion:
         impacts = int(np.isfinite(orbit.impact_time.values).sum())
         if impacts != round(self.impacts):
             yield f"orbit: {impacts} impacts, not {self.impacts:g}"
-        if min(self.away(row, self.state) for row in orbit.state.values) > DIFFERS:
+        if min(self.distance(row, self.state) for row in orbit.state.values) > DIFFERS:
             yield "orbit: another one"
 
-    def is_same(self, other: Motion) -> bool:
+    def is_same(self, other: ReportedMotion) -> bool:
         """Return whether another motion has a state of this one at phase 0."""
-        return any(self.away(row, other.state) < DIFFERS for row in self.states)
+        return any(self.distance(row, other.state) < DIFFERS for row in self.states)
 
 
-class Attractors(Campaign):
-    """Attractors by random starts, carried to a neighbouring frequency."""
+class AttractorCampaign(Campaign):
+    """Campaign: attractors by random starts, and continued to a near frequency."""
 
     name = "attractors"
     title = "Attractors"
@@ -168,26 +165,26 @@ class Attractors(Campaign):
     )
     unit, target, batch, package = "structures", 2_000, 20, True
 
-    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Check the attractors of ``count`` structures."""
+    def run(self, fmu: Path, seed: int, count: int) -> BatchOutcome:
+        """Check the attractors of ``count`` random structures; return the outcome."""
         rng, notes, counts, wrong = np.random.default_rng(seed), [], Counter[str](), 0
         for number in range(count):
             drawn = draw(rng)
             lines = list(findings(fmu, drawn, int(rng.integers(2**31)), counts))
             wrong += bool(lines)
             notes += [f"seed {seed}, structure {number} ({drawn}): {line}" for line in lines]
-        return Outcome(count, wrong, counts=dict(sorted(counts.items())), notes=tuple(notes))
+        return BatchOutcome(count, wrong, counts=dict(sorted(counts.items())), notes=tuple(notes))
 
 
-def findings(fmu: Path, drawn: Drawn, seed: int, counts: Counter[str]) -> Iterator[str]:
-    """Yield what is wrong with the attractors of one structure."""
+def findings(fmu: Path, drawn: DrawnStructure, seed: int, counts: Counter[str]) -> Iterator[str]:
+    """Yield texts on what is wrong with the attractors of one structure."""
     quiet: Any = {"progress": False, "jobs": 1, "fmu": fmu}
     answer = orchestrate.attractors(
         drawn.structure, eta=list(drawn.etas), starts=STARTS, seed=seed, **quiet
     )
     words = answer.decided_by.attrs["flag_meanings"].split()
     for place, eta in enumerate(drawn.etas):
-        motions: list[Motion] = []
+        motions: list[ReportedMotion] = []
         for attractor in range(answer.sizes["attractor"]):
             reported = answer.isel(eta=place, attractor=attractor)
             word = words[int(reported.decided_by)]
@@ -197,8 +194,10 @@ def findings(fmu: Path, drawn: Drawn, seed: int, counts: Counter[str]) -> Iterat
             counts["found by carrying alone:"] += not float(reported.share) > 0.0
             if word not in ("orbit", "repeated"):
                 continue
-            motion = Motion(fmu, drawn.structure, eta, reported)
-            yield from (f"eta {eta:.6g}, attractor {attractor}: {line}" for line in motion.wrong())
+            motion = ReportedMotion(fmu, drawn.structure, eta, reported)
+            yield from (
+                f"eta {eta:.6g}, attractor {attractor}: {line}" for line in motion.problems()
+            )
             if any(motion.is_same(other) for other in motions):
                 yield f"eta {eta:.6g}, attractor {attractor}: is there twice"
             motions.append(motion)

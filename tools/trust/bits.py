@@ -1,4 +1,4 @@
-"""One motion over several communication grids, by every form and platform: the same bits."""
+"""Campaign on bits: a motion on several communication grids, by all forms and platforms."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from orchestrate.access import OSCILLATOR, Instance, find
 from orchestrate.errors import FmuError, InputError
 
 from . import parameter_sets
-from .campaign import Campaign, Outcome
+from .campaign import BatchOutcome, Campaign
 from .parameter_sets import ParameterSet
-from .programs import temporary
+from .programs import temporary_folder
 
 STATE = (
     *("x1", "x2", "v1", "v2", "x_rel", "v_rel", "xi1", "xi2", "xi_rel", "box_force"),
@@ -38,13 +38,13 @@ NOT = "no"  # where it is refused, or does not finish
 Bits = tuple[str, ...]
 
 
-def hexadecimal(values: Sequence[float]) -> Bits:
-    """Return numbers as texts with all bits; all NaNs alike."""
+def to_hexadecimal(values: Sequence[float]) -> Bits:
+    """Return numbers as hexadecimal texts with all bits; all NaNs alike."""
     return tuple("nan" if math.isnan(value) else float(value).hex() for value in values)
 
 
-def by_fmu(fmu: Path, drawn: ParameterSet, grid: Sequence[float]) -> Bits:
-    """Compute the outputs at the end of a grid with an FMU."""
+def simulate_by_fmu(fmu: Path, drawn: ParameterSet, grid: Sequence[float]) -> Bits:
+    """Return the outputs at the end of a communication grid, by an FMU."""
     values = {**drawn.values, "bonded": bool(drawn.values.get("bonded"))}
     with Instance(fmu) as instance:
         try:
@@ -55,21 +55,21 @@ def by_fmu(fmu: Path, drawn: ParameterSet, grid: Sequence[float]) -> Bits:
                 time = target
         except (FmuError, InputError):
             return (NOT,)
-        return hexadecimal([float(value) for value in instance.get(*STATE, *STEP)])
+        return to_hexadecimal([float(value) for value in instance.get(*STATE, *STEP)])
 
 
 @functools.cache
-def web_module() -> Any:
-    """Return the kernel as WebAssembly under wasmtime."""
+def load_web_module() -> Any:
+    """Return the kernel's WebAssembly module under wasmtime."""
     from orchestrate.access.webassembly import web_kernel
-    from tools.web_instance import Web
+    from tools.web_instance import WebInstance
 
-    return Web(web_kernel(OSCILLATOR))
+    return WebInstance(web_kernel(OSCILLATOR))
 
 
-def by_web(drawn: ParameterSet, grid: Sequence[float]) -> Bits:
-    """Compute the outputs at the end of a grid with the WebAssembly module."""
-    web = web_module()
+def simulate_by_web(drawn: ParameterSet, grid: Sequence[float]) -> Bits:
+    """Return the outputs at the end of a communication grid, by the WebAssembly module."""
+    web = load_web_module()
     size = 8 * web.slots["SIZE"]
     web.exports["memory"].write(web.store, bytes(size), web.address)
     web.set(**{**web.starts, **drawn.values})
@@ -83,19 +83,19 @@ def by_web(drawn: ParameterSet, grid: Sequence[float]) -> Bits:
             return (NOT,)
         time = target
     memory = web.memory()
-    return hexadecimal([float(memory[web.slots[name]]) for name in (*STATE, *STEP)])
+    return to_hexadecimal([float(memory[web.slots[name]]) for name in (*STATE, *STEP)])
 
 
 @functools.cache
-def arm() -> Any:
-    """Return the C importer with the FMU's 64-bit ARM binary; None where nothing runs them here."""
+def arm_importer() -> Any:
+    """Return the importer with the FMU's 64-bit ARM binary; None if it cannot run here."""
     from fmu_src.export import forms
     from tools import importers
 
-    command = importers.ziglang("aarch64-linux-gnu.2.28")
+    command = importers.zig_compiler("aarch64-linux-gnu.2.28")
     if shutil.which(ARM[0]) is None or not Path(ARM[2]).is_dir() or command is None:
         return None
-    folder = temporary() / "arm"
+    folder = temporary_folder() / "arm"
     forms.export(OSCILLATOR, "fmi3", folder, ("x86_64-linux", "aarch64-linux"))
     path = folder / "fmi3" / f"{OSCILLATOR}.fmu"
     program = importers.compile_importer("fmi3", path, folder / "importer", command)
@@ -104,22 +104,22 @@ def arm() -> Any:
     return importers.Importer(program, Path(binary), "fmi3")
 
 
-def by_arm(drawn: ParameterSet, grid: Sequence[float]) -> Bits:
-    """Compute the outputs at the end of a grid with the ARM binary under an emulator."""
+def simulate_by_arm(drawn: ParameterSet, grid: Sequence[float]) -> Bits:
+    """Return the outputs at the end of a grid, by the ARM binary under an emulator."""
     names, values = (*STATE, *STEP), {k: float(v) for k, v in drawn.values.items()}
     settings = [f"{name}={value.hex()}" for name, value in values.items()]
-    program, times = arm(), [drawn.start_time, *grid]
+    program, times = arm_importer(), [drawn.start_time, *grid]
     done = program.run(
         "simulate", ",".join(names), *settings, under=ARM, times=times, success=False
     )
     rows = [line.split() for line in done.stdout.splitlines() if not line.startswith("CHECKS")]
     if done.returncode:
         return (NOT,)
-    return hexadecimal([float.fromhex(cell) for cell in rows[-1]])
+    return to_hexadecimal([float.fromhex(cell) for cell in rows[-1]])
 
 
-def reachable(start: float, grid: Sequence[float]) -> list[float]:
-    """Return the grid points that a step from the one before reaches to the last bit.
+def reachable_points(start: float, grid: Sequence[float]) -> list[float]:
+    """Return the grid points that steps reach to the last bit.
 
     A master's step ends at ``time + (target - time)``, which may be the number beside the target;
     the end would then be another one on another grid.
@@ -134,27 +134,29 @@ def reachable(start: float, grid: Sequence[float]) -> list[float]:
     return [*points[1:], end]
 
 
-def differences(drawn: ParameterSet, on_arm: bool) -> list[str]:
-    """Return a line for each pair of computations of a motion that differ in a bit."""
+def bit_differences(drawn: ParameterSet, on_arm: bool) -> list[str]:
+    """Return a line for each pair of computations whose outputs differ in a bit."""
     wrong: list[str] = []
-    grids = [reachable(drawn.start_time, grid) for grid in drawn.grids()]
-    first = [by_fmu(find(OSCILLATOR).path, drawn, grid) for grid in grids]
+    grids = [reachable_points(drawn.start_time, grid) for grid in drawn.grids()]
+    first = [simulate_by_fmu(find(OSCILLATOR).path, drawn, grid) for grid in grids]
     for i, bits in enumerate(first[1:], 1):
         if bits[: len(STATE)] != first[0][: len(STATE)]:
-            wrong.append(f"grid {i}: {different(bits, first[0])}")
+            wrong.append(f"grid {i}: {differing_outputs(bits, first[0])}")
     last = len(grids) - 1
-    others = {form: by_fmu(find(OSCILLATOR, form).path, drawn, grids[last]) for form in FORMS[1:]}
-    others["wasm"] = by_web(drawn, grids[last])
+    others = {
+        form: simulate_by_fmu(find(OSCILLATOR, form).path, drawn, grids[last]) for form in FORMS[1:]
+    }
+    others["wasm"] = simulate_by_web(drawn, grids[last])
     if on_arm:
-        others["aarch64-linux"] = by_arm(drawn, grids[last])
+        others["aarch64-linux"] = simulate_by_arm(drawn, grids[last])
     for name, bits in others.items():
         if bits != first[last] and not (name == "wasm" and NOT in (*bits, *first[last])):
-            wrong.append(f"{name}: {different(bits, first[last])}")
+            wrong.append(f"{name}: {differing_outputs(bits, first[last])}")
     return wrong
 
 
-def different(one: Bits, other: Bits) -> str:
-    """Return the names of the outputs that differ."""
+def differing_outputs(one: Bits, other: Bits) -> str:
+    """Return the names of the outputs that differ between two computations."""
     if NOT in (*one, *other):
         return "one of them does not get there"
     names = (*STATE, *STEP)
@@ -162,7 +164,7 @@ def different(one: Bits, other: Bits) -> str:
     return ", ".join(name for name, a, b in pairs if a != b)
 
 
-class Grids(Campaign):
+class BitCampaign(Campaign):
     """Campaign: a motion has the same bits on all grids, forms and platforms."""
 
     name = "bits"
@@ -179,16 +181,16 @@ class Grids(Campaign):
     )
     unit, target, batch = "parameter sets", 10_000, 250
 
-    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Compute ``count`` motions in all ways and compare their bits."""
+    def run(self, fmu: Path, seed: int, count: int) -> BatchOutcome:
+        """Compute ``count`` motions in all ways and compare their bits; return the outcome."""
         notes: list[str] = []
         findings, on_arm = 0, 0
         for number in range(count):
-            drawn = parameter_sets.draw(seed, number)
+            drawn = parameter_sets.draw_parameter_set(seed, number)
             asked = number % ARM_EVERY == ARM_EVERY - 1 and sys.platform == "linux"
-            asked = asked and arm() is not None
+            asked = asked and arm_importer() is not None
             on_arm += asked
-            lines = differences(drawn, asked)
+            lines = bit_differences(drawn, asked)
             findings += bool(lines)
             notes += [f"seed {seed}, set {number} ({drawn.kind}): {line}" for line in lines]
-        return Outcome(count, findings, counts={"on ARM:": on_arm}, notes=tuple(notes))
+        return BatchOutcome(count, findings, counts={"on ARM:": on_arm}, notes=tuple(notes))

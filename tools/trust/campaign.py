@@ -1,6 +1,4 @@
-"""What a campaign is: a promise that is attacked by a seed, in batches that know nothing of each
-other.
-"""
+"""Base class of campaigns: a promise attacked in independent batches, each from a seed."""
 
 from __future__ import annotations
 
@@ -12,8 +10,8 @@ from typing import Any, ClassVar
 
 
 @dataclass(frozen=True)
-class Outcome:
-    """Result of a batch.
+class BatchOutcome:
+    """Result of a batch: units done, findings, counts and notes.
 
     Attributes
     ----------
@@ -40,7 +38,7 @@ class Outcome:
 
 
 class Campaign(ABC):
-    """A promise, and how a campaign attacks it.
+    """A promise, and how a campaign attacks it; subclasses define ``run``.
 
     Attributes
     ----------
@@ -71,8 +69,8 @@ class Campaign(ABC):
     package: ClassVar[bool] = False
 
     @abstractmethod
-    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Attack the promise with ``count`` units of a seed.
+    def run(self, fmu: Path, seed: int, count: int) -> BatchOutcome:
+        """Attack the promise with ``count`` units from a seed; return the outcome.
 
         Parameters
         ----------
@@ -85,7 +83,7 @@ class Campaign(ABC):
         """
 
     def report(self, rows: Sequence[Sequence[Any]]) -> list[str]:
-        """Return lines of Markdown for the ledger's page, from the rows of all its runs."""
+        """Return Markdown lines for the ledger's page, from the measured rows of all runs."""
         return []
 
     def draw(self, rows: Sequence[Sequence[Any]], folder: Path) -> list[Path]:

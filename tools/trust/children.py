@@ -1,6 +1,4 @@
-"""Commands in forked children: what is imported already is not imported again, so that a thousand
-of them take minutes.
-"""
+"""Run commands in forked children, which need no imports: a thousand take minutes."""
 
 from __future__ import annotations
 
@@ -27,7 +25,7 @@ PATIENCE = 60.0  # s
 
 @dataclass(frozen=True)
 class FinishedCommand:
-    """Result of a command that has ended.
+    """Result of a command that has ended: exit code, output, error output, seconds.
 
     Attributes
     ----------
@@ -45,12 +43,12 @@ class FinishedCommand:
 
     @property
     def lines(self) -> list[str]:
-        """The stripped lines of the error output, no empty ones and no progress bar."""
+        """Lines of the error output, without empty ones and progress bars."""
         parts = (part.strip() for part in re.split(r"[\r\n]+", self.err))
         return [part for part in parts if part and not re.search(r"\d+%\|", part)]
 
 
-class Child:
+class ChildCommand:
     """A command that runs in a forked child.
 
     Parameters
@@ -78,52 +76,53 @@ class Child:
         sys.stdout.flush()
         self.pid = os.fork()
         if self.pid == 0:
-            live(arguments, self.files, folder, prepare, environment or {})
-        self.ended: FinishedCommand | None = None
+            run_child(arguments, self.files, folder, prepare, environment or {})
+        self.finished: FinishedCommand | None = None
 
-    def running(self) -> bool:
+    def is_running(self) -> bool:
         """Return whether the command still runs."""
-        if self.ended is None:
+        if self.finished is None:
             pid, status = os.waitpid(self.pid, os.WNOHANG)
             if pid:
-                self._take(status)
-        return self.ended is None
+                self._read_result(status)
+        return self.finished is None
 
-    def send(self, number: int) -> None:
-        """Send a signal to the child and to all that it has started."""
-        if self.running():
+    def send_signal(self, number: int) -> None:
+        """Send a signal to the child and to all processes that it has started."""
+        if self.is_running():
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(self.pid, number)
 
     def wait(self, patience: float = PATIENCE) -> FinishedCommand:
         """Wait for the end and return it; kill the child after ``patience`` s."""
         stop = time.monotonic() + patience
-        while self.running():
+        while self.is_running():
             if time.monotonic() > stop:
-                self.send(signal.SIGKILL)
+                self.send_signal(signal.SIGKILL)
                 _, status = os.waitpid(self.pid, 0)
-                self._take(status)
+                self._read_result(status)
                 break
             time.sleep(0.002)
-        assert self.ended is not None
-        return self.ended
+        assert self.finished is not None
+        return self.finished
 
-    def _take(self, status: int) -> None:
+    def _read_result(self, status: int) -> None:
+        """Store the result of an ended child, from its wait status and output files."""
         code = os.waitstatus_to_exitcode(status)
         out, err = (path.read_text("utf-8", "replace") for path in self.files)
         for path in self.files:
             path.unlink()
-        self.ended = FinishedCommand(code, out, err, time.monotonic() - self.begun)
+        self.finished = FinishedCommand(code, out, err, time.monotonic() - self.begun)
 
 
-def live(
+def run_child(
     arguments: list[str],
     files: list[Path],
     folder: Path,
     prepare: Callable[[], object] | None,
     environment: Mapping[str, str],
 ) -> None:
-    """Run the command in the forked child; does not return."""
+    """Run the command in the forked child, and exit the process: never returns."""
     code = 70
     try:
         os.setsid()
@@ -139,7 +138,7 @@ def live(
         atexit._clear()  # type: ignore[attr-defined]
         if prepare:
             prepare()
-        code = call(arguments)
+        code = run_command(arguments)
     finally:
         sys.stdout.flush()
         sys.stderr.flush()
@@ -147,8 +146,8 @@ def live(
         os._exit(code)
 
 
-def call(arguments: list[str]) -> int:
-    """Run a command; return its exit code and print uncaught errors as the interpreter does."""
+def run_command(arguments: list[str]) -> int:
+    """Run a command; return its exit code, print uncaught errors as Python does."""
     from orchestrate.cli import main
 
     try:
@@ -163,7 +162,7 @@ def call(arguments: list[str]) -> int:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
-def in_little_memory() -> None:
+def limit_memory() -> None:
     """Limit memory and file size of this process, for input that may exhaust them."""
     pages = int(Path("/proc/self/statm").read_text().split()[0])
     most = pages * resource.getpagesize() + MEMORY

@@ -1,4 +1,4 @@
-"""A Dask scheduler and its workers, killed while a command computes on them."""
+"""Campaign on Dask clusters: schedulers and workers killed while a command computes."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
-from .trials import Disturbances, Trial, format_end, in_a_line
+from .trials import DisturbanceCampaign, Trial, format_end, message_problem
 
 START = 60.0  # s
 CONNECTING = 1.0  # s
 
 
-def forked(life: Callable[[], Coroutine[Any, Any, None]], log: Path) -> int:
+def fork_coroutine(life: Callable[[], Coroutine[Any, Any, None]], log: Path) -> int:
     """Fork a process that runs a coroutine; return its process id."""
     pid = os.fork()
     if pid:
@@ -36,8 +36,8 @@ def forked(life: Callable[[], Coroutine[Any, Any, None]], log: Path) -> int:
         os._exit(1)
 
 
-class Nodes:
-    """A scheduler and two workers.
+class DaskNodes:
+    """A Dask scheduler and two workers as processes.
 
     Parameters
     ----------
@@ -52,26 +52,26 @@ class Nodes:
 
     def start(self) -> None:
         """Start the scheduler at an address of its own, and its workers."""
-        place = self.folder / "address"
-        place.unlink(missing_ok=True)
-        self.scheduler = forked(lambda: schedule(place), self.folder / "log")
+        path = self.folder / "address"
+        path.unlink(missing_ok=True)
+        self.scheduler = fork_coroutine(lambda: run_scheduler(path), self.folder / "log")
         self.pids.append(self.scheduler)
         stop = time.monotonic() + START
-        while not place.exists():
+        while not path.exists():
             assert time.monotonic() < stop, (self.folder / "log").read_text()[-1000:]
             time.sleep(0.01)
-        self.address = place.read_text()
+        self.address = path.read_text()
         self.workers = [self.start_worker() for _ in range(2)]
 
     def start_worker(self, version: str = "") -> int:
         """Start one more worker; ``version`` makes its sources differ."""
         folder = str(self.folder)
-        pid = forked(lambda: work(self.address, folder, version), self.folder / "log")
+        pid = fork_coroutine(lambda: run_worker(self.address, folder, version), self.folder / "log")
         self.pids.append(pid)
         return pid
 
     def kill(self, pid: int) -> None:
-        """Kill a process by SIGKILL."""
+        """Kill the scheduler's or a worker's process by SIGKILL."""
         if pid in self.pids:
             self.pids.remove(pid)
             with suppress(ProcessLookupError):
@@ -79,13 +79,13 @@ class Nodes:
             os.waitpid(pid, 0)
 
     def close(self) -> None:
-        """End all processes."""
+        """End the scheduler's and all workers' processes."""
         for pid in list(self.pids):
             self.kill(pid)
 
 
-async def schedule(place: Path) -> None:
-    """Run a scheduler."""
+async def run_scheduler(place: Path) -> None:
+    """Run a scheduler that writes its address to a file."""
     from distributed import Scheduler
 
     async with Scheduler(host="127.0.0.1", port=0, dashboard=False) as scheduler:
@@ -95,8 +95,8 @@ async def schedule(place: Path) -> None:
         await scheduler.finished()
 
 
-async def work(address: str, folder: str, version: str) -> None:
-    """Run a worker."""
+async def run_worker(address: str, folder: str, version: str) -> None:
+    """Run a worker of the scheduler at an address."""
     from distributed import Worker
 
     if version:
@@ -110,10 +110,10 @@ async def work(address: str, folder: str, version: str) -> None:
 
 
 @dataclass
-class OnCluster(Trial):
+class ClusterTrial(Trial):
     """Trial of a command that computes on a cluster."""
 
-    nodes: Nodes
+    nodes: DaskNodes
 
     def arguments(self) -> list[str]:
         """Return the arguments of the command."""
@@ -124,39 +124,39 @@ class OnCluster(Trial):
         time.sleep(self.chance.uniform(0.0, self.seconds + CONNECTING))
 
 
-def worker_killed(trial: OnCluster) -> str:
-    """Kill one of two workers; another one joins later."""
+def kill_worker(trial: ClusterTrial) -> str:
+    """Kill one of two workers; another one joins later. Return what is wrong ("")."""
     child = trial.start()
     trial.wait_a_moment()
     trial.nodes.kill(trial.nodes.workers.pop(trial.chance.randrange(2)))
     trial.nodes.workers.append(trial.nodes.start_worker())
     ended = child.wait()
-    return format_end(ended) if ended.code else trial.verdict()
+    return format_end(ended) if ended.code else trial.result_problem()
 
 
-def scheduler_killed(trial: OnCluster) -> str:
-    """Kill the scheduler: the command ends with one line; on another cluster it goes on."""
+def kill_scheduler(trial: ClusterTrial) -> str:
+    """Kill the scheduler; check the error line, go on elsewhere. Return what is wrong ("")."""
     child = trial.start()
     trial.wait_a_moment()
     trial.nodes.kill(trial.nodes.scheduler)
     ended = child.wait()
     trial.nodes.close()
     trial.nodes.start()
-    return in_a_line(ended) or trial.goes_on()
+    return message_problem(ended) or trial.run_again()
 
 
-def wrong_version(trial: OnCluster) -> str:
+def join_wrong_version(trial: ClusterTrial) -> str:
     """Let a worker with other sources join: its chunks must be refused."""
     pid = trial.nodes.start_worker("0.0.1")
     child = trial.start()
     trial.wait_a_moment()
     ended = child.wait()
     trial.nodes.kill(pid)
-    return in_a_line(ended) or trial.goes_on()
+    return message_problem(ended) or trial.run_again()
 
 
-class Clusters(Disturbances):
-    """Campaign: faults of a Dask cluster."""
+class ClusterCampaign(DisturbanceCampaign):
+    """Campaign: commands on a Dask cluster survive the loss of workers and scheduler."""
 
     name = "cluster"
     title = "Dask"
@@ -170,19 +170,19 @@ class Clusters(Disturbances):
     )
     target, batch = 100, 12
     faults: ClassVar[Mapping[str, Callable[[Any], str]]] = {
-        "worker killed": worker_killed,
-        "scheduler killed": scheduler_killed,
-        "wrong version": wrong_version,
+        "worker killed": kill_worker,
+        "scheduler killed": kill_scheduler,
+        "wrong version": join_wrong_version,
     }
 
     @contextmanager
     def trials(self, holder: Path) -> Iterator[Callable[..., Trial]]:
-        """Start a cluster and return what makes trials on it."""
+        """Start a cluster and yield a function that makes trials on it."""
         import distributed
 
         assert distributed.Scheduler and distributed.Worker  # imported once, for all that is forked
-        nodes = Nodes(holder / "nodes")
+        nodes = DaskNodes(holder / "nodes")
         try:
-            yield functools.partial(OnCluster, nodes=nodes)
+            yield functools.partial(ClusterTrial, nodes=nodes)
         finally:
             nodes.close()

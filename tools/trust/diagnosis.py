@@ -1,4 +1,4 @@
-"""Verdicts on random beams of the virtual benches, beside two signs that need no model."""
+"""Campaign on diagnoses: verdicts and signs on random beams of the virtual benches."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from orchestrate.errors import VibroimpactError
 from tools.benches.recipe import Case, Conditions, Truth, draw
 
 from . import signs
-from .campaign import Campaign, Outcome
+from .campaign import BatchOutcome, Campaign
 from .diagnosis_rows import (
     COLUMNS,
     DELAMINATED,
@@ -37,8 +37,8 @@ PART_USUAL = 0.6
 VISIBLE = 2e-5  # m: a gap that opens less may be overlooked
 
 
-class Diagnosis(Campaign):
-    """Campaign: verdicts on random beams."""
+class DiagnosisCampaign(Campaign):
+    """Campaign: verdicts on random beams, judged by the truth."""
 
     name = "diagnosis"
     title = "Is this beam delaminated?"
@@ -61,77 +61,79 @@ class Diagnosis(Campaign):
     measures = "error of f1 or f2, in percent, where a beam is rightly called delaminated"
     package = True
 
-    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Draw beams, shake them, and diagnose their records."""
+    def run(self, fmu: Path, seed: int, count: int) -> BatchOutcome:
+        """Draw beams, shake them, and diagnose their records; return the outcome."""
         rows, notes, counts = [], [], Counter[str]()
         for number in range(count):
-            case = case_of(seed, number)
-            row = judged(case)
+            case = draw_case(seed, number)
+            row = judge_case(case)
             rows.append([row[name] for name in COLUMNS])
             counts[f"{row['kind']}, {row['verdict']}:"] += 1
             if row["wrong"]:
-                notes.append(f"seed {seed}, beam {number}: {described(case.truth)}: {row['wrong']}")
+                notes.append(
+                    f"seed {seed}, beam {number}: {describe_beam(case.truth)}: {row['wrong']}"
+                )
         places = [COLUMNS.index(name) for name in ("f1 error", "f2 error")]
         errors = [abs(row[at]) for row in rows for at in places if row[at] is not None]
         worst = 100.0 * max(errors, default=0.0)
-        return Outcome(count, len(notes), worst, dict(counts), tuple(notes), tuple(rows))
+        return BatchOutcome(count, len(notes), worst, dict(counts), tuple(notes), tuple(rows))
 
     def report(self, rows: Sequence[Sequence[Any]]) -> list[str]:
-        """Return the tables for the page."""
+        """Return the tables for the ledger's page."""
         from . import diagnosis_tables
 
-        return diagnosis_tables.lines(rows)
+        return diagnosis_tables.table_lines(rows)
 
     def draw(self, rows: Sequence[Sequence[Any]], folder: Path) -> list[Path]:
-        """Draw the curves for the page."""
+        """Draw the ROC curves for the ledger's page; return their paths."""
         from . import diagnosis_tables
 
         return [diagnosis_tables.draw(rows, folder / diagnosis_tables.PICTURE)]
 
 
-def case_of(seed: int, number: int) -> Case:
-    """Draw a beam of a batch; its kind follows from its number and its seed."""
+def draw_case(seed: int, number: int) -> Case:
+    """Draw a beam of a batch; its kind follows from its number and seed."""
     rng = np.random.default_rng([seed, number])
     kind = KINDS[(seed + number) % len(KINDS)]
     noise = USUAL if rng.random() < PART_USUAL else WIDE
     return draw(rng, kind, Conditions(noise=noise, excitation="any"))
 
 
-def judged(case: Case) -> dict[str, Any]:
-    """Return a row of the results: the truth, the signs, and the detector's verdict."""
+def judge_case(case: Case) -> dict[str, Any]:
+    """Return a row of results on a case: truth, signs, and the detector's verdict."""
     truth, setup = case.truth, case.truth.setup
     begin = time.process_time()
     verdict, parameters, message = run_detector(case)
     seconds = time.process_time() - begin
     right = verdict == DELAMINATED
-    errors = errors_of(parameters, truth) if right else {}
-    deviations = deviations_of(parameters, truth) if right else {}
+    errors = frequency_errors(parameters, truth) if right else {}
+    deviations = normalized_deviations(parameters, truth) if right else {}
     return {
         "kind": truth.kind,
         "delaminated": int(truth.is_delaminated),
         "opened": int(truth.opened),
         "touched": int(truth.touched),
-        "gap": rounded(truth.largest_gap),
-        "noise": rounded(setup.noise),
-        "level": rounded(setup.level),
+        "gap": round_or_none(truth.largest_gap),
+        "noise": round_or_none(setup.noise),
+        "level": round_or_none(setup.level),
         "sensors": setup.sensors,
         "excitation": setup.excitation,
-        "size": rounded(truth.size),
-        "clearance": rounded(truth.clearance),
-        "change": rounded(truth.change),
-        "order ratio": rounded(signs.order_ratio(case.record)),
-        "kurtosis": rounded(signs.kurtosis_above(case.record)),
+        "size": round_or_none(truth.size),
+        "clearance": round_or_none(truth.clearance),
+        "change": round_or_none(truth.change),
+        "order ratio": round_or_none(signs.order_ratio(case.record)),
+        "kurtosis": round_or_none(signs.kurtosis_above(case.record)),
         "verdict": verdict,
-        "ratio": rounded(parameters.get("ratio", math.nan)),
+        "ratio": round_or_none(parameters.get("ratio", math.nan)),
         **{f"{name} error": errors.get(name) for name in ("f1", "f2")},
         **{f"{name} deviation": deviations.get(name) for name in FITTED},
-        "seconds": rounded(seconds),
-        "wrong": wrong_in(verdict, truth, message, parameters.get("smallest", 0.0)),
+        "seconds": round_or_none(seconds),
+        "wrong": verdict_problem(verdict, truth, message, parameters.get("smallest", 0.0)),
     }
 
 
-class Answer(NamedTuple):
-    """The detector's answer.
+class DetectorAnswer(NamedTuple):
+    """The detector's answer: verdict and numbers.
 
     Attributes
     ----------
@@ -149,14 +151,14 @@ class Answer(NamedTuple):
     message: str = ""
 
 
-def run_detector(case: Case) -> Answer:
-    """Run :func:`orchestrate.detect` on a case; return its verdict and its numbers."""
+def run_detector(case: Case) -> DetectorAnswer:
+    """Run :func:`orchestrate.detect` on a case; return its verdict and numbers."""
     try:
         answer = orchestrate.detect(case.record, case.guess, jobs=1, progress=False)
     except VibroimpactError as error:
-        return Answer(REFUSED, {}, str(error))
+        return DetectorAnswer(REFUSED, {}, str(error))
     except FAILURES as error:
-        return Answer(FAILED, {}, f"{type(error).__name__}: {error}")
+        return DetectorAnswer(FAILED, {}, f"{type(error).__name__}: {error}")
     names = [str(name) for name in answer.hypothesis.values if str(name).startswith(DELAMINATED)]
     best = min(names, key=lambda name: float(answer.misfit.sel(hypothesis=name)))
     chosen = answer[["value", "standard_error"]].sel(hypothesis=best, parameter=list(FITTED))
@@ -164,33 +166,33 @@ def run_detector(case: Case) -> Answer:
     errors = chosen.standard_error.values.tolist()
     numbers |= {f"{name} error": error for name, error in zip(FITTED, errors, strict=True)}
     numbers |= {"ratio": float(answer.ratio), "smallest": float(answer.smallest_opening)}
-    return Answer(str(answer.verdict.item()), numbers)
+    return DetectorAnswer(str(answer.verdict.item()), numbers)
 
 
-def errors_of(parameters: Mapping[str, float], truth: Truth) -> dict[str, float | None]:
+def frequency_errors(parameters: Mapping[str, float], truth: Truth) -> dict[str, float | None]:
     """Return relative errors of two masses' frequencies; empty for finite elements."""
     if not math.isnan(truth.size) or not truth.is_delaminated:
         return {}
     return {
-        name: rounded(parameters[name] / getattr(truth, name) - 1.0)
+        name: round_or_none(parameters[name] / getattr(truth, name) - 1.0)
         for name in ("f1", "f2")
         if math.isfinite(parameters.get(name, math.nan))
     }
 
 
-def deviations_of(parameters: Mapping[str, float], truth: Truth) -> dict[str, float | None]:
-    """Return parameters' errors of two masses over stated standard errors; None if unknown."""
+def normalized_deviations(parameters: Mapping[str, float], truth: Truth) -> dict[str, float | None]:
+    """Return parameters' errors over their stated standard errors; None if unknown."""
     if not math.isnan(truth.size) or not truth.is_delaminated:
         return {}
     every = {}
     for name in FITTED:
         known = truth.restitution if name == "e" else getattr(truth, name)
         stated = parameters.get(f"{name} error", math.nan)
-        every[name] = rounded((parameters.get(name, math.nan) - known) / (stated or math.nan))
+        every[name] = round_or_none((parameters.get(name, math.nan) - known) / (stated or math.nan))
     return every
 
 
-def wrong_in(verdict: str, truth: Truth, message: str = "", smallest: float = 0.0) -> str:
+def verdict_problem(verdict: str, truth: Truth, message: str = "", smallest: float = 0.0) -> str:
     """Return what is wrong with a verdict; empty where nothing is.
 
     Parameters
@@ -216,8 +218,8 @@ def wrong_in(verdict: str, truth: Truth, message: str = "", smallest: float = 0.
     return ""
 
 
-def described(truth: Truth) -> str:
-    """Format a beam in a few words."""
+def describe_beam(truth: Truth) -> str:
+    """Return a few words on a beam, from its truth."""
     setup = truth.setup
     text = f"{truth.kind}, {setup.excitation}, {setup.level:.3g} m/s2, noise {setup.noise:.2g}"
     text += f", {setup.sensors} sensors"
@@ -226,6 +228,6 @@ def described(truth: Truth) -> str:
     return text + "".join(shown)
 
 
-def rounded(value: float) -> float | None:
-    """Round to three digits; None for NaN."""
+def round_or_none(value: float) -> float | None:
+    """Return a number rounded to three digits; None for NaN."""
     return float(f"{value:.3g}") if math.isfinite(value) else None

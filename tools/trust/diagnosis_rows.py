@@ -1,4 +1,4 @@
-"""What a record of the campaign on verdicts keeps of each beam, and its words."""
+"""Column names of the rows that the campaign on diagnoses keeps of each beam."""
 
 DELAMINATED, NO_OPENING = "delaminated", "no opening seen"
 NOT_DESCRIBED, UNDECIDED = "not described", "undecided"

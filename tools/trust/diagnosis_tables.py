@@ -1,4 +1,4 @@
-"""Rates and curves of the campaign on verdicts, from the rows of its records."""
+"""Tables and ROC curves of the campaign on diagnoses, from the rows of its runs."""
 
 from __future__ import annotations
 
@@ -35,14 +35,14 @@ NOISE, LEVEL, SIZE = (0.001, 0.01, 0.03, 0.1), (2.0, 4.5, 10.0), (0.1, 0.3, 0.5,
 FALSE = 0.05  # part of false ones at which signs are compared
 
 
-def table_of(rows: Sequence[Sequence[Any]]) -> pd.DataFrame:
-    """Return rows as a table with named columns."""
+def make_table(rows: Sequence[Sequence[Any]]) -> pd.DataFrame:
+    """Return rows as a pandas table with named columns."""
     return pd.DataFrame(list(rows), columns=list(COLUMNS))
 
 
-def lines(rows: Sequence[Sequence[Any]]) -> list[str]:
-    """Return the lines of all tables."""
-    table = table_of(rows)
+def table_lines(rows: Sequence[Sequence[Any]]) -> list[str]:
+    """Return the Markdown lines of all tables for the ledger's page."""
+    table = make_table(rows)
     return [
         *verdict_lines(table),
         "",
@@ -56,18 +56,18 @@ def lines(rows: Sequence[Sequence[Any]]) -> list[str]:
 
 
 def verdict_lines(table: pd.DataFrame) -> list[str]:
-    """Return the lines of the table of verdicts by kind of beam."""
+    """Return Markdown lines of the table of verdicts by kind of beam."""
     head = " | ".join(VERDICTS)
-    found = [f"| beam | {head} | wrong |", "|---" * (len(VERDICTS) + 2) + "|"]
+    lines = [f"| beam | {head} | wrong |", "|---" * (len(VERDICTS) + 2) + "|"]
     for kind, own in table.groupby("kind", sort=True):
         counts = [int((own.verdict == verdict).sum()) for verdict in VERDICTS]
         cells = [str(kind), *map(str, counts), str(int((own.wrong != "").sum()))]
-        found.append(f"| {' | '.join(cells)} |")
-    return found
+        lines.append(f"| {' | '.join(cells)} |")
+    return lines
 
 
 def target_lines(table: pd.DataFrame) -> list[str]:
-    """Return the lines on the quantities that have targets."""
+    """Return Markdown lines on the quantities that have targets."""
     usual = table[table.noise.between(*USUAL) & (table.verdict != REFUSED)]
     compliant = usual[usual.kind.isin(("sound", "delaminated"))]
     nonlinear = usual[usual.kind.isin(NONLINEAR)]
@@ -75,42 +75,43 @@ def target_lines(table: pd.DataFrame) -> list[str]:
     errors = np.abs(compliant[["f1 error", "f2 error"]].astype(float).to_numpy().ravel())
     errors = 100.0 * errors[np.isfinite(errors)]
     wrong, undecided = (compliant.wrong != "").sum(), (compliant.verdict == UNDECIDED).sum()
-    found = [
+    lines = [
         "At 1 to 5 % noise, where the record was not refused:",
         "",
-        f"- two masses, sound or delaminated: wrong {roc.part(int(wrong), len(compliant))}; "
-        f"undecided {roc.part(int(undecided), len(compliant))};",
+        f"- two masses, sound or delaminated: wrong "
+        f"{roc.format_share(int(wrong), len(compliant))}; "
+        f"undecided {roc.format_share(int(undecided), len(compliant))};",
         f"- sound beams that harden, soften, rub or rattle in their clamp: called delaminated "
-        f"{roc.part(len(calm), len(nonlinear))};",
+        f"{roc.format_share(len(calm), len(nonlinear))};",
     ]
     if len(errors):
         median, nine = np.quantile(errors, (0.5, 0.9))
-        found.append(
+        lines.append(
             f"- f1 and f2 of two masses called delaminated ({len(errors)} numbers): median error "
             f"{median:.2f} %, nine of ten within {nine:.2f} %;"
         )
-    found += deviation_lines(compliant)
+    lines += deviation_lines(compliant)
     seconds = table.seconds.astype(float)
-    found.append(
+    lines.append(
         f"- a verdict takes {seconds.median():.1f} s of one processor in the median, "
         f"{seconds.max():.1f} s at most."
     )
-    return found
+    return lines
 
 
 def deviation_lines(table: pd.DataFrame) -> list[str]:
-    """How often stated 95 % intervals hold the truth, of each number."""
+    """Return Markdown lines on how often stated 95 % intervals hold the truth."""
     parts = []
     for name in FITTED:
         known = table[f"{name} deviation"].dropna().astype(float).abs()
         if len(known):
-            parts.append(f"{name} {roc.part(int((known <= WITHIN).sum()), len(known))}")
+            parts.append(f"{name} {roc.format_share(int((known <= WITHIN).sum()), len(known))}")
     return [f"- intervals of 95 % that hold the truth: {', '.join(parts)};"] if parts else []
 
 
 def curve_lines(table: pd.DataFrame) -> list[str]:
-    """Return the lines on areas under the signs' curves and the detector's rates, by group."""
-    found = [
+    """Return Markdown lines of areas under the ROC curves and detector rates, by group."""
+    lines = [
         "Beams that opened against sound ones: of each sign, and of the ratio of misfits by which "
         "the detector decides, the area under its curve with its standard error, and the part of "
         f"opened beams above the threshold that {100 * FALSE:.0f} % of the sound ones pass; of the "
@@ -120,78 +121,80 @@ def curve_lines(table: pd.DataFrame) -> list[str]:
         "called delaminated: opened | sound |",
         "|---|---|---|---|---|---|---|",
     ]
-    for name, own in (*groups(table), *groups_by_setup(table)):
+    for name, own in (*group_rows(table), *groups_by_setup(table)):
         if not has_both(own):
             continue
         opened, sound = own[own.opened == 1], own[own.delaminated == 0]
         cells = [name, f"{len(opened)}, {len(sound)}"]
         cells += [sign_cell(own, sign) for sign in SIGNS]
-        cells += [roc.part(int((g.verdict == DELAMINATED).sum()), len(g)) for g in (opened, sound)]
-        found.append(f"| {' | '.join(cells)} |")
-    return found
+        cells += [
+            roc.format_share(int((g.verdict == DELAMINATED).sum()), len(g)) for g in (opened, sound)
+        ]
+        lines.append(f"| {' | '.join(cells)} |")
+    return lines
 
 
 def sign_cell(table: pd.DataFrame, sign: str) -> str:
-    """Format a sign's area and its rate."""
-    found = curve_of(table, sign)
-    if found is None:
+    """Return a table cell with a sign's area under the curve and its rate."""
+    curve = sign_curve(table, sign)
+    if curve is None:
         return "none"
     known = table[table[sign].notna()]
     counts = int((known.opened == 1).sum()), int((known.delaminated == 0).sum())
-    error = roc.area_error(found.area, *counts)
-    return f"{found.area:.3f} ± {error:.3f}; {100.0 * found.true_at(FALSE):.0f} %"
+    error = roc.area_error(curve.area, *counts)
+    return f"{curve.area:.3f} ± {error:.3f}; {100.0 * curve.true_rate_at(FALSE):.0f} %"
 
 
-def curve_of(table: pd.DataFrame, sign: str) -> roc.Curve | None:
-    """Return the curve of a sign for opened against sound beams; None without both."""
+def sign_curve(table: pd.DataFrame, sign: str) -> roc.RocCurve | None:
+    """Return a sign's ROC curve for opened against sound beams; None without both."""
     known = table[table[sign].notna() & ((table.opened == 1) | (table.delaminated == 0))]
     positive = known.opened.to_numpy() == 1
     if not len(known) or positive.all() or not positive.any():
         return None
-    return roc.curve(known[sign].astype(float), positive)
+    return roc.compute_curve(known[sign].astype(float), positive)
 
 
-def groups(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
-    """Group rows: all beams, then intervals of noise, level and length of the delamination."""
+def group_rows(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
+    """Return groups of rows: all, then by noise, level and length of the delamination."""
     masses = table[table["size"].isna()]
-    found = [("all", table), ("two masses", masses)]
-    for low, high in roc.bins(NOISE):
-        found.append(
-            (f"noise {100 * low:g} to {100 * high:g} %", within(masses, "noise", low, high))
+    groups = [("all", table), ("two masses", masses)]
+    for low, high in roc.neighbour_pairs(NOISE):
+        groups.append(
+            (f"noise {100 * low:g} to {100 * high:g} %", rows_within(masses, "noise", low, high))
         )
-    for low, high in roc.bins(LEVEL):
-        found.append((f"level {low:g} to {high:g} m/s²", within(masses, "level", low, high)))
+    for low, high in roc.neighbour_pairs(LEVEL):
+        groups.append((f"level {low:g} to {high:g} m/s²", rows_within(masses, "level", low, high)))
     beams = table[table["size"].notna()]
-    for low, high in roc.bins(SIZE):
+    for low, high in roc.neighbour_pairs(SIZE):
         size = beams["size"].astype(float)
         own = beams[(beams.delaminated == 0) | ((size >= low) & (size < high))]
-        found.append((f"finite elements, {low:g} to {high:g} of the length", own))
-    return found
+        groups.append((f"finite elements, {low:g} to {high:g} of the length", own))
+    return groups
 
 
 def groups_by_setup(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
-    """Group two-mass rows by excitation, number of sensors, and kind of nonlinear sound beam."""
+    """Return groups of two-mass rows by excitation, number of sensors, kind of sound beam."""
     masses = table[table["size"].isna()]
-    found = [(f"excitation: {name}", own) for name, own in masses.groupby("excitation", sort=True)]
-    found += [(f"sensors: {count}", own) for count, own in masses.groupby("sensors", sort=True)]
+    groups = [(f"excitation: {name}", own) for name, own in masses.groupby("excitation", sort=True)]
+    groups += [(f"sensors: {count}", own) for count, own in masses.groupby("sensors", sort=True)]
     for kind in (*NONLINEAR, "sagging"):
         own = masses[(masses.kind == kind) | (masses.delaminated == 1)]
-        found.append((f"sound ones: {kind}", own))
-    return found
+        groups.append((f"sound ones: {kind}", own))
+    return groups
 
 
-def within(table: pd.DataFrame, name: str, low: float, high: float) -> pd.DataFrame:
-    """Return the rows with a number in an interval."""
+def rows_within(table: pd.DataFrame, name: str, low: float, high: float) -> pd.DataFrame:
+    """Return a table's rows in which the column ``name`` lies in an interval."""
     values = table[name].astype(float)
     return table[(values >= low) & (values < high)]
 
 
 def draw(rows: Sequence[Sequence[Any]], path: Path) -> Path:
-    """Draw the signs' curves and the detector's rates by noise, level and delamination size."""
+    """Draw ROC curves and detector rates by noise, level and delamination size."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    shown = [(name, own) for name, own in groups(table_of(rows)) if has_both(own)]
+    shown = [(name, own) for name, own in group_rows(make_table(rows)) if has_both(own)]
     across = 4
     down = -(-len(shown) // across)
     figure = Figure(figsize=(3.2 * across, 3.3 * down), layout="constrained")
@@ -209,20 +212,20 @@ def draw(rows: Sequence[Sequence[Any]], path: Path) -> Path:
 
 
 def has_both(table: pd.DataFrame) -> bool:
-    """Return whether there are opened and sound beams."""
+    """Return whether a table has both opened and sound beams."""
     return bool((table.opened == 1).sum() > 1 and (table.delaminated == 0).sum() > 1)
 
 
 def draw_panel(panel: Any, name: str, table: pd.DataFrame) -> None:
-    """Draw one group: a curve per sign, the detector as a point with 95 % intervals."""
+    """Draw one group of rows: a ROC curve per sign, the detector as a point with intervals."""
     opened, sound = table[table.opened == 1], table[table.delaminated == 0]
     for sign, (label, colour) in SIGNS.items():
-        found = curve_of(table, sign)
-        if found is not None:
-            panel.plot(found.false, found.true, color=colour, label=label)
+        curve = sign_curve(table, sign)
+        if curve is not None:
+            panel.plot(curve.false, curve.true, color=colour, label=label)
     counts = [(int((own.verdict == DELAMINATED).sum()), len(own)) for own in (sound, opened)]
     at = np.array([count / of for count, of in counts])
-    ends = np.array([roc.interval(*one) for one in counts])
+    ends = np.array([roc.wilson_interval(*one) for one in counts])
     bars = np.abs(ends - at[:, np.newaxis])[:, :, np.newaxis]
     style = {"fmt": "o", "color": "black", "label": "detect, with 95 % intervals"}
     panel.errorbar(*at, xerr=bars[0], yerr=bars[1], **style)

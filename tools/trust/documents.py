@@ -1,4 +1,4 @@
-"""TOML files, results and names as an enemy would write them, by a seed."""
+"""Write hostile TOML, CSV and result files, each from a seeded random generator."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ MARKUP = "</script><script>alert(1)</script><img src=x onerror=alert(1)>"
 LINES = "one\ntwo\r\nTraceback (most recent call last):\x1b[2J"
 
 
-def toml(place: Path, chance: random.Random) -> None:
+def write_toml(place: Path, chance: random.Random) -> None:
     """Write a hostile file of parameters."""
     depth = chance.choice((100, 1000, 100_000))
     digits = chance.choice((5000, 100_000))
@@ -47,8 +47,8 @@ def toml(place: Path, chance: random.Random) -> None:
     place.write_bytes(data)
 
 
-def course(place: Path, chance: random.Random) -> None:
-    """Write a hostile file of voltages over time."""
+def write_course(place: Path, chance: random.Random) -> None:
+    """Write a hostile CSV file of voltages over time."""
     count, digits = chance.choice((1000, 1_000_000)), chance.choice((400, 100_000))
     texts = (
         "0,1\n" * count,
@@ -76,13 +76,13 @@ def course(place: Path, chance: random.Random) -> None:
     place.write_bytes(data)
 
 
-def result(place: Path, chance: random.Random, good: Path) -> None:
-    """Write a hostile file of results."""
-    (damage if chance.random() < 0.4 else forged)(place, chance, good)
+def write_result(place: Path, chance: random.Random, good: Path) -> None:
+    """Write a hostile result file: damaged or forged."""
+    (write_damaged_result if chance.random() < 0.4 else write_forged_result)(place, chance, good)
 
 
-def damage(place: Path, chance: random.Random, good: Path) -> None:
-    """Write a good file cut short, or noise."""
+def write_damaged_result(place: Path, chance: random.Random, good: Path) -> None:
+    """Write a good result file cut short, or with noise."""
     data = good.read_bytes()
     kind = chance.randrange(3)
     if kind == 0:
@@ -93,8 +93,8 @@ def damage(place: Path, chance: random.Random, good: Path) -> None:
         place.write_bytes(data[:512] + chance.randbytes(len(data) - 512))
 
 
-def forged(place: Path, chance: random.Random, good: Path) -> None:
-    """Write a file of the right format with content that no result has."""
+def write_forged_result(place: Path, chance: random.Random, good: Path) -> None:
+    """Write a NetCDF file with content that no result has."""
     import netCDF4
 
     kind = chance.randrange(8)

@@ -1,4 +1,4 @@
-"""Commands that are interrupted, starved and damaged: asked again, they give the same bytes."""
+"""Campaign on faults: commands killed, starved, damaged; run again, they give the same bytes."""
 
 from __future__ import annotations
 
@@ -12,38 +12,39 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 
-from .trials import COMMANDS, Disturbances, Trial, format_end, in_a_line
+from .trials import COMMANDS, DisturbanceCampaign, Trial, format_end, message_problem
 
 # -- faults ---------------------------------------------------------------------------------------
 
 
-def killed(trial: Trial) -> str:
-    """Kill the command by SIGKILL at random moments, up to three times."""
+def kill_often(trial: Trial) -> str:
+    """Kill the command by SIGKILL up to three times; return what is wrong at the end ("")."""
     for _ in range(trial.chance.randint(1, 3)):
-        trial.struck(signal.SIGKILL)
-    return trial.goes_on()
+        trial.signal_and_wait(signal.SIGKILL)
+    return trial.run_again()
 
 
-def terminated(trial: Trial) -> str:
-    """Send SIGTERM at a random moment, go on by the same command; return what is wrong ("")."""
-    trial.struck(signal.SIGTERM)
-    return trial.goes_on()
+def terminate(trial: Trial) -> str:
+    """Send SIGTERM at a random moment, run the command again; return what is wrong ("")."""
+    trial.signal_and_wait(signal.SIGTERM)
+    return trial.run_again()
 
 
-def interrupted(trial: Trial) -> str:
-    """Press Ctrl-C at a random moment: expect one line and exit code 130."""
-    ended = trial.struck(signal.SIGINT)
+def interrupt(trial: Trial) -> str:
+    """Send Ctrl-C at a random moment, expect exit code 130; return what is wrong ("")."""
+    ended = trial.signal_and_wait(signal.SIGINT)
     if ended.code not in (0, 130, -signal.SIGINT) or (ended.code == 130 and len(ended.lines) > 1):
         return format_end(ended)
-    return trial.goes_on()
+    return trial.run_again()
 
 
-def full(trial: Trial) -> str:
-    """Limit the size of files, as a full disk does."""
+def fill_disk(trial: Trial) -> str:
+    """Limit the size of files, as a full disk does; return what is wrong ("")."""
     largest = max(map(len, trial.expected.values()))
     most = trial.chance.randrange(max(largest, 40_000))
 
     def limit() -> None:
+        """Limit the size of files that this process may write."""
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         import orchestrate.access as access
 
@@ -51,29 +52,29 @@ def full(trial: Trial) -> str:
             access.unpacked.unpacked(access.find(model))
         resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
 
-    wrong = in_a_line(trial.start(limit).wait())
-    return wrong or trial.goes_on()
+    wrong = message_problem(trial.start(limit).wait())
+    return wrong or trial.run_again()
 
 
-def read_only(trial: Trial) -> str:
-    """Run in a folder that cannot be written, or is a file: expect one line."""
+def forbid_writing(trial: Trial) -> str:
+    """Run in a folder that cannot be written, or is a file; return what is wrong ("")."""
     if trial.chance.random() < 0.5:
         trial.output.write_text("mine")
         ended = trial.start().wait()
-        if ended.code == 0 or in_a_line(ended) or trial.output.read_text() != "mine":
+        if ended.code == 0 or message_problem(ended) or trial.output.read_text() != "mine":
             return format_end(ended)
         trial.output.unlink()
-        return trial.goes_on()
+        return trial.run_again()
     trial.output.mkdir()
     trial.output.chmod(0o555)
-    ended = trial.start(as_nobody).wait()
+    ended = trial.start(drop_capabilities).wait()
     trial.output.chmod(0o755)
-    if ended.code == 0 or in_a_line(ended):
+    if ended.code == 0 or message_problem(ended):
         return format_end(ended)
-    return trial.goes_on()
+    return trial.run_again()
 
 
-def as_nobody() -> None:
+def drop_capabilities() -> None:
     """Drop root's right to write everywhere (Linux's capabilities 1 and 2)."""
     if os.geteuid() != 0:
         return
@@ -85,48 +86,48 @@ def as_nobody() -> None:
         libc.capset(header, held)
 
 
-def twice(trial: Trial) -> str:
-    """Run the same command twice at once: one computes; the other does too, or says why not."""
+def run_twice_at_once(trial: Trial) -> str:
+    """Run the same command twice at once; return what is wrong ("")."""
     first = trial.start()
     time.sleep(trial.chance.uniform(0.0, 0.5 * trial.seconds))
     second = trial.start()
     ends = first.wait(), second.wait()
     if 0 not in [end.code for end in ends]:
         return " and ".join(map(format_end, ends))
-    return in_a_line(ends[0]) or in_a_line(ends[1]) or trial.goes_on()
+    return message_problem(ends[0]) or message_problem(ends[1]) or trial.run_again()
 
 
-def damaged_journal(trial: Trial) -> str:
-    """Change bytes of the journal: expect a new computation, or an error with its remedy."""
-    trial.struck(signal.SIGKILL)
+def damage_journal(trial: Trial) -> str:
+    """Change bytes of the journal, run the command again; return what is wrong ("")."""
+    trial.signal_and_wait(signal.SIGKILL)
     journals = sorted(trial.output.glob("*.journal*")) if trial.output.exists() else []
     for path in journals:
-        spoil(path, trial.chance)
+        spoil_file(path, trial.chance)
     ended = trial.start().wait()
     if ended.code:
-        if in_a_line(ended):
+        if message_problem(ended):
             return format_end(ended)
         for path in trial.output.glob("*.journal*"):
             path.unlink()  # the remedy
-    return trial.goes_on()
+    return trial.run_again()
 
 
-def damaged_result(trial: Trial) -> str:
-    """Change bytes of a finished result: expect the same numbers, or an error with its remedy."""
+def damage_result(trial: Trial) -> str:
+    """Change bytes of a finished result, run again; return what is wrong ("")."""
     trial.start().wait()
     for path in trial.output.glob("*.nc"):
-        spoil(path, trial.chance)
+        spoil_file(path, trial.chance)
     ended = trial.start().wait()
-    if in_a_line(ended):
+    if message_problem(ended):
         return format_end(ended)
-    if ended.code == 0 and not same_content(trial):
+    if ended.code == 0 and not has_same_numbers(trial):
         return "a damaged result is taken as it is"
     for path in trial.output.glob("*.nc"):
         path.unlink()
-    return trial.goes_on()
+    return trial.run_again()
 
 
-def same_content(trial: Trial) -> bool:
+def has_same_numbers(trial: Trial) -> bool:
     """Return whether results on disk hold the expected numbers."""
     import xarray as xr
 
@@ -139,7 +140,7 @@ def same_content(trial: Trial) -> bool:
     return True
 
 
-def spoil(path: Path, chance: random.Random) -> None:
+def spoil_file(path: Path, chance: random.Random) -> None:
     """Damage a file: flip a bit, cut off the end, or write noise over a part."""
     data = bytearray(path.read_bytes())
     if not data:
@@ -156,19 +157,19 @@ def spoil(path: Path, chance: random.Random) -> None:
 
 
 FAULTS: dict[str, Callable[[Trial], str]] = {
-    "kill -9": killed,
-    "SIGTERM": terminated,
-    "Ctrl-C": interrupted,
-    "full disk": full,
-    "read-only": read_only,
-    "two at once": twice,
-    "damaged journal": damaged_journal,
-    "damaged NetCDF": damaged_result,
+    "kill -9": kill_often,
+    "SIGTERM": terminate,
+    "Ctrl-C": interrupt,
+    "full disk": fill_disk,
+    "read-only": forbid_writing,
+    "two at once": run_twice_at_once,
+    "damaged journal": damage_journal,
+    "damaged NetCDF": damage_result,
 }
 
 
-class Faults(Disturbances):
-    """Campaign: faults of a single command."""
+class FaultCampaign(DisturbanceCampaign):
+    """Campaign: commands that are killed, starved or damaged end well when run again."""
 
     name = "faults"
     title = "Faults"
@@ -186,5 +187,5 @@ class Faults(Disturbances):
     commands = (*(name for name in COMMANDS for _ in range(3) if name != "paper"), "paper")
 
     def trials(self, holder: Path) -> AbstractContextManager[Callable[..., Trial]]:
-        """Return what makes trials; nothing is needed around them."""
+        """Yield a function that makes trials; nothing is needed around them."""
         return nullcontext(Trial)

@@ -1,4 +1,4 @@
-"""Flights against a dense search, and their impacts against 50 digits and against the balances."""
+"""Campaigns on flights: roots against a dense search, 50 digits, and energy balances."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from . import programs
-from .campaign import Campaign, Outcome
+from .campaign import BatchOutcome, Campaign
 
 NAMES = (
     *("m1", "m2", "k1", "k2", "d1", "d2", "e", "box_amplitude", "box_frequency", "phase_start"),
@@ -30,7 +30,7 @@ CONTACT = 6  # the kind that is no flight
 
 @dataclass(frozen=True)
 class Flight:
-    """A flight as ``roots`` prints it: the dense search's verdict, impact or not, and its time."""
+    """A flight as the program ``roots`` prints it: dense search's verdict, impact, and time."""
 
     kind: int
     verdict: int
@@ -40,13 +40,13 @@ class Flight:
 
     @classmethod
     def read(cls, line: str) -> Flight:
-        """Parse a line of the program's output."""
+        """Return a flight from a line of the program's output."""
         _, kind, verdict, impact, end, *row = line.split()
         values = dict(zip(NAMES, map(float.fromhex, row), strict=True))
         return cls(int(kind), int(verdict), impact == "1", float.fromhex(end), values)
 
 
-class Roots(Campaign):
+class RootCampaign(Campaign):
     """Campaign: the certified root search against a dense search."""
 
     name = "roots"
@@ -62,10 +62,10 @@ class Roots(Campaign):
     )
     unit, target, batch = "flights", 100_000_000, 1_000_000
 
-    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Compute flights and compare both searches."""
+    def run(self, fmu: Path, seed: int, count: int) -> BatchOutcome:
+        """Compute flights and compare both searches; return the outcome."""
         counts, done, findings, notes = {}, 0, 0, []
-        for line in programs.run(fmu, "roots", seed, count).splitlines():
+        for line in programs.run_program(fmu, "roots", seed, count).splitlines():
             if line.startswith("FLIGHT"):
                 flight = Flight.read(line)
                 notes.append(f"seed {seed}: {WRONG[flight.verdict]}: {flight.values}")
@@ -75,10 +75,10 @@ class Roots(Campaign):
             counts["left out:"] = counts.get("left out:", 0) + int(left_out)
             findings += sum(map(int, wrong))
             done += int(right) + sum(map(int, wrong))
-        return Outcome(done, findings, counts=counts, notes=tuple(notes))
+        return BatchOutcome(done, findings, counts=counts, notes=tuple(notes))
 
 
-class Energy(Campaign):
+class EnergyCampaign(Campaign):
     """Campaign: momentum and energy balances of impacts."""
 
     name = "energy"
@@ -96,9 +96,9 @@ class Energy(Campaign):
     measures = "deviation"
     BOUND = 1e-12
 
-    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Compute impacts and check their balances."""
-        line = programs.run(fmu, "energy", seed, count).split()
+    def run(self, fmu: Path, seed: int, count: int) -> BatchOutcome:
+        """Compute impacts and check their balances; return the outcome."""
+        line = programs.run_program(fmu, "energy", seed, count).split()
         done, runs, failed = map(int, line[:3])
         parts = dict(
             zip(("momentum", "restitution", "energy", "sum"), map(float, line[3:]), strict=True)
@@ -106,10 +106,10 @@ class Energy(Campaign):
         wrong = [name for name, value in parts.items() if not value <= self.BOUND]
         notes = tuple(f"seed {seed}: {name} is off by {parts[name]:.1e}" for name in wrong)
         worst = max(parts.values())
-        return Outcome(done, len(wrong) + failed, worst, {"runs:": runs}, notes)
+        return BatchOutcome(done, len(wrong) + failed, worst, {"runs:": runs}, notes)
 
 
-class Impacts(Campaign):
+class ImpactCampaign(Campaign):
     """Campaign: ends of flights against 50 digits."""
 
     name = "impacts"
@@ -127,21 +127,21 @@ class Impacts(Campaign):
     unit, target, batch = "flights", 100_000, 500
     measures = "deviation in parts of the bound"
 
-    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Compute flights and compare their ends."""
+    def run(self, fmu: Path, seed: int, count: int) -> BatchOutcome:
+        """Compute flights and compare their ends; return the outcome."""
         done, worst, notes = 0, 0.0, []
-        for flight in flights(fmu, seed, count):
+        for flight in iterate_flights(fmu, seed, count):
             part = deviation(flight)
             done, worst = done + 1, max(worst, part)
             if not part <= 1.0:
                 notes.append(f"seed {seed}: {part:.3g} of the bound: {flight.values}")
-        return Outcome(done, len(notes), worst, notes=tuple(notes))
+        return BatchOutcome(done, len(notes), worst, notes=tuple(notes))
 
 
-def flights(fmu: Path, seed: int, count: int) -> Iterator[Flight]:
-    """Yield flights of a seed, contacts left out."""
+def iterate_flights(fmu: Path, seed: int, count: int) -> Iterator[Flight]:
+    """Yield the flights of a seed, without contacts."""
     checked = 0
-    for line in programs.run(fmu, "roots", seed, 2 * count, "show").splitlines():
+    for line in programs.run_program(fmu, "roots", seed, 2 * count, "show").splitlines():
         if line.startswith("FLIGHT") and checked < count:
             flight = Flight.read(line)
             if flight.kind != CONTACT:
@@ -150,7 +150,7 @@ def flights(fmu: Path, seed: int, count: int) -> Iterator[Flight]:
 
 
 def deviation(flight: Flight) -> float:
-    """Return a flight's error over the error that is allowed."""
+    """Return a flight's error over the allowed error."""
     from mpmath import mp
 
     from tools import exact_motion
@@ -158,10 +158,10 @@ def deviation(flight: Flight) -> float:
     values, end = flight.values, flight.end
     state = [values[name] for name in ("x1", "v1", "x2", "v2")]
     with mp.workdps(50):
-        first, second = exact_motion.apart(values, state, mp.mpf(values["phase_start"]))
-        gap = exact_motion.gap_of(values, first, second)
+        first, second = exact_motion.free_motion(values, state, mp.mpf(values["phase_start"]))
+        gap = exact_motion.gap_signal(values, first, second)
         speed = gap.derivative()
-        terms = size(first, end) + size(second, end) + abs(values["clearance"])
+        terms = term_size(first, end) + term_size(second, end) + abs(values["clearance"])
         if not flight.impact:
             return 0.0 if gap(end) > -exact_motion.ROUNDING * terms else float("inf")
         root = mp.mpf(end)
@@ -171,8 +171,8 @@ def deviation(flight: Flight) -> float:
         return float(abs(root - end) / allowed)
 
 
-def size(signal: Any, t: float) -> float:
-    """Return the sum of the magnitudes of a signal's terms, to which rounding is proportional."""
+def term_size(signal: Any, t: float) -> float:
+    """Return the sum of a signal's term magnitudes at a time, which scales rounding errors."""
     size, power = sum(abs(complex(c)) for c, _ in signal.terms), 1.0
     for k, part in enumerate(signal.polynomial):
         size += abs(float(part)) * power

@@ -1,4 +1,4 @@
-"""Forged results that become pages, and a browser that sees whether a script of theirs runs."""
+"""Forge results with markup, and check in a browser that pages made of them run no script."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from orchestrate.errors import InputError
-from tools.chromium import headless
+from tools.chromium import start_chromium
 
 CANARY = "window.canary = 1; document.title = 'canary'; alert(1)"
 KEPT = ("start", "direction", "over")  # texts that have to be what they are, or there is no page
@@ -27,7 +27,7 @@ READY = "return Boolean(window.explorer)"
 
 
 def payloads(address: str) -> list[str]:
-    """Return texts that run the canary, or request ``address``, if a page takes them for markup."""
+    """Return hostile texts that run a script or request ``address`` if taken for markup."""
     beacon = f"fetch('{address}')"
     return [
         f"</script><script>{CANARY}</script>",
@@ -57,8 +57,8 @@ def payloads(address: str) -> list[str]:
     ]
 
 
-def forged(place: Path, chance: random.Random, good: Any, address: str) -> None:
-    """Write a result of a sweep in which some texts, or all, are markup.
+def write_forged_sweep(place: Path, chance: random.Random, good: Any, address: str) -> None:
+    """Write a sweep's result in which some or all texts are markup.
 
     Parameters
     ----------
@@ -74,19 +74,19 @@ def forged(place: Path, chance: random.Random, good: Any, address: str) -> None:
     texts = [str(name) for name, value in data.attrs.items() if isinstance(value, str)]
     texts = [name for name in texts if name not in KEPT]
     chosen = texts if chance.random() < 0.3 else chance.sample(texts, chance.randint(1, 4))
-    data.attrs.update({name: wrapped(chance, bad) for name in chosen if name != "identity"})
+    data.attrs.update({name: pick_text(chance, bad) for name in chosen if name != "identity"})
     if "identity" in chosen:
-        data.attrs["identity"] = json.dumps({"question": wrapped(chance, bad)})
+        data.attrs["identity"] = json.dumps({"question": pick_text(chance, bad)})
     for array in data.variables.values():
-        array.attrs.update({name: wrapped(chance, bad) for name in array.attrs})
+        array.attrs.update({name: pick_text(chance, bad) for name in array.attrs})
     if chance.random() < 0.5:
-        letters = (letter for letter in wrapped(chance, bad) if letter.isprintable())
+        letters = (letter for letter in pick_text(chance, bad) if letter.isprintable())
         data.attrs["x" + "".join(letters).replace("/", "|").strip()[:200]] = "a name that is markup"
     data.to_netcdf(place, engine="netcdf4", encoding={name: {} for name in data.variables})
 
 
-def with_wrong_numbers(place: Path, chance: random.Random) -> None:
-    """Change an attribute or a variable of a forged result to a senseless value."""
+def write_wrong_number(place: Path, chance: random.Random) -> None:
+    """Change an attribute or variable of a forged result to a senseless value."""
     import xarray as xr
 
     wrong = ("heavy", math.nan, math.inf, -1.0, 0.0, 1e308, 5e-324, [1.0, 2.0], "[nan, 0, 0, 0]")
@@ -103,31 +103,31 @@ def with_wrong_numbers(place: Path, chance: random.Random) -> None:
     data.to_netcdf(place, engine="netcdf4", encoding={name: {} for name in data.variables})
 
 
-def forged_branch(place: Path, chance: random.Random, good: Any, address: str) -> None:
-    """Write a branch whose kinds of bifurcation are markup."""
+def write_forged_branch(place: Path, chance: random.Random, good: Any, address: str) -> None:
+    """Write a branch's result whose kinds of bifurcation are markup."""
     bad = payloads(address)
     data = good.copy()
     kinds = data.bifurcation_kind
-    words = [wrapped(chance, bad).replace(" ", "\t") for _ in np.atleast_1d(kinds.flag_values)]
+    words = [pick_text(chance, bad).replace(" ", "\t") for _ in np.atleast_1d(kinds.flag_values)]
     kinds.attrs["flag_meanings"] = " ".join("\xa0".join(word.split()) for word in words)
-    data.attrs.update({name: wrapped(chance, bad) for name in ("call", "source", "history")})
+    data.attrs.update({name: pick_text(chance, bad) for name in ("call", "source", "history")})
     data.to_netcdf(place, engine="netcdf4", encoding={name: {} for name in data.variables})
 
 
-def wrapped(chance: random.Random, bad: Sequence[str]) -> str:
-    """Return one of the texts, alone or inside another."""
+def pick_text(chance: random.Random, bad: Sequence[str]) -> str:
+    """Return one of the hostile texts, alone or inside another text."""
     text = chance.choice(bad).replace("\0", "")
     return chance.choice((text, f"vibroimpact 0.2.0{text}", f"{text}{chance.choice(bad)[:80]}"))
 
 
-class Window:
-    """Headless Chromium, with a server that no page may request anything from."""
+class BrowserWindow:
+    """Headless Chromium with a server that no page may request anything from."""
 
     def __init__(self, driver: Any, address: str, asked: list[str]) -> None:
         self.driver, self.address, self.asked = driver, address, asked
 
-    def verdict(self, page: Path, fragment: str = "") -> str:
-        """Open a page; return what is wrong with it, empty where nothing of the file ran."""
+    def check_page(self, page: Path, fragment: str = "") -> str:
+        """Open a page; return what is wrong with it, empty if no script of the file ran."""
         from selenium.common.exceptions import WebDriverException
         from selenium.webdriver.support.ui import WebDriverWait
 
@@ -148,31 +148,35 @@ class Window:
 
 
 @contextmanager
-def window() -> Iterator[Window]:
-    """Provide a browser for a block of code."""
+def open_browser() -> Iterator[BrowserWindow]:
+    """Start Chromium and the server for a ``with`` block."""
     program, driver = shutil.which("chromium"), shutil.which("chromedriver")
     if program is None or driver is None:
         raise InputError("pages are opened in Chromium: expected chromium and chromedriver")
-    with tempfile.TemporaryDirectory(prefix="vibroimpact-trust-") as folder, server() as asked:
-        browser = headless(program, driver, Path(folder))
+    with tempfile.TemporaryDirectory(prefix="vibroimpact-trust-") as folder, run_server() as asked:
+        browser = start_chromium(program, driver, Path(folder))
         try:
-            yield Window(browser, *asked)
+            yield BrowserWindow(browser, *asked)
         finally:
             browser.quit()
 
 
 @contextmanager
-def server() -> Iterator[tuple[str, list[str]]]:
-    """Start a server on this machine; return its address, and the list of requested paths."""
+def run_server() -> Iterator[tuple[str, list[str]]]:
+    """Start a local server for a ``with`` block; yield its address and the requested paths."""
     asked: list[str] = []
 
     class Handler(http.server.BaseHTTPRequestHandler):
+        """Handler that records each requested path and answers "no content"."""
+
         def do_GET(self) -> None:
+            """Record the requested path and answer."""
             asked.append(self.path)
             self.send_response(204)
             self.end_headers()
 
         def log_message(self, format: str, *arguments: object) -> None:
+            """Print no log messages."""
             pass
 
     listening = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
@@ -184,7 +188,7 @@ def server() -> Iterator[tuple[str, list[str]]]:
         listening.server_close()
 
 
-def fragment(chance: random.Random, address: str) -> str:
+def hostile_fragment(chance: random.Random, address: str) -> str:
     """Return a hostile text for the part of a link after its #."""
     from urllib.parse import quote
 
@@ -193,7 +197,7 @@ def fragment(chance: random.Random, address: str) -> str:
     return chance.choice(("", f"#{text}", f"#eta=1.05&{name}={text}"))
 
 
-def clean_up(*paths: Path) -> None:
+def delete_files(*paths: Path) -> None:
     """Delete the forged files of a trial."""
     for path in paths:
         with contextlib.suppress(FileNotFoundError):

@@ -1,4 +1,4 @@
-"""Malicious input: refused in one line, nothing written elsewhere, in little time and memory."""
+"""Campaign on hostile input: refused in one line, without harm, in little time and memory."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ import tempfile
 from pathlib import Path
 
 from . import archives, documents, forged_results
-from .campaign import Campaign, Outcome
-from .children import Child, FinishedCommand, import_all, in_little_memory
-from .forged_results import Window, window
+from .campaign import BatchOutcome, Campaign
+from .children import ChildCommand, FinishedCommand, import_all, limit_memory
+from .forged_results import BrowserWindow, open_browser
 
 SLOW = 30.0  # s
 WRONG = 0.2  # of the forged results have numbers that make no sense too
 LONG = 2000  # letters of a line that a person reads
 
 
-class Hostile(Campaign):
-    """Campaign: malicious input."""
+class HostileCampaign(Campaign):
+    """Campaign: commands refuse malicious input files in one line, or read them without harm."""
 
     name = "hostile"
     title = "Malicious input"
@@ -37,8 +37,8 @@ class Hostile(Campaign):
     unit, target, batch = "inputs", 2600, 50
     package = True
 
-    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Hand hostile files to the commands."""
+    def run(self, fmu: Path, seed: int, count: int) -> BatchOutcome:
+        """Hand hostile files to the commands; return the outcome."""
         from orchestrate.access import MODELS
         from orchestrate.access.webassembly import web_kernel
 
@@ -47,25 +47,31 @@ class Hostile(Campaign):
             web_kernel(model)  # or the first page would compile it
         chance, notes = random.Random(seed), []
         counts = {"refused:": 0, "taken:": 0, "pages in Chromium:": 0}
-        with tempfile.TemporaryDirectory(prefix="vibroimpact-trust-") as holder, window() as seen:
+        with (
+            tempfile.TemporaryDirectory(prefix="vibroimpact-trust-") as holder,
+            open_browser() as seen,
+        ):
             folder = Path(holder)
-            good, branch = good_results(folder)
+            good, branch = make_good_results(folder)
             for number in range(count):
                 if number % 2:
-                    kind, (ended, reason) = "page", opened(folder, good, branch, chance, seen)
+                    kind, (ended, reason) = (
+                        "page",
+                        open_forged_page(folder, good, branch, chance, seen),
+                    )
                     counts["pages in Chromium:"] += ended.code == 0
                 else:
-                    kind, arguments = prepare(folder, fmu, good, chance, number // 2)
-                    ended, strays = hand(arguments, folder)
-                    reason = verdict(ended, strays)
+                    kind, arguments = write_attack(folder, fmu, good, chance, number // 2)
+                    ended, strays = run_on_attack(arguments, folder)
+                    reason = find_problem(ended, strays)
                 if reason:
                     notes.append(f"seed {seed}, input {number} ({kind}): {reason}")
                 counts["taken:" if ended.code == 0 else "refused:"] += 1
-        return Outcome(count, len(notes), counts=counts, notes=tuple(notes))
+        return BatchOutcome(count, len(notes), counts=counts, notes=tuple(notes))
 
 
-def good_results(folder: Path) -> tuple[Path, Path]:
-    """Compute a sweep and a branch, to be damaged and forged; return the paths of their files."""
+def make_good_results(folder: Path) -> tuple[Path, Path]:
+    """Compute a sweep and a branch, to be damaged and forged; return their paths."""
     import orchestrate
 
     places = folder / "good.nc", folder / "branch.nc"
@@ -76,83 +82,83 @@ def good_results(folder: Path) -> tuple[Path, Path]:
     return places
 
 
-def opened(
-    folder: Path, good: Path, branch: Path, chance: random.Random, seen: Window
+def open_forged_page(
+    folder: Path, good: Path, branch: Path, chance: random.Random, seen: BrowserWindow
 ) -> tuple[FinishedCommand, str]:
     """Forge a result, make a page of it and open that; return the end, and what is wrong."""
     from orchestrate.running.store import load
 
     result, branches, page = (folder / name for name in ("f.nc", "b.nc", "page.html"))
-    forged_results.forged(result, chance, load(good), seen.address)
+    forged_results.write_forged_sweep(result, chance, load(good), seen.address)
     wrong = chance.random() < WRONG
     if wrong:
-        forged_results.with_wrong_numbers(result, chance)
+        forged_results.write_wrong_number(result, chance)
     command = ["explore", str(result), "--no-open", "--output", str(page)]
     if chance.random() < 0.3:
-        forged_results.forged_branch(branches, chance, load(branch), seen.address)
+        forged_results.write_forged_branch(branches, chance, load(branch), seen.address)
         command += ["--branches", str(branches)]
-    ended = Child(command, folder / "temporary", in_little_memory).wait(2.0 * SLOW)
-    reason = verdict(ended, [])
+    ended = ChildCommand(command, folder / "temporary", limit_memory).wait(2.0 * SLOW)
+    reason = find_problem(ended, [])
     if not reason:
-        fragment = forged_results.fragment(chance, seen.address)
+        fragment = forged_results.hostile_fragment(chance, seen.address)
         made = ended.code == 0
         lost = "" if wrong else f"no page: {' / '.join(ended.lines)[:200]}"
-        reason = seen.verdict(page, fragment) if made else lost
-    forged_results.clean_up(result, branches, page)
+        reason = seen.check_page(page, fragment) if made else lost
+    forged_results.delete_files(result, branches, page)
     return ended, reason
 
 
-def prepare(
+def write_attack(
     folder: Path, fmu: Path, good: Path, chance: random.Random, number: int
 ) -> tuple[str, list[str]]:
     """Write a hostile input; return its kind, and the command that reads it."""
     turn = number % 4
     if turn in (0, 1):
         kind = list(archives.KINDS)[(number // 2) % len(archives.KINDS)]
-        place = folder / "input.fmu"
-        place.unlink(missing_ok=True)
-        archives.KINDS[kind](fmu, place, chance)
+        path = folder / "input.fmu"
+        path.unlink(missing_ok=True)
+        archives.KINDS[kind](fmu, path, chance)
         command = ["simulate", "--eta", "1", "--periods", "2", "--plot", "none"]
-        return kind, [*command, "--output", str(folder / "results"), "--fmu", str(place)]
+        return kind, [*command, "--output", str(folder / "results"), "--fmu", str(path)]
     if turn == 2 and number % 8 == 2:
-        place = folder / "input.csv"
-        documents.course(place, chance)
+        path = folder / "input.csv"
+        documents.write_course(path, chance)
         command = ["couple", "--only", "delaminated", "--one-way", "--plot", "none"]
-        return "CSV", [*command, "--output", str(folder / "results"), "--course", str(place)]
+        return "CSV", [*command, "--output", str(folder / "results"), "--course", str(path)]
     if turn == 2:
-        place = folder / "input.toml"
-        documents.toml(place, chance)
+        path = folder / "input.toml"
+        documents.write_toml(path, chance)
         command = ["simulate", "--eta", "1", "--periods", "2", "--plot", "none"]
-        return "TOML", [*command, "--output", str(folder / "results"), "--structure", str(place)]
+        return "TOML", [*command, "--output", str(folder / "results"), "--structure", str(path)]
     reader = chance.choice(list(documents.READERS))
-    place = folder / "input.nc"
-    place.unlink(missing_ok=True)
-    documents.result(place, chance, good)
+    path = folder / "input.nc"
+    path.unlink(missing_ok=True)
+    documents.write_result(path, chance, good)
     output = folder / ("page.html" if reader in ("explore", "branches") else "results")
-    command = [*documents.READERS[reader](place), "--output", str(output)]
+    command = [*documents.READERS[reader](path), "--output", str(output)]
     return f"NetCDF for {reader}", command
 
 
-def hand(arguments: list[str], folder: Path) -> tuple[FinishedCommand, list[str]]:
+def run_on_attack(arguments: list[str], folder: Path) -> tuple[FinishedCommand, list[str]]:
     """Run the command; return how it ended, and the files it wrote outside its folder."""
     temporary = folder / "temporary"
-    before = {path for path in outside(folder) if path.exists()}
-    ended = Child(arguments, temporary, in_little_memory).wait(2.0 * SLOW)
-    strays = [str(path) for path in outside(folder) if path.exists() and path not in before]
+    before = {path for path in escaped_paths(folder) if path.exists()}
+    ended = ChildCommand(arguments, temporary, limit_memory).wait(2.0 * SLOW)
+    strays = [str(path) for path in escaped_paths(folder) if path.exists() and path not in before]
     left = [path.name for path in temporary.iterdir()] if temporary.exists() else []
-    forged_results.clean_up(folder / "page.html")
+    forged_results.delete_files(folder / "page.html")
     shutil.rmtree(temporary, ignore_errors=True)
     shutil.rmtree(folder / "results", ignore_errors=True)
     return ended, strays + left
 
 
-def outside(folder: Path) -> list[Path]:
+def escaped_paths(folder: Path) -> list[Path]:
     """Return the paths where an escaped file of the attacks would be."""
     places = (Path("/"), Path("/tmp"), *folder.parents, folder, Path.cwd(), *Path.cwd().parents)
-    return [place / "escaped" for place in dict.fromkeys(places)]
+    return [folder_above / "escaped" for folder_above in dict.fromkeys(places)]
 
 
-def verdict(ended: FinishedCommand, strays: list[str]) -> str:
+def find_problem(ended: FinishedCommand, strays: list[str]) -> str:
     """Return what is wrong with how a command ended; empty where nothing is."""
     if strays:
         return f"left {', '.join(strays)}"

@@ -1,4 +1,4 @@
-"""Stated 95 % intervals of fits on records of the model itself, with noise."""
+"""Campaign on standard errors: 95 % intervals of fits on noisy simulated records."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import orchestrate
 from orchestrate.errors import VibroimpactError
 
 from . import roc
-from .campaign import Campaign, Outcome
+from .campaign import BatchOutcome, Campaign
 from .diagnosis_rows import FITTED, WITHIN
 
 RATE, DURATION = 900.0, 12.0  # Hz, s
@@ -23,8 +23,8 @@ OFF = 0.1  # of a guess's frequencies, at most
 COLUMNS = ("noise", "misfit", *FITTED)
 
 
-class Intervals(Campaign):
-    """The promise about standard errors."""
+class IntervalCampaign(Campaign):
+    """Campaign: how often stated 95 % intervals of fits hold the truth."""
 
     name = "intervals"
     title = "Do stated intervals hold the truth?"
@@ -41,22 +41,22 @@ class Intervals(Campaign):
     measures = "error in standard errors"
     package = True
 
-    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Fit one record after the other."""
+    def run(self, fmu: Path, seed: int, count: int) -> BatchOutcome:
+        """Fit ``count`` noisy records; return the outcome."""
         rows, notes, worst = [], [], 0.0
         for number in range(count):
             rng = np.random.default_rng([seed, number])
             try:
-                row = trial(rng)
+                row = fit_noisy_record(rng)
             except VibroimpactError as error:
                 notes.append(f"seed {seed}, trial {number}: {error}")
                 continue
             rows.append(row)
             worst = max([worst, *(abs(value) for value in row[2:] if value is not None)])
-        return Outcome(count, len(notes), worst, notes=tuple(notes), rows=tuple(rows))
+        return BatchOutcome(count, len(notes), worst, notes=tuple(notes), rows=tuple(rows))
 
     def report(self, rows: Sequence[Sequence[Any]]) -> list[str]:
-        """How many intervals held the truth, of each number."""
+        """Return Markdown lines on how many intervals held the truth, by parameter."""
         lines = [
             "| number | intervals of 95 % that hold the truth | median error in standard errors |",
             "|---|---|---|",
@@ -64,14 +64,14 @@ class Intervals(Campaign):
         for column, name in enumerate(FITTED, 2):
             known = np.array([abs(row[column]) for row in rows if row[column] is not None])
             if len(known):
-                part = roc.part(int((known <= WITHIN).sum()), len(known))
+                part = roc.format_share(int((known <= WITHIN).sum()), len(known))
                 lines.append(f"| `{name}` | {part} | {np.median(known):.2f} |")
         unknown = sum(row[2] is None for row in rows)
         return [*lines, "", f"In {unknown} of {len(rows)} records no opening was seen.", ""]
 
 
-def trial(rng: np.random.Generator) -> list[float | None]:
-    """Fit a noisy record; return noise, misfit, and errors over their standard errors or None."""
+def fit_noisy_record(rng: np.random.Generator) -> list[float | None]:
+    """Fit a noisy record; return noise, misfit, and errors over their standard errors."""
     middle, apart = rng.uniform(33.0, 50.0), math.sqrt(rng.uniform(1.1, 1.4))
     first, second = rng.permutation([middle / apart, middle * apart]).tolist()
     zeta = np.exp(rng.uniform(math.log(0.008), math.log(0.02), 2)).tolist()
@@ -81,23 +81,25 @@ def trial(rng: np.random.Generator) -> list[float | None]:
     masses = {"m1": m1, "m2": m1 * float(rng.uniform(0.6, 1.67))}
     beam = orchestrate.Structure.from_halves(**masses, **truth)
     noise = float(rng.uniform(*NOISE))
-    record = recorded(beam, middle, noise, rng)
+    record = simulate_record(beam, middle, noise, rng)
     off = {name: truth[name] * float(rng.uniform(1.0 - OFF, 1.0 + OFF)) for name in ("f1", "f2")}
     guess = orchestrate.Structure.from_halves(**masses, **off, zeta1=0.012, zeta2=0.012, e=0.6)
     answer = orchestrate.fit(record, guess, jobs=1, progress=False)
     errors = answer.standard_error.sel(parameter=list(FITTED)).values.tolist()
     values = answer.value.sel(parameter=list(FITTED)).values.tolist()
-    found = [
-        rounded((value - truth[name]) / error) if math.isfinite(value) and error > 0.0 else None
+    errors_in_sigma = [
+        round_digits((value - truth[name]) / error)
+        if math.isfinite(value) and error > 0.0
+        else None
         for name, value, error in zip(FITTED, values, errors, strict=True)
     ]
-    return [rounded(noise), rounded(float(answer.misfit)), *found]
+    return [round_digits(noise), round_digits(float(answer.misfit)), *errors_in_sigma]
 
 
-def recorded(
+def simulate_record(
     beam: orchestrate.Structure, middle: float, noise: float, rng: np.random.Generator
 ) -> Any:
-    """What three sensors read of a sweep over the resonance."""
+    """Return what three sensors read of a sweep over the resonance, with noise."""
     low, high = (end * middle for end in ENDS)
     sweep = orchestrate.SweptSine(first=low, last=high, duration=DURATION, acceleration=5.0)
     history = orchestrate.shake(beam, sweep, sample_rate=RATE, progress=False)
@@ -110,6 +112,6 @@ def recorded(
     return orchestrate.record(time=felt.time.values, **read)
 
 
-def rounded(value: float) -> float:
-    """Round a number to three significant digits."""
+def round_digits(value: float) -> float:
+    """Return a number rounded to three significant digits."""
     return float(f"{value:.3g}")

@@ -1,4 +1,4 @@
-"""A campaign as a job of the project's own runner, in batches that know nothing of each other."""
+"""Run a campaign as a job of the project's runner, in independent batches."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ import xarray as xr
 from orchestrate.access import OSCILLATOR
 from orchestrate.running.job import Inputs, Job, Table
 
-from .records import digest
+from .ledger_file import digest
 from .registry import CAMPAIGNS
 
 HERE = Path(__file__).parent
@@ -29,8 +29,8 @@ def batch_seed(seed: int, batch: int) -> int:
     return int.from_bytes(hashlib.sha256(f"{seed} {batch}".encode()).digest()[:6], "big")
 
 
-def sources() -> str:
-    """Return a digest of all campaigns' and benches' sources."""
+def sources_digest() -> str:
+    """Return a digest of the sources of all campaigns and benches."""
     return digest(HERE, HERE.parent / "benches")
 
 
@@ -51,17 +51,17 @@ class CampaignJob(Job):
         return -(-self.budget // self.size)
 
     def items(self, inputs: Inputs) -> Sequence[tuple[int, int]]:
-        """Return seed and units of each batch."""
+        """Return seed and number of units of each batch."""
         left = [self.budget - i * self.size for i in range(self.count())]
         return [(batch_seed(self.seed, i), min(self.size, n)) for i, n in enumerate(left)]
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[Any], previous: Table | None) -> Table:
-        """Run some batches."""
+        """Run some batches; return a row for each."""
         campaign, rows = CAMPAIGNS[self.campaign], []
         for seed, count in items:
             clock = processor_time()
             outcome = campaign.run(fmus[OSCILLATOR], seed, count)
-            notes = [without_places(note) for note in outcome.notes[:TOLD]]
+            notes = [remove_paths(note) for note in outcome.notes[:TOLD]]
             kept = {"counts": dict(outcome.counts), "notes": notes, "rows": outcome.rows}
             told = json.dumps(kept)
             seconds = processor_time() - clock
@@ -89,7 +89,7 @@ class CampaignJob(Job):
         )
 
 
-def without_places(note: str) -> str:
+def remove_paths(note: str) -> str:
     """Return a note without this machine's paths."""
     for folder in (HERE.parents[1], Path(sys.prefix), Path.home()):
         note = note.replace(f"{folder}{os.sep}", "")

@@ -1,4 +1,4 @@
-"""Memory that is taken is given back: instances, steps, and a sweep of many frequencies."""
+"""Campaign on memory: instances, steps and long sweeps give back what they take."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import tempfile
 from pathlib import Path
 
 from . import programs
-from .campaign import Campaign, Outcome
+from .campaign import BatchOutcome, Campaign
 from .children import import_all
 
 FEWEST = 5000  # frequencies: of less, what a process takes once is more than what they hold
@@ -18,8 +18,8 @@ LARGEST = (
 )
 
 
-class Leaks(Campaign):
-    """Campaign: memory stays flat."""
+class LeakCampaign(Campaign):
+    """Campaign: instances, steps and sweeps do not make memory grow."""
 
     name = "leaks"
     title = "Leaks"
@@ -33,10 +33,10 @@ class Leaks(Campaign):
     unit, target, batch = "steps", 100_000_000, 10_000_000
     measures = "bytes a frequency"
 
-    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
+    def run(self, fmu: Path, seed: int, count: int) -> BatchOutcome:
         """Create, step and free instances; compare the memory before and after."""
         number = max(10, count // PER_STEP)
-        grown, more, failed = map(int, programs.run(fmu, "leaks", number, count).split())
+        grown, more, failed = map(int, programs.run_program(fmu, "leaks", number, count).split())
         notes = [
             f"{what}: {value} bytes"
             for what, value in (("instances", grown), ("steps", more))
@@ -44,23 +44,23 @@ class Leaks(Campaign):
         ]
         import_all()
         along = max(FEWEST, number)
-        few, many = (peak(fmu, part) for part in (along // 10, along))
+        few, many = (peak_memory(fmu, part) for part in (along // 10, along))
         each = max(0.0, (many - few) / (along - along // 10))
         if each > LARGEST:
             notes.append(f"a frequency: {each:.0f} bytes")
         if failed:
             notes.append(f"{failed} steps failed")
         counts = {"instances:": number, "frequencies:": along}
-        return Outcome(count, len(notes), each, counts, tuple(notes))
+        return BatchOutcome(count, len(notes), each, counts, tuple(notes))
 
 
-def peak(fmu: Path, number: int) -> int:
+def peak_memory(fmu: Path, number: int) -> int:
     """Compute a sweep in a child; return the child's peak memory, bytes."""
     reader, writer = os.pipe()
     child = os.fork()
     if child == 0:
         try:
-            sweep(fmu, number)
+            compute_sweep(fmu, number)
             peak_now = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
             os.write(writer, str(peak_now).encode())
         finally:
@@ -72,8 +72,8 @@ def peak(fmu: Path, number: int) -> int:
     return int(size)
 
 
-def sweep(fmu: Path, number: int) -> None:
-    """Compute a sweep of some frequencies, stored on disk."""
+def compute_sweep(fmu: Path, number: int) -> None:
+    """Compute a sweep of ``number`` frequencies with a result file in a temporary folder."""
     import numpy as np
 
     import orchestrate

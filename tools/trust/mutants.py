@@ -1,4 +1,4 @@
-"""Mutants of the sources: small changes, each of which a test has to notice."""
+"""Campaign on mutants: small changes of the sources, each of which a test must notice."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from .campaign import Campaign, Outcome
+from .campaign import BatchOutcome, Campaign
 
 ROOT = Path(__file__).resolve().parents[2]
 TREES = ("fmu_src", "orchestrate", "tests", "tools", "pyproject.toml", "docs", "README.md")
@@ -52,7 +52,7 @@ OTHER: dict[type[ast.AST], type[ast.AST]] = {
 PATIENCE = 600.0  # s; who takes longer is noticed too
 
 
-def places(tree: ast.AST) -> Iterator[tuple[int, str]]:
+def mutable_nodes(tree: ast.AST) -> Iterator[tuple[int, str]]:
     """Yield the nodes of a syntax tree that can be mutated: number in a walk, and how."""
     for number, node in enumerate(ast.walk(tree)):
         if isinstance(node, (ast.BinOp, ast.AugAssign)) and type(node.op) in OTHER:
@@ -67,8 +67,8 @@ def places(tree: ast.AST) -> Iterator[tuple[int, str]]:
             yield number, "number"
 
 
-def change(tree: ast.AST, number: int) -> str:
-    """Mutate a node in place; return where and what."""
+def mutate_node(tree: ast.AST, number: int) -> str:
+    """Mutate a node of a syntax tree in place; return a text on where and what."""
     node = list(ast.walk(tree))[number]
     before = ast.unparse(node)
     if isinstance(node, (ast.BinOp, ast.AugAssign, ast.BoolOp)):
@@ -82,26 +82,26 @@ def change(tree: ast.AST, number: int) -> str:
     return f"line {node.lineno}: {before} -> {ast.unparse(node)}"  # type: ignore[attr-defined]
 
 
-def mutant(source: str, chance: random.Random) -> tuple[str, str]:
-    """Return a source with one mutation, and its description."""
+def make_mutant(source: str, chance: random.Random) -> tuple[str, str]:
+    """Return a source with one mutation, and the mutation's description."""
     tree = ast.parse(source)
-    note = change(tree, chance.choice(list(places(tree)))[0])
+    note = mutate_node(tree, chance.choice(list(mutable_nodes(tree)))[0])
     return ast.unparse(ast.fix_missing_locations(tree)), note
 
 
-def copied(folder: Path) -> Path:
+def copy_tree(folder: Path) -> Path:
     """Copy sources and tests, to be mutated; return the copy's folder."""
     for name in TREES:
-        place = ROOT / name
-        if place.is_dir():
+        source = ROOT / name
+        if source.is_dir():
             ignored = shutil.ignore_patterns("__pycache__", "*.png")
-            shutil.copytree(place, folder / name, ignore=ignored)
+            shutil.copytree(source, folder / name, ignore=ignored)
         else:
-            shutil.copy(place, folder / name)
+            shutil.copy(source, folder / name)
     return folder
 
 
-def noticed(folder: Path, tests: tuple[str, ...]) -> bool:
+def is_noticed(folder: Path, tests: tuple[str, ...]) -> bool:
     """Run the tests on a mutant; return whether one fails or does not end."""
     command = [sys.executable, "-m", "pytest", "-x", "-q", "-n", "0", "-p", "no:cacheprovider"]
     surroundings = {**os.environ, "PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
@@ -118,7 +118,7 @@ def noticed(folder: Path, tests: tuple[str, ...]) -> bool:
     return done.returncode != 0
 
 
-class Mutants(Campaign):
+class MutantCampaign(Campaign):
     """Campaign: tests notice mutations of the sources."""
 
     name = "mutants"
@@ -134,21 +134,21 @@ class Mutants(Campaign):
     unit, target, batch = "mutants", 500, 10
     package = True
 
-    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Mutate sources and run their tests."""
+    def run(self, fmu: Path, seed: int, count: int) -> BatchOutcome:
+        """Mutate sources and run their tests; return the outcome."""
         chance, notes, counts = random.Random(seed), [], {"noticed:": 0, "survived:": 0}
         with tempfile.TemporaryDirectory(prefix="vibroimpact-trust-") as holder:
-            folder = copied(Path(holder) / "copy")
+            folder = copy_tree(Path(holder) / "copy")
             for _ in range(count):
                 name = chance.choice(list(TESTS))
                 source = (ROOT / name).read_text("utf-8")
-                changed, note = mutant(source, chance)
+                changed, note = make_mutant(source, chance)
                 (folder / name).write_text(changed, "utf-8")
-                was_noticed = noticed(folder, (TESTS[name],))
+                was_noticed = is_noticed(folder, (TESTS[name],))
                 if not was_noticed and name.startswith("fmu_src"):
-                    was_noticed = noticed(folder, (*ALL, f"--ignore={TESTS[name]}"))
+                    was_noticed = is_noticed(folder, (*ALL, f"--ignore={TESTS[name]}"))
                 (folder / name).write_text(source, "utf-8")
                 counts["noticed:" if was_noticed else "survived:"] += 1
                 if not was_noticed:
                     notes.append(f"survived: `{name}`, {note}")
-        return Outcome(count, len(notes), counts=counts, notes=tuple(notes))
+        return BatchOutcome(count, len(notes), counts=counts, notes=tuple(notes))

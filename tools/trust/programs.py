@@ -1,4 +1,4 @@
-"""Programs in C that call a native FMU, compiled for it once in a process."""
+"""Compile and run C programs that call a native FMU, once per process."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ CALLS = ("-fno-math-errno", "-fno-trapping-math", "-fcx-limited-range")
 
 
 @functools.cache
-def compiled(fmu: Path, name: str) -> Path:
-    """Compile ``native/NAME.c`` against an FMI 3.0 FMU; return the program.
+def compile_program(fmu: Path, name: str) -> Path:
+    """Compile ``native/NAME.c`` against an FMI 3.0 FMU; return the program's path.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ def compiled(fmu: Path, name: str) -> Path:
     Path
         In a temporary folder of the process, kept until its end.
     """
-    folder = temporary() / describe(fmu).digest[:16]
+    folder = temporary_folder() / describe(fmu).digest[:16]
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "names.h").write_text(importers.names_header(fmu), encoding="utf-8")
     for header, content in native_form.fmi_headers("fmi3").items():
@@ -39,14 +39,14 @@ def compiled(fmu: Path, name: str) -> Path:
     program = folder / name
     files = [NATIVE / f"{name}.c", importers.HERE / "importer3.c"]
     places = [f"-I{folder}", f"-I{importers.HERE}"]
-    own = [*(importers.compiler() or ["cc"]), *OPTIONS, *CALLS, *places]
+    own = [*(importers.c_compiler() or ["cc"]), *OPTIONS, *CALLS, *places]
     subprocess.run([*own, "-o", program, *files, "-ldl", "-lm"], check=True)
     return program
 
 
 @functools.cache
-def temporary() -> Path:
-    """Return a temporary folder, removed when the process ends."""
+def temporary_folder() -> Path:
+    """Return a temporary folder that is removed when the process ends."""
     holder = tempfile.TemporaryDirectory(prefix="vibroimpact-trust-")
     _kept.append(holder)
     return Path(holder.name)
@@ -55,15 +55,15 @@ def temporary() -> Path:
 _kept: list[tempfile.TemporaryDirectory[str]] = []
 
 
-def library(fmu: Path) -> Path:
+def unpack_library(fmu: Path) -> Path:
     """Unpack the FMU's binary for this machine; return its path."""
     description = describe(fmu)
     return unpacked(description) / "binaries" / "x86_64-linux" / f"{description.identifier}.so"
 
 
-def run(fmu: Path, name: str, *arguments: object, success: bool = True) -> str:
-    """Run a program; return what it prints."""
-    command = [str(compiled(fmu, name)), str(library(fmu)), *map(str, arguments)]
+def run_program(fmu: Path, name: str, *arguments: object, success: bool = True) -> str:
+    """Run a compiled program on an FMU; return what it prints."""
+    command = [str(compile_program(fmu, name)), str(unpack_library(fmu)), *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, text=True)
     if success and done.returncode:
         raise RuntimeError(f"{name}: exit code {done.returncode}: {done.stderr[-2000:]}")

@@ -1,27 +1,41 @@
-"""The campaigns by name, in the order of the page."""
+"""All campaigns by name, in the order of the ledger's page."""
 
 from __future__ import annotations
 
-from .attractors import Attractors
-from .bits import Grids
+from .attractors import AttractorCampaign
+from .bits import BitCampaign
 from .campaign import Campaign
-from .clusters import Clusters
-from .diagnosis import Diagnosis
-from .faults import Faults
-from .flights import Energy, Impacts, Roots
-from .fuzzing import Fuzzing
-from .hostile import Hostile
-from .intervals import Intervals
-from .leaks import Leaks
-from .mutants import Mutants
-from .restores import Restores
+from .clusters import ClusterCampaign
+from .diagnosis import DiagnosisCampaign
+from .faults import FaultCampaign
+from .flights import EnergyCampaign, ImpactCampaign, RootCampaign
+from .fuzzing import FuzzCampaign
+from .hostile import HostileCampaign
+from .intervals import IntervalCampaign
+from .leaks import LeakCampaign
+from .mutants import MutantCampaign
+from .restores import RestoreCampaign
 from .verdicts import Verdicts
 
 CAMPAIGNS: dict[str, Campaign] = {
     campaign.name: campaign
     for campaign in (
-        *(Impacts(), Roots(), Grids(), Restores(), Energy(), Fuzzing()),
-        *(Attractors(), Verdicts(), Diagnosis(), Intervals(), Faults(), Clusters()),
-        *(Hostile(), Mutants(), Leaks()),
+        *(
+            ImpactCampaign(),
+            RootCampaign(),
+            BitCampaign(),
+            RestoreCampaign(),
+            EnergyCampaign(),
+            FuzzCampaign(),
+        ),
+        *(
+            AttractorCampaign(),
+            Verdicts(),
+            DiagnosisCampaign(),
+            IntervalCampaign(),
+            FaultCampaign(),
+            ClusterCampaign(),
+        ),
+        *(HostileCampaign(), MutantCampaign(), LeakCampaign()),
     )
 }

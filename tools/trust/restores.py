@@ -1,4 +1,4 @@
-"""States saved and restored at every turn of a run: the numbers are those of an undisturbed one."""
+"""Campaign on restores: runs with states saved and restored keep their bits."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from orchestrate.access.events import EventInstance
 from orchestrate.errors import FmuError, InputError
 
 from . import parameter_sets
-from .bits import STATE, STEP, Bits, hexadecimal
-from .campaign import Campaign, Outcome
+from .bits import STATE, STEP, Bits, to_hexadecimal
+from .campaign import BatchOutcome, Campaign
 
 STEPS = 40  # of a course
 LONGEST = 60.0  # rad of the slower mass that a course lasts at most
@@ -36,8 +36,8 @@ Values = dict[str, float]
 
 
 @dataclass(frozen=True)
-class Course:
-    """An undisturbed run: start values, then inputs to be set and times to step to."""
+class InputCourse:
+    """A run to be compared: start values, then inputs to set and times to step to."""
 
     model: str
     values: Values
@@ -45,27 +45,29 @@ class Course:
     steps: tuple[tuple[Values, float], ...]
 
     @property
-    def names(self) -> tuple[str, ...]:
+    def output_names(self) -> tuple[str, ...]:
         """Return the names of the compared outputs; those at a point of time first."""
         return (*POINT[self.model], *OF_STEP[self.model])
 
 
 @functools.cache
-def path_of(model: str, form: str) -> Path:
-    """Return the path of an FMU of the present sources."""
+def fmu_path(model: str, form: str) -> Path:
+    """Return the path of a model's FMU in a form, of the present sources."""
     return find(model, form).path
 
 
-def drawn_course(seed: int, number: int) -> Course:
+def draw_course(seed: int, number: int) -> InputCourse:
     """Draw the course of a number under a seed."""
     rng = random.Random(f"{seed} {number}")
     if number % SHAKER_EVERY == 0:
         values = {"voltage": rng.uniform(2.0, 12.0), "armature_inductance": rng.choice((0.0, 0.05))}
-        values |= force(rng)
-        return Course(SHAKER, values, 0.0, steps_of(rng, 0.0, rng.uniform(0.1, 4.0), motor(rng)))
-    drawn = parameter_sets.draw(seed, number)
+        values |= draw_force(rng)
+        return InputCourse(
+            SHAKER, values, 0.0, draw_steps(rng, 0.0, rng.uniform(0.1, 4.0), draw_motor_inputs(rng))
+        )
+    drawn = parameter_sets.draw_parameter_set(seed, number)
     values = {**drawn.values, "x_rel_max_on": float(rng.random() < 0.7)}
-    slower = min(parameter_sets.omegas(drawn.values))
+    slower = min(parameter_sets.natural_frequencies(drawn.values))
     duration = min(drawn.duration, LONGEST * rng.uniform(0.1, 1.0) / slower)
     scale = values["box_amplitude"] * values["box_frequency"] ** 2 or 1.0
     size = [scale * slower**i for i in range(4)]
@@ -77,23 +79,23 @@ def drawn_course(seed: int, number: int) -> Course:
         inputs += [{name: values[name] * rng.uniform(0.5, 1.5)}, {name: values[name]}]
     if rng.random() < 0.7:
         values |= inputs[rng.randrange(4)]
-    return Course(
-        OSCILLATOR, values, drawn.start_time, steps_of(rng, drawn.start_time, duration, inputs)
+    return InputCourse(
+        OSCILLATOR, values, drawn.start_time, draw_steps(rng, drawn.start_time, duration, inputs)
     )
 
 
-def force(rng: random.Random) -> Values:
+def draw_force(rng: random.Random) -> Values:
     """Draw a force on the shaker's box, as a cubic."""
     return {name: rng.uniform(-2.0, 2.0) * 5.0**i for i, name in enumerate(FORCE)}
 
 
-def motor(rng: random.Random) -> list[Values]:
-    """Return inputs of the shaker that may be set on the way."""
-    single = [{name: value} for name, value in force(rng).items()]
-    return [*single, force(rng), {"voltage": rng.uniform(2.0, 12.0)}]
+def draw_motor_inputs(rng: random.Random) -> list[Values]:
+    """Draw inputs of the shaker that may be set during a run."""
+    single = [{name: value} for name, value in draw_force(rng).items()]
+    return [*single, draw_force(rng), {"voltage": rng.uniform(2.0, 12.0)}]
 
 
-def steps_of(
+def draw_steps(
     rng: random.Random, start: float, duration: float, inputs: Sequence[Values]
 ) -> tuple[tuple[Values, float], ...]:
     """Draw ``STEPS`` pairs by time: inputs to set, often ``{}``, and the end time, s."""
@@ -104,8 +106,8 @@ def steps_of(
     )
 
 
-def given(values: Values) -> dict[str, Any]:
-    """Return the values as keywords for an instance."""
+def as_keywords(values: Values) -> dict[str, Any]:
+    """Return start values as keywords for an instance."""
     flags = {name: bool(values[name]) for name in ("bonded", "x_rel_max_on") if name in values}
     return {**values, **flags}
 
@@ -118,30 +120,30 @@ def advance(instance: Instance, time: float, target: float) -> None:
         instance.step(time, target)
 
 
-def undisturbed(course: Course, path: Path) -> list[Bits]:
-    """Compute the outputs after each step, up to the first that fails."""
+def run_undisturbed(course: InputCourse, path: Path) -> list[Bits]:
+    """Return the outputs after each step of a course, up to the first that fails."""
     rows: list[Bits] = []
     with Instance(path) as instance:
         try:
-            instance.initialize(course.start_time, **given(course.values))
+            instance.initialize(course.start_time, **as_keywords(course.values))
             time = course.start_time
             for inputs, target in course.steps:
                 instance.set(**inputs)
                 instance.step(time, target)
                 time = target
-                rows.append(outputs(instance, course.names))
+                rows.append(read_outputs(instance, course.output_names))
         except (FmuError, InputError):
             pass
     return rows
 
 
-def outputs(instance: Instance, names: Sequence[str]) -> Bits:
+def read_outputs(instance: Instance, names: Sequence[str]) -> Bits:
     """Return the instance's outputs as texts with all bits."""
-    return hexadecimal([float(value) for value in instance.get(*names)])
+    return to_hexadecimal([float(value) for value in instance.get(*names)])
 
 
-def wander(rng: random.Random, instance: Instance, course: Course, time: float) -> None:
-    """Change inputs, step or start another run: what a restore must undo."""
+def wander(rng: random.Random, instance: Instance, course: InputCourse, time: float) -> None:
+    """Change an instance's inputs, step it or start another run: what a restore must undo."""
     try:
         if rng.random() < 0.1:
             instance.reset()
@@ -157,7 +159,7 @@ def wander(rng: random.Random, instance: Instance, course: Course, time: float) 
         pass
 
 
-def in_event_mode(rng: random.Random, instance: EventInstance, course: Course) -> None:
+def restore_in_event_mode(rng: random.Random, instance: EventInstance, course: InputCourse) -> None:
     """Save and restore a state in event mode, where the instance is."""
     data = instance.save_state()
     instance.call("updateDiscreteStates")
@@ -167,7 +169,7 @@ def in_event_mode(rng: random.Random, instance: EventInstance, course: Course) -
 
 
 def advance_disturbed(
-    rng: random.Random, instance: EventInstance, course: Course, time: float, end: float
+    rng: random.Random, instance: EventInstance, course: InputCourse, time: float, end: float
 ) -> int:
     """Step to ``end`` with restores in event mode; return their number.
 
@@ -183,15 +185,17 @@ def advance_disturbed(
         if event:
             instance.call("enterEventMode")
             if not restored or rng.random() < 0.02:
-                in_event_mode(rng, instance, course)
+                restore_in_event_mode(rng, instance, course)
                 restored += 1
             instance.call("updateDiscreteStates")
             instance.call("enterStepMode")
     return restored
 
 
-def in_memory(rng: random.Random, instance: Instance, course: Course, time: float) -> None:
-    """Save a state in memory, wander, and restore it."""
+def restore_in_memory(
+    rng: random.Random, instance: Instance, course: InputCourse, time: float
+) -> None:
+    """Save a state in memory, change the instance's motion at random, and restore the state."""
     get, _, _, put, free = instance.state_calls()
     state = instance.call(get)
     try:
@@ -201,12 +205,16 @@ def in_memory(rng: random.Random, instance: Instance, course: Course, time: floa
         instance.call(free, state)
 
 
-def moved(
-    rng: random.Random, instance: Instance, others: Sequence[Instance], course: Course, time: float
+def restore_elsewhere(
+    rng: random.Random,
+    instance: Instance,
+    others: Sequence[Instance],
+    course: InputCourse,
+    time: float,
 ) -> Instance:
-    """Save, wander and restore: in the same instance, or serialised in another."""
+    """Save a state, change the motion, and restore: here, or serialised in another instance."""
     if rng.random() < 0.4:
-        in_memory(rng, instance, course, time)
+        restore_in_memory(rng, instance, course, time)
         return instance
     data = instance.save_state()
     wander(rng, instance, course, time)
@@ -215,17 +223,17 @@ def moved(
     return taken
 
 
-def disturbed(
-    rng: random.Random, course: Course, rows: Sequence[Bits], pool: Sequence[Instance]
+def run_disturbed(
+    rng: random.Random, course: InputCourse, rows: Sequence[Bits], pool: Sequence[Instance]
 ) -> tuple[int, str]:
-    """Run with a restore before each step; return the restores' number, and what is wrong ("")."""
+    """Run with a restore before each step; return the restores' number, what is wrong ("")."""
     here, time, restored = pool[0], course.start_time, 0
-    here.initialize(course.start_time, **given(course.values))
+    here.initialize(course.start_time, **as_keywords(course.values))
     for number, ((inputs, target), row) in enumerate(zip(course.steps, rows, strict=False)):
         pending = rng.random() < 0.5
         if pending:  # a state in which inputs are set that no step has seen yet
             here.set(**inputs)
-        here = moved(rng, here, pool, course, time)
+        here = restore_elsewhere(rng, here, pool, course, time)
         restored += 1
         if not pending:
             here.set(**inputs)
@@ -239,8 +247,8 @@ def disturbed(
                 here.restore_state(data)
         if not stops:
             here.step(time, target)
-        names = POINT[course.model] if stops else course.names
-        row_here = outputs(here, names)
+        names = POINT[course.model] if stops else course.output_names
+        row_here = read_outputs(here, names)
         if row_here != row[: len(names)]:
             wrong = [name for name, a, b in zip(names, row_here, row, strict=False) if a != b]
             return restored, f"step {number}: {', '.join(wrong)}"
@@ -248,7 +256,9 @@ def disturbed(
     return restored, ""
 
 
-def pools(course: Course, number: int, rows: Sequence[Bits]) -> list[list[tuple[type, str]]]:
+def instance_pools(
+    course: InputCourse, number: int, rows: Sequence[Bits]
+) -> list[list[tuple[type, str]]]:
     """Return the kinds of instances among which states may be moved."""
     native: list[tuple[type, str]] = [(Instance, "fmi3"), (Instance, "fmi2"), (Instance, "fmi3")]
     if course.model == OSCILLATOR:
@@ -260,7 +270,7 @@ def pools(course: Course, number: int, rows: Sequence[Bits]) -> list[list[tuple[
     return forms
 
 
-class Restores(Campaign):
+class RestoreCampaign(Campaign):
     """Campaign: saved states restore the run to the last bit."""
 
     name = "restores"
@@ -278,14 +288,14 @@ class Restores(Campaign):
     )
     unit, target, batch = "restores", 1_000_000, 5_000
 
-    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Compute courses with and without restores and compare them."""
+    def run(self, fmu: Path, seed: int, count: int) -> BatchOutcome:
+        """Compute courses with and without restores and compare them; return the outcome."""
         done, findings, number, notes = 0, 0, 0, []
         counts = {"courses:": 0, "in the pythonfmu form:": 0, "of MotorShaker:": 0}
         while done < count:
-            course = drawn_course(seed, number)
-            rows = undisturbed(course, path_of(course.model, "fmi3"))
-            for kinds in pools(course, number, rows) if rows else ():
+            course = draw_course(seed, number)
+            rows = run_undisturbed(course, fmu_path(course.model, "fmi3"))
+            for kinds in instance_pools(course, number, rows) if rows else ():
                 restored, wrong = self.compare(seed, number, course, rows, kinds)
                 done += restored
                 counts["courses:"] += 1
@@ -295,21 +305,21 @@ class Restores(Campaign):
                     findings += 1
                     notes.append(f"seed {seed}, course {number}, {kinds[0][1]}: {wrong}")
             number += 1
-        return Outcome(done, findings, counts=counts, notes=tuple(notes))
+        return BatchOutcome(done, findings, counts=counts, notes=tuple(notes))
 
     def compare(
         self,
         seed: int,
         number: int,
-        course: Course,
+        course: InputCourse,
         rows: Sequence[Bits],
         kinds: Sequence[tuple[type, str]],
     ) -> tuple[int, str]:
-        """Compare a course in a pool of instances; return restores, and what is wrong ("")."""
+        """Run a course with restores, compare bits; return the number of restores and a problem."""
         rng = random.Random(f"{seed} {number} {kinds[0][1]}")
         with ExitStack() as stack:
-            pool = [stack.enter_context(k(path_of(course.model, form))) for k, form in kinds]
+            pool = [stack.enter_context(k(fmu_path(course.model, form))) for k, form in kinds]
             try:
-                return disturbed(rng, course, rows, pool)
+                return run_disturbed(rng, course, rows, pool)
             except (FmuError, InputError) as error:
                 return 1, f"refused: {error}"

@@ -1,4 +1,4 @@
-"""Receiver operating characteristics: how often a number above a threshold is right, and wrong."""
+"""Receiver operating characteristics and Wilson's intervals of rates."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 Floats = NDArray[np.float64]
 
 
-class Curve(NamedTuple):
+class RocCurve(NamedTuple):
     """Rates of true and false positives over falling thresholds.
 
     Attributes
@@ -30,13 +30,13 @@ class Curve(NamedTuple):
         """Area under the curve: chance that a positive case has the larger number, ties half."""
         return float(np.trapezoid(self.true, self.false))
 
-    def true_at(self, false: float) -> float:
+    def true_rate_at(self, false: float) -> float:
         """Return the largest rate of true positives at no more than a rate of false ones."""
         return float(self.true[self.false <= false].max())
 
 
-def curve(numbers: ArrayLike, is_positive: ArrayLike) -> Curve:
-    """Compute the receiver operating characteristic of a sign.
+def compute_curve(numbers: ArrayLike, is_positive: ArrayLike) -> RocCurve:
+    """Compute the ROC curve of numbers whose large values shall mean a positive case.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def curve(numbers: ArrayLike, is_positive: ArrayLike) -> Curve:
     above = values[np.newaxis, :] >= thresholds[:, np.newaxis]
     true = above[:, positive].mean(axis=1)
     false = above[:, ~positive].mean(axis=1)
-    return Curve(np.append(0.0, false), np.append(0.0, true), np.append(np.inf, thresholds))
+    return RocCurve(np.append(0.0, false), np.append(0.0, true), np.append(np.inf, thresholds))
 
 
 def area_error(area: float, positive: int, negative: int) -> float:
@@ -64,8 +64,8 @@ def area_error(area: float, positive: int, negative: int) -> float:
     return float(np.sqrt(max(square, 0.0) / (positive * negative)))
 
 
-def interval(count: int, of: int) -> tuple[float, float]:
-    """Return the lower and upper end of Wilson's 95 % interval of a share."""
+def wilson_interval(count: int, of: int) -> tuple[float, float]:
+    """Return lower and upper end of Wilson's 95 % interval of a share."""
     if not of:
         return 0.0, 1.0
     z, part = 1.96, count / of
@@ -74,14 +74,14 @@ def interval(count: int, of: int) -> tuple[float, float]:
     return float(max(middle - half, 0.0)), float(min(middle + half, 1.0))
 
 
-def part(count: int, of: int) -> str:
-    """A part with its 95 % interval, in percent."""
-    low, high = interval(count, of)
+def format_share(count: int, of: int) -> str:
+    """Format a share with its 95 % interval, in per cent."""
+    low, high = wilson_interval(count, of)
     if not of:
         return "none"
     return f"{100.0 * count / of:.1f} % of {of} ({100.0 * low:.1f} to {100.0 * high:.1f})"
 
 
-def bins(edges: Sequence[float]) -> list[tuple[float, float]]:
+def neighbour_pairs(edges: Sequence[float]) -> list[tuple[float, float]]:
     """Return neighbouring pairs of edges."""
     return list(zip(edges[:-1], edges[1:], strict=True))

@@ -1,4 +1,4 @@
-"""The model-free baseline that stands beside the detector: two numbers of a record."""
+"""Two model-free signs of a record, as a baseline beside the detector."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ CHANNEL = "acceleration1"
 
 
 def order_ratio(record: xr.Dataset) -> float:
-    """Compute order 2 over order 1 of mass 1, as roots of sums of squares over the sweep.
+    """Return order 2 over order 1 of mass 1, as roots of sums of squares over the sweep.
 
     NaN where there is no sweep.
     """
@@ -31,7 +31,7 @@ def order_ratio(record: xr.Dataset) -> float:
 
 
 def kurtosis_above(record: xr.Dataset) -> float:
-    """Compute the kurtosis of mass 1's acceleration above 300 Hz: 3 for normal noise."""
+    """Return the kurtosis of mass 1's acceleration above 300 Hz: 3 for Gaussian noise."""
     rate = float(record.attrs["sample_rate"])
     sections = butter(6, ABOVE, "highpass", fs=rate, output="sos")
     edge = int(BEGIN * rate)

@@ -1,4 +1,4 @@
-"""Commands to which something happens, and the campaigns that make it happen."""
+"""Trials of commands with one fault each, and the base of their campaigns."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
-from .campaign import Campaign, Outcome
-from .children import Child, FinishedCommand, import_all
+from .campaign import BatchOutcome, Campaign
+from .children import ChildCommand, FinishedCommand, import_all
 
 PLAIN = ("--plot", "none", "--jobs", "1")
 ALONG = ("--eta", "1.1:1.16:0.002")
@@ -73,7 +73,7 @@ BEFORE = {"border": ("branch", "--eta", "2.6", "--limits", "2.6:2.7", *PLAIN)}
 
 @dataclass
 class Trial:
-    """One fault of one command.
+    """One fault during one command.
 
     Attributes
     ----------
@@ -101,33 +101,35 @@ class Trial:
 
     def arguments(self) -> list[str]:
         """Return the arguments of the command."""
-        given = str(self.folder.parent / GIVEN)
-        named = [given if text == GIVEN else text for text in COMMANDS[self.name]]
+        start_file = str(self.folder.parent / GIVEN)
+        named = [start_file if text == GIVEN else text for text in COMMANDS[self.name]]
         return [*named, "--output", str(self.output)]
 
-    def start(self, prepare: Callable[[], object] | None = None) -> Child:
+    def start(self, prepare: Callable[[], object] | None = None) -> ChildCommand:
         """Start the command in a child."""
-        return Child(self.arguments(), self.folder / "temporary", prepare)
+        return ChildCommand(self.arguments(), self.folder / "temporary", prepare)
 
     def wait_a_moment(self) -> None:
         """Wait for a random moment of the command."""
         time.sleep(self.chance.uniform(0.0, self.seconds))
 
-    def struck(self, number: int) -> FinishedCommand:
+    def signal_and_wait(self, number: int) -> FinishedCommand:
         """Send a signal at a random moment; return how the command ends."""
         child = self.start()
         self.wait_a_moment()
-        child.send(number)
+        child.send_signal(number)
         return child.wait()
 
-    def goes_on(self) -> str:
-        """Run the same command again: return empty if it ends with the same bytes, else why not."""
+    def run_again(self) -> str:
+        """Run the same command again; return empty if it ends with the same bytes, else why not."""
         ended = self.start().wait()
-        return f"the same command again: {format_end(ended)}" if ended.code else self.verdict()
+        return (
+            f"the same command again: {format_end(ended)}" if ended.code else self.result_problem()
+        )
 
-    def verdict(self) -> str:
-        """Return what is wrong with the results of a command that ended well."""
-        if results(self.output) != self.expected:
+    def result_problem(self) -> str:
+        """Return what is wrong with the results of a command that ended well ("")."""
+        if read_results(self.output) != self.expected:
             return "other bytes"
         left = [p.name for p in self.output.iterdir() if p.suffix not in KINDS]
         return f"left behind: {', '.join(left)}" if left else ""
@@ -141,34 +143,34 @@ def format_end(ended: FinishedCommand) -> str:
     return f"exit code {ended.code}: {' / '.join(ended.lines)[:300]}"
 
 
-def results(folder: Path) -> dict[str, bytes]:
-    """Return the bytes of the NetCDF files by name."""
+def read_results(folder: Path) -> dict[str, bytes]:
+    """Return a dict from name to bytes of a folder's NetCDF files."""
     return {path.name: path.read_bytes() for path in sorted(folder.glob("*.nc"))}
 
 
-def in_a_line(ended: FinishedCommand) -> str:
-    """Return what is wrong with how a command gave up; empty where it did not, or in one line."""
+def message_problem(ended: FinishedCommand) -> str:
+    """Return what is wrong with how a command gave up; empty if it said one line."""
     if ended.code == 0 and "Traceback" not in ended.err:
         return ""
     return "" if ended.code > 0 and len(ended.lines) == 1 else format_end(ended)
 
 
-def undisturbed(name: str, holder: Path) -> tuple[dict[str, bytes], float]:
+def run_undisturbed(name: str, holder: Path) -> tuple[dict[str, bytes], float]:
     """Run a command undisturbed; return its results and its duration, s."""
     folder = holder / "undisturbed"
     if name in BEFORE:
         before = [*BEFORE[name], "--store", str(holder / GIVEN), "--output", str(folder)]
-        ended = Child(before, folder).wait(600.0)
+        ended = ChildCommand(before, folder).wait(600.0)
         assert ended.code == 0, f"before {name}: {format_end(ended)}"
     ended = Trial(name, folder, {}, 0.0, random.Random()).start().wait(600.0)
-    expected = results(folder / "results")
+    expected = read_results(folder / "results")
     assert ended.code == 0 and expected, f"{name}: {format_end(ended)}"
     shutil.rmtree(folder)
     return expected, ended.seconds
 
 
-class Disturbances(Campaign):
-    """Campaign of faults, each during one command.
+class DisturbanceCampaign(Campaign):
+    """Base of campaigns with one fault per command.
 
     Attributes
     ----------
@@ -184,10 +186,10 @@ class Disturbances(Campaign):
 
     @abstractmethod
     def trials(self, holder: Path) -> AbstractContextManager[Callable[..., Trial]]:
-        """Return a context that provides a maker of trials."""
+        """Return a context that provides a function that makes trials."""
 
-    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
-        """Run ``count`` faults one after the other."""
+    def run(self, fmu: Path, seed: int, count: int) -> BatchOutcome:
+        """Run ``count`` faults one after the other; return the outcome."""
         import_all()
         chance, counts, notes = random.Random(seed), dict.fromkeys(self.faults, 0), []
         known: dict[str, tuple[dict[str, bytes], float]] = {}
@@ -198,7 +200,7 @@ class Disturbances(Campaign):
                     name = chance.choice(self.commands)
                     fault = list(self.faults)[number % len(self.faults)]
                     if name not in known:
-                        known[name] = undisturbed(name, holder)
+                        known[name] = run_undisturbed(name, holder)
                     folder = holder / "trial"
                     folder.mkdir()
                     wrong = self.faults[fault](trial(name, folder, *known[name], chance))
@@ -207,4 +209,4 @@ class Disturbances(Campaign):
                         notes.append(f"seed {seed}, fault {number} ({fault}, {name}): {wrong}")
                     shutil.rmtree(folder, ignore_errors=True)
         named = {f"{name}:": value for name, value in counts.items()}
-        return Outcome(count, len(notes), counts=named, notes=tuple(notes))
+        return BatchOutcome(count, len(notes), counts=named, notes=tuple(notes))

@@ -15,7 +15,7 @@ from orchestrate.errors import VibroimpactError
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.held import FOLLOWS, LEFT_BEFORE, LOST, UNDECIDED
 
-from .campaign import Campaign, Outcome
+from .campaign import BatchOutcome, Campaign
 from .held_speeds import RATE, System, held_speeds
 
 RATES = (2e-4, 1e-4, 5e-5, 2e-5)  # of eta0 in a time 1/omega
@@ -440,7 +440,7 @@ class Verdicts(Campaign):
     )
     unit, target, batch, package = "drives", 40, 1, True
 
-    def run(self, fmu: Path, seed: int, count: int) -> Outcome:
+    def run(self, fmu: Path, seed: int, count: int) -> BatchOutcome:
         """Check the verdicts on ``count`` drives."""
         rng, counts, notes = np.random.default_rng(seed), Counter[str](), []
         wrong = 0
@@ -458,7 +458,7 @@ class Verdicts(Campaign):
                 except VibroimpactError as error:
                     notes.append(f"seed {seed}, drive {number} {name}: {error}")
             wrong += len(notes) > before
-        return Outcome(count, wrong, counts=+counts, notes=tuple(notes))
+        return BatchOutcome(count, wrong, counts=+counts, notes=tuple(notes))
 
     def judge(self, system: System, rates: Sequence[float]) -> Iterator[tuple[str, str]]:
         """Judge both structures of a drive; yield each answer's name, and what is wrong with it."""

@@ -1,4 +1,4 @@
-"""The paper's claims, section by section, each checked against what was computed."""
+"""The paper's claims by section, each with a check against computed results."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from .results import Results
 SECTIONS = (section1, section2, section3, section3_influence, section4, section5)  # enter claims
 
 
-def table(datasets: Mapping[str, xr.Dataset], full: bool = True) -> list[dict[str, str]]:
-    """Return all claims with what was found, as texts.
+def check_all_claims(datasets: Mapping[str, xr.Dataset], full: bool = True) -> list[dict[str, str]]:
+    """Check all claims against the computed datasets; return a row of texts for each.
 
     Parameters
     ----------

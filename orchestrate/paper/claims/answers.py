@@ -1,4 +1,4 @@
-"""What the paper could not ask: chaos by region, where a delamination shows, what coexists."""
+"""Answers beyond the paper's claims: chaos by region, largest impulses, coexisting attractors."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ import xarray as xr
 
 from ...dynamics.lyapunov import PERIODIC
 from ..cases import CASES, MAPS
-from .results import Region, Results, between, shares
+from .results import Region, Results, between, irregular_shares
 
 LEAST = 0.01  # share of chaotic or neutral responses from which a region is called so
 
 
-def regions(datasets: Mapping[str, xr.Dataset]) -> list[dict[str, str]]:
-    """Return the verdict on each region of each case, between exact limits, as texts.
+def region_rows(datasets: Mapping[str, xr.Dataset]) -> list[dict[str, str]]:
+    """Return a row of texts for each region of each case: limits, chaotic share, verdict.
 
     Parameters
     ----------
@@ -30,22 +30,22 @@ def regions(datasets: Mapping[str, xr.Dataset]) -> list[dict[str, str]]:
 
 
 def region_row(results: Results, case: str, region: Region) -> dict[str, str]:
-    """Return one region; the largest exponent by a run of its own, with one standard error."""
+    """Return a region's row: limits, chaotic and neutral shares, largest exponent, verdict."""
     low, high, name = region
-    chaotic, neutral = shares(results, case, low, high)
+    chaotic, neutral = irregular_shares(results, case, low, high)
     kinds = {"chaotic in part": chaotic, "neutral in part": neutral, "periodic": 1.0}
     return {
         "region": f"{low:.5f} to {high:.5f} ({name})",
         "chaotic": f"{100 * chaotic:.0f} %",
         "neutral": f"{100 * neutral:.0f} %",
         "count": str(between(results.exponent(case), low, high).sizes["eta"]),
-        "largest": results.largest(case, region).text(),
+        "largest": results.largest_exponent(case, region).text(),
         "verdict": next(word for word, share in kinds.items() if share > LEAST),
     }
 
 
-def sentences(datasets: Mapping[str, xr.Dataset]) -> list[str]:
-    """Return the other answers, a sentence each.
+def answer_sentences(datasets: Mapping[str, xr.Dataset]) -> list[str]:
+    """Return a sentence each on largest impulses, coexisting attractors and spectra.
 
     Parameters
     ----------
@@ -54,16 +54,18 @@ def sentences(datasets: Mapping[str, xr.Dataset]) -> list[str]:
     """
     return [
         *(
-            strongest(datasets[f"map_{parameter}"], datasets[f"peak_{parameter}"], parameter)
+            describe_largest_impulse(
+                datasets[f"map_{parameter}"], datasets[f"peak_{parameter}"], parameter
+            )
             for parameter in MAPS
         ),
-        coexisting(datasets["basin"]),
-        compare_spectra(datasets["spectra"]),
+        describe_attractors(datasets["basin"]),
+        describe_spectra(datasets["spectra"]),
     ]
 
 
-def strongest(data: xr.Dataset, run_on: xr.Dataset, parameter: str) -> str:
-    """Return where the largest impulse of a map is, how large it is in a longer run, and how wide.
+def describe_largest_impulse(data: xr.Dataset, run_on: xr.Dataset, parameter: str) -> str:
+    """Return a sentence on a map's largest impulse: where it is, and its size in a longer run.
 
     Parameters
     ----------
@@ -91,8 +93,8 @@ def strongest(data: xr.Dataset, run_on: xr.Dataset, parameter: str) -> str:
     )
 
 
-def coexisting(data: xr.Dataset) -> str:
-    """Format the attractors of the basin picture, with their shares of the plane."""
+def describe_attractors(data: xr.Dataset) -> str:
+    """Return a sentence on the basin's attractors and their shares of the starts."""
     kinds = []
     for k in range(min(4, data.sizes["attractor"])):
         n = int(data.multiplicity[k])
@@ -108,8 +110,8 @@ def coexisting(data: xr.Dataset) -> str:
     )
 
 
-def compare_spectra(data: xr.Dataset) -> str:
-    """Return how much of the delaminated structure's acceleration lies above the excitation."""
+def describe_spectra(data: xr.Dataset) -> str:
+    """Return a sentence comparing spectral lines above the excitation, bonded and delaminated."""
     shown = data.acceleration.sel(mass=1).isel(eta=0)
     above = shown.where(shown.order > 1.5, drop=True)
     first = float(shown.sel(kind="delaminated").max())

@@ -1,4 +1,4 @@
-"""A claim of the paper as a record: what it says, how it is checked, what is found."""
+"""Claims of the paper as objects: text, printed value, check function and finding."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ BOTH, SWEPT, EXACT, NEITHER = (
 
 @dataclass(frozen=True)
 class Finding:
-    """What was found for a claim.
+    """Result of checking a claim: a text with numbers, a verdict, and a reason.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ Check = Callable[[Results], Finding]
 
 @dataclass(frozen=True)
 class Claim:
-    """One claim.
+    """A claim of the paper with the function that checks it against results.
 
     Attributes
     ----------
@@ -81,7 +81,7 @@ class Claim:
     full: bool = False
 
     def row(self, results: Results) -> dict[str, str]:
-        """Return the claim with its finding, as plain text."""
+        """Check the claim; return it with its finding as a dict of texts."""
         finding = self.check(results)
         if self.full and not results.full:
             finding = Finding(finding.value, UNDECIDED)
@@ -98,20 +98,21 @@ class Claim:
 CLAIMS: list[Claim] = []  # in the order in which their checks stand
 
 
-def claim(
+def register_claim(
     section: str, text: str, printed: str, how: str, tolerance: str = "-", full: bool = False
 ) -> Callable[[Check], Check]:
-    """Enter a claim with the check that stands below; arguments as of :class:`Claim`."""
+    """Decorate a check function: add its claim to ``CLAIMS``; arguments as of :class:`Claim`."""
 
-    def enter(check: Check) -> Check:
+    def decorate(check: Check) -> Check:
+        """Add the claim with this check function to ``CLAIMS``; return the function."""
         CLAIMS.append(Claim(section, text, printed, how, tolerance, check, full))
         return check
 
-    return enter
+    return decorate
 
 
 def half_unit(printed: str) -> float:
-    """Return half a unit of the last printed digit: numbers that round to it are that near."""
+    """Return half a unit of a printed number's last digit, the tolerance of rounding."""
     return 0.5 * 10.0 ** -len(printed.partition(".")[2])
 
 
@@ -120,10 +121,10 @@ def rounds_to(value: float, printed: str) -> bool:
     return abs(value - float(printed)) <= half_unit(printed) + 1e-9
 
 
-def border(
+def check_limit(
     edges: Edges, limit: Limit, printed: str, why: str = "", slack: float | None = None
 ) -> Finding:
-    """Return the finding for a limit: where the sweep passes it, and its exact position.
+    """Compare a printed limit with the sweep's and the exact one; return the finding.
 
     Parameters
     ----------
@@ -151,12 +152,12 @@ def border(
     return Finding(value, {BOTH: YES, NEITHER: NO}.get(agrees, PARTLY), why, agrees)
 
 
-def number_at(value: float, printed: str, digits: int, why: str = "") -> Finding:
-    """Return the finding for a number."""
+def check_number(value: float, printed: str, digits: int, why: str = "") -> Finding:
+    """Compare a computed value with a printed number by rounding; return the finding."""
     return Finding(f"{value:.{digits}f}", YES if rounds_to(value, printed) else NO, why)
 
 
-def holds(parts: Iterable[bool], value: str, why: str = "") -> Finding:
-    """Return the finding for a statement with several parts that each hold or do not."""
+def check_parts(parts: Iterable[bool], value: str, why: str = "") -> Finding:
+    """Return a finding from several true or false parts: yes, in part, or no."""
     parts = list(parts)
     return Finding(value, YES if all(parts) else PARTLY if any(parts) else NO, why)

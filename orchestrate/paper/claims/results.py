@@ -1,4 +1,4 @@
-"""What claims are checked against: the datasets by case, and what is read off them repeatedly."""
+"""Access to the computed datasets for the checks of claims, by case and kind."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ import xarray as xr
 from ...dynamics.lyapunov import CHAOTIC, NEUTRAL
 from ...dynamics.stable_windows import StableWindow
 from ..cases import CASES
-from ..largest import Largest, largest_of
-from ..regions import Region, nearest_window, regions
-from ..windows import runs
+from ..largest_exponents import LargestExponent, largest_exponent
+from ..regions import Region, list_regions, nearest_window
+from ..sweep_windows import runs
 
 Edges = tuple[float, float]  # two neighbouring frequencies
 
 
 class Shares(NamedTuple):
-    """Responses between two frequencies.
+    """Shares of responses between two frequencies that are chaotic, and neutral.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class Shares(NamedTuple):
 
 
 class Limit(NamedTuple):
-    """An exact limit of stability.
+    """An exact limit of stability: frequency, kind of bifurcation, orbit.
 
     Attributes
     ----------
@@ -49,12 +49,12 @@ class Limit(NamedTuple):
 
     @property
     def digits(self) -> int:
-        """Return the number of known digits: fewer at a loss of contact, which depends on gamma."""
+        """Number of digits that are sure: fewer at a loss of contact, which depends on gamma."""
         return 6 if "contact" in self.kind else 8
 
 
 class Results:
-    """Computed datasets.
+    """The paper's computed datasets, with access by case.
 
     Parameters
     ----------
@@ -69,56 +69,56 @@ class Results:
         self.full = full
 
     def window(self, case: str, orbit: str, inside: float) -> StableWindow:
-        """Return the stable window of an orbit that holds a frequency, or is nearest to it."""
+        """Return the stable window of an orbit around a frequency, or nearest to it."""
         return nearest_window(self.get("limits"), case, orbit, inside)
 
-    def begins(self, case: str, orbit: str, inside: float) -> Limit:
-        """Return the lower limit of the window that holds a frequency."""
+    def lower_limit(self, case: str, orbit: str, inside: float) -> Limit:
+        """Return the lower limit of an orbit's stable window around a frequency."""
         window = self.window(case, orbit, inside)
         return Limit(window.low, window.below, orbit)
 
-    def ends(self, case: str, orbit: str, inside: float) -> Limit:
-        """Return where an orbit's window ends, its upper edge, as a limit."""
+    def upper_limit(self, case: str, orbit: str, inside: float) -> Limit:
+        """Return the upper limit of an orbit's stable window around a frequency."""
         window = self.window(case, orbit, inside)
         return Limit(window.high, window.above, orbit)
 
     def regions(self, case: str) -> list[Region]:
-        """Return those of :func:`..regions.regions` that hold frequencies of the sweep."""
-        listed = regions(self.get("limits"), case)
+        """Return a case's frequency regions that hold more than one frequency of the sweep."""
+        listed = list_regions(self.get("limits"), case)
         return [one for one in listed if between(self.exponent(case), *one[:2]).sizes["eta"] > 1]
 
-    def largest(self, case: str, region: Region) -> Largest:
-        """Return the largest exponent of a region, by a run of its own."""
-        return largest_of(self.of("largest", case), region.name)
+    def largest_exponent(self, case: str, region: Region) -> LargestExponent:
+        """Return a region's largest exponent, decided by a long run of its own."""
+        return largest_exponent(self.dataset_of_case("largest", case), region.name)
 
     def settled(self, case: str) -> xr.Dataset:
-        """Return the dataset of the settled responses of a case's up-sweep."""
-        return self.of("settled", case, "_up")
+        """Return a case's dataset of up-sweep responses run on until they repeat."""
+        return self.dataset_of_case("settled", case, "_up")
 
     def get(self, name: str) -> xr.Dataset:
-        """Return a computed dataset of the paper's plan by its name."""
+        """Return a dataset by its job's name."""
         return self._datasets[name]
 
-    def of(self, kind: str, case: str, ending: str = "") -> xr.Dataset:
-        """Return a dataset of one of the three cases, over eta upwards."""
+    def dataset_of_case(self, kind: str, case: str, ending: str = "") -> xr.Dataset:
+        """Return the dataset of one kind for one case, sorted by eta."""
         data = self._datasets[f"{kind}_{CASES[case].label()}{ending}"]
         return data.sortby("eta") if "eta" in data.dims else data
 
     def up(self, case: str) -> xr.Dataset:
-        """Return the sweep upwards."""
-        return self.of("orbit", case, "_up")
+        """Return a case's sweep upwards."""
+        return self.dataset_of_case("orbit", case, "_up")
 
     def down(self, case: str) -> xr.Dataset:
-        """Return the sweep downwards."""
-        return self.of("orbit", case, "_down")
+        """Return a case's sweep downwards."""
+        return self.dataset_of_case("orbit", case, "_down")
 
-    def steady(self, case: str) -> xr.Dataset:
-        """Return the up-sweep's responses, impact by impact."""
-        return self.of("steady", case, "_up")
+    def impact_statistics(self, case: str) -> xr.Dataset:
+        """Return a case's impact statistics of the up-sweep's responses."""
+        return self.dataset_of_case("steady", case, "_up")
 
     def exponent(self, case: str) -> xr.Dataset:
-        """Return largest Lyapunov exponents along the up-sweep."""
-        return self.of("exponent", case)
+        """Return a case's largest Lyapunov exponents along the up-sweep."""
+        return self.dataset_of_case("exponent", case)
 
 
 def between(data: xr.Dataset, low: float, high: float) -> xr.Dataset:
@@ -127,7 +127,7 @@ def between(data: xr.Dataset, low: float, high: float) -> xr.Dataset:
 
 
 def impacts_in_response(data: xr.Dataset) -> np.ndarray:
-    """Return the impacts in a response period; 0 where the response does not repeat.
+    """Return each response's impacts in its own period; 0 if it does not repeat.
 
     A sweep counts those of a response that has repeated over its own period: n times them is a
     whole number. Where that is undecided their mean over the samples may miss it a little.
@@ -140,13 +140,13 @@ def impacts_in_response(data: xr.Dataset) -> np.ndarray:
     ).astype(int)
 
 
-def kind(data: xr.Dataset, n: int, impacts: int) -> np.ndarray:
-    """Return where responses have period nT and so many impacts in it."""
+def is_orbit(data: xr.Dataset, n: int, impacts: int) -> np.ndarray:
+    """Return a Boolean array: responses with period nT and ``impacts`` impacts in it."""
     return (data.multiplicity.values == n) & (impacts_in_response(data) == impacts)
 
 
 def upper_edge(data: xr.Dataset, flags: np.ndarray, inside: float) -> Edges:
-    """Return the last eta of the run of true flags that holds ``inside``, and the next one."""
+    """Return the last eta of the run of true flags around ``inside``, and the next eta."""
     etas = data.eta.values
     index = int(np.abs(etas - inside).argmin())
     for first, last in runs(flags):
@@ -156,7 +156,7 @@ def upper_edge(data: xr.Dataset, flags: np.ndarray, inside: float) -> Edges:
 
 
 def lower_edge(data: xr.Dataset, flags: np.ndarray, inside: float) -> Edges:
-    """Return the eta before the run of true flags that holds ``inside``, and its first one."""
+    """Return the eta before the run of true flags around ``inside``, and its first eta."""
     etas = data.eta.values
     index = int(np.abs(etas - inside).argmin())
     for first, last in runs(flags):
@@ -166,15 +166,15 @@ def lower_edge(data: xr.Dataset, flags: np.ndarray, inside: float) -> Edges:
 
 
 def longest_edges(data: xr.Dataset, flags: np.ndarray) -> tuple[Edges, Edges]:
-    """Return lower and upper edge of the longest run of true flags, as two pairs."""
+    """Return lower and upper edge of the longest run of true flags, each as two etas."""
     first, last = max(runs(flags), key=lambda run: run[1] - run[0])
     etas = data.eta.values
     lower = float(etas[max(first - 1, 0)]), float(etas[first])
     return lower, (float(etas[last]), float(etas[min(last + 1, len(etas) - 1)]))
 
 
-def shares(results: Results, case: str, low: float, high: float) -> Shares:
-    """Return shares of settled responses between two frequencies that are chaotic, and neutral.
+def irregular_shares(results: Results, case: str, low: float, high: float) -> Shares:
+    """Return the chaotic and neutral shares of settled responses between two frequencies.
 
     One whose state repeats is periodic, whatever the sign of its exponent in a finite time.
     """

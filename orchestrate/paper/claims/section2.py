@@ -1,4 +1,4 @@
-"""Misprints of section 2: what is printed and what is right, each put into what it must fulfil."""
+"""Checks of section 2's misprints: each printed and corrected equation, put to a test."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...response.curves import CONTACT, FLIGHT
-from .claim import NO, PARTLY, YES, Check, Finding, claim
+from .claim import NO, PARTLY, YES, Check, Finding, register_claim
 from .results import Results
 
 if TYPE_CHECKING:
@@ -21,14 +21,14 @@ ROUNDING = 1e-6
 RATIO = 1e-6  # of successive times between impacts, against e
 
 
-def misprint(equation: str, text: str) -> Callable[[Check], Check]:
-    """Enter a misprinted equation with the check that stands below."""
+def register_misprint(equation: str, text: str) -> Callable[[Check], Check]:
+    """Decorate a check function: add the claim of a misprinted equation."""
     how = "put into what it must fulfil"
-    return claim("2", f"{equation}: {text}", "as printed", how, "1e-6")
+    return register_claim("2", f"{equation}: {text}", "as printed", how, "1e-6")
 
 
-def compared(what: str, printed: float, right: float, form: str) -> Finding:
-    """Return the finding for a misprint: the residual of the printed form and of the right one."""
+def compare_residuals(what: str, printed: float, right: float, form: str) -> Finding:
+    """Return the finding from the residuals of the printed and the corrected form."""
     text = f"{what}: {printed:.2g} as printed, {right:.2g} with {form}"
     verdict = YES if printed < ROUNDING else NO
     why = "" if right < ROUNDING else "The corrected form does not fulfil it either."
@@ -36,7 +36,7 @@ def compared(what: str, printed: float, right: float, form: str) -> Finding:
 
 
 def residual(motion: Callable[[np.ndarray], np.ndarray]) -> float:
-    """Return the largest residual of (6) along a motion, its derivatives by differences."""
+    """Return the largest residual of equation (6) for a motion, by finite differences."""
     step = 1e-4
     here, after, before = motion(TAUS), motion(TAUS + step), motion(TAUS - step)
     rate, curvature = (after - before) / (2.0 * step), (after - 2.0 * here + before) / step**2
@@ -45,7 +45,7 @@ def residual(motion: Callable[[np.ndarray], np.ndarray]) -> float:
 
 
 def solution(frequency: float, damping: float) -> Callable[[np.ndarray], np.ndarray]:
-    """Check (10) with (11), and the frequency and damping of its free part."""
+    """Return a motion by (10) and (11), with given frequency and damping of its free part."""
     detuning, loss = STIFFNESS - ETA**2, 2.0 * D * ETA
     a, b = -loss / (detuning**2 + loss**2), detuning / (detuning**2 + loss**2)
     nu, phase = math.sqrt(STIFFNESS - D * D), ETA * BEGAN
@@ -53,6 +53,7 @@ def solution(frequency: float, damping: float) -> Callable[[np.ndarray], np.ndar
     rate = START[1] + D * alpha - ETA * (b * math.cos(phase) - a * math.sin(phase))
 
     def motion(tau: np.ndarray) -> np.ndarray:
+        """Return the displacement at non-dimensional times."""
         angle = ETA * (tau + BEGAN)
         free = alpha * np.cos(frequency * tau) + rate / nu * np.sin(frequency * tau)
         return a * np.cos(angle) + b * np.sin(angle) + np.exp(-damping * tau) * free
@@ -60,26 +61,26 @@ def solution(frequency: float, damping: float) -> Callable[[np.ndarray], np.ndar
     return motion
 
 
-@misprint("(3)", "xi = x/a eta^2")
-def scale(results: Results) -> Finding:
-    """Check (3): x over a, times eta^2, or x over a eta^2."""
+@register_misprint("(3)", "xi = x/a eta^2")
+def check_scale(results: Results) -> Finding:
+    """Check (3): whether xi is x/a eta^2 or x/(a eta^2), by the steady amplitude."""
     steady = 1.0 / math.hypot(1.0 - ETA**2, 2.0 * D * ETA)  # amplitude of (6), unit forcing
     x_over_a = ETA**2 * steady  # of m x'' + d x' + k x = m a Omega^2 sin(Omega t)
     printed, right = abs(x_over_a * ETA**2 - steady), abs(x_over_a / ETA**2 - steady)
-    return compared("steady amplitude less that of (6)", printed, right, "x/(a eta^2)")
+    return compare_residuals("steady amplitude less that of (6)", printed, right, "x/(a eta^2)")
 
 
-@misprint("(10)", "cos kappa_i tau, e^(-D tau)")
-def free_part(results: Results) -> Finding:
-    """Decide whether (10) has kappa_i or nu_i of (11), by what they leave of (6)."""
+@register_misprint("(10)", "cos kappa_i tau, e^(-D tau)")
+def check_free_part(results: Results) -> Finding:
+    """Check whether (10) has kappa_i or nu_i of (11), by the residual of (6)."""
     nu = math.sqrt(STIFFNESS - D * D)
     printed, right = residual(solution(STIFFNESS, D)), residual(solution(nu, D))
-    return compared("left of (6)", printed, right, "nu_i for kappa_i (and D_i for D)")
+    return compare_residuals("left of (6)", printed, right, "nu_i for kappa_i (and D_i for D)")
 
 
-@misprint("(12)", "xi_2 - xi_1 unequal 0")
-def one_sided(results: Results) -> Finding:
-    """Check (12): unequal, or larger than zero."""
+@register_misprint("(12)", "xi_2 - xi_1 unequal 0")
+def check_one_sided(results: Results) -> Finding:
+    """Check (12): whether the gap is unequal to 0 or larger than 0."""
     data = results.get("figure5")
     flying = data.kind.values == FLIGHT
     gap = (data.state.values[:, 1] - data.state.values[:, 0])[flying]
@@ -89,20 +90,21 @@ def one_sided(results: Results) -> Finding:
     return Finding(text, NO if (inside > 0.0).all() else YES, why)
 
 
-@misprint("(15)", "(1 + e) mu/(1 + mu) in the second line")
-def momentum(results: Results) -> Finding:
-    """Check (15): the factor of its second line."""
+@register_misprint("(15)", "(1 + e) mu/(1 + mu) in the second line")
+def check_momentum(results: Results) -> Finding:
+    """Check (15): the factor of its second line, by conservation of momentum."""
     e, mu, v1, v2 = 0.7, 0.5, 0.8, -0.4
     part = (1.0 + e) / (1.0 + mu) * (v1 - v2)
 
     def change(factor: float) -> float:
+        """Return the change of total momentum with this factor."""
         return abs((v1 - mu * part) + mu * (v2 + factor * part) - (v1 + mu * v2))
 
     what = "momentum gained at m_2/m_1 = 0.5"
-    return compared(what, change(mu), change(1.0), "(1 + e)/(1 + mu) in the second line")
+    return compare_residuals(what, change(mu), change(1.0), "(1 + e)/(1 + mu) in the second line")
 
 
-@claim(
+@register_claim(
     "2",
     "(16): for all non-vanishing restitution coefficients a sequence of infinitely many "
     "impacts, with time intervals tending to zero",
@@ -110,11 +112,11 @@ def momentum(results: Results) -> Finding:
     "the FMU's impacts after one kick, for e from 0.01 to 1 and gamma from 1e-3 to 1e-9",
     "ratios of times 1e-6; counts one impact",
 )
-def chattering(results: Results) -> Finding:
-    """Check (16) for each restitution: impacts without end, their intervals tending to zero."""
+def check_chattering(results: Results) -> Finding:
+    """Check (16): whether impacts are infinitely many with intervals that tend to zero."""
     data = results.get("chattering")
     every = data.e.values.tolist()
-    holding = [e for e in every if endless(data.sel(e=e), e)]
+    holding = [e for e in every if is_endless(data.sel(e=e), e)]
     failing = [e for e in every if e not in holding]
     gammas = sorted(data.gamma.values.tolist(), reverse=True)
     away = data.ratio_error.sel(gamma=gammas[-1], e=holding).max().item() if holding else math.nan
@@ -137,8 +139,8 @@ def chattering(results: Results) -> Finding:
     return Finding(text, PARTLY if holding and failing else YES if holding else NO, why)
 
 
-def endless(rows: xr.Dataset, e: float) -> bool:
-    """Return whether impacts of one restitution form a geometric sequence, down to gamma.
+def is_endless(rows: xr.Dataset, e: float) -> bool:
+    """Return whether impacts form a geometric sequence in time, down to gamma.
 
     Parameters
     ----------
@@ -155,9 +157,9 @@ def endless(rows: xr.Dataset, e: float) -> bool:
     return bool(grows.all() and near and rows.sticks.values.all())
 
 
-@misprint("(17)", "contact follows by the velocity alone")
-def pulling(results: Results) -> Finding:
-    """Check (17): slow impacts after which the masses would have to pull each other."""
+@register_misprint("(17)", "contact follows by the velocity alone")
+def check_pulling(results: Results) -> Finding:
+    """Check (17): whether slow impacts would stick although the contact force pulls."""
     data = results.get("low_speed")
     slow, pulled, sticking = (int(data[name].sum()) for name in ("slow", "pulled", "sticking"))
     text = (
@@ -168,9 +170,9 @@ def pulling(results: Results) -> Finding:
     return Finding(text, NO if pulled else YES, why)
 
 
-@misprint("(20)", "initial conditions of the (k+i)th state")
-def next_state(results: Results) -> Finding:
-    """Check (20): the state that begins where contact ends."""
+@register_misprint("(20)", "initial conditions of the (k+i)th state")
+def check_next_state(results: Results) -> Finding:
+    """Check (20): the gap velocity with which the state after contact begins."""
     data = results.get("figure5")
     kind, state = data.kind.values, data.state.values
     ends = np.flatnonzero((kind[:-1] == CONTACT) & (kind[1:] != CONTACT))
@@ -188,12 +190,15 @@ def next_state(results: Results) -> Finding:
     return Finding(text, YES if abs(later) < first * largest else NO, why)
 
 
-@misprint("(22)", "T = eta/2 pi")
-def period(results: Results) -> Finding:
-    """Decide whether (22) is eta/2 pi or 2 pi/eta, by which is a period of the excitation."""
+@register_misprint("(22)", "T = eta/2 pi")
+def check_period(results: Results) -> Finding:
+    """Check (22): whether the excitation's period is eta/2 pi or 2 pi/eta."""
 
     def change(span: float) -> float:
+        """Return the largest change of sin(eta tau) after a time span."""
         return float(np.abs(np.sin(ETA * (TAUS + span)) - np.sin(ETA * TAUS)).max())
 
     what = "change of sin(eta tau) after T"
-    return compared(what, change(ETA / (2.0 * np.pi)), change(2.0 * np.pi / ETA), "2 pi/eta")
+    return compare_residuals(
+        what, change(ETA / (2.0 * np.pi)), change(2.0 * np.pi / ETA), "2 pi/eta"
+    )

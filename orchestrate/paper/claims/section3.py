@@ -1,4 +1,4 @@
-"""Claims of section 3 and 3.1: permanent contact, windows, multiplicity and impacts."""
+"""Checks of sections 3 and 3.1: permanent contact, windows, multiplicity, impacts."""
 
 from __future__ import annotations
 
@@ -8,10 +8,21 @@ import numpy as np
 
 from ...response.curves import CONTACT, FLIGHT, SEQUENCE
 from ..cases import CASES
-from ..transients import changed
-from ..windows import relative_peak, runs, window
-from .claim import LIMIT, NO, NUMBER, PARTLY, YES, Finding, border, claim, holds, rounds_to
-from .results import Results, between, impacts_in_response, kind, lower_edge, upper_edge
+from ..later_responses import classify_changes
+from ..sweep_windows import relative_peak, runs, window
+from .claim import (
+    LIMIT,
+    NO,
+    NUMBER,
+    PARTLY,
+    YES,
+    Finding,
+    check_limit,
+    check_parts,
+    register_claim,
+    rounds_to,
+)
+from .results import Results, between, impacts_in_response, is_orbit, lower_edge, upper_edge
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -20,14 +31,14 @@ CHANGE = 0.01  # of the largest gap: what the paper's diagrams resolve
 FEW = 0.01  # share of the frequencies
 
 
-@claim(
+@register_claim(
     "3",
     "only for m_1 = m_2, k_1 = k_2, d_1 = d_2 do both masses vibrate without influence",
     "only then",
     "the FMU from rest: impacts in 2,000 periods at eta = 1.3",
 )
-def only_equal(results: Results) -> Finding:
-    """Find whether masses vibrate without influencing each other for equal oscillators only."""
+def check_only_equal(results: Results) -> Finding:
+    """Check whether only equal oscillators vibrate without influencing each other."""
     data = results.get("low_speed")
     alike = data.isel(motion=np.abs(data.kappa.values - data.mu.values) < 1e-12)
     unlike = data.isel(motion=(data.mu.values == 2) & (data.kappa.values != 2))
@@ -45,11 +56,11 @@ def only_equal(results: Results) -> Finding:
     )
 
 
-@claim(
+@register_claim(
     "3", "natural frequencies of both subsystems", "1 and 1.095, about 10 % apart", "(7)", NUMBER
 )
-def detuning(results: Results) -> Finding:
-    """Find natural frequencies of both subsystems, (7)."""
+def check_detuning(results: Results) -> Finding:
+    """Check the natural frequencies of both halves (7)."""
     case = CASES["elastic"]
     second = (case.kappa / case.mu) ** 0.5
     return Finding(
@@ -58,53 +69,55 @@ def detuning(results: Results) -> Finding:
     )
 
 
-@claim(
+@register_claim(
     "3",
     "natural frequencies that differ by about 10 % seem to be the most unfavourable situation",
     "k_2/k_1 = 1.2",
     "map over (eta, kappa): the largest impulse, which a test has to see",
     "10 % of the least",
 )
-def most_unfavourable(results: Results) -> Finding:
-    """Find whether the impulses at the paper's detuning are the least."""
+def check_most_unfavourable(results: Results) -> Finding:
+    """Check whether impulses are smallest at the paper's detuning."""
     largest = results.get("map_kappa").impulse_max.max("eta")
     own = CASES["elastic"].kappa
     here = float(largest.sel(kappa=own, method="nearest"))
-    least, place = float(largest.min()), float(largest.idxmin())
+    least, kappa_of_least = float(largest.min()), float(largest.idxmin())
     text = (
         f"largest impulse over eta at k_2/k_1 = {own:g}: {here:.3g} m_1 omega a eta^2; the least "
         f"of {float(largest.kappa.min()):.2f} to {float(largest.kappa.max()):.2f}: {least:.3g} at "
-        f"{place:.2f}"
+        f"{kappa_of_least:.2f}"
     )
     why = "The more alike the halves are, the weaker their impacts: by (6) alike ones never part."
     return Finding(text, YES if here <= 1.1 * least else NO, why if here > 1.1 * least else "")
 
 
-@claim(
+@register_claim(
     "3",
     "eta = 0.4: separate motion, a sequence of impacts, permanent contact in each T",
     "three states",
     "Figure 5's data",
 )
-def three_states(results: Results) -> Finding:
-    """Check that the response of Figure 5 has all three states."""
+def check_three_states(results: Results) -> Finding:
+    """Check whether Figure 5's response has all three states."""
     kinds = results.get("figure5").kind.values
-    steady = results.steady("elastic").sel(eta=0.4, method="nearest")
+    steady = results.impact_statistics("elastic").sel(eta=0.4, method="nearest")
     text = (
         f"{float(steady.contacts):.0f} permanent contact and {float(steady.impacts):.0f} impacts "
         "per T"
     )
-    return holds([bool((kinds == state).any()) for state in (SEQUENCE, CONTACT, FLIGHT)], text)
+    return check_parts(
+        [bool((kinds == state).any()) for state in (SEQUENCE, CONTACT, FLIGHT)], text
+    )
 
 
-@claim(
+@register_claim(
     "3",
     "Figure 5(a): the phase plot for each mass gives two closed loops",
     "two loops",
     "Figure 5's data: crossings of each curve with itself",
 )
-def two_loops(results: Results) -> Finding:
-    """Find how often the phase curves of Figure 5(a) cross themselves, and whether they close."""
+def check_two_loops(results: Results) -> Finding:
+    """Check that Figure 5(a)'s phase curves close and how often they cross themselves."""
     data = results.get("figure5")
     state = data.state.values
     closed = bool(np.abs(state[-1] - state[0]).max() < 1e-3 * np.abs(state).max())
@@ -114,10 +127,10 @@ def two_loops(results: Results) -> Finding:
         "A curve that crosses itself once has two loops: so that of mass 2. Read as one closed "
         "loop of each mass, the sentence holds."
     )
-    return holds([closed, *(count == 1 for count in counts)], text, why)
+    return check_parts([closed, *(count == 1 for count in counts)], text, why)
 
 
-@claim(
+@register_claim(
     "3",
     "Figure 5(b): many loops in one response period, each begins and ends at an impact; "
     "contact is a point at the origin",
@@ -125,8 +138,8 @@ def two_loops(results: Results) -> Finding:
     "Figure 5's data: jumps of the velocity, and the gap there",
     "1e-6 of the largest gap and velocity",
 )
-def many_loops(results: Results) -> Finding:
-    """Count the loops of the relative motion in Figure 5(b), and where each begins and ends."""
+def check_many_loops(results: Results) -> Finding:
+    """Check number, begin and end of the loops in Figure 5(b)'s relative motion."""
     data = results.get("figure5")
     state, kinds, tau = data.state.values, data.kind.values, data.tau.values
     gap, rate = state[:, 1] - state[:, 0], state[:, 3] - state[:, 2]
@@ -147,18 +160,18 @@ def many_loops(results: Results) -> Finding:
         f"the origin: {point}"
     )
     why = "The loop that begins where contact ends begins without an impact and without a jump."
-    return holds([loops > 10, at_zero, point, released == 0], text, why if released else "")
+    return check_parts([loops > 10, at_zero, point, released == 0], text, why if released else "")
 
 
-@claim(
+@register_claim(
     "3",
     "transition to permanent contact at gamma = 1e-4 max xi'_Rel",
     "1e-4",
     "Figure 5's data; short sweeps with other gamma",
     "1 % of T; one step of the sweep",
 )
-def gamma_scale(results: Results) -> Finding:
-    """Find where the paper's gamma ends chattering at eta = 0.4, and where the FMU does."""
+def check_gamma_scale(results: Results) -> Finding:
+    """Check where the paper's gamma would end chattering at eta = 0.4, beside the FMU."""
     data = results.get("figure5")
     tau, state = data.tau.values, data.state.values
     rate = state[:, 3] - state[:, 2]
@@ -176,10 +189,10 @@ def gamma_scale(results: Results) -> Finding:
         "max xi'_Rel is not known before the motion is; the FMU compares the next flight's time "
         "with the motion's own, which needs no scale."
     )
-    return holds([abs(parting - begins) < 0.01 * tau[-1], spread <= 0.001 + 1e-9], text, why)
+    return check_parts([abs(parting - begins) < 0.01 * tau[-1], spread <= 0.001 + 1e-9], text, why)
 
 
-@claim(
+@register_claim(
     "3.1",
     "n = 500 periods eliminate transient effects",
     "500",
@@ -188,10 +201,12 @@ def gamma_scale(results: Results) -> Finding:
     "others at 1 % of the frequencies up to the end of the window T, and beyond it",
     full=True,
 )
-def enough_periods(results: Results) -> Finding:
-    """Find responses of the sweep after n = 500 that are others long after."""
-    up, end = results.up("elastic"), results.ends("elastic", "T/1", 2.0).value
-    later, latest = (results.of(name, "elastic", "_up") for name in ("later", "latest"))
+def check_enough_periods(results: Results) -> Finding:
+    """Check whether 500 periods of transient suffice, by running responses on."""
+    up, end = results.up("elastic"), results.upper_limit("elastic", "T/1", 2.0).value
+    later, latest = (
+        results.dataset_of_case(name, "elastic", "_up") for name in ("later", "latest")
+    )
     text, parts = [], []
     for low, high in ((float(up.eta.min()), end), (end, float(up.eta.max()))):
         others, count, which = count_changed(up, between(later, low, high))
@@ -205,39 +220,39 @@ def enough_periods(results: Results) -> Finding:
         f"{500.0 * 2.0 * np.pi / 8.0:.0f} at 8: there many a response nears its orbit still."
     )
     value = f"after n = {first_sample(up, later):,} others at {'; at '.join(text)}; {late}"
-    return holds(parts, value, why if not all(parts) else "")
+    return check_parts(parts, value, why if not all(parts) else "")
 
 
 def first_sample(up: xr.Dataset, later: xr.Dataset) -> int:
-    """Return the number of the period at which a sweep's later samples begin."""
+    """Return the number of the excitation period at which a later run's samples begin."""
     done = int(up.attrs["transient"]) + up.sizes["sample"]
     return done + int(later.attrs["transient"]) + 1
 
 
 def count_changed(up: xr.Dataset, later: xr.Dataset) -> tuple[int, int, str]:
-    """Count responses that change later in a sweep; return count, total, and kinds of change."""
-    kinds = {what: int(part.sum()) for what, part in changed(up, later, CHANGE).items()}
+    """Count responses that are different later; return count, total and a text on kinds."""
+    kinds = {what: int(part.sum()) for what, part in classify_changes(up, later, CHANGE).items()}
     named = ", ".join(f"{count} {what}" for what, count in kinds.items() if count)
     return sum(kinds.values()), later.sizes["eta"], f" ({named})" if named else ""
 
 
 def crossings(x: np.ndarray, y: np.ndarray) -> int:
-    """Return how often a closed curve of short straight pieces crosses itself."""
+    """Return how often a closed polygon crosses itself."""
     points = x + 1j * y
     begin, piece = points[:-1], np.diff(points)
     count = 0
     for i in range(len(piece) - 2):
-        way = begin[i + 2 :] - begin[i]
+        offset = begin[i + 2 :] - begin[i]
         turn = (piece[i].conjugate() * piece[i + 2 :]).imag
         with np.errstate(divide="ignore", invalid="ignore"):
-            here = (way.conjugate() * piece[i + 2 :]).imag / turn
-            there = (way.conjugate() * piece[i]).imag / turn
+            here = (offset.conjugate() * piece[i + 2 :]).imag / turn
+            there = (offset.conjugate() * piece[i]).imag / turn
         inside = (here > 0.0) & (here < 1.0) & (there > 0.0) & (there < 1.0)
         count += int(inside[: -1 if i == 0 else None].sum())
     return count
 
 
-@claim(
+@register_claim(
     "3.1",
     "permanent contact vanishes",
     "0.43",
@@ -245,12 +260,12 @@ def crossings(x: np.ndarray, y: np.ndarray) -> int:
     LIMIT,
     full=True,
 )
-def contact_limit(results: Results) -> Finding:
-    """Find where permanent contact ends on the way up."""
+def check_contact_limit(results: Results) -> Finding:
+    """Check the frequency up to which permanent contact occurs."""
     up, gammas = results.up("elastic"), results.get("gamma").last_contact.sel(case="elastic").values
     low, high = upper_edge(up, up.permanent_contact.values == 1, 0.40)
     row = up.sel(eta=0.425, method="nearest")
-    slow = results.steady("elastic").sel(eta=0.43, method="nearest")
+    slow = results.impact_statistics("elastic").sel(eta=0.43, method="nearest")
     why = (
         f"Chattering stops being complete at {low:.3f}, on the way up and down, whatever gamma: "
         f"{np.nanmin(gammas):.3f} to {np.nanmax(gammas):.3f} "
@@ -259,30 +274,35 @@ def contact_limit(results: Results) -> Finding:
         f"at {float(slow.closing_min / slow.closing_max):.1e} of the fastest, far above the "
         "paper's gamma of 1e-4."
     )
-    return border((low, high), results.ends("elastic", "T, contact", 0.4), "0.43", why)
+    return check_limit((low, high), results.upper_limit("elastic", "T, contact", 0.4), "0.43", why)
 
 
-@claim("3.1", "T-periodic below", "0.43", "up-sweep, multiplicity 1; branch", LIMIT, full=True)
-def periodic_limit(results: Results) -> Finding:
-    """Find where T-periodicity ends on the way up."""
+@register_claim(
+    "3.1", "T-periodic below", "0.43", "up-sweep, multiplicity 1; branch", LIMIT, full=True
+)
+def check_periodic_limit(results: Results) -> Finding:
+    """Check the frequency up to which responses are T-periodic."""
     up = results.up("elastic")
     near = between(up, 0.415, 0.45)
     others = [
         f"{float(eta):.3f}" for eta, n in zip(near.eta, near.multiplicity, strict=True) if n != 1
     ]
-    limit = results.ends("elastic", "T/13", 0.421)
+    begins = results.lower_limit("elastic", "T/13", 0.421)
+    limit = results.upper_limit("elastic", "T/13", 0.421)
     why = (
         "Frequencies that are not T-periodic come one by one at first: "
         f"{', '.join(others[:6])}, ... The exact limit is that of the T-periodic response with 13 "
-        f"impacts, which is stable from {results.begins('elastic', 'T/13', 0.421).value:.5f} on; "
+        f"impacts, which is stable from {begins.value:.5f} on; "
         "others with fewer impacts follow."
     )
-    return border(upper_edge(up, up.multiplicity.values == 1, 0.41), limit, "0.43", why)
+    return check_limit(upper_edge(up, up.multiplicity.values == 1, 0.41), limit, "0.43", why)
 
 
-@claim("3.1", "permanent contact vanishes for all larger eta", "none", "up-sweep", full=True)
-def no_contact_above(results: Results) -> Finding:
-    """Find whether contact occurs again above."""
+@register_claim(
+    "3.1", "permanent contact vanishes for all larger eta", "none", "up-sweep", full=True
+)
+def check_no_contact_above(results: Results) -> Finding:
+    """Check that no permanent contact occurs at larger frequencies."""
     up = results.up("elastic")
     part = between(up, 0.43, 8.0)
     again = part.eta.values[part.permanent_contact.values == 1]
@@ -300,15 +320,15 @@ def no_contact_above(results: Results) -> Finding:
     )
 
 
-@claim(
+@register_claim(
     "3.1",
     "windows between irregular regions, multiplicity rising by one T",
     "steps of one T",
     "up-sweep: longest window of each; exact limits of one-impact orbits",
     full=True,
 )
-def windows_in_order(results: Results) -> Finding:
-    """Find windows nT with one impact, in order."""
+def check_windows_in_order(results: Results) -> Finding:
+    """Check that windows nT with one impact follow each other in order."""
     up = results.up("elastic")
     windows = [window(up, n) for n in range(1, 5)]
     exact = [
@@ -323,12 +343,14 @@ def windows_in_order(results: Results) -> Finding:
     for limits in windows:
         ordered.append(limits is not None and (before is None or before[1] < limits[0]))
         before = limits
-    return holds(ordered, text)
+    return check_parts(ordered, text)
 
 
-@claim("3.1", "one impact in a response period at the relative peaks", "one", "Figure 7's data")
-def one_impact_at_peaks(results: Results) -> Finding:
-    """Find impacts at the peaks of Figure 7."""
+@register_claim(
+    "3.1", "one impact in a response period at the relative peaks", "one", "Figure 7's data"
+)
+def check_one_impact_at_peaks(results: Results) -> Finding:
+    """Check that Figure 7's responses have one impact per response period."""
     data = results.get("figure7")
     counts = []
     for index in range(data.sizes["panel"]):
@@ -340,18 +362,18 @@ def one_impact_at_peaks(results: Results) -> Finding:
     text = ", ".join(
         f"{count} in 20 T at {float(eta):.3f}" for count, eta in zip(counts, data.eta, strict=True)
     )
-    return holds([abs(count - 20 / n) <= 1 for n, count in enumerate(counts, 1)], text)
+    return check_parts([abs(count - 20 / n) <= 1 for n, count in enumerate(counts, 1)], text)
 
 
-@claim(
+@register_claim(
     "3.1",
     "all periodic responses show one impact in a response period",
     "one",
     "settled responses above 1.37",
     full=True,
 )
-def one_impact_everywhere(results: Results) -> Finding:
-    """Find whether all periodic responses above 1.37 have one impact."""
+def check_one_impact_everywhere(results: Results) -> Finding:
+    """Check that all periodic responses above eta = 1.37 have one impact."""
     settled = between(results.settled("elastic"), 1.37, 8.0)
     up = between(results.up("elastic"), 1.37, 8.0)
     n = settled.multiplicity.values
@@ -371,16 +393,16 @@ def one_impact_everywhere(results: Results) -> Finding:
     )
 
 
-@claim(
+@register_claim(
     "3.1",
     "the time between impacts grows by one T from window to window",
     "by one T",
     "impact by impact",
     "0.01 T",
 )
-def impact_distance(results: Results) -> Finding:
-    """Find times between impacts at the peaks of the windows."""
-    up, steady = results.up("elastic"), results.steady("elastic")
+def check_impact_distance(results: Results) -> Finding:
+    """Check that impacts at the windows' peaks are n periods apart."""
+    up, steady = results.up("elastic"), results.impact_statistics("elastic")
     texts, parts = [], []
     for n in range(1, 4):
         eta = relative_peak(up, n)
@@ -391,45 +413,45 @@ def impact_distance(results: Results) -> Finding:
         low, high = float(row.distance_min), float(row.distance_max)
         texts.append(f"{low:.3f} to {high:.3f} T at {eta:.3f}")
         parts.append(abs(low - n) < 0.01 and abs(high - n) < 0.01)
-    return holds(parts, "; ".join(texts))
+    return check_parts(parts, "; ".join(texts))
 
 
-@claim(
+@register_claim(
     "3.1",
     "relative resonance peaks within the windows (Figure 7)",
     "no numbers",
     "found in the sweep",
 )
-def relative_peaks(results: Results) -> Finding:
-    """Find where the relative peaks are."""
+def check_relative_peaks(results: Results) -> Finding:
+    """Check the frequencies of the relative peaks in the windows."""
     data = results.get("figure7")
     text = ", ".join(f"{n}T: {float(eta):.3f}" for n, eta in enumerate(data.eta, 1))
     why = (
         "Each lies near 2n times the main peak's frequency; the one of 4T lies beyond 8.0, where "
         "the sweep was continued to find it."
     )
-    return holds(
+    return check_parts(
         [abs(float(eta) / (2 * n * 1.047) - 1.0) < 0.03 for n, eta in enumerate(data.eta, 1)],
         text,
         why,
     )
 
 
-@claim(
+@register_claim(
     "3.2",
     "further irregular regions, each shifting one window to the next",
     "no numbers",
     "up-sweep",
     full=True,
 )
-def other_regions(results: Results) -> Finding:
-    """Find the irregular regions beyond the second."""
+def check_other_regions(results: Results) -> Finding:
+    """Check that irregular regions lie between the further windows."""
     up = results.up("elastic")
     edges = [
-        upper_edge(up, kind(up, n, 1), eta) + lower_edge(up, kind(up, n + 1, 1), after)
+        upper_edge(up, is_orbit(up, n, 1), eta) + lower_edge(up, is_orbit(up, n + 1, 1), after)
         for n, eta, after in ((2, 4.2, 6.2), (3, 6.2, 8.0))
     ]
     text = "; ".join(
         f"{a:.3f} to {d:.3f}, from {n}T to {n + 1}T" for n, (a, _, _, d) in enumerate(edges, 2)
     )
-    return holds([bool(np.isfinite(edge).all()) for edge in edges], text)
+    return check_parts([bool(np.isfinite(edge).all()) for edge in edges], text)

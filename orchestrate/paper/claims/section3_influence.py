@@ -1,4 +1,4 @@
-"""Claims of section 3.2: irregular regions, the main peak, what is quasi-periodic, the decay."""
+"""Checks of section 3.2: irregular regions, main peak, chaos, decay over frequency."""
 
 from __future__ import annotations
 
@@ -6,59 +6,70 @@ import numpy as np
 
 from ...dynamics.lyapunov import CHAOTIC
 from ..cases import CASES
-from ..windows import relative_peak, runs
-from .claim import LIMIT, NO, NUMBER, PARTLY, YES, Finding, border, claim, holds, number_at
-from .edges import BRANCH, SWEEP, limit, orbit_start, peak_height
+from ..sweep_windows import relative_peak, runs
+from .claim import (
+    LIMIT,
+    NO,
+    NUMBER,
+    PARTLY,
+    YES,
+    Finding,
+    check_limit,
+    check_number,
+    check_parts,
+    register_claim,
+)
+from .limit_claims import BRANCH, SWEEP, orbit_start, peak_height, register_limit
 from .results import (
     Results,
     between,
     impacts_in_response,
-    kind,
+    irregular_shares,
+    is_orbit,
     longest_edges,
     lower_edge,
-    shares,
     upper_edge,
 )
 
 DECADE, RESEMBLES = 10.0, 0.1
 
 
-@claim("3.2", "the first irregular region ends", "1.37", BRANCH, LIMIT, full=True)
-def first_region_ends(results: Results) -> Finding:
-    """Find where the first irregular region ends."""
+@register_claim("3.2", "the first irregular region ends", "1.37", BRANCH, LIMIT, full=True)
+def check_first_region_ends(results: Results) -> Finding:
+    """Check the frequency at which the first irregular region ends."""
     up, down = results.up("elastic"), results.down("elastic")
-    on_way_down = lower_edge(down, kind(down, 1, 1), 2.0)
-    begins = results.begins("elastic", "T/1", 2.0)
+    on_way_down = lower_edge(down, is_orbit(down, 1, 1), 2.0)
+    begins = results.lower_limit("elastic", "T/1", 2.0)
     why = (
         f"On the way down the T-periodic response lives on to {on_way_down[1]:.3f}, and is stable "
         f"from {begins.value:.8f} on: in between two responses coexist. The other one, 2T-periodic "
         "with three impacts, ends at the limit told."
     )
-    edges = lower_edge(up, kind(up, 1, 1), 2.0)
-    return border(edges, results.ends("elastic", "2T/3", 1.36), "1.37", why)
+    edges = lower_edge(up, is_orbit(up, 1, 1), 2.0)
+    return check_limit(edges, results.upper_limit("elastic", "2T/3", 1.36), "1.37", why)
 
 
-@claim("3.2", "impacts during one T decrease with eta", "decreasing", SWEEP)
-def impacts_decrease(results: Results) -> Finding:
-    """Find impacts of T-periodic responses from 0.43 to 0.9."""
+@register_claim("3.2", "impacts during one T decrease with eta", "decreasing", SWEEP)
+def check_impacts_decrease(results: Results) -> Finding:
+    """Check that impacts of T-periodic responses decrease with eta up to 0.9."""
     part = between(results.up("elastic"), 0.43, 0.9)
     counts = impacts_in_response(part)[part.multiplicity.values == 1]
     steps = list(dict.fromkeys(counts[counts > 0].tolist()))
-    return holds(
+    return check_parts(
         [all(a > b for a, b in zip(steps, steps[1:], strict=False))],
         "T-periodic with " + ", ".join(map(str, steps)) + " impacts in turn",
     )
 
 
-@claim(
+@register_claim(
     "3.2",
     "0.43 to 0.89: bifurcated and quasi-periodic responses interchange with T-periodic ones",
     "so",
     "settled responses; largest Lyapunov exponents",
     full=True,
 )
-def alternation(results: Results) -> Finding:
-    """Find whether T-periodic windows and others take turns from 0.43 to 0.89."""
+def check_alternation(results: Results) -> Finding:
+    """Check that T-periodic windows and irregular regions alternate from 0.43 to 0.89."""
     settled = between(results.settled("elastic"), 0.43, 0.89)
     counts = np.round(settled.impacts_per_period.values).astype(int)
     regular = settled.multiplicity.values == 1
@@ -66,14 +77,14 @@ def alternation(results: Results) -> Finding:
         f"{counts[first]} ({settled.eta.values[first]:.3f} to {settled.eta.values[last]:.3f})"
         for first, last in runs(regular)
     ]
-    chaotic, neutral = shares(results, "elastic", 0.43, 0.89)
+    chaotic, neutral = irregular_shares(results, "elastic", 0.43, 0.89)
     text = f"T-periodic with so many impacts: {', '.join(windows)}"
     why = f"In between 2T- and more periodic, {100 * chaotic:.0f} % of all frequencies chaotic, "
     why += f"{100 * neutral:.0f} % neutral (a torus, or not decided): what interchanges is chaos."
-    return holds([len(windows) > 2, not regular.all(), neutral > chaotic], text, why)
+    return check_parts([len(windows) > 2, not regular.all(), neutral > chaotic], text, why)
 
 
-limit(
+register_limit(
     "3.2",
     "T-periodic with two impacts from",
     "0.89",
@@ -82,19 +93,19 @@ limit(
 )
 
 
-@claim("3.2", "two impacts during one T up to", "1.07", BRANCH, LIMIT, full=True)
-def two_impacts_up_to(results: Results) -> Finding:
-    """Find where the T-periodic response with two impacts ends."""
-    up, limit = results.up("elastic"), results.ends("elastic", "T/2", 1.0)
-    after = results.ends("elastic", "T/1", 1.065)
+@register_claim("3.2", "two impacts during one T up to", "1.07", BRANCH, LIMIT, full=True)
+def check_two_impacts_up_to(results: Results) -> Finding:
+    """Check the frequency up to which T-periodic responses have two impacts."""
+    up, limit = results.up("elastic"), results.upper_limit("elastic", "T/2", 1.0)
+    after = results.upper_limit("elastic", "T/1", 1.065)
     why = (
         f"From there to {after.value:.8f} the response is T-periodic with one impact; what begins "
         "at 1.07 is the end of T."
     )
-    return border(upper_edge(up, kind(up, 1, 2), 1.0), limit, "1.07", why)
+    return check_limit(upper_edge(up, is_orbit(up, 1, 2), 1.0), limit, "1.07", why)
 
 
-limit(
+register_limit(
     "3.2",
     "absolute resonance peak, max xi_Rel",
     "21.56",
@@ -106,9 +117,9 @@ limit(
 )
 
 
-@claim("3.2", "place of the peak", "1.045", "up-sweep", NUMBER)
-def peak_place(results: Results) -> Finding:
-    """Find where the largest gap is."""
+@register_claim("3.2", "place of the peak", "1.045", "up-sweep", NUMBER)
+def check_peak_frequency(results: Results) -> Finding:
+    """Check the frequency of the largest gap, up and down."""
     up, down = results.up("elastic").xi_rel_max, results.down("elastic").xi_rel_max
     others = int(results.get("attractors").number.sel(eta=1.045, method="nearest")) - 1
     why = (
@@ -117,17 +128,17 @@ def peak_place(results: Results) -> Finding:
         f"random starts find {others or 'no'} other response there: the place is misprinted or was "
         "read off."
     )
-    return number_at(float(up.idxmax()), "1.045", 3, why)
+    return check_number(float(up.idxmax()), "1.045", 3, why)
 
 
-@claim(
+@register_claim(
     "3.2",
     "eta = 1.0 and 1.095 have no influence",
     "none",
     "up-sweep: extrema of the largest gap within 0.01",
 )
-def no_influence(results: Results) -> Finding:
-    """Find whether the largest gap has an extremum at the natural frequencies."""
+def check_no_influence(results: Results) -> Finding:
+    """Check that the largest gap has no extremum at the halves' natural frequencies."""
     gaps = results.up("elastic").xi_rel_max
     texts, parts = [], []
     for eta in (1.0, 1.095):
@@ -138,10 +149,10 @@ def no_influence(results: Results) -> Finding:
             f"around {eta:g} it changes by {100 * change.min():.1f} to {100 * change.max():.1f} % "
             f"a step, without an extremum: {parts[-1]}"
         )
-    return holds(parts, "; ".join(texts))
+    return check_parts(parts, "; ".join(texts))
 
 
-@claim(
+@register_claim(
     "3.2",
     "bifurcated and quasi-periodic responses interchange again from",
     "1.07",
@@ -149,22 +160,22 @@ def no_influence(results: Results) -> Finding:
     LIMIT,
     full=True,
 )
-def irregular_again(results: Results) -> Finding:
-    """Find where the T-periodic response ends above the peak."""
+def check_irregular_again(results: Results) -> Finding:
+    """Check the frequency above the peak at which T-periodic responses end."""
     up = results.up("elastic")
     edges = upper_edge(up, up.multiplicity.values == 1, 1.05)
-    return border(edges, results.ends("elastic", "T/1", 1.065), "1.07")
+    return check_limit(edges, results.upper_limit("elastic", "T/1", 1.065), "1.07")
 
 
-@claim(
+@register_claim(
     "3.2",
     "responses in 1.07-1.37 are approximately 2T-periodic",
     "all",
     "up-sweep: stroboscopic samples",
     "95 %",
 )
-def nearly_2t(results: Results) -> Finding:
-    """Find how nearly responses repeat after 2T in 1.07-1.37."""
+def check_nearly_2t(results: Results) -> Finding:
+    """Check how nearly responses between 1.07 and 1.37 repeat after 2T."""
     part = between(results.up("elastic"), 1.07, 1.367)
     samples = part.xi_rel.values
     after = [np.sqrt(np.mean((samples[:, n:] - samples[:, :-n]) ** 2, axis=1)) for n in (1, 2)]
@@ -176,15 +187,15 @@ def nearly_2t(results: Results) -> Finding:
     return Finding(text, YES if share > 0.95 else PARTLY if share > 0.5 else NO)
 
 
-@claim(
+@register_claim(
     "3.2",
     "non-unique solutions in 1.07-1.37",
     "found",
     "random starts, run on until they repeat; up- against down-sweep",
     full=True,
 )
-def non_unique(results: Results) -> Finding:
-    """Find where there are several attractors in 1.07-1.37."""
+def check_non_unique(results: Results) -> Finding:
+    """Check at which frequencies between 1.07 and 1.37 several attractors exist."""
     data = between(results.get("attractors"), 1.07, 1.37)
     several = data.eta.values[data.number.values > 1]
     sure = data.eta.values[(data.multiplicity.values > 0).sum(axis=1) > 1]
@@ -204,29 +215,29 @@ def non_unique(results: Results) -> Finding:
         "frequencies. Of irregular responses how many there are depends on how alike one's "
         "statistics must be."
     )
-    low = results.begins("elastic", "T/1", 2.0).value
-    high = results.ends("elastic", "2T/3", 1.36).value
+    low = results.lower_limit("elastic", "T/1", 2.0).value
+    high = results.upper_limit("elastic", "2T/3", 1.36).value
     why += (
         f" By their exact limits T and 2T with three impacts coexist from {low:.5f} to {high:.5f}: "
         "near its end few starts lead to the second."
     )
     if len(several):
         why += f" Frequencies at which starts find two: {format_frequencies(several)}."
-    return holds([len(sure) > 0, bool(differ.any())], text, why)
+    return check_parts([len(sure) > 0, bool(differ.any())], text, why)
 
 
 def format_frequencies(etas: np.ndarray) -> str:
-    """Format frequencies: first and last of each row without a gap larger than 0.006."""
+    """Format frequencies as ranges, split where the gap exceeds 0.006."""
     groups = np.split(etas, np.flatnonzero(np.diff(etas) > 0.006) + 1)
     return ", ".join(f"{g[0]:.3f}" + (f" to {g[-1]:.3f}" if len(g) > 1 else "") for g in groups)
 
 
 def second_region(results: Results, printed: str, upper: bool) -> Finding:
-    """Return a limit of the second irregular region, and how far it depends on the tolerance."""
+    """Check a limit of the second irregular region, and its dependence on tolerance."""
     up = results.up("elastic")
     lower_window, upper_window = (
-        longest_edges(up, kind(up, 1, 1)),
-        longest_edges(up, kind(up, 2, 1)),
+        longest_edges(up, is_orbit(up, 1, 1)),
+        longest_edges(up, is_orbit(up, 2, 1)),
     )
     limit = upper_window[0] if upper else lower_window[1]
     row = results.exponent("elastic").sel(eta=float(printed), method="nearest")
@@ -242,15 +253,19 @@ def second_region(results: Results, printed: str, upper: bool) -> Finding:
         "that transients widen the samples and the limit read depends on how narrow a band still "
         "counts as a line."
     )
-    exact = results.begins("elastic", "2T/1", 4.2) if upper else results.ends("elastic", "T/1", 2.0)
-    return border(limit, exact, printed, why)
+    exact = (
+        results.lower_limit("elastic", "2T/1", 4.2)
+        if upper
+        else results.upper_limit("elastic", "T/1", 2.0)
+    )
+    return check_limit(limit, exact, printed, why)
 
 
-@claim(
+@register_claim(
     "3.2", "impacts in 1.07-1.37 are distributed irregularly", "so", "settled responses", full=True
 )
-def irregular_impacts(results: Results) -> Finding:
-    """Find whether impacts are distributed irregularly from 1.07 to 1.37."""
+def check_irregular_impacts(results: Results) -> Finding:
+    """Check whether responses between 1.07 and 1.37 are irregular."""
     settled = between(results.settled("elastic"), 1.07, 1.367)
     n = settled.multiplicity.values
     text = (
@@ -258,14 +273,14 @@ def irregular_impacts(results: Results) -> Finding:
         f"{100 * np.mean(n == 2):.0f} % they repeat after 2T, at {100 * np.mean(n > 2):.0f} % "
         "after more"
     )
-    return holds([bool((n == 0).any()), bool((n == 0).all())], text)
+    return check_parts([bool((n == 0).any()), bool((n == 0).all())], text)
 
 
-limit("3.2", "the second irregular region begins", "2.61", second_region, False)
-limit("3.2", "the second irregular region ends", "3.77", second_region, True)
+register_limit("3.2", "the second irregular region begins", "2.61", second_region, False)
+register_limit("3.2", "the second irregular region ends", "3.77", second_region, True)
 
 
-@claim(
+@register_claim(
     "3.2",
     "both windows beside the second irregular region have one impact in a response period",
     "one",
@@ -273,8 +288,8 @@ limit("3.2", "the second irregular region ends", "3.77", second_region, True)
     "all frequencies",
     full=True,
 )
-def one_impact_beside(results: Results) -> Finding:
-    """Find impacts in the windows on both sides of the second irregular region."""
+def check_one_impact_beside(results: Results) -> Finding:
+    """Check that responses beside the second irregular region have one impact."""
     text, parts = [], []
     for n, low, high in ((1, 1.37, 2.61), (2, 3.77, 4.74)):
         part = between(results.settled("elastic"), low, high)
@@ -283,10 +298,10 @@ def one_impact_beside(results: Results) -> Finding:
         share = float(np.mean((multiplicity == n) & (counts == 1)))
         text.append(f"{low} to {high}: {100 * share:.1f} % of {part.sizes['eta']} frequencies")
         parts.append(share == 1.0)
-    return holds(parts, "; ".join(text))
+    return check_parts(parts, "; ".join(text))
 
 
-@claim(
+@register_claim(
     "3.2",
     "dark regions are quasi-periodic; that chaos begins there is disproved",
     "no chaos",
@@ -294,25 +309,25 @@ def one_impact_beside(results: Results) -> Finding:
     "chaotic: three standard errors above zero",
     full=True,
 )
-def chaos(results: Results) -> Finding:
-    """Find whether dark regions are quasi-periodic and not chaotic, by region and case."""
+def check_chaos(results: Results) -> Finding:
+    """Check whether irregular regions are quasi-periodic rather than chaotic, by region."""
     text, parts = [], []
     for region in results.regions("elastic"):
         if region.is_window:
             continue
         low, high, _ = region
-        chaotic, neutral = shares(results, "elastic", low, high)
+        chaotic, neutral = irregular_shares(results, "elastic", low, high)
         text.append(
             f"{low:.3f}-{high:.3f}: {100 * chaotic:.0f} % chaotic, {100 * neutral:.0f} % neutral, "
-            f"largest {results.largest('elastic', region).text()}"
+            f"largest {results.largest_exponent('elastic', region).text()}"
         )
         parts.append(chaotic < 0.02)
     second = {
-        case: shares(
+        case: irregular_shares(
             results,
             case,
-            results.ends(case, "T/1", 2.0).value,
-            results.begins(case, "2T/1", 4.2).value,
+            results.upper_limit(case, "T/1", 2.0).value,
+            results.lower_limit(case, "2T/1", 4.2).value,
         )
         for case in ("plastic", "damped")
     }
@@ -327,10 +342,10 @@ def chaos(results: Results) -> Finding:
         f"{100 * second['plastic'].neutral:.0f} % neutral, {100 * second['plastic'].chaotic:.0f} % "
         f"chaotic, at e = 0.7, D = 0.05 {100 * second['damped'].chaotic:.0f} % of it is chaotic."
     )
-    return holds(parts, "; ".join(text), why)
+    return check_parts(parts, "; ".join(text), why)
 
 
-@claim(
+@register_claim(
     "3.2",
     "all irregularities occur when increasing the response period by one T and keeping one "
     "impact in a response period",
@@ -339,8 +354,8 @@ def chaos(results: Results) -> Finding:
     "none elsewhere",
     full=True,
 )
-def irregularities(results: Results) -> Finding:
-    """Count irregular responses between windows nT and (n+1)T of one impact, and elsewhere.
+def check_irregularities(results: Results) -> Finding:
+    """Count irregular responses between windows nT and (n+1)T, and elsewhere.
 
     Irregular are responses that do not repeat; of those how many are chaotic for sure.
     """
@@ -368,17 +383,17 @@ def irregularities(results: Results) -> Finding:
         f"From 0.43 to 0.89 the responses on both sides are T-periodic, with {steps[0]} to "
         f"{steps[-1]} impacts: from one to the next an impact is lost, and no period is added."
     )
-    return holds([outside == 0, inside > 0], value, why if outside else "")
+    return check_parts([outside == 0, inside > 0], value, why if outside else "")
 
 
-@claim(
+@register_claim(
     "3.2",
     "bifurcation diagrams cannot provide full information about motions with impacts",
     "so",
     "up-sweep: impacts of responses of the same multiplicity",
 )
-def hidden_impacts(results: Results) -> Finding:
-    """Find whether responses that a bifurcation diagram shows alike have different impacts."""
+def check_hidden_impacts(results: Results) -> Finding:
+    """Check that responses which look alike in the diagram differ in their impacts."""
     up = results.up("elastic")
     counts = impacts_in_response(up)[up.multiplicity.values == 1]
     kinds = np.unique(counts[counts > 0])
@@ -389,27 +404,29 @@ def hidden_impacts(results: Results) -> Finding:
     return Finding(value, YES if len(kinds) > 1 else NO)
 
 
-@claim("3.2", "impulses are extremal near the absolute peak", "1.045", "impact by impact", "0.01")
-def impulse_peak(results: Results) -> Finding:
-    """Find where the largest closing velocity is."""
-    speed = results.steady("elastic").closing_max
+@register_claim(
+    "3.2", "impulses are extremal near the absolute peak", "1.045", "impact by impact", "0.01"
+)
+def check_impulse_peak(results: Results) -> Finding:
+    """Check that impulses are largest near the absolute peak."""
+    speed = results.impact_statistics("elastic").closing_max
     eta = float(speed.idxmax())
-    return holds(
+    return check_parts(
         [abs(eta - 1.045) <= 0.01],
         f"largest closing velocity {float(speed.max()):.2f} at {eta:.3f}",
     )
 
 
-@claim(
+@register_claim(
     "3.2",
     "displacement and velocity diminish by powers of ten with eta",
     "powers of ten",
     "at the relative peaks",
     "a factor of ten from each to the next",
 )
-def decay(results: Results) -> Finding:
-    """Find displacement and velocity at the peaks of the windows."""
-    up, steady = results.up("elastic"), results.steady("elastic")
+def check_decay(results: Results) -> Finding:
+    """Check by which factors gap and velocity fall from peak to peak."""
+    up, steady = results.up("elastic"), results.impact_statistics("elastic")
     etas = [float(up.xi_rel_max.idxmax())] + [
         eta for n in (1, 2, 3) if (eta := relative_peak(up, n))
     ]
@@ -430,18 +447,18 @@ def decay(results: Results) -> Finding:
     )
     parts = [step >= DECADE for step in steps]
     value = "eta: largest gap, closing velocity: " + text
-    return holds(parts, value, why if not all(parts) else "")
+    return check_parts(parts, value, why if not all(parts) else "")
 
 
-@claim(
+@register_claim(
     "3.2",
     "at high eta the oscillations resemble those of a single-d.o.f. system without separation",
     "in a first approximation",
     "up-sweep: amplitudes against (10) of both masses as one",
     "10 % at each of the peaks beyond the main one, and at 8.0",
 )
-def single_oscillator(results: Results) -> Finding:
-    """Find how near the masses' amplitudes are to those of both as one oscillator, at high eta."""
+def check_single_oscillator(results: Results) -> Finding:
+    """Check how near amplitudes at high eta are to both masses as one oscillator."""
     up, case = results.up("elastic"), CASES["elastic"]
     stiffness = (1.0 + case.kappa) / (1.0 + case.mu)
     text, away, apart = [], [], []
@@ -460,4 +477,4 @@ def single_oscillator(results: Results) -> Finding:
         f"off, at 8.0 {100 * away[-1]:.0f} %. The masses do separate: the largest gap is "
         f"{100 * apart[1]:.0f} % of the amplitude there, and {100 * apart[-1]:.0f} % at 8.0."
     )
-    return holds([*near, falls], value, "" if all(near) else why)
+    return check_parts([*near, falls], value, "" if all(near) else why)

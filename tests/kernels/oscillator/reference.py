@@ -44,10 +44,10 @@ def event_by_event(values, state, stop):
     while True:
         phase = mp.mpf(values.get("phase_start", 0.0)) + values["box_frequency"] * time
         if mode == FLIGHT:
-            first, second = truth.apart(values, state, phase)
+            first, second = truth.free_motion(values, state, phase)
             event = second - first
         else:
-            first, event = truth.together(values, state[0], state[1], phase)
+            first, event = truth.contact_motion(values, state[0], state[1], phase)
             second = first
         end = truth.first_root(event, float(stop - time), blind)
         age = stop - time if end is None else end

@@ -37,9 +37,9 @@ def test_a_sample_in_high_precision():
         state = [values[f"{name}_start"] for name in ("x1", "v1", "x2", "v2")]
         phase, kind = mp.mpf(values["phase_start"]), i % len(flights.CLASSES)
         if kind == flights.CONTACT:
-            gap = truth.together(values, *state[:2], phase)[1]
+            gap = truth.contact_motion(values, *state[:2], phase)[1]
         else:
-            first, second = truth.apart(values, state, phase)
+            first, second = truth.free_motion(values, state, phase)
             gap = second - first
         touching = kind != flights.CONTACT and values["x1_start"] == values["x2_start"]
         blind = 0.5 * float(end) if touching else 0.0

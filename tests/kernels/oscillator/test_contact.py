@@ -25,7 +25,7 @@ def separate_gap(values, x, v, phase, t):
     """Gap after a time ``t`` if both masses moved on their own from a common start, by Newton's
     law.
     """
-    first, second = truth.apart({**DEFAULTS, **values}, (x, v, x, v), phase)
+    first, second = truth.free_motion({**DEFAULTS, **values}, (x, v, x, v), phase)
     return (second - first)(t)
 
 
@@ -151,7 +151,7 @@ def test_contact_force_is_newtons(values):
         if m[at.IN_CONTACT] and before[at.IN_CONTACT]:
             seen += 1
             phase = mp.mpf(m[at.PHASE])
-            _, push = truth.together({**DEFAULTS, **values}, m[at.X1], m[at.V1], phase)
+            _, push = truth.contact_motion({**DEFAULTS, **values}, m[at.X1], m[at.V1], phase)
             assert m[at.CONTACT_FORCE] == pytest.approx(float(push(0)), abs=1e-12)
     assert seen > 20
 

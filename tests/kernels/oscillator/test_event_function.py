@@ -28,8 +28,8 @@ def flight_and_gap(values, state):
     x1, v1, x2, v2 = state
     m = started(x1_start=x1, v1_start=v1, x2_start=x2, v2_start=v2, **values)
     full, start = {**DEFAULTS, **values}, unloaded(values, state)
-    first, second = truth.apart(full, start, mp.mpf(values["phase_start"]))
-    return m, truth.gap_of(full, first, second)
+    first, second = truth.free_motion(full, start, mp.mpf(values["phase_start"]))
+    return m, truth.gap_signal(full, first, second)
 
 
 def contact_and_pull(values, state):
@@ -40,7 +40,7 @@ def contact_and_pull(values, state):
     begin_common(m, at.CONTACT, x, v)
     full = {**DEFAULTS, **values}
     place = x + rest_together(values)[0]
-    _, push = truth.together(full, place, v, mp.mpf(values["phase_start"]))
+    _, push = truth.contact_motion(full, place, v, mp.mpf(values["phase_start"]))
     return m, (1 / mp.mpf(full["m1"]) + 1 / mp.mpf(full["m2"])) * push
 
 

@@ -39,7 +39,7 @@ def summit(gap, start, stop):
     low, high = t[max(best - 1, 0)], t[min(best + 1, len(t) - 1)]
     value = max(gap(start), gap(stop))
     if slope(low) > 0 > slope(high):
-        value = max(value, gap(truth.polish(slope, low, high)))
+        value = max(value, gap(truth.refine_root(slope, low, high)))
     return float(value), float(h.max())
 
 
@@ -50,7 +50,7 @@ def test_over_a_piece_of_flight(values, state, start, length):
     m = started(**values, **dict(zip(names, state, strict=True)))
     advanced(m, start, start + length)
     full, begun = {**DEFAULTS, **values}, unloaded(values, state)
-    gap = truth.gap_of(full, *truth.apart(full, begun, mp.mpf(values["phase_start"])))
+    gap = truth.gap_signal(full, *truth.free_motion(full, begun, mp.mpf(values["phase_start"])))
     if truth.first_root(gap, start + length) is not None:
         return
     highest, sampled = summit(gap, start, start + length)
@@ -87,7 +87,7 @@ def of_piece(state, entry, end):
     x1, v1, x2, v2 = state_at(state, 0.0)
     values = {name: state[getattr(at, name.upper())] for name in DEFAULTS}
     phase = 2 * mp.pi * mp.mpf(state[at.TURN])
-    first, second = truth.apart(values, (x1, v1, x2, v2), phase)
+    first, second = truth.free_motion(values, (x1, v1, x2, v2), phase)
     return summit(second - first, entry, end)[0] if end > entry else 0.0
 
 
@@ -176,7 +176,7 @@ def test_to_the_rounding_of_its_terms(m2, one, other, d1, d2, amplitude, length)
     m = advanced(started(**values, **dict(zip(names, state, strict=True))), length)
     if m[at.IMPACT_COUNT]:
         return
-    first, second = truth.apart(values, state, mp.mpf(0))
+    first, second = truth.free_motion(values, state, mp.mpf(0))
     gap = second - first
     t = np.concatenate([np.linspace(0.0, length, 200), length * np.geomspace(1e-7, 1.0, 100)])
     t.sort()

@@ -105,7 +105,7 @@ def test_a_flight_of_thousands_of_radians_is_written_anew():
     m = advanced(started(x1_start=3.0, x2_start=6.0, **values), 5000.0)
     assert m[at.ORIGIN] > 4000.0
     assert m[at.IMPACT_COUNT] == 0.0
-    first, second = truth.apart({**DEFAULTS, **values}, (3.0, 0.0, 6.0, 0.0), mp.mpf(0))
+    first, second = truth.free_motion({**DEFAULTS, **values}, (3.0, 0.0, 6.0, 0.0), mp.mpf(0))
     assert [m[at.X1], m[at.X2]] == pytest.approx(
         [float(first(5000)), float(second(5000))], rel=1e-12
     )
@@ -157,7 +157,7 @@ def test_equal_oscillators_always_move_together(values, drive):
             m[at.IN_CONTACT],
         ) == (0, 0, 0, 0, 0, 1)
     whole = {**DEFAULTS, **values, **drive}
-    common, _ = truth.together(whole, 0.2, -0.4, mp.mpf(drive.get("phase_start", 0.0)))
+    common, _ = truth.contact_motion(whole, 0.2, -0.4, mp.mpf(drive.get("phase_start", 0.0)))
     assert m[at.X1] == pytest.approx(float(common(99.5)), abs=1e-12)
 
 
@@ -210,7 +210,7 @@ def part_from_rest(kappa, frequency):
     """
     m = started(k2=kappa, box_frequency=frequency)
     advanced(m, 0.5 / frequency)
-    first, second = truth.apart(
+    first, second = truth.free_motion(
         {**DEFAULTS, "k2": kappa, "box_frequency": frequency}, (0, 0, 0, 0), mp.mpf(0)
     )
     return m, float((second - first)(0.5 / frequency))
@@ -232,7 +232,7 @@ def test_a_contact_of_a_trillionth_of_a_radian_from_rest_ends(frequency):
     values["phase_start"] = 7e-14
     m = advanced(started(**values), 1e-12, 5e-5, 0.5)
     assert m[at.MODE] == at.FLIGHT and m[at.WORK] < 30.0
-    first, second = truth.apart({**DEFAULTS, **values}, (0.0,) * 4, mp.mpf(7e-14))
+    first, second = truth.free_motion({**DEFAULTS, **values}, (0.0,) * 4, mp.mpf(7e-14))
     assert m[at.X_REL] == pytest.approx(float(second(0.5) - first(0.5)), rel=1e-9)
 
 

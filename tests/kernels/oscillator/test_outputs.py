@@ -141,7 +141,7 @@ def test_energy_to_the_rounding_of_what_the_motion_is_made_of(values, state, sto
     if m[at.IMPACT_COUNT] > 0.0:
         return
     exact = terms = mp.mpf(0)
-    for i, motion in enumerate(truth.apart(values, state, mp.mpf(values["phase_start"])), 1):
+    for i, motion in enumerate(truth.free_motion(values, state, mp.mpf(values["phase_start"])), 1):
         mass, stiffness, speed = values[f"m{i}"], values[f"k{i}"], motion.derivative()
         exact += (mass * speed(stop) ** 2 + stiffness * motion(stop) ** 2) / 2
         size, fastest = (sum(abs(c) for c, _ in one.terms) for one in (motion, speed))
@@ -232,7 +232,7 @@ def test_impulses_of_short_steps(step, push):
     }
     start = {"x1_start": -0.2, "v1_start": 3.0, "x2_start": 0.1, "v2_start": 5.0}
     m = advanced(started(**values, **start, phase_start=0.5), step)
-    first, second = truth.apart({**DEFAULTS, **values}, start.values(), mp.mpf(0.5))
+    first, second = truth.free_motion({**DEFAULTS, **values}, start.values(), mp.mpf(0.5))
     force = 30 * first + 9 * first.derivative() + 70 * second + mp.mpf(0.4) * second.derivative()
     impulse = mp.quad(force, [0, mp.mpf(step)])
     moment = mp.quad(lambda t: t * force(t), [0, mp.mpf(step)])

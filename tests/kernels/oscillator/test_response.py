@@ -109,13 +109,13 @@ def test_in_high_precision(ratio, omega_squared, x, v, phase, tau):
         damping = 0.01
     m = oscillator(damping, omega_squared, x, v, phase)
     with mp.workdps(60):
-        exact = truth.oscillator(
+        exact = truth.oscillator_motion(
             1,
             2 * mp.mpf(damping),
             omega_squared,
             mp.mpf(x),
             mp.mpf(v),
-            truth.box(FORCING, mp.mpf(phase)),
+            truth.box_acceleration(FORCING, mp.mpf(phase)),
         )
         values = [float(exact(tau)), float(exact.derivative()(tau))]
     rate = max(1.0, math.sqrt(omega_squared))
@@ -178,8 +178,8 @@ def test_basis_solves_its_initial_value_problem(ratio, tau):
     m = [0.0] * at.SIZE
     set_oscillator(m, BRANCH, ratio, 1.0)
     with mp.workdps(80):
-        still = truth.box({"box_amplitude": 0.0}, 0)
-        cosine = truth.oscillator(1, 2 * mp.mpf(ratio), 1, 1, -mp.mpf(ratio), still)(tau)
-        sine = truth.oscillator(1, 2 * mp.mpf(ratio), 1, 0, 1, still)(tau)
+        still = truth.box_acceleration({"box_amplitude": 0.0}, 0)
+        cosine = truth.oscillator_motion(1, 2 * mp.mpf(ratio), 1, 1, -mp.mpf(ratio), still)(tau)
+        sine = truth.oscillator_motion(1, 2 * mp.mpf(ratio), 1, 0, 1, still)(tau)
     found = fundamental_solutions(m, BRANCH, tau)
     assert list(found[:2]) == pytest.approx([float(cosine), float(sine)], rel=3e-14, abs=1e-15)

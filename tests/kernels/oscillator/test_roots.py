@@ -194,7 +194,7 @@ def test_first_impact_of_a_flight(values, state):
         x1_start=state[0], v1_start=state[1], x2_start=state[2], v2_start=state[3], **values
     )
     full, start = {**DEFAULTS, **values}, unloaded(values, state)
-    gap = truth.gap_of(full, *truth.apart(full, start, mp.mpf(values["phase_start"])))
+    gap = truth.gap_signal(full, *truth.free_motion(full, start, mp.mpf(values["phase_start"])))
     expected = truth.first_root(gap, 12.0)
     assert agree(first_end(m, 12.0), expected, gap, 12.0)
 
@@ -214,7 +214,7 @@ def test_release_from_contact(values, x, v):
     m = started(x1_start=x, x2_start=x2, v1_start=v, v2_start=v, **values)
     assume(m[at.MODE] == at.CONTACT)
     place = x + rest_together(values)[0] if clearance < 0.0 else x
-    _, push = truth.together({**DEFAULTS, **values}, place, v, mp.mpf(values["phase_start"]))
+    _, push = truth.contact_motion({**DEFAULTS, **values}, place, v, mp.mpf(values["phase_start"]))
     assume(push(0) > 1e-3)
     expected = truth.first_root(push, 12.0)
     assert agree(first_end(m, 12.0), expected, push, 12.0)
@@ -222,7 +222,7 @@ def test_release_from_contact(values, x, v):
 
 def gap_of(x2, values, state, phase=0.0):
     """Gap by Newton's law, the start of mass 2 displaced."""
-    first, second = truth.apart(
+    first, second = truth.free_motion(
         {**DEFAULTS, **values}, (state[0], state[1], x2, state[3]), mp.mpf(phase)
     )
     return second - first

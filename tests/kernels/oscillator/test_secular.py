@@ -68,7 +68,7 @@ def test_it_is_the_closed_form(damping, detuning, phase, time):
     m = started(bonded=1.0, phase_start=phase, **values)
     assert m[at.SECULAR] == 1.0
     advanced(m, time)
-    both = truth.together({**DEFAULTS, **values}, 0.0, 0.0, mp.mpf(m[at.PHASE_START]))[0]
+    both = truth.contact_motion({**DEFAULTS, **values}, 0.0, 0.0, mp.mpf(m[at.PHASE_START]))[0]
     grown = min(time, 1.0 / max(detuning, damping, 1e-300))
     assert abs(m[at.X1] - both(time)) <= 5e-15 * (2.0 + grown) * (1.0 + 0.1 * time)
 
@@ -121,7 +121,7 @@ def test_a_gap_of_nearly_equal_oscillators_is_bounded_by_its_own(state, near, ga
     )
     assert event_function.are_nearly_equal(m)
     starts = (m[at.X1_START], m[at.V1_START], m[at.X2_START], m[at.V2_START])
-    first, second = truth.apart({**DEFAULTS, **values}, starts, mp.mpf(0))
+    first, second = truth.free_motion({**DEFAULTS, **values}, starts, mp.mpf(0))
     signal = second - first
     for _ in range(5):
         signal = signal.derivative()
@@ -149,7 +149,7 @@ def test_both_masses_move_by_newtons_law(values, state, age):
     x1, v1, x2, v2 = state
     m = flight(x1, v1, x2, v2, **values)
     found = state_at(m, age)
-    first, second = truth.apart({**DEFAULTS, **values}, state, mp.mpf(values["phase_start"]))
+    first, second = truth.free_motion({**DEFAULTS, **values}, state, mp.mpf(values["phase_start"]))
     assume(second(age) > first(age))  # beyond the flight's end both are put together
     scale = size(values, age) * fastest(values) ** 2 * (1.0 + age) ** 3  # of the cubic
     signals = first, first.derivative(), second, second.derivative()
@@ -162,7 +162,7 @@ def check_first_root(values, state):
     x1, v1, x2, v2 = state
     m = flight(x1, v1, x2, v2, **values)
     roots.walk(m, 6.0)
-    first, second = truth.apart({**DEFAULTS, **values}, state, mp.mpf(values["phase_start"]))
+    first, second = truth.free_motion({**DEFAULTS, **values}, state, mp.mpf(values["phase_start"]))
     end = m[at.END] if m[at.END_KIND] == at.END_EVENT else None
     expected = truth.first_root(second - first, 6.0)
     if end is None or end > 6.0:
@@ -251,7 +251,7 @@ def test_where_the_closed_form_takes_over_both_agree(beyond):
     values = {"bonded": 1.0, "m2": 1e-9, "k2": 1e-9, "d1": 0.0, "d2": 0.0, "box_frequency": border}
     m = advanced(started(**values), 1000.0)
     assert (m[at.SECULAR] == 1.0) == (beyond < 0.0)
-    both = truth.together({**DEFAULTS, **values}, 0.0, 0.0, mp.mpf(0))[0]
+    both = truth.contact_motion({**DEFAULTS, **values}, 0.0, 0.0, mp.mpf(0))[0]
     assert m[at.X1] == pytest.approx(float(both(1000)), abs=2e-10)
 
 

@@ -25,7 +25,7 @@ def leaving(values, x, v, slope):
     """
     v2 = v + slope
     m = flight(x, v, x, v2, **values)
-    first, second = truth.apart(
+    first, second = truth.free_motion(
         {**DEFAULTS, **values}, (x, v, x, v2), mp.mpf(values["phase_start"])
     )
     return m, first, second - first
@@ -89,8 +89,8 @@ def leaving_with_clearance(values, x, v, slope):
     start = x, v, x - apart, v + slope
     m = flight(*(start[i] for i in range(4)), **values)
     full = {**DEFAULTS, **values}
-    first, second = truth.apart(full, unloaded(values, start), mp.mpf(values["phase_start"]))
-    return m, truth.gap_of(full, first, second)
+    first, second = truth.free_motion(full, unloaded(values, start), mp.mpf(values["phase_start"]))
+    return m, truth.gap_signal(full, first, second)
 
 
 @examples(120)

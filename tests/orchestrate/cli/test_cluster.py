@@ -49,6 +49,15 @@ def read(dask: Dask, pattern: str) -> str:
         time.sleep(0.05)
 
 
+def end_all(started):
+    """Kill those processes that still run, wait for all of them, and close their logs."""
+    for process, log in started:
+        if process.poll() is None:
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        log.close()
+
+
 @pytest.fixture
 def cluster(tmp_path: Path) -> Iterator[Nodes]:
     """Address of a scheduler on loopback; the scheduler and its two workers."""
@@ -63,11 +72,7 @@ def cluster(tmp_path: Path) -> Iterator[Nodes]:
             read(dask, "Registered to")
         yield address, started
     finally:
-        for process, log in started:
-            if process.poll() is None:
-                os.killpg(process.pid, signal.SIGKILL)
-            process.wait()
-            log.close()
+        end_all(started)
 
 
 def test_a_lost_worker_loses_nothing(commands, cluster, tmp_path, monkeypatch):
@@ -121,8 +126,4 @@ def test_workers_leave_no_fmu_behind(tmp_path, nanny):
         left = [path.name for path in temporary.iterdir() if "vibroimpact" in path.name]
         assert left == []
     finally:
-        for process, log in started:
-            if process.poll() is None:
-                os.killpg(process.pid, signal.SIGKILL)
-            process.wait()
-            log.close()
+        end_all(started)

@@ -191,7 +191,9 @@ def test_another_guess_has_files_of_its_own(run):
 
         words = ["diagnose", str(folder / "parted.csv"), "--structure", "beam", "--set", setting]
         arguments = make_parser().parse_args(words)
-        names.add(diagnose.name_of(arguments.records[0], diagnose.guess_of(arguments), arguments))
+        names.add(
+            diagnose.file_stem(arguments.records[0], diagnose.read_guess(arguments), arguments)
+        )
     assert len(names) == 2
 
 

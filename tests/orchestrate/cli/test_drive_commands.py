@@ -320,7 +320,7 @@ def test_titles_name_set_volts_and_rates():
         "standard_error": (tuple(each), np.full((2, 2), np.nan)),
     }
     ramps = xr.Dataset(made, {"rate": rates, **each})
-    figure = jump_voltages.picture_of(ramps, "quick", (1.2, 1.65))
+    figure = jump_voltages.draw_result(ramps, "quick", (1.2, 1.65))
     title = "quick: 1.2 V to 1.65 V, 2.5e-05 V/s to 0.0001 V/s, and at rate 0"
     assert figure.get_suptitle() == title
     along = {"structure": ["bonded"], "leg": ["from below"]}
@@ -329,7 +329,7 @@ def test_titles_name_set_volts_and_rates():
     motions["stable"] = ((*along, "point"), np.ones((1, 1, 3), dtype=bool))
     for name in ("structure", "kind", "voltage", "speed", "amplitude"):
         motions[f"bifurcation_{name}"] = ("bifurcation", np.zeros(0))
-    figure = drive_branch.picture_of(xr.Dataset(motions, along), "beam")
+    figure = drive_branch.draw_result(xr.Dataset(motions, along), "beam")
     assert figure.get_suptitle() == "beam: stationary motions, held by 1.1 V to 1.3 V"
 
 

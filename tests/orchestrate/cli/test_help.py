@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from orchestrate import cli
-from orchestrate.cli.grammar import values_of
+from orchestrate.cli.grammar import parse_values
 
 from .commands import ROOT
 
@@ -107,7 +107,7 @@ def test_what_is_slow_is_loaded_when_it_is_needed():
 
 
 def test_the_default_range_has_7901_values_and_both_ends():
-    etas, is_range = values_of("--eta", "0.1:8.0:0.001")
+    etas, is_range = parse_values("--eta", "0.1:8.0:0.001")
     assert is_range and (len(etas), etas[0], etas[-1]) == (7901, 0.1, 8.0)
     assert list(etas) == [float(f"{n / 1000:.3f}") for n in range(100, 8001)]
 
@@ -118,7 +118,7 @@ def test_a_range_has_its_decimal_values_exactly(first, step, count):
         return f"{n // 10000}.{n % 10000:04d}"
 
     grid = [text(first + k * step) for k in range(count + 1)]
-    found, _ = values_of("--eta", f"{grid[0]}:{grid[-1]}:{text(step)}")
+    found, _ = parse_values("--eta", f"{grid[0]}:{grid[-1]}:{text(step)}")
     assert found == tuple(map(float, grid))
 
 

@@ -121,7 +121,7 @@ def test_an_interrupted_command_says_whether_there_is_anything_to_go_on_from(
 
 
 def test_an_interrupted_command_without_a_store_says_so(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("orchestrate.explorer.page.page", interrupt)
+    monkeypatch.setattr("orchestrate.explorer.page.render_page", interrupt)
     assert main(["explore", "--no-open", "--output", str(tmp_path / "page.html")]) == 130
     assert capsys.readouterr().err.splitlines() == [BEGINS_ANEW]
 

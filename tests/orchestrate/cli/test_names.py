@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 import xarray as xr
 
-from orchestrate.cli.output import name_of
+from orchestrate.cli.output import result_name
 from orchestrate.cli.question import format_ranges
 from orchestrate.structures import Structure
 
@@ -24,17 +24,19 @@ ASKED = {"eta": (0.1, 0.5, 8.0), "direction": "up", "transient": 500, "start": N
     ],
 )
 def test_another_question_has_another_name(change):
-    assert name_of("sweep", Structure(), ASKED) != name_of("sweep", Structure(), ASKED | change)
+    assert result_name("sweep", Structure(), ASKED) != result_name(
+        "sweep", Structure(), ASKED | change
+    )
 
 
 def test_another_structure_has_another_name():
-    names = {name_of("sweep", one, ASKED) for one in (Structure(), Structure(e=0.7 + 1e-15))}
+    names = {result_name("sweep", one, ASKED) for one in (Structure(), Structure(e=0.7 + 1e-15))}
     assert len(names) == 2
 
 
 def test_a_name_can_be_read():
     asked = {"frequency": (50.26548245743669, 125.66370614359172), "amplitude": 1e-3}
-    name = name_of("resonance", Structure(), {**asked, "direction": "both"})
+    name = result_name("resonance", Structure(), {**asked, "direction": "both"})
     assert name.startswith("resonance_e0.7_D0.005_8-20Hz_both_")
 
 

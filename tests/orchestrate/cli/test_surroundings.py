@@ -215,7 +215,7 @@ def test_an_interrupt_while_modules_are_read(monkeypatch, capfd):
 def test_other_exceptions_of_callbacks_reach_the_hook_that_was_there(monkeypatch):
     told = []
     monkeypatch.setattr(sys, "unraisablehook", told.append)
-    with process.signals():
+    with process.handled_signals():
         thing = {0}
         kept = weakref.ref(thing, lambda _: 1 / 0)
         del thing

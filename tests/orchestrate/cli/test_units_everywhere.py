@@ -210,7 +210,7 @@ def test_pictures_of_the_weak_drive_move_with_their_axes(ask, tmp_path):
     in_rpm = 60.0 / (2.0 * np.pi)
     for figure, speed, length in ((plain, 1.0, 1.0), (shown, in_rpm, 1e6)):
         x, y = figure.axes[1].lines[0].get_xydata()[-1]
-        expected = weak_drive.without_beginning(data)
+        expected = weak_drive.drop_spin_up(data)
         part = weak_drive.split_directions(expected)[0][0]
         assert x == pytest.approx(speed * float(expected.speed[part][-1]))
         assert y == pytest.approx(length * float(expected.amplitude[part][-1]))

@@ -2,7 +2,7 @@
 
 import json
 
-from tools.chromium import headless
+from tools.chromium import start_chromium
 
 from .driven import Driven
 
@@ -11,7 +11,7 @@ class Chromium(Driven):
     """Its console, and files without a question."""
 
     def __init__(self, program, driver, downloads):
-        super().__init__(headless(program, driver, downloads), downloads)
+        super().__init__(start_chromium(program, driver, downloads), downloads)
 
     def console(self):
         return [json.dumps(line) for line in self.driver.get_log("browser")]

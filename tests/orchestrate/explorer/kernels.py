@@ -1,4 +1,4 @@
-"""The oscillator's kernel as a native FMU, driven as :class:`tools.web_instance.Web` is."""
+"""The oscillator's kernel as a native FMU, driven as :class:`tools.web_instance.WebInstance` is."""
 
 import math
 

@@ -5,7 +5,7 @@ import struct
 import pytest
 
 from orchestrate.access.webassembly import web_kernel
-from tools.web_instance import Web
+from tools.web_instance import WebInstance
 
 from .kernels import Native, period
 
@@ -35,7 +35,7 @@ def test_every_number_of_the_memory_is_that_of_the_fmu(kernel, exported, case):
     frequency, periods, values = CASES[case]
     values = {**values, "box_frequency": frequency, "box_amplitude": 1.0 / frequency**2}
     fmu = exported / "fmi2" / "TwoMassImpactOscillator.fmu"
-    both = Web(kernel), Native(fmu, kernel.slots["SIZE"])
+    both = WebInstance(kernel), Native(fmu, kernel.slots["SIZE"])
     for one in both:
         one.begin(**values)
         one.set(sample_count=7)

@@ -12,10 +12,10 @@ import orchestrate
 from orchestrate import cli
 from orchestrate.errors import InputError
 from orchestrate.explorer import figure6
-from orchestrate.explorer.branches import runs
+from orchestrate.explorer.branches import split_by_stability
 from orchestrate.explorer.bundle import IMPORT, bundle
-from orchestrate.explorer.page import explore, modules
-from orchestrate.explorer.shipped import shipped
+from orchestrate.explorer.page import explore, read_modules
+from orchestrate.explorer.sweep_data import read_sweep
 from orchestrate.running.store import load
 
 from .conftest import ETAS
@@ -79,12 +79,12 @@ def test_no_script_of_a_file_runs_and_none_that_is_added_to_its_page(window, for
 
 def test_no_module_of_the_page_makes_elements_of_text():
     ways = r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|\beval\b|new Function"
-    found = [name for name, text in modules().items() if re.search(ways, text)]
+    found = [name for name, text in read_modules().items() if re.search(ways, text)]
     assert found == []
 
 
 def test_each_module_imports_in_the_form_that_is_joined_and_is_used():
-    scripts = modules()
+    scripts = read_modules()
     for name, text in scripts.items():
         assert len(IMPORT.findall(text)) == text.count("\nimport ") + text.startswith("import ")
         assert text.startswith("/** "), f"{name}.js: expected what it is for in the first line"
@@ -97,7 +97,7 @@ def test_starts_are_the_ends_of_the_responses_before():
     both = orchestrate.sweep(
         orchestrate.Structure(), eta=[1.2, 1.21, 1.22], direction="both", transient=20, samples=5
     )
-    found = shipped(both)
+    found = read_sweep(both)
     assert found.directions == ("up", "down") and found.count == 3
     numbers = found.numbers.reshape(-1)
     up, down = (numbers[9 + 12 * lane :][:12].reshape(3, 4) for lane in (0, 1))
@@ -111,7 +111,7 @@ def test_starts_in_metres_where_the_excitation_is():
     data = orchestrate.sweep(
         beam, frequency=[78.0, 79.0], amplitude=1e-3, transient=20, samples=5, direction="up"
     )
-    start = shipped(data).numbers[6:].reshape(2, 4)[1]
+    start = read_sweep(data).numbers[6:].reshape(2, 4)[1]
     motion = orchestrate.simulate(beam, frequency=78.0, amplitude=1e-3, transient=25, periods=1)
     state = [float(motion[name][0]) for name in ("x1", "x2", "v1", "v2")]
     assert start == pytest.approx(state, rel=1e-9)
@@ -219,7 +219,7 @@ def test_a_branch_is_cut_where_its_stability_changes():
     along = np.arange(5.0)
     gaps = np.array([1.0, 2.0, 3.0, 0.0, 5.0])
     stable = np.array([True, True, False, False, False])
-    parts = [(list(x), list(y), flag) for x, y, flag in runs(along, gaps, stable)]
+    parts = [(list(x), list(y), flag) for x, y, flag in split_by_stability(along, gaps, stable)]
     assert parts == [([0, 1, 2], [1, 2, 3], True), ([2, 4], [3, 5], False)]
 
 
@@ -227,7 +227,7 @@ ANEW = "the kernel has changed: make Figure 6 of the explorer anew, python -m to
 
 
 def test_figure_6_comes_from_the_present_kernel():
-    assert figure6.is_present(load(figure6.FILE)), ANEW
+    assert figure6.is_current(load(figure6.FILE)), ANEW
 
 
 @pytest.mark.parametrize("first", [0, 1100, 2850, 7896])  # chaos at 1100 and 2850

@@ -298,6 +298,16 @@ def test_the_motor_runs_and_is_stopped(browser):
     assert browser.run("return explorer.drive.rows.at(-1).voltage > explorer.drive.rows[0].voltage")
 
 
+def check_command_gives_the_motion(window, folder, capsys):
+    """Run the command that the page shows; its motion has the bits of the page's."""
+    command = shlex.split(window.text("motion-command"))
+    assert cli.main([*command[3:], "--output", str(folder)]) == 0, capsys.readouterr().err
+    (path,) = folder.glob("*.nc")
+    with xr.open_dataset(path) as motion:
+        states = window.numbers(f"{MOTION}.states").reshape(-1, 4)
+        assert states[:, 0].tobytes() == motion.x1.values.tobytes()
+
+
 def test_a_sweep_in_hertz_and_metres_is_looked_into(window, tmp_path, capsys):
     beam = orchestrate.Structure.from_file("beam")
     turns = 2.0 * np.pi * np.linspace(11.0, 16.0, 41)
@@ -306,12 +316,7 @@ def test_a_sweep_in_hertz_and_metres_is_looked_into(window, tmp_path, capsys):
     assert gaps(window)[:10] == pytest.approx(data.xi_rel.values[:10], rel=1e-6, abs=1e-9)
     window.run("explorer.choose(1.05)")
     window.chosen()
-    command = shlex.split(window.text("motion-command"))
-    assert cli.main([*command[3:], "--output", str(tmp_path)]) == 0, capsys.readouterr().err
-    (path,) = tmp_path.glob("*.nc")
-    with xr.open_dataset(path) as motion:
-        states = window.numbers(f"{MOTION}.states").reshape(-1, 4)
-        assert states[:, 0].tobytes() == motion.x1.values.tobytes()
+    check_command_gives_the_motion(window, tmp_path, capsys)
     near = window.run("return explorer.inspector.choice.point")
     window.run("explorer.open(1.0, 1.1)")
     window.until("return explorer.regions.complete")
@@ -349,12 +354,7 @@ def test_the_motion_of_an_own_beam_is_computed_by_its_command(window, tmp_path, 
     beam = orchestrate.Structure.from_file("beam")
     window.open(explore(beam, output=tmp_path / "page.html"), "#from=1&to=1.2&eta=1.1")
     window.chosen()
-    command = shlex.split(window.text("motion-command"))
-    assert cli.main([*command[3:], "--output", str(tmp_path)]) == 0, capsys.readouterr().err
-    (path,) = tmp_path.glob("*.nc")
-    with xr.open_dataset(path) as motion:
-        states = window.numbers(f"{MOTION}.states").reshape(-1, 4)
-        assert states[:, 0].tobytes() == motion.x1.values.tobytes()
+    check_command_gives_the_motion(window, tmp_path, capsys)
     numbers = window.text("numbers")
     point = window.run("return explorer.inspector.choice.point")
     assert f"frequency, Hz{point['frequency'] / (2 * np.pi):.6g}" in numbers

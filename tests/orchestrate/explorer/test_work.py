@@ -6,7 +6,7 @@ Counts are the same on every machine, however busy: they stand where times would
 import pytest
 
 from orchestrate.explorer.bundle import bundle
-from orchestrate.explorer.page import modules
+from orchestrate.explorer.page import read_modules
 
 from ...sparing import ordinary
 
@@ -53,7 +53,7 @@ MOST = 25_000  # impacts and steps: 5 to 15 ms on a core of today
 @pytest.fixture
 def probed(opened):
     """The page, with the kernel and what workers compute at hand."""
-    opened.run(bundle({**modules(), "probe": PROBE}, "probe"))
+    opened.run(bundle({**read_modules(), "probe": PROBE}, "probe"))
     opened.until("return Boolean(window.probe)")
     return opened
 

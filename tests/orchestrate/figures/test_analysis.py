@@ -75,7 +75,7 @@ def test_a_sweep_down_is_dashed():
 
 def test_phases_turn_without_a_vertical_line():
     phase = xr.DataArray(np.radians([80.0, -170.0, 170.0, 100.0, 85.0, -10.0]))
-    degrees = analysis.unbroken(phase)
+    degrees = analysis.phase_in_degrees(phase)
     assert np.allclose(degrees, [np.nan, -170.0, -190.0, np.nan, 85.0, -10.0], equal_nan=True)
 
 

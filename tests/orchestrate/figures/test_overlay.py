@@ -98,7 +98,7 @@ def test_displacements_and_gaps_lie_over_resonance_curves():
         line = blue(plane)
         there = np.interp(2.5, line.get_xdata(), line.get_ydata())
         settled = response[own].sel(eta=2.5, structure="delaminated", direction="up")
-        factor = resonance.unit_of(response, response[own])[0]
+        factor = resonance.display_unit(response, response[own])[0]
         assert there * factor == pytest.approx(float(settled), rel=2e-3)
         assert of_orbit in window()
     assert {line.get_label() for line in axes[2].get_lines()} & {"stable", "unstable"} == set()

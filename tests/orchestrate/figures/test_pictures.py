@@ -138,8 +138,8 @@ def test_maps(exported):
 
 
 def test_names():
-    assert labels.kind_of(0) == "not periodic"
-    assert [labels.kind_of(n) for n in (1, 3)] == ["$T$", "$3T$"]
+    assert labels.format_period(0) == "not periodic"
+    assert [labels.format_period(n) for n in (1, 3)] == ["$T$", "$3T$"]
     assert labels.symbol("kappa") == r"$\kappa$" and labels.symbol("a_thing") == "a thing"
     assert labels.format_parameters({"e": 0.7, "omega": 75.0}) == r"$e$ = 0.7, $\omega$ = 75 rad/s"
 

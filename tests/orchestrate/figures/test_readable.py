@@ -295,9 +295,11 @@ def test_what_a_logarithm_has_no_place_for_is_told():
 
 
 def test_marks_grow_where_they_are_few():
-    sizes = [marks.mark(count, marks.Marks("k"))["markersize"] for count in (20, 151, 600)]
+    sizes = [
+        marks.marker_keywords(count, marks.MarkStyle("k"))["markersize"] for count in (20, 151, 600)
+    ]
     assert sizes == sorted(sizes, reverse=True) and sizes[1] > 2.0
-    assert marks.mark(601, marks.Marks("k"))["marker"] == ","
+    assert marks.marker_keywords(601, marks.MarkStyle("k"))["marker"] == ","
 
 
 @pytest.mark.parametrize("count", [40, 700])
@@ -383,7 +385,9 @@ def test_a_motion():
 
 def test_a_motions_spectrum_has_its_amplitude():
     time = np.arange(1, 1601) / 200.0
-    frequency, amplitude = motion.spectrum(3.0 * np.sin(2.0 * np.pi * 5.0 * time), 1.0 / 200.0)
+    frequency, amplitude = motion.acceleration_spectrum(
+        3.0 * np.sin(2.0 * np.pi * 5.0 * time), 1.0 / 200.0
+    )
     assert amplitude.max() == pytest.approx(3.0 * (10.0 * np.pi) ** 2)
     assert frequency[amplitude.argmax()] == pytest.approx(5.0)
 

@@ -12,15 +12,15 @@ from orchestrate.dynamics.attractors import AttractorsJob
 from orchestrate.dynamics.basins import PlaneAxis
 from orchestrate.dynamics.clusters import AttractorSettings
 from orchestrate.dynamics.lyapunov import LyapunovJob
-from orchestrate.paper.basin import EvenBasinJob
 from orchestrate.paper.cases import CASES
-from orchestrate.paper.claims.results import impacts_in_response, kind
+from orchestrate.paper.claims.results import impacts_in_response, is_orbit
+from orchestrate.paper.contact_limits import ContactLimitJob
 from orchestrate.paper.curves import CurvesAtFrequencies, CurvesAtPeaks, CurvesInWindows
-from orchestrate.paper.gamma import GammaJob
-from orchestrate.paper.limits import Followed, LimitsJob, windows_of
 from orchestrate.paper.low_speed import LowSpeedJob
-from orchestrate.paper.settled import SettledJob
+from orchestrate.paper.settled_responses import SettledJob
 from orchestrate.paper.spectra import PeakSpectraJob
+from orchestrate.paper.stability_limits import BranchSpec, LimitsJob, stable_windows_of
+from orchestrate.paper.two_attractor_basin import TwoAttractorBasinJob
 from orchestrate.response.simulate import simulate
 from orchestrate.response.sweep import SweepJob
 from orchestrate.running.runner import gather
@@ -71,12 +71,12 @@ def test_a_window_without_a_peak_is_followed_beyond_the_sweep(swept):
     job = curves(CurvesInWindows, sweep, windows=1)
     panel = job.panels([ask(sweep)])[0]
     assert panel.multiplicity == -1 and panel.eta == 1.9
-    settled = job.settled(find(OSCILLATOR).path, panel)
+    settled = job.settle_panel(find(OSCILLATOR).path, panel)
     assert (settled.multiplicity, settled.eta) == (1, pytest.approx(2.054, abs=0.0015))
 
 
 def test_the_limit_of_permanent_contact_does_not_depend_on_gamma(exported):
-    job = GammaJob(
+    job = ContactLimitJob(
         name="gamma",
         structures=(PAPER,),
         ranges=((0.415, 0.421),),
@@ -104,16 +104,16 @@ def test_impacts_in_a_response_of_a_sweep_are_counted_exactly(exported):
     """Of 200 periods of this 3T, a mean of 3.305 impacts a period was no whole number of them."""
     structure = Structure.nondimensional(mu=0.879, kappa=1.838, D=0.0194, e=0.372)
     found = ask(SweepJob(name="sweep", structure=structure, eta=(3.26,)))
-    assert kind(found, 3, 10).all()
+    assert is_orbit(found, 3, 10).all()
     assert impacts_in_response(found).tolist() == [10]
 
 
 def test_exact_limits_of_a_branch_through_a_sweep(swept):
     """The period doubling that ends T/2 at D = 0.05, eight digits as in the manual's table."""
-    sweep, branches = swept[0], (Followed("damped", "T/2", 1.05, 1, (1.0, 1.1)),)
+    sweep, branches = swept[0], (BranchSpec("damped", "T/2", 1.05, 1, (1.0, 1.1)),)
     names = (sweep.name,) * len(CASES)
     found = ask(sweep, LimitsJob(name="limits", sweeps=names, branches=branches))
-    (window,) = windows_of(found, "damped", "T/2")
+    (window,) = stable_windows_of(found, "damped", "T/2")
     assert window.high == pytest.approx(1.07716438, abs=1e-8)
     assert (window.below, window.above) == ("limit", "period doubling")
 
@@ -149,7 +149,7 @@ def test_masses_that_are_alike_do_not_knock(exported):
 def test_spectra_at_the_peak(swept):
     sweep = swept[0]
     job = PeakSpectraJob(name="spectra", sweep=sweep.name, structure=DAMPED, others=(0.4,))
-    asked = job.question({sweep.name: ask(sweep)})
+    asked = job.derived_job({sweep.name: ask(sweep)})
     assert asked.eta == (1.06, 0.4) and asked.count() == job.count()
 
 
@@ -165,7 +165,7 @@ def test_basins_where_starts_are_shared(exported):
         follows="sweep",
         settings=settings,
     )
-    plane = EvenBasinJob(
+    plane = TwoAttractorBasinJob(
         name="basin",
         structure=PAPER,
         excitation=Excitation.nondimensional(1.0, PAPER),

@@ -10,10 +10,18 @@ from orchestrate.access import OSCILLATOR, REST, find
 from orchestrate.dynamics.long_runs import ENDED, NOT_RUN, STEADY, UNDECIDED, LongRun
 from orchestrate.dynamics.lyapunov import Exponent
 from orchestrate.paper.cases import CASES
-from orchestrate.paper.largest import LOST, Candidate, LargestJob, Searched, largest_of
-from orchestrate.paper.regions import COUNT, regions
+from orchestrate.paper.largest_exponents import (
+    LOST,
+    Candidate,
+    LargestExponentJob,
+    RegionCandidates,
+    largest_exponent,
+)
+from orchestrate.paper.regions import COUNT, list_regions
 from orchestrate.response.questions import Point
 from orchestrate.structures import Excitation
+
+from .limits import make_limits
 
 DAMPED = CASES["damped"]
 ENDS = {  # of the damped case, shortened
@@ -27,26 +35,17 @@ ENDS = {  # of the damped case, shortened
 
 
 def limits():
-    """What the limits job gives, of one case."""
-    low, high = np.transpose(list(ENDS.values()))
-    columns = {
-        "low": low,
-        "high": high,
-        "below": ["fold"] * len(low),
-        "above": ["fold"] * len(low),
-        "case": ["damped"] * len(low),
-        "orbit": list(ENDS),
-    }
-    return xr.Dataset({name: ("window", values) for name, values in columns.items()})
+    """What the limits job gives, of the damped case."""
+    return make_limits("damped", ENDS)
 
 
 def job(**changes):
     names = {"exponents": "exponents", "settled": "settled", "limits": "limits"}
-    return LargestJob(name="largest", case="damped", structure=DAMPED, **names, **changes)
+    return LargestExponentJob(name="largest", case="damped", structure=DAMPED, **names, **changes)
 
 
 def test_regions_are_windows_and_what_lies_between():
-    found = regions(limits(), "damped")
+    found = list_regions(limits(), "damped")
     assert len(found) == COUNT
     assert [region.name for region in found][-4:] == [
         "2T/1 to 3T/1",
@@ -79,7 +78,7 @@ def test_the_quoted_exponent_agrees_with_an_independent_long_run(exported):
     """The largest of 157 at D = 0.05 was 0.2777 +- 0.0031; a long run gives 0.2581 +- 0.0020."""
     point = Point(DAMPED, Excitation.nondimensional(5.175, DAMPED))
     asked = job(periods=1500, parts=6)
-    item = Searched(6, [Candidate(point, REST, 0.2777)])
+    item = RegionCandidates(6, [Candidate(point, REST, 0.2777)])
     row = asked.work({OSCILLATOR: find(OSCILLATOR).path}, [item], None)["rows"][0, 0]
     eta, screened, exponent, error, outcome = row
     assert (eta, screened, outcome) == (pytest.approx(5.175), 0.2777, STEADY)
@@ -101,18 +100,18 @@ def found(*rows):
 def test_what_is_quoted():
     name = "T/1 to 2T/1"
     steady = (5.2, 0.17, 0.16, 0.001, STEADY)
-    quoted = largest_of(found(steady), name)
+    quoted = largest_exponent(found(steady), name)
     assert quoted[:3] == (0.16, 0.001, 5.2)
     assert quoted.text() == "0.1600 ± 0.0010 at 5.200"
-    ended = largest_of(found((5.125, 0.1747, 0.008, 0.0005, ENDED), steady), name)
+    ended = largest_exponent(found((5.125, 0.1747, 0.008, 0.0005, ENDED), steady), name)
     assert ended[:3] == (0.16, 0.001, 5.2)
     assert "0.1747 at 5.125: the parts of its long run did not agree" in ended.text()
-    lost = largest_of(found((3.11, 0.0824, -0.0095, 0.0001, LOST), steady), name)
+    lost = largest_exponent(found((3.11, 0.0824, -0.0095, 0.0001, LOST), steady), name)
     assert lost[:3] == (0.16, 0.001, 5.2)
     assert "0.0824 at 3.110 did not last, -0.0095 ± 0.0001 in its long run" in lost.text()
-    undecided = largest_of(found((5.1, 0.2, 0.1, 0.05, UNDECIDED)), name)
+    undecided = largest_exponent(found((5.1, 0.2, 0.1, 0.05, UNDECIDED)), name)
     assert np.isnan(undecided.exponent) and undecided.text().startswith("undecided (0.2000 at")
-    assert largest_of(found((5.1, 0.2, 0.3, 0.05, UNDECIDED), steady), name).eta == 5.2
+    assert largest_exponent(found((5.1, 0.2, 0.3, 0.05, UNDECIDED), steady), name).eta == 5.2
 
 
 @pytest.mark.parametrize(
@@ -127,5 +126,5 @@ def test_what_is_quoted():
 )
 def test_a_response_that_is_not_what_it_was_chosen_for(screened, value, outcome):
     run = LongRun(Exponent(value, 1e-4), STEADY, 110_000)
-    assert job().judged(run, screened, 3.11) == outcome
-    assert job().judged(run._replace(outcome=UNDECIDED), screened, 3.11) == UNDECIDED
+    assert job().classify_run(run, screened, 3.11) == outcome
+    assert job().classify_run(run._replace(outcome=UNDECIDED), screened, 3.11) == UNDECIDED

@@ -12,7 +12,13 @@ from orchestrate.paper.claims.section3 import crossings
 
 
 @pytest.mark.parametrize(
-    "check", [section2.scale, section2.free_part, section2.momentum, section2.period]
+    "check",
+    [
+        section2.check_scale,
+        section2.check_free_part,
+        section2.check_momentum,
+        section2.check_period,
+    ],
 )
 def test_an_equation_holds_as_corrected_only(check):
     found = check(Results({}))

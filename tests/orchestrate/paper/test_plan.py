@@ -28,37 +28,37 @@ PRINTED = (
 )
 def test_jobs_come_after_what_they_need(resolution):
     seen: set[str] = set()
-    for name, job in plan.make(resolution).jobs.items():
+    for name, job in plan.make_plan(resolution).jobs.items():
         assert job.name == name and set(job.needs()) <= seen
         assert job.count() > 0
         seen.add(name)
 
 
 def test_every_part_is_drawn_and_described():
-    parts = plan.make(FULL).parts
+    parts = plan.make_plan(FULL).parts
     assert set(parts) == PARTS
     assert set(CAPTIONS) == set(DRAW) == PARTS - {"claims"}
     assert all(part.picture for name, part in parts.items() if name != "claims")
 
 
 def test_what_a_part_needs():
-    whole = plan.make(FULL)
-    needed = [job.name for job in whole.needed(whole.choose(["5"]))]
+    whole = plan.make_plan(FULL)
+    needed = [job.name for job in whole.jobs_for(whole.choose(["5"]))]
     assert needed == ["orbit_e0.7_D0.005_up", "figure5"]
-    basin = [job.name for job in whole.needed(whole.choose(["basin"]))]
+    basin = [job.name for job in whole.jobs_for(whole.choose(["basin"]))]
     assert basin == ["orbit_e0.7_D0.005_up", "attractors", "basin"]
 
 
 def test_an_unknown_part_is_refused():
     with pytest.raises(InputError, match="unknown figure '4'; choose from claims, 5"):
-        plan.make(FULL).choose(["4"])
+        plan.make_plan(FULL).choose(["4"])
 
 
 def test_the_resolution_is_part_of_the_identity(exported):
     find, questions = finder({}), []
     for resolution in (FULL, QUICK):
         known: dict = {}
-        for name, job in plan.make(resolution).jobs.items():
+        for name, job in plan.make_plan(resolution).jobs.items():
             known[name] = identity_of(job, {model: find(model) for model in job.models}, known)
         questions.append(known)
     same = {name for name in questions[0] if questions[0][name] == questions[1][name]}

@@ -19,20 +19,20 @@ from orchestrate.paper.claims.claim import (
     YES,
     Claim,
     Finding,
-    border,
+    check_limit,
+    check_number,
+    check_parts,
     half_unit,
-    holds,
-    number_at,
 )
 from orchestrate.paper.claims.results import (
     Limit,
     Results,
     impacts_in_response,
-    kind,
+    is_orbit,
     lower_edge,
     upper_edge,
 )
-from orchestrate.paper.windows import longest, relative_peak, runs, window
+from orchestrate.paper.sweep_windows import longest_run, relative_peak, runs, window
 
 
 def sweep_of(multiplicity, impacts, gaps):
@@ -46,8 +46,8 @@ def sweep_of(multiplicity, impacts, gaps):
 
 def test_runs():
     assert runs([0, 1, 1, 0, 1]) == [(1, 2), (4, 4)]
-    assert longest([0, 1, 1, 0, 1]) == (1, 2)
-    assert longest([0, 0]) is None and runs([]) == []
+    assert longest_run([0, 1, 1, 0, 1]) == (1, 2)
+    assert longest_run([0, 0]) is None and runs([]) == []
 
 
 def test_windows_and_their_peaks():
@@ -62,15 +62,15 @@ def test_windows_and_their_peaks():
 def test_edges():
     sweep = sweep_of([1, 1, 2, 2, 0], [1.0, 1.0, 1.5, 1.5, 1.5], [1.0] * 5)
     assert impacts_in_response(sweep).tolist() == [1, 1, 3, 3, 0]
-    assert upper_edge(sweep, kind(sweep, 1, 1), 1.0) == (2.0, 3.0)
-    assert lower_edge(sweep, kind(sweep, 2, 3), 4.0) == (2.0, 3.0)
-    assert all(map(math.isnan, upper_edge(sweep, kind(sweep, 1, 1), 4.0)))
+    assert upper_edge(sweep, is_orbit(sweep, 1, 1), 1.0) == (2.0, 3.0)
+    assert lower_edge(sweep, is_orbit(sweep, 2, 3), 4.0) == (2.0, 3.0)
+    assert all(map(math.isnan, upper_edge(sweep, is_orbit(sweep, 1, 1), 4.0)))
 
 
 def test_what_rounds_to_a_printed_number():
     assert half_unit("0.43") == pytest.approx(0.005) and half_unit("1.1") == pytest.approx(0.05)
-    assert number_at(21.558, "21.56", 3).verdict == YES
-    assert number_at(1.047, "1.045", 3).verdict == NO
+    assert check_number(21.558, "21.56", 3).verdict == YES
+    assert check_number(1.047, "1.045", 3).verdict == NO
 
 
 @pytest.mark.parametrize(
@@ -86,7 +86,7 @@ def test_what_rounds_to_a_printed_number():
     ],
 )
 def test_a_limit_is_read_twice(edges, exact, printed, verdict, agrees):
-    found = border(edges, Limit(exact, "fold", "T/2"), printed)
+    found = check_limit(edges, Limit(exact, "fold", "T/2"), printed)
     assert (found.verdict, found.agrees) == (verdict, agrees)
     assert f"exact: {exact:.8f} (fold of T/2)" in found.value and agrees in found.value
 
@@ -102,4 +102,4 @@ def test_what_takes_the_full_resolution_is_not_decided_at_another():
     ("parts", "verdict"), [([True], YES), ([True, False], PARTLY), ([False], NO)]
 )
 def test_what_holds_in_part(parts, verdict):
-    assert holds(parts, "").verdict == verdict
+    assert check_parts(parts, "").verdict == verdict

@@ -32,8 +32,8 @@ def page(tmp_path, resolution, **content):
     picture = tmp_path / "figure5.png"
     picture.write_bytes(PICTURE)
     known = {"resolution": resolution, "fmu": find(OSCILLATOR), "regions": [], "answers": []}
-    parts = plan.make(FULL).parts
-    path = report.write(tmp_path, {"5": picture}, parts, {**known, "claims": [], **content})
+    parts = plan.make_plan(FULL).parts
+    path = report.write_report(tmp_path, {"5": picture}, parts, {**known, "claims": [], **content})
     return path.read_text(encoding="utf-8")
 
 
@@ -97,7 +97,7 @@ def test_every_verdict_has_its_colour():
 
 
 def test_pictures_are_drawn_where_they_are_missing_or_older_than_their_data(tmp_path, monkeypatch):
-    part = plan.make(FULL).parts["5"]
+    part = plan.make_plan(FULL).parts["5"]
     (tmp_path / "figure5.nc").touch()
     assert not pictures.is_current(part, tmp_path)
     for ending in pictures.FORMATS:

@@ -12,8 +12,8 @@ from orchestrate.dynamics.lyapunov import CHAOTIC, PERIODIC
 from orchestrate.dynamics.parameter_map import MapJob
 from orchestrate.paper.cases import CASES
 from orchestrate.paper.chattering import ChatteringJob
+from orchestrate.paper.later_responses import LaterJob, classify_changes
 from orchestrate.paper.map_peaks import MapPeakJob
-from orchestrate.paper.transients import LaterJob, changed
 from orchestrate.response.sweep import SweepJob
 from orchestrate.running.runner import gather
 
@@ -53,7 +53,7 @@ def test_a_sweep_s_responses_later(exported):
     )
     found = ask(sweep, later)
     assert found.multiplicity.values.tolist() == [1.0, 2.0]
-    parts = changed(ask(sweep), found, 0.01)
+    parts = classify_changes(ask(sweep), found, 0.01)
     which = "periodic, later with another period or other impacts"
     assert {name: part.tolist() for name, part in parts.items() if part.any()} == {
         which: [False, True]

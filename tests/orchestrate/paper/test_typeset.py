@@ -7,7 +7,7 @@ import re
 import pytest
 
 from orchestrate.paper.captions import CAPTIONS
-from orchestrate.paper.typeset import FORMULA, latex_of, typeset
+from orchestrate.paper.typeset import FORMULA, match_to_latex, typeset
 
 FORMULAS = {
     "eta": r"\eta",
@@ -33,7 +33,7 @@ def shown(text: str) -> str:
 @pytest.mark.parametrize("plain", FORMULAS)
 def test_formulas(plain):
     (match,) = FORMULA.finditer(f"so {plain} it is")
-    assert match[0] == plain and latex_of(match) == FORMULAS[plain]
+    assert match[0] == plain and match_to_latex(match) == FORMULAS[plain]
     assert typeset(f"so {plain} it is").count("<math") == 1
 
 

@@ -19,8 +19,10 @@ from orchestrate.paper.claims import (
 )
 from orchestrate.paper.claims.claim import NO, PARTLY, YES
 from orchestrate.paper.claims.results import Results
-from orchestrate.paper.transients import changed
+from orchestrate.paper.later_responses import classify_changes
 from orchestrate.response.curves import CONTACT, FLIGHT
+
+from .limits import make_limits
 
 UP = "orbit_e0.7_D0.005_up"
 GAMMAS = np.array([1e-3, 1e-5, 1e-7, 1e-9])
@@ -44,11 +46,7 @@ WINDOWS = {  # exact limits of the elastic case, rounded
 
 def limits():
     """What the limits job gives, of the elastic case."""
-    low, high = np.transpose(list(WINDOWS.values()))
-    same = {"below": ["fold"], "above": ["fold"], "case": ["elastic"]}
-    columns = {"low": low, "high": high, "orbit": list(WINDOWS)}
-    columns |= {name: values * len(low) for name, values in same.items()}
-    return xr.Dataset({name: ("window", values) for name, values in columns.items()})
+    return make_limits("elastic", WINDOWS)
 
 
 # -- section 1: Figure 2(a) ------------------------------------------------------------------------
@@ -68,7 +66,7 @@ def ramp(damping, bump=0.0):
 def test_an_amplitude_curve_is_like_a_linear_one_or_not():
     def verdict(bump):
         data = {"ramp_bonded": ramp(0.005), "ramp_delaminated": ramp(0.008, bump)}
-        return section1.like_a_linear_one(Results(data))
+        return section1.check_linear_amplitudes(Results(data))
 
     plain = verdict(0.0)
     assert plain.verdict == YES and "D = 0.0080 at 1.1000 omega" in plain.value
@@ -78,7 +76,7 @@ def test_an_amplitude_curve_is_like_a_linear_one_or_not():
 def test_the_break_ends_what_is_compared():
     run = ramp(0.005)
     broken = run.assign(jumps=("jump", [6.0]))
-    speed, amplitude = section1.up_to_the_break(broken)
+    speed, amplitude = section1.ascending_branch(broken)
     assert speed.max() < run.Omega.values[270] and len(speed) == len(amplitude)
 
 
@@ -114,7 +112,7 @@ def sequences(restitutions, change=None):
     ],
 )
 def test_chattering_is_endless_or_not(restitutions, change, verdict):
-    found = section2.chattering(Results({"chattering": sequences(restitutions, change)}))
+    found = section2.check_chattering(Results({"chattering": sequences(restitutions, change)}))
     assert found.verdict == verdict
 
 
@@ -147,7 +145,7 @@ def loops(count, contact, gap=0.0):
 
 def test_loops_of_the_relative_motion():
     def found(*shape, **more):
-        return section3.many_loops(Results({"figure5": loops(*shape, **more)}))
+        return section3.check_many_loops(Results({"figure5": loops(*shape, **more)}))
 
     once = found(15, True)
     assert once.verdict == PARTLY
@@ -166,7 +164,7 @@ def swept(multiplicity, impacts, gaps):
 def test_what_becomes_of_responses_later():
     first = swept([1, 1, 0, 2, 1, 0], [1.0, 1.0, 1.4, 0.5, 1.0, 1.3], [1.0] * 6)
     later = swept([1, 0, 1, 2, 1, 0], [1.0, 1.2, 1.0, 1.5, 1.0, 0.9], [1.0, 1, 1, 1, 1.05, 2.0])
-    found = {name: which.tolist() for name, which in changed(first, later, 0.01).items()}
+    found = {name: which.tolist() for name, which in classify_changes(first, later, 0.01).items()}
     assert list(found.values()) == [
         [False, False, True, False, False, False],
         [False, True, False, False, False, False],
@@ -190,7 +188,7 @@ def test_whether_500_periods_suffice(below, beyond, verdict):
     same, late = responses(0, 0), responses(below, beyond)
     later, latest = late.assign_attrs(transient=4299), same.assign_attrs(transient=49_299)
     data = {UP: same, "later_e0.7_D0.005_up": later, "latest_e0.7_D0.005_up": latest}
-    found = section3.enough_periods(Results({**data, "limits": limits()}))
+    found = section3.check_enough_periods(Results({**data, "limits": limits()}))
     assert found.verdict == verdict
     assert f"{below} of 100 frequencies from 1.000 to 2.650" in found.value
     assert f"({beyond} periodic, later irregular)" in found.value
@@ -202,7 +200,7 @@ def test_the_most_unfavourable_detuning(own, verdict):
     kappas = [1.0, 1.2, 1.4]
     impulses = (("kappa", "eta"), [[1.0, 0.5], [own, 0.5], [7.0, 0.5]])
     data = xr.Dataset({"impulse_max": impulses}, {"kappa": kappas, "eta": [1.0, 2.0]})
-    assert section3.most_unfavourable(Results({"map_kappa": data})).verdict == verdict
+    assert section3.check_most_unfavourable(Results({"map_kappa": data})).verdict == verdict
 
 
 # -- section 3.2 -----------------------------------------------------------------------------------
@@ -230,14 +228,14 @@ def settled(irregular):
     ],
 )
 def test_where_irregularities_occur(irregular, verdict):
-    found = section3_influence.irregularities(Results(settled(irregular)))
+    found = section3_influence.check_irregularities(Results(settled(irregular)))
     assert found.verdict == verdict
 
 
 def test_impacts_that_a_diagram_does_not_show():
     def verdict(impacts):
         data = {UP: swept([1] * len(impacts), impacts, [1.0] * len(impacts))}
-        return section3_influence.hidden_impacts(Results(data)).verdict
+        return section3_influence.check_hidden_impacts(Results(data)).verdict
 
     assert verdict([3.0, 2.0, 1.0]) == YES
     assert verdict([1.0, 1.0]) == NO
@@ -251,7 +249,7 @@ def test_one_impact_on_both_sides_of_the_second_region(spoiled, verdict):
     for n in spoiled:
         impacts[np.flatnonzero(multiplicity == n)[0]] *= 2.0
     data = along_eta(etas, multiplicity=multiplicity, impacts_per_period=impacts)
-    found = section3_influence.one_impact_beside(Results({"settled_e0.7_D0.005_up": data}))
+    found = section3_influence.check_one_impact_beside(Results({"settled_e0.7_D0.005_up": data}))
     assert found.verdict == verdict
 
 
@@ -275,7 +273,7 @@ def peaks(sizes):
     ],
 )
 def test_powers_of_ten_from_peak_to_peak(sizes, verdict):
-    assert section3_influence.decay(Results(peaks(sizes))).verdict == verdict
+    assert section3_influence.check_decay(Results(peaks(sizes))).verdict == verdict
 
 
 @pytest.mark.parametrize(
@@ -292,7 +290,7 @@ def test_amplitudes_like_those_of_one_oscillator(ratios, verdict):
     alone = 1.0 / np.hypot(stiffness - etas**2, 2.0 * case.get("D") * etas)
     sizes = {name: np.array(ratios) * alone for name in ("xi1_max", "xi2_max")}
     data = {UP: along_eta(etas, xi_rel_max=0.1 * alone, **sizes)}
-    assert section3_influence.single_oscillator(Results(data)).verdict == verdict
+    assert section3_influence.check_single_oscillator(Results(data)).verdict == verdict
 
 
 # -- sections 4 and 5 ------------------------------------------------------------------------------
@@ -340,7 +338,7 @@ def test_amplitudes_and_impulses_are_largest_at_the_main_peak_or_not(amplitude, 
         }
         data[f"orbit_{case.label()}_up"] = along_eta(etas, **up)
         data[f"steady_{case.label()}_up"] = along_eta(etas, closing_max=peak_at(impulse))
-    assert section5.both_at_peak(Results(data)).verdict == verdict
+    assert section5.check_both_at_peak(Results(data)).verdict == verdict
 
 
 # -- beyond the paper ------------------------------------------------------------------------------
@@ -351,6 +349,6 @@ def test_the_largest_impulse_of_a_map_is_that_of_a_longer_run():
     chart = xr.Dataset({"impulse_max": impulses}, {"e": [0.5, 0.95], "eta": [1.0, 1.05]})
     run_on = along_eta([1.05], impulse_max=[55.3], verdict=[CHAOTIC])
     run_on.attrs["periods"] = 10_000
-    text = answers.strongest(chart, run_on, "e")
+    text = answers.describe_largest_impulse(chart, run_on, "e")
     assert "55.3 m_1 omega a eta^2 at most in 10000 periods of the irregular response" in text
     assert "(50.9 in those of the map)" in text and "at eta = 1.05." in text

@@ -13,7 +13,7 @@ import xarray as xr
 
 import orchestrate
 from orchestrate.errors import InputError
-from orchestrate.reports.page import Page, Section, Table, Verdict, text_of, with_error
+from orchestrate.reports.page import Page, Section, Table, Verdict, format_number, format_with_error
 from orchestrate.reports.verdict import measured_record, verdict_sections
 
 EVIL = "<script>alert(\"1\")</script> & 'others'"
@@ -128,9 +128,9 @@ def test_a_verdict_comes_first_and_is_signed():
 
 
 def test_numbers_have_the_digits_of_their_errors():
-    assert with_error(0.57123, 0.0312) == "0.571 ± 0.031"
-    assert with_error(0.57123, np.nan) == "0.5712"
-    assert text_of(np.inf, "Hz") == "–"
+    assert format_with_error(0.57123, 0.0312) == "0.571 ± 0.031"
+    assert format_with_error(0.57123, np.nan) == "0.5712"
+    assert format_number(np.inf, "Hz") == "–"
 
 
 def test_nothing_is_no_report(tmp_path):

@@ -9,7 +9,7 @@ import xarray as xr
 
 import orchestrate
 from orchestrate import InputError, Structure
-from orchestrate.cli.grammar import changes_of
+from orchestrate.cli.grammar import parse_changes
 from orchestrate.cli.options import QUANTITIES
 from orchestrate.figures.labels import symbol, title_from_attributes
 from orchestrate.structures import PARAMETERS, write
@@ -42,7 +42,7 @@ def test_every_constructor_takes_it(name):
         Structure.from_bonded(**BONDED, **value),
         Structure().replace(**value),
         Structure.from_attributes(Structure(**value).parameters()),
-        Structure().replace(**changes_of([f"{name}=0.02"])),  # --set
+        Structure().replace(**parse_changes([f"{name}=0.02"])),  # --set
     ]
     for structure in made:
         assert structure.get(name) == structure.parameters()[name] == 0.02

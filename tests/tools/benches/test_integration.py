@@ -12,8 +12,8 @@ from scipy.special import ellipk
 from tools.benches import restitution
 from tools.benches.bench import Bench
 from tools.benches.excitation import Swept
-from tools.benches.integrator import Escaped, equilibrium, integrate
-from tools.benches.lumped import TURN, Clamp, Faces, Halves, change_of, cubic_for
+from tools.benches.integrator import UnboundedMotionError, equilibrium, integrate
+from tools.benches.lumped import TURN, Clamp, Faces, Halves, cubic_stiffness, frequency_change
 from tools.benches.recipe import OPENED
 
 HALVES = Halves(zeta1=0.03, zeta2=0.03)
@@ -28,7 +28,7 @@ def driven(frequency, seconds, step, level=5.0):
 
 def test_a_bonded_beam_has_the_closed_transfer_function():
     system, step = HALVES.bonded(), 1.0 / 24_000.0
-    whole = HALVES.whole()
+    whole = HALVES.bonded_beam()
     for frequency in (25.0, whole.f, 80.0):
         moved = integrate(system, driven(frequency, 4.0, step), step).acceleration
         r = frequency / whole.f
@@ -126,19 +126,21 @@ def test_a_collision_has_the_restitution_that_was_asked_for(law, e):
 def test_hunt_and_crossley_at_small_speeds():
     """Their own approximation e = 1 - 2/3 c v."""
     for speed in (1e-3, 1e-2):
-        assert restitution.hunt_crossley(0.5, speed) == pytest.approx(
+        assert restitution.hunt_crossley_restitution(0.5, speed) == pytest.approx(
             1.0 - speed / 3.0, abs=speed**2
         )
     damping = restitution.hunt_crossley_damping(0.4, 0.2)
-    assert restitution.hunt_crossley(damping, 0.2) == pytest.approx(0.4)
-    assert restitution.hunt_crossley(damping, 0.02) > 0.8, "slow impacts lose less"
+    assert restitution.hunt_crossley_restitution(damping, 0.2) == pytest.approx(0.4)
+    assert restitution.hunt_crossley_restitution(damping, 0.02) > 0.8, "slow impacts lose less"
 
 
 def test_a_dashpot_that_pulled_would_lose_more():
     for ratio in (0.05, 0.3, 0.7):
         pulling = math.exp(-math.pi * ratio / math.sqrt(1.0 - ratio**2))
-        assert pulling < restitution.linear(ratio) < 1.0
-    assert restitution.linear(restitution.linear_ratio(0.5)) == pytest.approx(0.5)
+        assert pulling < restitution.linear_restitution(ratio) < 1.0
+    assert restitution.linear_restitution(restitution.linear_damping_ratio(0.5)) == pytest.approx(
+        0.5
+    )
 
 
 def test_pressed_faces_rest_where_the_forces_balance():
@@ -155,7 +157,7 @@ def test_pressed_faces_rest_where_the_forces_balance():
 def test_pressed_faces_part_where_the_dynamic_force_is_larger(part, opens):
     """It is what mass 1 needs beside its own spring to move as the bonded beam does."""
     own, frequency, level = HALVES, 44.0, 5.0
-    whole, w = own.whole(), TURN * frequency
+    whole, w = own.bonded_beam(), TURN * frequency
     r = frequency / whole.f
     moved = -level / (TURN * whole.f) ** 2 / (1.0 - r * r + 2j * whole.zeta * r)
     w1 = TURN * own.f1
@@ -174,9 +176,9 @@ def test_a_cubic_spring_changes_the_frequency_as_asked(change):
     """Its free period by an elliptic integral."""
     f, amplitude, step = 45.0, 2e-3, 1e-5
     own = Halves(f1=f, f2=f, zeta1=0.0, zeta2=0.0)
-    cubic = cubic_for(change, f, amplitude)
-    assert change_of(cubic, f, amplitude) == pytest.approx(change)
-    start = np.array([amplitude * math.sqrt(own.whole().mass)])
+    cubic = cubic_stiffness(change, f, amplitude)
+    assert frequency_change(cubic, f, amplitude) == pytest.approx(change)
+    start = np.array([amplitude * math.sqrt(own.bonded_beam().mass)])
     moved = integrate(own.bonded(cubic=cubic), np.zeros(20_001), step, start)
     signs = np.flatnonzero(np.diff(np.signbit(moved.acceleration[0])))
     period = 2.0 * step * (signs[-1] - signs[0]) / (len(signs) - 1)
@@ -190,8 +192,8 @@ def test_a_cubic_spring_changes_the_frequency_as_asked(change):
 def test_a_spring_that_sags_makes_even_orders():
     """By harmonic balance: order 2 over 1 of the acceleration is 2 c s X/w^2 for small X."""
     own, step, w2 = Halves(f1=45.0, f2=45.0, zeta1=0.0, zeta2=0.0), 1e-5, (TURN * 45.0) ** 2
-    cubic, sag, amplitude = cubic_for(0.02, 45.0, 2e-3), 1e-3, 2e-4
-    start = np.array([amplitude * math.sqrt(own.whole().mass)])
+    cubic, sag, amplitude = cubic_stiffness(0.02, 45.0, 2e-3), 1e-3, 2e-4
+    start = np.array([amplitude * math.sqrt(own.bonded_beam().mass)])
     for offset in (sag, 0.0):
         moved = integrate(own.bonded(cubic=cubic, sag=offset), np.zeros(80_001), step, start)
         stiffer = w2 + 3.0 * cubic * offset**2
@@ -204,15 +206,15 @@ def test_a_spring_that_sags_makes_even_orders():
 
 
 def test_a_soft_spring_gives_way():
-    system = Halves(zeta1=0.0, zeta2=0.0).bonded(cubic=cubic_for(-0.15, 46.7, 1e-3))
-    with pytest.raises(Escaped, match="after"):
+    system = Halves(zeta1=0.0, zeta2=0.0).bonded(cubic=cubic_stiffness(-0.15, 46.7, 1e-3))
+    with pytest.raises(UnboundedMotionError, match="after"):
         integrate(system, driven(46.0, 5.0, 1e-4, 50.0), 1e-4)
 
 
 def test_dry_friction_takes_the_same_from_each_swing():
     f, step, dry = 45.0, 1e-5, 0.4
     own = Halves(f1=f, f2=f, zeta1=0.0, zeta2=0.0)
-    root = math.sqrt(own.whole().mass)
+    root = math.sqrt(own.bonded_beam().mass)
     w2 = (TURN * f) ** 2
     moved = integrate(
         own.bonded(friction=dry), np.zeros(2 * 8889 + 1), step, np.array([2e-3 * root])
@@ -249,5 +251,5 @@ def test_steps_of_a_bench_resolve_its_fastest_oscillation():
     bench = Bench(excitation=Swept(20.0, 90.0, 1.0, 5.0))
     for frequency in (500.0, 1500.0):
         system = HALVES.delaminated(Faces(law="linear", frequency=frequency))
-        rate = bench.factor_for(system) * bench.rate
+        rate = bench.steps_per_sample(system) * bench.rate
         assert bench.steps <= rate / frequency < 1.2 * bench.steps + bench.rate / frequency

@@ -153,7 +153,7 @@ def test_the_records_of_the_tutorial_are_read_as_they_are():
 def test_the_command_writes_them(tmp_path, monkeypatch, capsys):
     """The first second is the committed one: the sweep begins alike, and no beam rattles yet."""
     short = dataclasses.replace(tutorial.BENCH, excitation=Swept(20.0, 90.0, 1.0, 4.0))
-    monkeypatch.setattr(tutorial.write, "__defaults__", (tmp_path, short))
+    monkeypatch.setattr(tutorial.write_records, "__defaults__", (tmp_path, short))
     main(["tutorial", "--folder", str(tmp_path)])
     assert capsys.readouterr().out.count("sha256") == 3
     for name in tutorial.BEAMS:

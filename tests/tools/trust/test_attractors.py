@@ -10,7 +10,7 @@ import pytest
 import orchestrate
 from orchestrate.access import OSCILLATOR, find
 from orchestrate.structures import Structure
-from tools.trust.attractors import Attractors, Drawn, Motion, draw, findings
+from tools.trust.attractors import AttractorCampaign, DrawnStructure, ReportedMotion, draw, findings
 
 PAPER = Structure.nondimensional()
 
@@ -30,11 +30,11 @@ def told(fmu):
 
 def wrong(fmu, told, **changes):
     changed = told.assign({name: told[name] * 0 + value for name, value in changes.items()})
-    return " / ".join(Motion(fmu, PAPER, 1.315, changed).wrong())
+    return " / ".join(ReportedMotion(fmu, PAPER, 1.315, changed).problems())
 
 
 def test_a_few_structures(fmu):
-    found = Attractors().run(fmu, 3, 4)
+    found = AttractorCampaign().run(fmu, 3, 4)
     assert (found.done, found.findings) == (4, 0), found.notes
     assert found.counts["orbit:"] > 0
 
@@ -71,5 +71,5 @@ def test_one_attractor_twice_is_seen(fmu, monkeypatch):
         return found.isel(attractor=[0, 0])
 
     monkeypatch.setattr(orchestrate, "attractors", doubled)
-    lines = list(findings(fmu, Drawn(PAPER, (1.28, 1.285)), 1, Counter()))
+    lines = list(findings(fmu, DrawnStructure(PAPER, (1.28, 1.285)), 1, Counter()))
     assert lines and all("is there twice" in line for line in lines)

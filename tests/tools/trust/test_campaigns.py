@@ -11,13 +11,13 @@ import pytest
 
 from orchestrate.access import OSCILLATOR, find
 from tools.trust import bits, forged_results, mutants, parameter_sets
-from tools.trust.bits import Grids
-from tools.trust.clusters import Clusters
-from tools.trust.faults import Faults
-from tools.trust.fuzzing import Fuzzing
-from tools.trust.hostile import Hostile
-from tools.trust.leaks import Leaks
-from tools.trust.mutants import Mutants
+from tools.trust.bits import BitCampaign
+from tools.trust.clusters import ClusterCampaign
+from tools.trust.faults import FaultCampaign
+from tools.trust.fuzzing import FuzzCampaign
+from tools.trust.hostile import HostileCampaign
+from tools.trust.leaks import LeakCampaign
+from tools.trust.mutants import MutantCampaign
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes of Linux")
 
@@ -35,7 +35,7 @@ def without_chromium():
 def seen():
     if without_chromium():
         pytest.skip("no chromium with chromedriver here")
-    with forged_results.window() as window:
+    with forged_results.open_browser() as window:
         yield window
 
 
@@ -45,10 +45,10 @@ def clean(found, count):
 
 def test_a_point_that_no_step_size_hits_is_left_out():
     """From its middle the nearest step size ends one number beside the target."""
-    drawn = parameter_sets.draw(19, 69)
+    drawn = parameter_sets.draw_parameter_set(19, 69)
     _, (middle, end), *_ = drawn.grids()
     assert middle + (end - middle) != end
-    grids = [bits.reachable(drawn.start_time, grid) for grid in drawn.grids()]
+    grids = [bits.reachable_points(drawn.start_time, grid) for grid in drawn.grids()]
     assert [grid[-1] for grid in grids] == [end] * len(grids)
     for grid in grids:
         steps = itertools.pairwise([drawn.start_time, *grid])
@@ -57,23 +57,25 @@ def test_a_point_that_no_step_size_hits_is_left_out():
 
 
 def test_bits_of_a_few_sets(fmu):
-    clean(Grids().run(fmu, 5, 12), 12)
+    clean(BitCampaign().run(fmu, 5, 12), 12)
 
 
 def test_another_bit_would_be_seen(fmu, monkeypatch):
-    drawn = parameter_sets.draw(1, 4)
+    drawn = parameter_sets.draw_parameter_set(1, 4)
     grid = list(drawn.grids())[0]
     other = parameter_sets.ParameterSet(
         drawn.kind, {**drawn.values, "x2_start": drawn.values["x2_start"] + 1e-15}, 0.0, 1.0
     )
-    assert bits.by_fmu(fmu, drawn, grid) != bits.by_fmu(fmu, other, grid)
-    monkeypatch.setattr(bits, "by_web", lambda *_: ("0x0p+0",) * len((*bits.STATE, *bits.STEP)))
-    assert any(line.startswith("wasm") for line in bits.differences(drawn, False))
+    assert bits.simulate_by_fmu(fmu, drawn, grid) != bits.simulate_by_fmu(fmu, other, grid)
+    monkeypatch.setattr(
+        bits, "simulate_by_web", lambda *_: ("0x0p+0",) * len((*bits.STATE, *bits.STEP))
+    )
+    assert any(line.startswith("wasm") for line in bits.bit_differences(drawn, False))
 
 
 @pytest.mark.skipif(without_chromium(), reason="no chromium with chromedriver here")
 def test_a_few_malicious_inputs(fmu):
-    clean(Hostile().run(fmu, 1, 4), 4)
+    clean(HostileCampaign().run(fmu, 1, 4), 4)
 
 
 @pytest.mark.parametrize(
@@ -88,30 +90,30 @@ def test_a_few_malicious_inputs(fmu):
 def test_a_script_that_ran_would_be_seen(seen, tmp_path, body, expected):
     page = tmp_path / "page.html"
     page.write_text(f"<!doctype html>{body}".replace("ADDRESS", seen.address))
-    verdict = seen.verdict(page)
+    verdict = seen.check_page(page)
     assert verdict.startswith(expected) and bool(verdict) == bool(expected)
 
 
 def test_memory_stays_flat(fmu, monkeypatch):
-    monkeypatch.setattr("tools.trust.leaks.peak", lambda _, number: 400 * number)
-    found = Leaks().run(fmu, 1, 100_000)
+    monkeypatch.setattr("tools.trust.leaks.peak_memory", lambda _, number: 400 * number)
+    found = LeakCampaign().run(fmu, 1, 100_000)
     clean(found, 100_000)
     assert found.worst == 400.0
 
 
 def test_a_short_run_finds_no_leak_where_there_is_none(fmu):
     """What a process takes once was shared out among ten frequencies."""
-    clean(Leaks().run(fmu, 1, 10_000), 10_000)
+    clean(LeakCampaign().run(fmu, 1, 10_000), 10_000)
 
 
 def test_a_few_faults(fmu, monkeypatch):
-    monkeypatch.setattr(Faults, "commands", ("sweep",))
-    clean(Faults().run(fmu, 1, 3), 3)
+    monkeypatch.setattr(FaultCampaign, "commands", ("sweep",))
+    clean(FaultCampaign().run(fmu, 1, 3), 3)
 
 
 def test_a_mutant_is_another_program():
     source = "def f(x):\n    return x + 1.5 if x < 2 else -x\n"
-    found = {mutants.mutant(source, random.Random(seed))[0] for seed in range(60)}
+    found = {mutants.make_mutant(source, random.Random(seed))[0] for seed in range(60)}
     assert source not in found and len(found) == 5
     assert "def f(x):\n    return x - 1.5 if x < 2 else -x" in found
 
@@ -119,8 +121,14 @@ def test_a_mutant_is_another_program():
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("campaign", "count"),
-    [(Grids(), 150), (Hostile(), 60), (Faults(), 48), (Clusters(), 6), (Fuzzing(), 200_000)]
-    + [(Leaks(), 2_000_000), (Mutants(), 2)],
+    [
+        (BitCampaign(), 150),
+        (HostileCampaign(), 60),
+        (FaultCampaign(), 48),
+        (ClusterCampaign(), 6),
+        (FuzzCampaign(), 200_000),
+    ]
+    + [(LeakCampaign(), 2_000_000), (MutantCampaign(), 2)],
     ids=lambda value: getattr(value, "name", ""),
 )
 def test_middle_forms(fmu, campaign, count):

@@ -15,9 +15,9 @@ import orchestrate
 from tools.benches import recipe, tutorial
 from tools.benches.recipe import Setup, Truth
 from tools.trust import __main__ as ledger
-from tools.trust import diagnosis, diagnosis_tables, ledger_page, records, roc, signs
-from tools.trust.diagnosis import Diagnosis, judged, wrong_in
-from tools.trust.job import HERE, sources
+from tools.trust import diagnosis, diagnosis_tables, ledger_file, ledger_page, roc, signs
+from tools.trust.diagnosis import DiagnosisCampaign, judge_case, verdict_problem
+from tools.trust.job import HERE, sources_digest
 
 SOUND = Truth(
     kind="sound",
@@ -52,13 +52,13 @@ SHUT = dataclasses.replace(SPLIT, kind="preloaded", opened=False, largest_gap=-1
     ],
 )
 def test_what_is_wrong(verdict, truth, expected):
-    found = wrong_in(verdict, truth)
+    found = verdict_problem(verdict, truth)
     assert expected in found and bool(found) == bool(expected)
 
 
 def test_an_opening_below_the_stated_limit_is_no_wrong_verdict():
-    assert wrong_in("no opening seen", SPLIT, smallest=2e-3) == ""
-    found = wrong_in("no opening seen", SPLIT, smallest=3e-4)
+    assert verdict_problem("no opening seen", SPLIT, smallest=2e-3) == ""
+    found = verdict_problem("no opening seen", SPLIT, smallest=3e-4)
     assert found.endswith("opened by 1 mm, where 0.3 mm would have been seen")
 
 
@@ -88,21 +88,24 @@ def test_the_ratio_of_orders_is_that_of_a_made_signal():
 def test_curves_of_numbers_with_a_known_area():
     rng = np.random.default_rng(2)
     numbers = np.concatenate([rng.normal(1.5, 1.0, 4000), rng.normal(0.0, 1.0, 4000)])
-    found = roc.curve(numbers, np.arange(8000) < 4000)
+    found = roc.compute_curve(numbers, np.arange(8000) < 4000)
     exact = norm.cdf(1.5 / math.sqrt(2.0))
     assert abs(found.area - exact) < 3.0 * roc.area_error(exact, 4000, 4000) < 0.02
-    assert found.true_at(0.05) == pytest.approx(norm.sf(norm.isf(0.05) - 1.5), abs=0.03)
-    assert roc.curve([2.0, 3.0, 1.0, 0.0], [True, True, False, False]).area == 1.0
-    assert roc.curve([1.0, 1.0, 1.0], [True, False, False]).area == 0.5
-    assert roc.curve([np.nan, 1.0, 0.0], [True, True, False]).area == pytest.approx(0.5)
+    assert found.true_rate_at(0.05) == pytest.approx(norm.sf(norm.isf(0.05) - 1.5), abs=0.03)
+    assert roc.compute_curve([2.0, 3.0, 1.0, 0.0], [True, True, False, False]).area == 1.0
+    assert roc.compute_curve([1.0, 1.0, 1.0], [True, False, False]).area == 0.5
+    assert roc.compute_curve([np.nan, 1.0, 0.0], [True, True, False]).area == pytest.approx(0.5)
     with pytest.raises(ValueError, match="negative"):
-        roc.curve([1.0], [True])
+        roc.compute_curve([1.0], [True])
 
 
 def test_intervals_of_parts():
     """Wilson's, against a table: 2 of 100."""
-    assert roc.interval(2, 100) == (pytest.approx(0.0055, abs=1e-4), pytest.approx(0.07, abs=1e-3))
-    low, high = roc.interval(0, 50)
+    assert roc.wilson_interval(2, 100) == (
+        pytest.approx(0.0055, abs=1e-4),
+        pytest.approx(0.07, abs=1e-3),
+    )
+    low, high = roc.wilson_interval(0, 50)
     assert low == pytest.approx(0.0, abs=1e-12) and 0.05 < high < 0.08
 
 
@@ -117,13 +120,13 @@ def quick(monkeypatch):
         wrong = truth.kind == "hardening"
         verdict = "delaminated" if truth.opened or wrong else "no opening seen"
         numbers = {"f1": 1.02 * truth.f1, "f1 error": 0.01 * truth.f1, "f2": 0.97 * truth.f2}
-        return diagnosis.Answer(verdict, numbers)
+        return diagnosis.DetectorAnswer(verdict, numbers)
 
     monkeypatch.setattr(diagnosis, "run_detector", asked)
 
 
 def test_a_run_keeps_a_row_for_each_beam(quick, exported):
-    found = Diagnosis().run(exported, 4, 4)
+    found = DiagnosisCampaign().run(exported, 4, 4)
     assert found.done == 4 and found.findings == 1 and len(found.rows) == 4
     assert found.notes[0].startswith("seed 4, beam 2: hardening") and "is sound" in found.notes[0]
     assert found.worst == pytest.approx(3.0) and found.counts["sound, no opening seen:"] == 1
@@ -131,7 +134,7 @@ def test_a_run_keeps_a_row_for_each_beam(quick, exported):
     first = dict(zip(diagnosis.COLUMNS, found.rows[1], strict=True))
     assert (first["f1 error"], first["f2 error"]) == (0.02, -0.03)
     assert (first["f1 deviation"], first["f2 deviation"]) == (2.0, None)
-    assert first == {**judged(diagnosis.case_of(4, 1)), "seconds": first["seconds"]}
+    assert first == {**judge_case(diagnosis.draw_case(4, 1)), "seconds": first["seconds"]}
 
 
 def made_rows(count):
@@ -156,27 +159,27 @@ def made_rows(count):
 
 
 def test_tables_and_picture(tmp_path):
-    text = "\n".join(diagnosis_tables.lines(made_rows(200)))
+    text = "\n".join(diagnosis_tables.table_lines(made_rows(200)))
     assert "| sound | 1 | 99 | 0 | 0 | 0 | 0 | 1 |" in text
     assert "two masses, sound or delaminated: wrong 0.5 % of 200 (0.1 to 2.8)" in text
     assert "median error 1.50 %, nine of ten within 2.00 %" in text
     assert "intervals of 95 % that hold the truth: f1 90.0 % of 100 (82.6 to 94.5);" in text
     assert text.count("1.000 ± 0.000; 100 % | 100.0 % of 100") >= 3
     assert "| sensors: 1 | 100, 100 |" in text and "excitation: up" in text
-    assert diagnosis_tables.curve_of(diagnosis_tables.table_of(made_rows(10)), "ratio") is None
+    assert diagnosis_tables.sign_curve(diagnosis_tables.make_table(made_rows(10)), "ratio") is None
     path = diagnosis_tables.draw(made_rows(200), tmp_path / "diagnosis.png")
     assert path.stat().st_size > 10_000
 
 
 def test_rows_go_into_the_record_and_onto_the_page(quick, exported, tmp_path):
-    run = ledger.run(Diagnosis(), 4, 5, tmp_path, jobs=1, progress=False)
+    run = ledger.run_campaign(DiagnosisCampaign(), 4, 5, tmp_path, jobs=1, progress=False)
     assert len(run.rows) == 5 and run.findings == 1
     place = tmp_path / "trust.jsonl"
-    assert records.append(run, place) and records.read(place) == [run]
-    text = ledger_page.text([run])
+    assert ledger_file.append_entry(run, place) and ledger_file.read_entries(place) == [run]
+    text = ledger_page.page_text([run])
     assert "| hardening | 1 | 0 | 0 | 0 | 0 | 0 | 1 |" in text
     without = dataclasses.replace(run, rows=[])
-    records.append(without, tmp_path / "other.jsonl")
+    ledger_file.append_entry(without, tmp_path / "other.jsonl")
     assert "rows" not in json.loads((tmp_path / "other.jsonl").read_text())
 
 
@@ -191,19 +194,23 @@ def test_a_run_that_was_stopped_keeps_what_it_has(quick, exported, tmp_path, mon
 
     monkeypatch.setattr(diagnosis, "run_detector", stopped)
     with pytest.raises(KeyboardInterrupt):
-        ledger.run(Diagnosis(), 4, 6, tmp_path, jobs=1, progress=False)
-    kept = ledger.keep(Diagnosis(), 4, 6, tmp_path)
+        ledger.run_campaign(DiagnosisCampaign(), 4, 6, tmp_path, jobs=1, progress=False)
+    kept = ledger.keep_partial_run(DiagnosisCampaign(), 4, 6, tmp_path)
     assert kept.budget == kept.done == 3 and len(kept.rows) == 3
     monkeypatch.setattr(diagnosis, "run_detector", run_detector)
-    whole = ledger.run(Diagnosis(), 4, 3, tmp_path, jobs=1, progress=False)
+    whole = ledger.run_campaign(DiagnosisCampaign(), 4, 3, tmp_path, jobs=1, progress=False)
     of_beams = [[row[:-2] for row in one.rows] for one in (kept, whole)]  # without the seconds
     assert of_beams[0] == of_beams[1] and kept.package == whole.package
     with pytest.raises(orchestrate.InputError, match="holds no batch"):
-        ledger.keep(Diagnosis(), 5, 6, tmp_path)
+        ledger.keep_partial_run(DiagnosisCampaign(), 5, 6, tmp_path)
 
 
 def test_other_benches_are_another_campaign():
-    assert sources() == records.digest(HERE, HERE.parent / "benches") != records.digest(HERE)
+    assert (
+        sources_digest()
+        == ledger_file.digest(HERE, HERE.parent / "benches")
+        != ledger_file.digest(HERE)
+    )
 
 
 def test_each_kind_of_beam_is_asked_about():
@@ -234,14 +241,14 @@ def test_the_numbers_are_those_of_the_best_delaminated_hypothesis(monkeypatch):
     assert (verdict, numbers["ratio"]) == ("delaminated", 3.0)
     assert numbers["smallest"] == 4e-5
     assert (numbers["f1"], numbers["f2"], numbers["f2 error"]) == (41.0, 52.0, 0.52)
-    deviation = diagnosis.deviations_of(numbers, SPLIT)
+    deviation = diagnosis.normalized_deviations(numbers, SPLIT)
     assert deviation["f2"] == pytest.approx((52.0 - 45.0) / 0.52, rel=0.01)
     assert deviation["e"] is None, "there was no impact"
-    assert diagnosis.errors_of(numbers, SPLIT) == pytest.approx(
+    assert diagnosis.frequency_errors(numbers, SPLIT) == pytest.approx(
         {"f1": 41.0 / 45.0 - 1.0, "f2": 52.0 / 45.0 - 1.0}, abs=1e-3
     )
     beam = dataclasses.replace(SPLIT, size=0.5)
-    assert diagnosis.errors_of(numbers, beam) == {}, "finite elements have no f1 and f2"
+    assert diagnosis.frequency_errors(numbers, beam) == {}, "finite elements have no f1 and f2"
 
 
 def test_what_the_detector_cannot_take_is_refused():
@@ -251,9 +258,9 @@ def test_what_the_detector_cannot_take_is_refused():
     case = recipe.Case(record, orchestrate.Structure.from_file("beam"), SPLIT)
     answer = diagnosis.run_detector(case)
     assert answer.verdict == diagnosis.REFUSED and answer.message
-    assert wrong_in(answer.verdict, SPLIT, answer.message) == f"refused: {answer.message}"
+    assert verdict_problem(answer.verdict, SPLIT, answer.message) == f"refused: {answer.message}"
     noise = dataclasses.replace(SPLIT, setup=Setup(4.0, 0.02, 1, "random"))
-    assert wrong_in(answer.verdict, noise, answer.message) == ""
+    assert verdict_problem(answer.verdict, noise, answer.message) == ""
 
 
 def test_a_detector_that_fails_is_a_finding(monkeypatch):
@@ -264,4 +271,4 @@ def test_a_detector_that_fails_is_a_finding(monkeypatch):
     answer = diagnosis.run_detector(recipe.Case(xr.Dataset(), orchestrate.Structure(), SPLIT))
     assert answer.verdict == diagnosis.FAILED
     expected = "failed: LinAlgError: SVD did not converge"
-    assert wrong_in(answer.verdict, SOUND, answer.message) == expected
+    assert verdict_problem(answer.verdict, SOUND, answer.message) == expected

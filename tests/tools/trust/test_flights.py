@@ -10,7 +10,7 @@ import pytest
 
 from orchestrate.access import OSCILLATOR, find
 from tools.trust import flights, programs
-from tools.trust.flights import Energy, Impacts, Roots
+from tools.trust.flights import EnergyCampaign, ImpactCampaign, RootCampaign
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="programs for Linux")
 
@@ -21,39 +21,39 @@ def fmu(exported):
 
 
 def test_no_root_is_missed_and_none_made_up(fmu):
-    found = Roots().run(fmu, 1, 20_000)
+    found = RootCampaign().run(fmu, 1, 20_000)
     assert found.done >= 20_000 and found.findings == 0, found.notes
     assert len(found.counts) == 8 and min(found.counts.values()) > 200
 
 
 def test_impacts_balance(fmu):
-    found = Energy().run(fmu, 1, 20_000)
+    found = EnergyCampaign().run(fmu, 1, 20_000)
     assert found.done >= 20_000 and found.findings == 0, found.notes
     assert 1e-17 < found.worst < 1e-12
 
 
 def test_impacts_agree_with_50_digits(fmu):
-    found = Impacts().run(fmu, 1, 60)
+    found = ImpactCampaign().run(fmu, 1, 60)
     assert found.done == 60 and found.findings == 0, found.notes
     assert 1e-4 < found.worst <= 1.0
 
 
 def test_what_is_wrong_is_found(fmu):
     """A structure, a restitution and an end that differ by a billionth from the FMU's."""
-    lines = programs.run(fmu, "roots", 1, 2000, "wrong").splitlines()
+    lines = programs.run_program(fmu, "roots", 1, 2000, "wrong").splitlines()
     wrong = [sum(map(int, line.split()[1:3])) for line in lines if not line.startswith("FLIGHT")]
     assert sum(wrong) > 500
     assert all(number > 20 for number in wrong[:6]), wrong
-    numbers = programs.run(fmu, "energy", 1, 2000, "wrong").split()
+    numbers = programs.run_program(fmu, "energy", 1, 2000, "wrong").split()
     assert float(numbers[4]) > 1e-11
-    flight = next(flight for flight in flights.flights(fmu, 1, 50) if flight.impact)
+    flight = next(flight for flight in flights.iterate_flights(fmu, 1, 50) if flight.impact)
     later = dataclasses.replace(flight, end=flight.end * (1.0 + 1e-9))
     assert flights.deviation(flight) <= 1.0 < flights.deviation(later)
 
 
 def test_half_of_the_flights_have_a_gap_or_a_preload(fmu):
     """Of each kind, to either side, over six decades or more."""
-    lines = programs.run(fmu, "roots", 3, 3000, "show").splitlines()
+    lines = programs.run_program(fmu, "roots", 3, 3000, "show").splitlines()
     flown = [flights.Flight.read(line) for line in lines if line.startswith("FLIGHT")]
     clearances = np.array([flight.values["clearance"] for flight in flown])
     assert 0.4 < np.mean(clearances != 0.0) < 0.6
@@ -66,6 +66,10 @@ def test_half_of_the_flights_have_a_gap_or_a_preload(fmu):
 
 @pytest.mark.slow
 def test_middle_forms(fmu):
-    for campaign, count in ((Roots(), 2_000_000), (Energy(), 5_000_000), (Impacts(), 3000)):
+    for campaign, count in (
+        (RootCampaign(), 2_000_000),
+        (EnergyCampaign(), 5_000_000),
+        (ImpactCampaign(), 3000),
+    ):
         found = campaign.run(fmu, 2, count)
         assert found.done >= count and found.findings == 0, found.notes

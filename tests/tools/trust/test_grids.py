@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from fmu_src.kernels.oscillator import memory as at
-from tools.trust.parameter_sets import KINDS, draw
+from tools.trust.parameter_sets import KINDS, draw_parameter_set
 
 from . import grids
 
@@ -24,7 +24,7 @@ def complaints(entries, seed, first, stop):
     """Of sets by number, by those that have one."""
     found = {}
     for number in range(first, stop):
-        chosen = draw(seed, number)
+        chosen = draw_parameter_set(seed, number)
         runs = [grids.run(entries, chosen, points) for points in chosen.grids()]
         if text := grids.complaint(runs):
             found[number, chosen.kind] = text
@@ -53,7 +53,7 @@ def test_twenty_thousand_sets(entries):
 
 
 def test_what_is_wrong_is_said(entries):
-    chosen = draw(1, 7)
+    chosen = draw_parameter_set(1, 7)
     whole, *others = [grids.run(entries, chosen, points) for points in chosen.grids()]
     assert grids.complaint([whole, *others]) == ""
     changed = {

@@ -9,9 +9,9 @@ import shutil
 import pytest
 
 from tools.trust import __main__ as ledger
-from tools.trust import ledger_page, records
-from tools.trust.campaign import Campaign, Outcome
-from tools.trust.job import batch_seed, sources
+from tools.trust import ledger_file, ledger_page
+from tools.trust.campaign import BatchOutcome, Campaign
+from tools.trust.job import batch_seed, sources_digest
 from tools.trust.registry import CAMPAIGNS
 
 
@@ -24,7 +24,7 @@ class Count(Campaign):
 
     def run(self, fmu, seed, count):
         self.begun.append(count)
-        return Outcome(count, count // 7, float(count % 7), {"calls:": 1}, ("a seventh",))
+        return BatchOutcome(count, count // 7, float(count % 7), {"calls:": 1}, ("a seventh",))
 
 
 @pytest.fixture
@@ -34,41 +34,41 @@ def counting(monkeypatch, exported):
 
 
 def test_page_and_records_belong_together():
-    assert ledger_page.PAGE.read_text("utf-8") == ledger_page.text(records.read())
+    assert ledger_page.PAGE.read_text("utf-8") == ledger_page.page_text(ledger_file.read_entries())
 
 
 def test_every_record_is_of_a_campaign_and_no_run_is_there_twice():
-    found = records.read()
+    found = ledger_file.read_entries()
     assert {record.campaign for record in found} <= set(CAMPAIGNS)
     assert not any(one.is_copy(other) for i, one in enumerate(found) for other in found[:i])
     assert all(record.done > 0 and record.seconds > 0.0 for record in found)
 
 
 def test_a_run_is_recorded_once_and_goes_on_where_it_was(counting, tmp_path, monkeypatch):
-    monkeypatch.setattr(records, "RECORDS", tmp_path / "trust.jsonl")
-    first = ledger.run(Count(), 3, 25, tmp_path, jobs=1, progress=False)
+    monkeypatch.setattr(ledger_file, "LEDGER", tmp_path / "trust.jsonl")
+    first = ledger.run_campaign(Count(), 3, 25, tmp_path, jobs=1, progress=False)
     assert (first.done, first.findings, first.worst, first.counts) == (25, 2, 5.0, {"calls:": 3})
     assert first.notes == ["a seventh"] * 3 and Count.begun == [10, 10, 5]
-    again = ledger.run(Count(), 3, 25, tmp_path, jobs=1, progress=False)
+    again = ledger.run_campaign(Count(), 3, 25, tmp_path, jobs=1, progress=False)
     assert len(Count.begun) == 3, "it was computed again"
     place = tmp_path / "trust.jsonl"
-    assert records.append(first, place) and not records.append(again, place)
+    assert ledger_file.append_entry(first, place) and not ledger_file.append_entry(again, place)
     assert len(place.read_text().splitlines()) == 1
-    assert records.read(place) == [first]
+    assert ledger_file.read_entries(place) == [first]
     assert "home" not in place.read_text() and json.loads(place.read_text())["fmu"]
 
 
 def test_every_run_has_its_line_and_what_it_found_counts(counting, tmp_path):
     """The same command found nothing at first; a later run of it does."""
     place = tmp_path / "trust.jsonl"
-    later = ledger.run(Count(), 3, 25, tmp_path, jobs=1, progress=False)
+    later = ledger.run_campaign(Count(), 3, 25, tmp_path, jobs=1, progress=False)
     first = dataclasses.replace(later, findings=0, notes=[], seconds=0.5)
     shorter = dataclasses.replace(later, budget=10, done=10, findings=3, notes=["a third"])
     for record in (first, later, shorter):
-        assert records.append(record, place)
-    found = records.read(place)
+        assert ledger_file.append_entry(record, place)
+    found = ledger_file.read_entries(place)
     assert found == [first, later, shorter]
-    text = ledger_page.text(found)
+    text = ledger_page.page_text(found)
     assert "25 numbers of 100 wanted; 3 findings." in text
     assert "| 100 numbers | 25 | 3 |" in text
     assert text.count("- a seventh") == 1 and "- a third" in text
@@ -78,25 +78,25 @@ def test_every_run_has_its_line_and_what_it_found_counts(counting, tmp_path):
 @pytest.mark.parametrize("name", ["weak_drive/compiled.c", "explorer/page/app.js", "errors.py"])
 def test_what_was_attacked_is_known_by_all_of_its_sources(tmp_path, name):
     folder = tmp_path / "orchestrate"
-    shutil.copytree(records.PACKAGE, folder, ignore=shutil.ignore_patterns("__pycache__"))
-    before = records.digest(folder)
-    assert before == records.digest(records.PACKAGE)
+    shutil.copytree(ledger_file.PACKAGE, folder, ignore=shutil.ignore_patterns("__pycache__"))
+    before = ledger_file.digest(folder)
+    assert before == ledger_file.digest(ledger_file.PACKAGE)
     (folder / name).write_text((folder / name).read_text() + "\n")
-    changed = records.digest(folder)
+    changed = ledger_file.digest(folder)
     (folder / name).rename(folder / f"other{(folder / name).suffix}")
-    assert len({before, changed, records.digest(folder)}) == 3
+    assert len({before, changed, ledger_file.digest(folder)}) == 3
 
 
 def test_a_record_says_by_which_campaigns(counting, tmp_path):
-    record = ledger.run(Count(), 3, 25, tmp_path, jobs=1, progress=False)
-    assert record.campaigns == sources()
+    record = ledger.run_campaign(Count(), 3, 25, tmp_path, jobs=1, progress=False)
+    assert record.campaigns == sources_digest()
     other = dataclasses.replace(record, campaigns="another")
-    assert ledger_page.together([record, other], Count()) == [record, other]
+    assert ledger_page.latest_longest([record, other], Count()) == [record, other]
 
 
 def test_the_page_says_what_is_missing(counting, tmp_path):
-    record = ledger.run(Count(), 3, 25, tmp_path, jobs=1, progress=False)
-    text = ledger_page.text([record])
+    record = ledger.run_campaign(Count(), 3, 25, tmp_path, jobs=1, progress=False)
+    text = ledger_page.page_text([record])
     assert "25 numbers of 100 wanted; 2 findings." in text
     assert "What is missing would take" in text
     assert "Worst remainder: 5, in batch" in text
@@ -105,12 +105,12 @@ def test_the_page_says_what_is_missing(counting, tmp_path):
 
 def test_no_batch_counts_twice(counting, tmp_path):
     few, many, other = (
-        ledger.run(Count(), seed, budget, tmp_path, jobs=1, progress=False)
+        ledger.run_campaign(Count(), seed, budget, tmp_path, jobs=1, progress=False)
         for seed, budget in ((3, 10), (3, 25), (4, 10))
     )
-    assert ledger_page.together([few, many, other], Count()) == [many, other]
+    assert ledger_page.latest_longest([few, many, other], Count()) == [many, other]
     before = dataclasses.replace(many, fmu="{another}")
-    assert ledger_page.together([before, few, other], Count()) == [few, other]
+    assert ledger_page.latest_longest([before, few, other], Count()) == [few, other]
 
 
 def test_seeds_of_batches_have_nothing_in_common():

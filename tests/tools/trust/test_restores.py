@@ -8,7 +8,7 @@ import pytest
 
 from orchestrate.access import OSCILLATOR, Instance, find
 from tools.trust import restores
-from tools.trust.restores import CUBIC, Restores
+from tools.trust.restores import CUBIC, RestoreCampaign
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes of Linux")
 RESTORE = Instance.restore_state
@@ -20,19 +20,19 @@ def fmu(exported):
 
 
 def test_a_few_restored_states(fmu):
-    found = Restores().run(fmu, 3, 1200)
+    found = RestoreCampaign().run(fmu, 3, 1200)
     assert found.done >= 1200 and found.findings == 0, found.notes
     assert all(found.counts.values())
 
 
 @pytest.mark.slow
 def test_many_restored_states(fmu):
-    found = Restores().run(fmu, 4, 60_000)
+    found = RestoreCampaign().run(fmu, 4, 60_000)
     assert found.done >= 60_000 and found.findings == 0, found.notes
 
 
 def test_the_same_seed_is_the_same_course():
-    assert restores.drawn_course(5, 7) == restores.drawn_course(5, 7) != restores.drawn_course(5, 8)
+    assert restores.draw_course(5, 7) == restores.draw_course(5, 7) != restores.draw_course(5, 8)
 
 
 def forget_all(instance, data):
@@ -49,5 +49,5 @@ def forget_when_inputs_were_set(instance, data):
 @pytest.mark.parametrize("fault", [forget_all, forget_when_inputs_were_set])
 def test_a_state_that_lacks_something_is_found(fmu, monkeypatch, fault):
     monkeypatch.setattr(Instance, "restore_state", fault)
-    found = Restores().run(fmu, 3, 100)
+    found = RestoreCampaign().run(fmu, 3, 100)
     assert found.findings > 0 and found.notes

@@ -1,4 +1,4 @@
-"""Windows and limits read off a sweep: runs of frequencies with responses of one kind."""
+"""Find windows and their peaks in a sweep: runs of frequencies with one kind of response."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ def runs(flags: np.ndarray) -> list[tuple[int, int]]:
     ]
 
 
-def longest(flags: np.ndarray) -> tuple[int, int] | None:
-    """Return first and last index of the longest run of true flags; None if all are false."""
+def longest_run(flags: np.ndarray) -> tuple[int, int] | None:
+    """Return first and last index of the longest run of true values; None without any."""
     return max(runs(flags), key=lambda run: run[1] - run[0], default=None)
 
 
-def simple(sweep: xr.Dataset, n: int) -> np.ndarray:
-    """Return where responses have the period nT and one impact in it."""
+def has_one_impact(sweep: xr.Dataset, n: int) -> np.ndarray:
+    """Return a Boolean array: responses with period nT and one impact in it."""
     slack = 1.5 / sweep.sizes["sample"]  # of a count over a span that is no multiple of the period
     one = np.abs(sweep.impacts_per_period.values - 1.0 / n) <= slack
     return (sweep.multiplicity.values == n) & one
 
 
 def window(sweep: xr.Dataset, n: int) -> tuple[float, float] | None:
-    """Return the first and last eta of the longest window nT with one impact; None without one."""
-    run = longest(simple(sweep, n))
+    """Return first and last eta of the longest window nT with one impact; None without one."""
+    run = longest_run(has_one_impact(sweep, n))
     etas = sweep.eta.values
     return None if run is None else (float(etas[run[0]]), float(etas[run[1]]))
 
@@ -40,10 +40,10 @@ def relative_peak(sweep: xr.Dataset, n: int) -> float | None:
     if limits is None:
         return None
     part = sweep.sel(eta=slice(*limits))
-    return summit(part.eta.values, part.xi_rel_max.values)
+    return local_maximum(part.eta.values, part.xi_rel_max.values)
 
 
-def summit(etas: np.ndarray, gaps: np.ndarray) -> float | None:
-    """Return the eta of the gap's largest local maximum that is not at an end; None without one."""
+def local_maximum(etas: np.ndarray, gaps: np.ndarray) -> float | None:
+    """Return the eta of the gap's largest inner local maximum; None without one."""
     inside = np.flatnonzero((gaps[1:-1] > gaps[:-2]) & (gaps[1:-1] >= gaps[2:])) + 1
     return float(etas[inside[np.argmax(gaps[inside])]]) if len(inside) else None

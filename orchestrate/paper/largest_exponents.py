@@ -1,4 +1,4 @@
-"""The largest exponent of each region, followed again: long, from another start, in parts.
+"""Job: each region's largest Lyapunov exponent, repeated by a long run of its own.
 
 The largest of many estimates is chosen for its error too: its own standard error does not know of
 that. So the sweep's exponents only say where to look. What is quoted is a run of its own.
@@ -30,7 +30,7 @@ from ..response.labels import flags, variable
 from ..response.questions import Point
 from ..running.job import Inputs, Job, Table
 from ..structures import Excitation, Structure
-from .regions import COUNT, regions
+from .regions import COUNT, list_regions
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -47,7 +47,7 @@ NUMBERS = {
 
 
 class Candidate(NamedTuple):
-    """A response that may have the largest exponent of its region.
+    """A response that may have its region's largest Lyapunov exponent: point, start, exponent.
 
     Attributes
     ----------
@@ -63,16 +63,16 @@ class Candidate(NamedTuple):
     screened: float
 
 
-class Searched(NamedTuple):
-    """A region with its candidates, the largest exponent first."""
+class RegionCandidates(NamedTuple):
+    """A region's number and its candidates, the largest exponent first."""
 
     number: int
     candidates: Sequence[Candidate]
 
 
 @dataclass(frozen=True, kw_only=True)
-class LargestJob(Job):
-    """Largest exponents of the regions of one case, by runs of their own.
+class LargestExponentJob(Job):
+    """Job: long runs of each region's candidates until one has a steady exponent.
 
     Attributes
     ----------
@@ -104,54 +104,54 @@ class LargestJob(Job):
     seed: int = 23
 
     def needs(self) -> tuple[str, ...]:
-        """Return the names of the three jobs whose results are needed."""
+        """Return the names of the jobs whose results it needs."""
         return self.exponents, self.settled, self.limits
 
     def count(self) -> int:
         """Return the number of regions."""
         return COUNT
 
-    def items(self, inputs: Inputs) -> Sequence[Searched]:
-        """Return the regions, each with the start candidates; a region may have none."""
+    def items(self, inputs: Inputs) -> Sequence[RegionCandidates]:
+        """Return the regions with their candidates; a region may have none."""
         exponents = inputs[self.exponents].sortby("eta")
         ends = inputs[self.settled].sortby("eta").end_state
         searched = []
-        for number, region in enumerate(regions(inputs[self.limits], self.case)):
+        for number, region in enumerate(list_regions(inputs[self.limits], self.case)):
             part = exponents.exponent.sel(eta=slice(region.low, region.high))
             order = np.argsort(-part.values, kind="stable")[: self.candidates]
             rows = part.isel(eta=order)
             candidates = [
-                self.candidate(eta, ends.sel(eta=eta, method="nearest").values, value)
+                self.make_candidate(eta, ends.sel(eta=eta, method="nearest").values, value)
                 for eta, value in zip(rows.eta.values.tolist(), rows.values.tolist(), strict=True)
             ]
-            searched.append(Searched(number, candidates))
+            searched.append(RegionCandidates(number, candidates))
         return searched
 
-    def candidate(self, eta: float, end: np.ndarray, screened: float) -> Candidate:
-        """Return a candidate from a non-dimensional state on its response."""
+    def make_candidate(self, eta: float, end: np.ndarray, screened: float) -> Candidate:
+        """Return a candidate at eta from a non-dimensional end state and its exponent."""
         point = Point(self.structure, Excitation.nondimensional(eta, self.structure))
         return Candidate(point, tuple((end * point.scale).tolist()), screened)
 
     def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Searched], previous: Table | None
+        self, fmus: Mapping[str, Path], items: Sequence[RegionCandidates], previous: Table | None
     ) -> Table:
-        """Compute one region: its candidates in turn, until one is steady."""
+        """Run one region's candidates in turn until one is steady; return a row for each."""
         ((number, candidates),) = items
         rows = np.full((self.candidates, len(NUMBERS)), np.nan)
         rows[:, -1] = NOT_RUN
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            for place, (point, start, screened) in enumerate(candidates):
-                other = perturbed_start(point, start, [self.seed, number, place])
+            for index, (point, start, screened) in enumerate(candidates):
+                other = perturbed_start(point, start, [self.seed, number, index])
                 run = run_until_steady(instance, point, other, self.periods, self.parts, self.runs)
                 eta = point.excitation.eta(point.structure)
-                outcome = self.judged(run, screened, eta)
-                rows[place] = [eta, screened, *run.exponent, outcome]
+                outcome = self.classify_run(run, screened, eta)
+                rows[index] = [eta, screened, *run.exponent, outcome]
                 if outcome == STEADY:
                     break
         return {"rows": rows[np.newaxis]}
 
-    def judged(self, run: LongRun, screened: float, eta: float) -> int:
-        """Return the outcome of a run: ``LOST`` where less than half of the growth is left.
+    def classify_run(self, run: LongRun, screened: float, eta: float) -> int:
+        """Return a long run's outcome: ``LOST`` if less than half of the growth is left.
 
         Chaos may have ended before the first part that counts, or the other start may lead to
         another attractor.
@@ -160,7 +160,7 @@ class LargestJob(Job):
         return LOST if run.outcome == STEADY and screened > 0.0 and lost else run.outcome
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return the results over region and candidate."""
+        """Return the runs as a dataset over region and candidate."""
         import xarray as xr
 
         dims = "region", "candidate"
@@ -171,7 +171,7 @@ class LargestJob(Job):
             else variable(dims, column, "1", text)
             for (name, text), column in zip(NUMBERS.items(), columns, strict=True)
         }
-        named = regions(inputs[self.limits], self.case)
+        named = list_regions(inputs[self.limits], self.case)
         variables["low"] = variable("region", [one.low for one in named], "1", "where it begins")
         variables["high"] = variable("region", [one.high for one in named], "1", "where it ends")
         text = "orbit of the window, or those of the windows around it"
@@ -180,8 +180,8 @@ class LargestJob(Job):
         return xr.Dataset(variables, coordinates, {"title": title})
 
 
-class Largest(NamedTuple):
-    """The largest exponent of a region, and what was tried for it.
+class LargestExponent(NamedTuple):
+    """A region's largest exponent with error and frequency, and notes on other candidates.
 
     Attributes
     ----------
@@ -197,7 +197,7 @@ class Largest(NamedTuple):
     others: tuple[str, ...]
 
     def text(self) -> str:
-        """Return the exponent as it is printed; what was not steady is in brackets."""
+        """Return the exponent as text; notes on candidates that were not steady in brackets."""
         if np.isnan(self.exponent):
             value = "undecided"
         else:
@@ -205,13 +205,13 @@ class Largest(NamedTuple):
         return f"{value} ({'; '.join(self.others)})" if self.others else value
 
 
-def largest_of(data: xr.Dataset, region: str) -> Largest:
-    """Return the largest exponent of a region, of those that were decided.
+def largest_exponent(data: xr.Dataset, region: str) -> LargestExponent:
+    """Return a region's largest exponent among its candidates that were decided.
 
     Parameters
     ----------
     data : xarray.Dataset
-        Of :class:`LargestJob`.
+        Of :class:`LargestExponentJob`.
     region : str
         Its name.
     """
@@ -230,7 +230,7 @@ def largest_of(data: xr.Dataset, region: str) -> Largest:
             others.append(f"{head} is undecided: the parts of its long run do not agree")
     sure = tried.isel(candidate=tried.outcome.values != UNDECIDED)
     if not sure.sizes["candidate"]:
-        return Largest(np.nan, np.nan, np.nan, tuple(others))
+        return LargestExponent(np.nan, np.nan, np.nan, tuple(others))
     best = sure.isel(candidate=int(sure.exponent.values.argmax()))
     numbers = float(best.exponent), float(best.standard_error), float(best.eta)
-    return Largest(*numbers, tuple(others))
+    return LargestExponent(*numbers, tuple(others))

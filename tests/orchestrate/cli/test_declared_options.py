@@ -12,8 +12,8 @@ import pytest
 import orchestrate
 from orchestrate import cli
 from orchestrate.cli import grammar
-from orchestrate.cli.declared import described, option_of
-from orchestrate.cli.options import excitation_by_level, excitation_of
+from orchestrate.cli.declared_options import argument_documentation, option_keywords
+from orchestrate.cli.options import excitation_by_level, read_excitation
 from orchestrate.errors import InputError
 
 from .commands import ROOT
@@ -89,11 +89,13 @@ def test_without_docstrings_options_are_the_same(tmp_path):
 
 
 def test_a_meaning_that_is_told_elsewhere_is_followed():
-    assert described(orchestrate.basin, "settle") == described(orchestrate.attractors, "settle")
-    assert described(orchestrate.lyapunov, "eta")[1].startswith("Frequency ratio")
+    assert argument_documentation(orchestrate.basin, "settle") == argument_documentation(
+        orchestrate.attractors, "settle"
+    )
+    assert argument_documentation(orchestrate.lyapunov, "eta")[1].startswith("Frequency ratio")
     with pytest.raises(LookupError, match="sweep"):
-        described(orchestrate.sweep, "nothing")
-    details = option_of(orchestrate.resonance, "direction")
+        argument_documentation(orchestrate.sweep, "nothing")
+    details = option_keywords(orchestrate.resonance, "direction")
     assert details["choices"] == ["up", "down", "both"] and details["default"] == "both"
 
 
@@ -113,18 +115,18 @@ def test_every_number_is_read_by_the_grammar():
 @pytest.mark.parametrize(
     "reader, text, value",
     [
-        (grammar.number_of, "0.5", 0.5),
-        (grammar.ends_of, "1.2:1.65", (1.2, 1.65)),
-        (grammar.number_or_ends, "1.5", (1.5,)),
-        (grammar.number_or_ends, "2:1", (2.0, 1.0)),
-        (grammar.rates_of, "1e-4,5e-5", (1e-4, 5e-5)),
-        (grammar.orders_of, "3", 3.0),
-        (grammar.orders_of, "0.5,1", (0.5, 1.0)),
-        (grammar.state_of, "0,0.5,-1,0", (0.0, 0.5, -1.0, 0.0)),
-        (grammar.side_of, "x_rel, 0,0.8,60", ("x_rel", 0.0, 0.8, 60)),
-        (grammar.breakpoints_of, "10:0.5,200:1", ((10.0, 0.5), (200.0, 1.0))),
-        (grammar.one_or_more, "1", 1.0),
-        (grammar.one_or_more, "1:2:0.5", (1.0, 1.5, 2.0)),
+        (grammar.positive_number, "0.5", 0.5),
+        (grammar.parse_ends, "1.2:1.65", (1.2, 1.65)),
+        (grammar.parse_number_or_ends, "1.5", (1.5,)),
+        (grammar.parse_number_or_ends, "2:1", (2.0, 1.0)),
+        (grammar.parse_rates, "1e-4,5e-5", (1e-4, 5e-5)),
+        (grammar.parse_orders, "3", 3.0),
+        (grammar.parse_orders, "0.5,1", (0.5, 1.0)),
+        (grammar.parse_state, "0,0.5,-1,0", (0.0, 0.5, -1.0, 0.0)),
+        (grammar.parse_plane_side, "x_rel, 0,0.8,60", ("x_rel", 0.0, 0.8, 60)),
+        (grammar.parse_breakpoints, "10:0.5,200:1", ((10.0, 0.5), (200.0, 1.0))),
+        (grammar.parse_one_or_more, "1", 1.0),
+        (grammar.parse_one_or_more, "1:2:0.5", (1.0, 1.5, 2.0)),
     ],
 )
 def test_texts_of_options(reader, text, value):
@@ -144,11 +146,11 @@ def test_levels_of_the_box_are_a_number_or_several():
     beam = orchestrate.Structure.from_file("beam")
     asked = excitation_by_level(motion(hz="12", g="0.1:2:0.05"), beam)
     assert isinstance(asked["frequency"], float) and len(asked["level"]) == 39
-    single = excitation_of(motion(hz="12", g="0.1"), beam)
+    single = read_excitation(motion(hz="12", g="0.1"), beam)
     assert asked["level"][0] == pytest.approx(single["amplitude"] * single["frequency"] ** 2)
     with pytest.raises(InputError, match="--hz 12:14:1: 3 values; expected one"):
         excitation_by_level(motion(hz="12:14:1", g="0.1,0.2"), beam, one=True)
     with pytest.raises(InputError, match="--g 0.1,0.2: expected a number > 0"):
-        excitation_of(motion(hz="12", g="0.1,0.2"), beam)
+        read_excitation(motion(hz="12", g="0.1,0.2"), beam)
     with pytest.raises(InputError, match="--amplitude and --g"):
         excitation_by_level(motion(hz="12", g="0.1", amplitude="1"), beam)

@@ -1,4 +1,4 @@
-"""Responses of a sweep run on until a repeated state decides what they are, or 100,000 periods do.
+"""Job: sweep responses run on until they repeat, for at most 100,000 periods.
 
 After the paper's 500 periods a transient may look like an attractor: chaos that dies out, a
 deviation from an unstable orbit that has not grown yet.
@@ -33,7 +33,7 @@ FIELDS = {
 
 @dataclass(frozen=True, kw_only=True)
 class SettledJob(StartStatesQuestion):
-    """What a sweep's responses settle to.
+    """Job: what a sweep's responses settle to.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class SettledJob(StartStatesQuestion):
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[FollowedResponse], previous: Table | None
     ) -> Table:
-        """Compute some responses."""
+        """Run some of a sweep's responses until they repeat; return features and end states."""
         rows, ends, contacts = [], [], []
         with Instance(fmus[OSCILLATOR]) as instance:
             for item in items:
@@ -62,7 +62,7 @@ class SettledJob(StartStatesQuestion):
         return {"rows": np.array(rows), "end": np.array(ends), "contact": np.array(contacts)}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return the settled responses over the parameter: features, contact and end state."""
+        """Return the settled responses over the parameter: features, contact, end state."""
         import xarray as xr
 
         along = self.series.name

@@ -1,4 +1,4 @@
-"""What a sweep gives to the page: where each response begins, so that a click replays it."""
+"""Read a sweep for the page: frequencies, settings and each response's start state."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ PAPER = (0.1, 8.0)  # frequency ratios of Figure 6
 
 
 @dataclass(frozen=True)
-class Shipped:
-    """A sweep as the page needs it.
+class SweepData:
+    """A sweep as the page needs it: settings, range, and start states in one array.
 
     Attributes
     ----------
@@ -62,16 +62,16 @@ class Shipped:
     source: str
 
 
-def nothing(structure: Structure, units: Units) -> Shipped:
-    """No sweep: the page computes its first diagram itself, over the paper's frequency ratios."""
+def empty_sweep(structure: Structure, units: Units) -> SweepData:
+    """Return data without a sweep: the page then computes its first diagram itself."""
     settings = {"transient": 500, "samples": 200, "tolerance": 1e-2}
-    by_ratio = units.frequency == "eta" if units.frequency else is_scaled(structure)
+    by_ratio = units.frequency == "eta" if units.frequency else is_nondimensional(structure)
     level = ("paper", 1.0) if by_ratio else ("g", 1.0)
-    return Shipped(structure, ("up",), settings, np.empty(0), 0, *PAPER, level, "")
+    return SweepData(structure, ("up",), settings, np.empty(0), 0, *PAPER, level, "")
 
 
-def shipped(data: xr.Dataset) -> Shipped:
-    """Return what the page needs of a sweep; raise if it cannot show that sweep.
+def read_sweep(data: xr.Dataset) -> SweepData:
+    """Return a sweep dataset as ``SweepData``; raise if the page cannot show it.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def shipped(data: xr.Dataset) -> Shipped:
         Where it is something else.
     """
     try:
-        return read(data, check(data))
+        return read_checked(data, check_sweep(data))
     except InputError:
         raise
     except READING as error:
@@ -93,38 +93,38 @@ def shipped(data: xr.Dataset) -> Shipped:
         ) from None
 
 
-def read(data: xr.Dataset, direction: str) -> Shipped:
-    """Return what the page needs of a dataset that seems to be a sweep."""
+def read_checked(data: xr.Dataset, direction: str) -> SweepData:
+    """Return a sweep dataset of a direction as ``SweepData``, after :func:`check_sweep`."""
     structure = Structure.from_attributes({str(name): value for name, value in data.attrs.items()})
     directions = ("up", "down") if direction == "both" else (direction,)
     (parameter,) = map(str, set(data.impacts_per_period.dims) - {"direction"})
     data = data.sortby(parameter)
-    scale = scales(data, structure)
+    scale = state_scales(data, structure)
     rows = [np.stack([data[name].values for name in ("eta", "frequency", "amplitude")])]
-    for way in directions:
-        lane = data.sel(direction=way) if "direction" in data.dims else data
-        ends = lane.end_state.transpose(parameter, "coordinate").values * scale
-        rows.append(starts(ends, numbers_of(data.attrs["start"]), way))
+    for one_way in directions:
+        part = data.sel(direction=one_way) if "direction" in data.dims else data
+        ends = part.end_state.transpose(parameter, "coordinate").values * scale
+        rows.append(start_states(ends, parse_state(data.attrs["start"]), one_way))
     if any(row.dtype.kind != "f" for row in rows):
         raise TypeError("texts among the numbers")
     numbers = np.concatenate([row.ravel() for row in rows])
     if not np.isfinite(numbers).all() or not float(data.eta.min()) > 0.0:
         raise ValueError("numbers that are not finite, or a frequency ratio that is not above 0")
-    return Shipped(
+    return SweepData(
         structure=structure,
         directions=directions,
-        settings=settings_of(data),
+        settings=sweep_settings(data),
         numbers=numbers,
         count=data.sizes[parameter],
         low=float(data.eta.min()),
         high=float(data.eta.max()),
-        level=level_of(data, structure),
+        level=excitation_level(data, structure),
         source=f"{data.attrs['source']}, {data.attrs['fmu_model']} {data.attrs['fmu_guid']}",
     )
 
 
 def check_units(units: Units, level: tuple[str, float] | None = None) -> None:
-    """Check that a page shows numbers in some units: it has the paper's, or Hz, mm, g and s.
+    """Raise unless the page can show these units: eta, or some of Hz, mm, g and s.
 
     Parameters
     ----------
@@ -150,34 +150,34 @@ def check_units(units: Units, level: tuple[str, float] | None = None) -> None:
         )
 
 
-def is_scaled(structure: Structure) -> bool:
-    """Return whether a structure is the paper's, whose omega is 1 rad/s."""
+def is_nondimensional(structure: Structure) -> bool:
+    """Return whether a structure's omega is 1 rad/s, as the paper's."""
     return math.isclose(structure.omega, 1.0)
 
 
-def level_of(data: xr.Dataset, structure: Structure) -> tuple[str, float]:
-    """Return the unit of the box's motion ("paper", "mm" or "g"), and its size in that unit."""
+def excitation_level(data: xr.Dataset, structure: Structure) -> tuple[str, float]:
+    """Return the unit of the box's motion ("paper", "mm" or "g"), and its size in it."""
     eta, frequency, amplitude = (data[name].values for name in ("eta", "frequency", "amplitude"))
-    if is_scaled(structure) and np.allclose(amplitude * eta**2, 1.0, rtol=1e-9):
+    if is_nondimensional(structure) and np.allclose(amplitude * eta**2, 1.0, rtol=1e-9):
         return "paper", 1.0
     if np.ptp(amplitude) == 0.0:
         return "mm", float(f"{1e3 * amplitude[0]:.12g}")
     return "g", float(f"{amplitude[0] * frequency[0] ** 2 / GRAVITY:.9g}")
 
 
-def settings_of(data: xr.Dataset) -> dict[str, float]:
-    """Return transient, samples and tolerance of a sweep; raise if they are senseless."""
-    found = {name: float(data.attrs[name]) for name in SETTINGS}
-    transient, samples, tolerance = found.values()
+def sweep_settings(data: xr.Dataset) -> dict[str, float]:
+    """Return transient, samples and tolerance of a sweep; raise if they are out of range."""
+    settings = {name: float(data.attrs[name]) for name in SETTINGS}
+    transient, samples, tolerance = settings.values()
     if not (transient.is_integer() and samples.is_integer() and transient >= 0 and samples >= 1):
         raise ValueError(f"transient = {transient}, samples = {samples}")
     if not (0.0 < tolerance < math.inf and transient + samples <= MOST_PERIODS):
         raise ValueError(f"tolerance = {tolerance}, {transient + samples} periods")
-    return found
+    return settings
 
 
-def check(data: xr.Dataset) -> str:
-    """Return the direction of a sweep that the page can show; raise if it can show none."""
+def check_sweep(data: xr.Dataset) -> str:
+    """Return the direction of a sweep; raise if the page cannot show the sweep."""
     needed = {"eta", "frequency", "amplitude", "impacts_per_period", "end_state"}
     missing = needed - {str(name) for name in data.variables}
     direction = str(data.attrs.get("direction"))
@@ -194,25 +194,25 @@ def check(data: xr.Dataset) -> str:
     return direction
 
 
-def numbers_of(text: Any) -> NDArray[np.float64]:
-    """Parse the numbers of an attribute, a text such as ``[0.0, 1.0]``."""
-    found = np.array([float(part) for part in str(text).strip("[]").split(",")])
-    if found.shape != (4,):
+def parse_state(text: Any) -> NDArray[np.float64]:
+    """Parse an attribute such as ``[0, 0, 0, 1]`` into four numbers."""
+    state = np.array([float(part) for part in str(text).strip("[]").split(",")])
+    if state.shape != (4,):
         raise ValueError(f"start = {text}")
-    return found
+    return state
 
 
-def scales(data: xr.Dataset, structure: Structure) -> NDArray[np.float64]:
-    """Return the units of the four co-ordinates of each state, shape (n, 4)."""
+def state_scales(data: xr.Dataset, structure: Structure) -> NDArray[np.float64]:
+    """Return the SI units of the non-dimensional states' coordinates, shape (n, 4)."""
     pairs = zip(data.frequency.values, data.amplitude.values, strict=True)
     lengths = np.array([Excitation(frequency=f, amplitude=a).length(structure) for f, a in pairs])
     return lengths[:, None] * np.array([1.0, 1.0, structure.omega, structure.omega])
 
 
-def starts(
+def start_states(
     ends: NDArray[np.float64], start: NDArray[np.float64], direction: str
 ) -> NDArray[np.float64]:
-    """Return where each response begins: at the end of the one before it, shape (n, 4)."""
+    """Return each response's start state, the end of the one before it, shape (n, 4)."""
     if direction == "up":
         return np.concatenate([start[None], ends[:-1]])
     return np.concatenate([ends[1:], start[None]])

@@ -1,4 +1,4 @@
-"""Shared parts of the commands of the weak drive: voltage, controller, both structures, files."""
+"""Options and steps that the commands of the weak drive share: voltage, controller, files."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from ..units import Units, with_readable_lengths, with_units
-from .grammar import ends_of, number_or_ends, plain_float, rates_of
+from .grammar import parse_ends, parse_number_or_ends, parse_rates, plain_float
 from .output import (
     FORMATS,
     PLOTS,
@@ -19,11 +19,11 @@ from .output import (
     check_output,
     digest,
     draw_picture,
-    endings_of,
+    parse_endings,
     print_units_note,
-    running_of,
+    read_running_options,
+    read_units,
     units_ending,
-    units_option,
 )
 
 if TYPE_CHECKING:
@@ -42,52 +42,52 @@ RATE = 1e-4  # of eta0, in a time 1/omega
 # -- options --------------------------------------------------------------------------------------
 
 
-def add_only(parser: argparse.ArgumentParser) -> None:
-    """Add ``--only``."""
+def add_only_option(parser: argparse.ArgumentParser) -> None:
+    """Add ``--only``: compute the bonded or the delaminated structure alone."""
     only = "one of both (default: both)"
     parser.add_argument("--only", choices=("bonded", "delaminated"), help=only)
 
 
-def add_ends(group: Any, form: str = "FIRST:LAST", usual: str = "") -> None:
-    """Add ``--eta0`` and ``--voltage``."""
+def add_voltage_options(group: Any, form: str = "FIRST:LAST", usual: str = "") -> None:
+    """Add ``--eta0`` and ``--voltage``: the ends of a ramp, or one voltage."""
     usual = usual or "about the jumps of the averaged theory"
     text = f"voltage as no-load speed over omega (default: {usual})"
     group.add_argument("--eta0", metavar=form, help=text)
     group.add_argument("--voltage", metavar=form, help="the same in V")
 
 
-def add_schedule(parser: argparse.ArgumentParser) -> None:
-    """Add the voltage over time: ramp, steps, constant, or from a file."""
+def add_schedule_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the voltage over time: ramp, steps, one value, or a CSV file."""
     group = parser.add_argument_group("voltage over time: a ramp, steps, one value, or a file")
     option = group.add_argument
-    add_ends(group, "FIRST:LAST or VALUE")
+    add_voltage_options(group, "FIRST:LAST or VALUE")
     option("--duration", type=plain_float, metavar="S", help="time of a single VALUE, in s")
     course = "CSV file with time in s and voltage in V, a row each: straight lines between, instead"
     option("--course", type=Path, metavar="FILE", help=course)
-    add_rate(group, "RATE", "")
+    add_rate_option(group, "RATE", "")
     option("--volt-rate", metavar="RATE", help="the same in V/s")
     steps = "change eta0 in steps of this height, at the same mean rate (default: a ramp)"
     option("--increment", type=plain_float, default=0.0, help=steps)
-    add_settle(group)
+    add_settle_option(group)
     option("--one-way", action="store_true", help="do not come back")
 
 
-def add_rate(group: Any, form: str, more: str, default: str = "") -> None:
-    """Add ``--rate``."""
+def add_rate_option(group: Any, form: str, more: str, default: str = "") -> None:
+    """Add ``--rate``: the change of eta0 in a time 1/omega."""
     usual = ", ".join(f"{rate:g} for {name}" for name, (_, rate) in USUAL.items())
     default = default or f"{usual}, else {RATE:g}"
     text = f"change of eta0 in a time 1/omega{more} (default: {default})"
     group.add_argument("--rate", metavar=form, help=text)
 
 
-def add_settle(group: Any) -> None:
-    """Add ``--settle``."""
+def add_settle_option(group: Any) -> None:
+    """Add ``--settle``: the time at the first voltage, in 1/omega."""
     text = "time at the first voltage, in 1/omega (default: %(default)s)"
     group.add_argument("--settle", type=plain_float, default=300.0, help=text)
 
 
-def add_step(group: Any) -> None:
-    """Add ``--step``."""
+def add_step_option(group: Any) -> None:
+    """Add ``--step``: the communication step, in 1/omega."""
     text = (
         "communication step, in 1/omega (default: controlled by its defect, at most 0.4; 0.1 where "
         "a controller or a picture takes samples)"
@@ -95,8 +95,8 @@ def add_step(group: Any) -> None:
     group.add_argument("--step", type=plain_float, help=text)
 
 
-def add_hold(group: Any) -> None:
-    """Add ``--hold``."""
+def add_hold_option(group: Any) -> None:
+    """Add ``--hold``: the longest time for which a test holds a voltage, in 1/omega."""
     text = (
         "longest time for which a voltage is held where the ramp's record does not tell a jump, in "
         "1/omega (default: 4000 and 200 times the rotor's own)"
@@ -104,8 +104,8 @@ def add_hold(group: Any) -> None:
     group.add_argument("--hold", type=plain_float, metavar="TIME", help=text)
 
 
-def add_control(parser: argparse.ArgumentParser) -> None:
-    """Add a controller that takes a part of the voltage."""
+def add_controller_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of a speed controller: PI control or the speed-gradient method."""
     title = "controller: starts from rest, takes a part of the voltage at every communication step"
     option = parser.add_argument_group(title).add_argument
     option(
@@ -125,36 +125,36 @@ def add_control(parser: argparse.ArgumentParser) -> None:
 # -- what they mean -------------------------------------------------------------------------------
 
 
-def states_of(arguments: argparse.Namespace, structure: Structure) -> dict[str, Structure]:
-    """Return both structures by name, or the one that is asked for."""
+def structures_by_name(arguments: argparse.Namespace, structure: Structure) -> dict[str, Structure]:
+    """Return a dict of the bonded and the delaminated structure, or of the one ``--only`` names."""
     both = {"bonded": structure.as_bonded(), "delaminated": structure.as_delaminated()}
     return {arguments.only: both[arguments.only]} if arguments.only else both
 
 
-def voltages_of(
+def parse_voltages(
     arguments: argparse.Namespace, structure: Structure, drive: Drive
 ) -> tuple[float, ...]:
-    """Return one voltage or the first and last one of a ramp, V; by default around the jumps."""
+    """Return one voltage or a ramp's first and last one, V; by default around the jumps."""
     if arguments.eta0 and arguments.voltage:
         raise InputError("--eta0 and --voltage: expected one of them")
     if arguments.voltage:
-        return number_or_ends("--voltage", arguments.voltage)
+        return parse_number_or_ends("--voltage", arguments.voltage)
     volts = drive.volts(structure)
     if arguments.eta0:
-        return tuple(volts * value for value in number_or_ends("--eta0", arguments.eta0))
+        return tuple(volts * value for value in parse_number_or_ends("--eta0", arguments.eta0))
     has_own_parameters = arguments.set or arguments.structure or arguments.rated_voltage is not None
     if arguments.drive in USUAL and not has_own_parameters:
-        first, last = ends_of("--eta0", USUAL[arguments.drive][0])
+        first, last = parse_ends("--eta0", USUAL[arguments.drive][0])
         return first * volts, last * volts
-    down, up = folds_of(arguments, structure, drive)
+    down, up = averaged_jump_voltages(arguments, structure, drive)
     return 0.88 * down, 1.06 * up
 
 
-def two_voltages(
+def parse_ramp_ends(
     arguments: argparse.Namespace, structure: Structure, drive: Drive
 ) -> tuple[float, float]:
     """Return the first and the last voltage of a ramp, V; raise if only one is given."""
-    voltages = voltages_of(arguments, structure, drive)
+    voltages = parse_voltages(arguments, structure, drive)
     if len(voltages) != 2:
         name = "voltage" if arguments.voltage else "eta0"
         text = getattr(arguments, name)
@@ -162,7 +162,7 @@ def two_voltages(
     return voltages
 
 
-def folds_of(
+def averaged_jump_voltages(
     arguments: argparse.Namespace, structure: Structure, drive: Drive
 ) -> tuple[float, float]:
     """Return the averaged theory's jump voltages, down then up, V; raise where it has no jumps."""
@@ -180,41 +180,41 @@ def folds_of(
     return folds[-1].eta0 * volts, folds[0].eta0 * volts
 
 
-def volt_rate(arguments: argparse.Namespace, structure: Structure, drive: Drive) -> float:
-    """Return the one rate of a ramp, V/s."""
+def ramp_rate(arguments: argparse.Namespace, structure: Structure, drive: Drive) -> float:
+    """Return a ramp's rate, V/s, from ``--rate`` or ``--volt-rate``."""
     if arguments.rate is not None and arguments.volt_rate is not None:
         raise InputError("--rate and --volt-rate: expected one of them")
     if arguments.volt_rate is not None:
-        return rates_of("--volt-rate", arguments.volt_rate, one=True)[0]
+        return parse_rates("--volt-rate", arguments.volt_rate, one=True)[0]
     unit = drive.volts(structure) * structure.omega
     if arguments.rate is None:
         return unit * USUAL.get(arguments.drive, ("", RATE))[1]
-    return unit * rates_of("--rate", arguments.rate, one=True)[0]
+    return unit * parse_rates("--rate", arguments.rate, one=True)[0]
 
 
-def times_of(
+def times_in_seconds(
     arguments: argparse.Namespace, structure: Structure, *names: str
 ) -> dict[str, float | None]:
-    """Return times of options in 1/omega, such as the communication step: s, or None."""
+    """Convert options in 1/omega, such as ``--step``, to s; return a dict, None where not given."""
     values = {name: getattr(arguments, name) for name in names}
     omega = structure.omega
     return {name: None if time is None else time / omega for name, time in values.items()}
 
 
-def schedule_from(
+def make_schedule(
     arguments: argparse.Namespace, structure: Structure, drive: Drive, control: Controller | None
 ) -> Schedule:
-    """Return the voltage over time that the options describe."""
+    """Return the voltage over time (a ``Schedule``) that the options describe."""
     from ..weak_drive.couple import schedule_of
     from ..weak_drive.schedule import Course
 
-    rate, omega = volt_rate(arguments, structure, drive), structure.omega
+    rate, omega = ramp_rate(arguments, structure, drive), structure.omega
     if arguments.course:
         others = [name for name in ("eta0", "voltage", "duration") if getattr(arguments, name)]
         if others:
             raise InputError(f"--course and --{others[0]}: expected one of them")
         return Course.from_csv(arguments.course)
-    ends = voltages_of(arguments, structure, drive)
+    ends = parse_voltages(arguments, structure, drive)
     if len(ends) == 1:
         if arguments.duration is None:
             raise InputError(f"one voltage, {ends[0]:g} V: expected --duration with it, in s")
@@ -233,7 +233,7 @@ def schedule_from(
     )
 
 
-def control_of(
+def make_controller(
     arguments: argparse.Namespace, structure: Structure, drive: Drive
 ) -> Controller | None:
     """Return the controller that the options describe; None if they ask for none."""
@@ -275,40 +275,38 @@ def without_none(values: Mapping[str, float | None]) -> dict[str, float]:
 
 
 def drive_units(arguments: argparse.Namespace) -> Units:
-    """Return the units of ``--units``; where a motor's speed is given in rpm, speeds are too."""
+    """Return the display units from ``--units``; rpm by default if the motor's speed is in rpm."""
     in_rpm = arguments.no_load_rpm is not None
-    return units_option(arguments).completed(Units("rpm" if in_rpm else ""))
+    return read_units(arguments).with_defaults(Units("rpm" if in_rpm else ""))
 
 
-def asked_runs(
+def with_display_units(
     arguments: argparse.Namespace, results: Mapping[str, xr.Dataset]
 ) -> dict[str, xr.Dataset]:
-    """Return runs in the units that are asked for."""
+    """Return runs marked to be displayed in the units of ``--units``; the numbers stay in SI."""
     return {state: with_units(data, drive_units(arguments)) for state, data in results.items()}
 
 
-def shown_runs(asked: Mapping[str, xr.Dataset]) -> dict[str, xr.Dataset]:
-    """Return runs in the units that are asked for as they are printed and drawn: with lengths that
-    can be read.
-    """
+def with_readable_units(asked: Mapping[str, xr.Dataset]) -> dict[str, xr.Dataset]:
+    """Return runs for print and picture: display lengths in m, mm or um, by their size."""
     return dict(zip(asked, with_readable_lengths(*asked.values()), strict=True))
 
 
 def picture_path(arguments: argparse.Namespace, base_name: str) -> Path:
-    """Return the name of a picture of both structures, or of the one asked for."""
+    """Return the path of the picture of both structures, or of the one ``--only`` names."""
     parts = [base_name, arguments.only or "", units_ending(arguments)]
     return Path(arguments.output) / f"{'_'.join(filter(None, parts))}.nc"
 
 
-def file_name(
+def result_name(
     arguments: argparse.Namespace, structure: Structure, drive: Drive, question: Any
 ) -> str:
-    """Return a name that no other question has: command, drive, and a digest."""
+    """Return a result's file name, unique for its command, structure, drive and arguments."""
     digits = digest(structure.as_delaminated().parameters(), drive.parameters(), question)
     return f"{arguments.command.replace('-', '_')}_{Path(arguments.drive).stem}_{digits}"
 
 
-def ask_each(
+def answer_each_structure(
     arguments: argparse.Namespace,
     structure: Structure,
     drive: Drive,
@@ -316,7 +314,7 @@ def ask_each(
     draw: Callable[[dict[str, xr.Dataset]], Any],
     print_result: Callable[[str, xr.Dataset], None],
 ) -> None:
-    """Ask for each structure; print the results, write files, draw both in one picture.
+    """Call a command's public function for each structure; print, write files, draw one picture.
 
     Parameters
     ----------
@@ -333,28 +331,28 @@ def ask_each(
     import orchestrate
 
     ask = getattr(orchestrate, arguments.command.replace("-", "_"))
-    base_name = file_name(arguments, structure, drive, question)
-    states = states_of(arguments, structure)
+    base_name = result_name(arguments, structure, drive, question)
+    states = structures_by_name(arguments, structure)
     files = {state: Files.from_options(arguments, f"{base_name}_{state}") for state in states}
     results = {}
     for state, chosen in states.items():
-        running = running_of(arguments, files[state].result)
+        running = read_running_options(arguments, files[state].result)
         results[state] = ask(chosen, drive, **question, **running)
-    asked = asked_runs(arguments, results)
-    shown = shown_runs(asked)
+    asked = with_display_units(arguments, results)
+    shown = with_readable_units(asked)
     for state, data in shown.items():
         print_result(state, data)
     print_units_note(arguments, *shown.values())
     for state, data in asked.items():
         files[state].write(data, None)
     fresh = any(one_file.fresh for one_file in files.values())
-    plots = endings_of("--plot", arguments.plot, PLOTS)
+    plots = parse_endings("--plot", arguments.plot, PLOTS)
     path = picture_path(arguments, base_name)
     for file in draw_picture(path, plots, fresh, lambda: draw(shown)):
         print(file)
 
 
-def ask_once(
+def answer_both_structures(
     arguments: argparse.Namespace,
     structure: Structure,
     drive: Drive,
@@ -362,29 +360,29 @@ def ask_once(
     draw: Callable[[xr.Dataset], Any] | None,
     print_result: Callable[[xr.Dataset], None],
 ) -> None:
-    """Ask a question that answers for both structures at once."""
+    """Call a command's function that computes both structures at once; print, write, draw."""
     import orchestrate
 
     ask = getattr(orchestrate, arguments.command.replace("-", "_"))
-    files = Files.from_options(arguments, file_name(arguments, structure, drive, question))
-    data = ask(structure, drive, **question, **running_of(arguments, files.result))
-    asked = asked_runs(arguments, {"": data})
-    (shown,) = shown_runs(asked).values()
+    files = Files.from_options(arguments, result_name(arguments, structure, drive, question))
+    data = ask(structure, drive, **question, **read_running_options(arguments, files.result))
+    asked = with_display_units(arguments, {"": data})
+    (shown,) = with_readable_units(asked).values()
     print_result(shown)
     print_units_note(arguments, shown)
     files.write(asked[""], partial(draw, shown) if draw else None)
 
 
-def check_files(arguments: argparse.Namespace) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Check the files' options before any work; return the formats, and the pictures' endings."""
-    formats = endings_of("--format", arguments.format, FORMATS)
-    plots = endings_of("--plot", arguments.plot, PLOTS)
+def check_file_options(arguments: argparse.Namespace) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Check ``--format``, ``--plot``, ``--output``; return formats and picture endings."""
+    formats = parse_endings("--format", arguments.format, FORMATS)
+    plots = parse_endings("--plot", arguments.plot, PLOTS)
     check_output(arguments.output)
     return formats, plots
 
 
-def title_of_runs(runs: Mapping[str, xr.Dataset], name: str, control: str = "") -> str:
-    """Format set, volts and rate of runs, for a picture."""
+def format_title(runs: Mapping[str, xr.Dataset], name: str, control: str = "") -> str:
+    """Format a picture's title: the drive's name, the runs' voltages, rate and controller."""
     import numpy as np
 
     changes = [

@@ -1,4 +1,4 @@
-"""Limits of stable responses: where the sweeps pass them, and where they are exactly."""
+"""Checks of claims on limits of responses, in sweeps and as exact bifurcations."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ from collections.abc import Callable
 
 import numpy as np
 
-from .claim import LIMIT, Finding, border, claim, number_at, rounds_to
-from .results import Results, impacts_in_response, kind, lower_edge, upper_edge
+from .claim import LIMIT, Finding, check_limit, check_number, register_claim, rounds_to
+from .results import Results, impacts_in_response, is_orbit, lower_edge, upper_edge
 
 SWEEP = "up-sweep, multiplicity and impacts"
 BRANCH = f"{SWEEP}; branch"
 LAST_CONTACT = "up-sweep, last eta with contact; branch"
 
 
-def limit(
+def register_limit(
     section: str,
     text: str,
     printed: str,
@@ -24,7 +24,7 @@ def limit(
     tolerance: str = LIMIT,
     full: bool = True,
 ) -> None:
-    """Enter a claim whose printed number one of the functions below is to find.
+    """Add a claim on a printed limit, checked by one of this module's functions.
 
     Parameters
     ----------
@@ -37,17 +37,17 @@ def limit(
     how, tolerance, full
         Of the claim.
     """
-    enter = claim(section, text, printed, how, tolerance, full)
+    enter = register_claim(section, text, printed, how, tolerance, full)
     enter(lambda results: find(results, printed, *where))
 
 
 def contact_end(results: Results, printed: str, case: str, inside: float) -> Finding:
-    """Find where permanent contact ends; the sentence says how it depends on gamma."""
+    """Check where permanent contact ends: in sweeps, exactly, and its dependence on gamma."""
     up, down = results.up(case), results.down(case)
     low, high = upper_edge(up, up.permanent_contact.values == 1, inside)
     back = upper_edge(down, down.permanent_contact.values == 1, inside)
     gammas = results.get("gamma").last_contact.sel(case=case).values
-    slow = results.steady(case).sel(eta=float(printed), method="nearest")
+    slow = results.impact_statistics(case).sel(eta=float(printed), method="nearest")
     after = impacts_in_response(up)[int(np.abs(up.eta.values - high).argmin())]
     why = (
         f"Down-sweep: {back[0]:.3f}; gamma from 1e-5 to 5e-2: {np.nanmin(gammas):.3f} to "
@@ -57,7 +57,7 @@ def contact_end(results: Results, printed: str, case: str, inside: float) -> Fin
         f"{float(slow.closing_min / slow.closing_max):.1e} of the fastest, far above the "
         "paper's gamma of 1e-4."
     )
-    return border((low, high), results.ends(case, "T, contact", inside), printed, why)
+    return check_limit((low, high), results.upper_limit(case, "T, contact", inside), printed, why)
 
 
 def orbit_end(
@@ -68,44 +68,44 @@ def orbit_end(
     inside: float,
     slack: float | None = None,
 ) -> Finding:
-    """Find where responses mT/k end upwards, and where on the way down."""
-    up, down, numbers = results.up(case), results.down(case), numbers_of(orbit)
-    back = upper_edge(down, kind(down, *numbers), inside)
-    exact = results.ends(case, orbit, inside)
-    edges = upper_edge(up, kind(up, *numbers), inside)
+    """Check the frequency at which responses mT/k end, in sweeps and exactly."""
+    up, down, numbers = results.up(case), results.down(case), parse_orbit_name(orbit)
+    back = upper_edge(down, is_orbit(down, *numbers), inside)
+    exact = results.upper_limit(case, orbit, inside)
+    edges = upper_edge(up, is_orbit(up, *numbers), inside)
     why = f"On the way down: between {back[0]:.3f} and {back[1]:.3f}."
     if edges[0] > exact.value:
         why += (
             f" The sweep is {edges[0] - exact.value:.3f} beyond the exact limit before it "
             "leaves the orbit: a deviation takes long to grow."
         )
-    return border(edges, exact, printed, why, slack)
+    return check_limit(edges, exact, printed, why, slack)
 
 
 def orbit_start(
     results: Results, printed: str, case: str, orbit: str, inside: float, both_ways: bool = True
 ) -> Finding:
-    """Find where responses mT/k begin, and where on the way down."""
-    up, down, numbers = results.up(case), results.down(case), numbers_of(orbit)
-    back = lower_edge(down, kind(down, *numbers), inside)
+    """Check the frequency at which responses mT/k begin, in sweeps and exactly."""
+    up, down, numbers = results.up(case), results.down(case), parse_orbit_name(orbit)
+    back = lower_edge(down, is_orbit(down, *numbers), inside)
     why = f"On the way down: between {back[0]:.3f} and {back[1]:.3f}." if both_ways else ""
-    edges = lower_edge(up, kind(up, *numbers), inside)
-    return border(edges, results.begins(case, orbit, inside), printed, why)
+    edges = lower_edge(up, is_orbit(up, *numbers), inside)
+    return check_limit(edges, results.lower_limit(case, orbit, inside), printed, why)
 
 
-def numbers_of(orbit: str) -> tuple[int, int]:
-    """Return m and k of an orbit named mT/k: its periods, and its impacts."""
+def parse_orbit_name(orbit: str) -> tuple[int, int]:
+    """Return m and k of an orbit named mT/k: its periods and impacts."""
     periods, impacts = orbit.split("T/")
     return int(periods or 1), int(impacts)
 
 
 def peak_height(results: Results, printed: str, case: str, digits: int = 4) -> Finding:
-    """Find the largest gap of all."""
-    return number_at(float(results.up(case).xi_rel_max.max()), printed, digits)
+    """Check the size of the largest gap of an up-sweep."""
+    return check_number(float(results.up(case).xi_rel_max.max()), printed, digits)
 
 
-def peak_place(results: Results, printed: str, case: str) -> Finding:
-    """Find where the largest gap is, and how much less it is at the printed place."""
+def peak_frequency(results: Results, printed: str, case: str) -> Finding:
+    """Check the frequency of the largest gap of an up-sweep."""
     gaps = results.up(case).xi_rel_max
     there, top = float(gaps.sel(eta=float(printed), method="nearest")), float(gaps.max())
     why = (
@@ -113,4 +113,4 @@ def peak_place(results: Results, printed: str, case: str) -> Finding:
         if not rounds_to(float(gaps.idxmax()), printed)
         else ""
     )
-    return number_at(float(gaps.idxmax()), printed, 3, why)
+    return check_number(float(gaps.idxmax()), printed, 3, why)

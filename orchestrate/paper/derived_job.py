@@ -1,4 +1,4 @@
-"""A question of the public API whose parameters are read off results that come before it."""
+"""Base of jobs that run a public API's job with parameters read from earlier results."""
 
 from __future__ import annotations
 
@@ -16,27 +16,27 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class DerivedJob(Job):
-    """A job that asks another one, once the results that decide its parameters are there.
+    """Job that computes another job, whose parameters earlier results decide.
 
     Subclasses say which, and give ``chunk`` and ``item`` the values of the job that is asked.
     """
 
     @abstractmethod
-    def question(self, inputs: Inputs) -> Job:
-        """Return the job of the public API that is asked."""
+    def derived_job(self, inputs: Inputs) -> Job:
+        """Return the job to compute, made from the results it needs."""
 
     def items(self, inputs: Inputs) -> list[tuple[Job, Any]]:
-        """Return its items, each with the job that computes it."""
-        job = self.question(inputs)
+        """Return the derived job's items, each with that job."""
+        job = self.derived_job(inputs)
         return [(job, item) for item in job.items({})]
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[tuple[Job, Any]], previous: Table | None
     ) -> Table:
-        """Compute some of its items."""
+        """Compute some items by the derived job."""
         job = items[0][0]
         return job.work(fmus, [item for _, item in items], previous)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return its result."""
-        return self.question(inputs).dataset(table, {})
+        """Return the derived job's dataset."""
+        return self.derived_job(inputs).dataset(table, {})

@@ -1,4 +1,4 @@
-"""How far the limits of permanent contact depend on gamma (17): short sweeps past them."""
+"""Job: how the limit of permanent contact depends on gamma (17)."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ RANGES = {"elastic": (0.400, 0.445), "damped": (0.450, 0.500), "plastic": (0.930
 
 
 @dataclass(frozen=True, kw_only=True)
-class GammaJob(Job):
-    """The last frequency with permanent contact, for each structure and gamma.
+class ContactLimitJob(Job):
+    """Job: last frequency with permanent contact, by a short sweep per case and gamma.
 
     Attributes
     ----------
@@ -47,11 +47,11 @@ class GammaJob(Job):
     samples: int = 40
 
     def count(self) -> int:
-        """Return the number of short sweeps."""
+        """Return the number of short sweeps: cases times gammas."""
         return len(self.structures) * len(self.gammas)
 
     def items(self, inputs: Inputs) -> list[tuple[Structure, tuple[float, float]]]:
-        """Return the structure and range of each."""
+        """Return structure and frequency range of each short sweep."""
         return [
             (structure.replace(gamma=gamma), ends)
             for structure, ends in zip(self.structures, self.ranges, strict=True)
@@ -64,7 +64,7 @@ class GammaJob(Job):
         items: Sequence[tuple[Structure, tuple[float, float]]],
         previous: Table | None,
     ) -> Table:
-        """Compute one short sweep."""
+        """Compute one short sweep; return its last frequency with permanent contact."""
         ((structure, ends),) = items
         etas = np.round(np.arange(*ends, self.step), 9)
         points = [Point(structure, Excitation.nondimensional(float(e), structure)) for e in etas]
@@ -77,7 +77,7 @@ class GammaJob(Job):
         return {"last": np.array([last])}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return the limits over case and gamma."""
+        """Return the limits as a dataset over case and gamma."""
         import xarray as xr
 
         text = "last eta with permanent contact on a short up-sweep from rest"

@@ -1,4 +1,4 @@
-"""A plane of starts at the frequency at which two periodic attractors share them most evenly."""
+"""Job of a basin of attraction where two periodic attractors share random starts most evenly."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from ..structures import Excitation
 
 
 @dataclass(frozen=True, kw_only=True)
-class EvenBasinJob(BasinJob):
-    """Basins where random starts have found two attractors.
+class TwoAttractorBasinJob(BasinJob):
+    """Basin job at the frequency where random starts have found two periodic attractors.
 
     Its sides ``x`` and ``y`` are in units of the largest gap of the sweep at that frequency; what
     they do not vary is the mean of states on the two attractors.
@@ -37,7 +37,7 @@ class EvenBasinJob(BasinJob):
     apart: float = 0.2
 
     def needs(self) -> tuple[str, ...]:
-        """Return the names of the two jobs whose results are needed."""
+        """Return the names of the jobs whose results it needs: attractors and sweep."""
         return self.attractors, self.sweep
 
     def frequency(self, inputs: Inputs) -> float:
@@ -45,18 +45,18 @@ class EvenBasinJob(BasinJob):
         data = inputs[self.attractors].sel(eta=slice(self.low, self.high))
         frequent = np.argsort(-data.share.values, axis=1, kind="stable")[:, :2]
 
-        def two(name: str) -> NDArray[np.float64]:
-            """Return a quantity of the two most frequent attractors at each frequency."""
+        def of_most_frequent(name: str) -> NDArray[np.float64]:
+            """Return a variable of the two most frequent attractors at each frequency."""
             values: NDArray[np.float64] = np.take_along_axis(data[name].values, frequent, axis=1)
             return values
 
-        share, impacts = two("share")[:, -1], two("impacts_per_period")
+        share, impacts = of_most_frequent("share")[:, -1], of_most_frequent("impacts_per_period")
         apart = np.abs(impacts[:, 0] - impacts[:, -1]) > self.apart
-        clear = np.where((two("multiplicity") > 0).all(axis=1) & apart, share, 0.0)
+        clear = np.where((of_most_frequent("multiplicity") > 0).all(axis=1) & apart, share, 0.0)
         return float(data.eta.values[(clear if clear.max() > 0.0 else share).argmax()])
 
     def plane(self, inputs: Inputs) -> Plane:
-        """Return the plane of starts at the frequency, scaled to the sweep's largest gap there."""
+        """Return the plane of starts at that frequency, scaled to the sweep's largest gap there."""
         eta = self.frequency(inputs)
         scale = float(inputs[self.sweep].xi_rel_max.sel(eta=eta, method="nearest"))
         x, y = (

@@ -1,4 +1,4 @@
-"""What was done: a line of JSON a run, in ``docs/trust.jsonl``; lines are added, never changed.
+"""Ledger entries of campaign runs: lines of JSON in docs/trust.jsonl, only ever added.
 
 Every run has its line, also where the same command was run before: it may have found something.
 """
@@ -22,7 +22,7 @@ from orchestrate.version import __version__
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "orchestrate"
-RECORDS = ROOT / "docs" / "trust.jsonl"
+LEDGER = ROOT / "docs" / "trust.jsonl"
 SOURCES = (
     ".py",
     ".c",
@@ -36,8 +36,8 @@ SOURCES = (
 
 
 @dataclass(frozen=True)
-class Record:
-    """One run of a campaign.
+class LedgerEntry:
+    """One run of a campaign as an entry of the ledger.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ class Record:
     date, version, fmu, package, machine : str
         ``fmu`` is the GUID of the FMU, ``package`` a digest of the sources of ``orchestrate``,
     campaigns : str
-        and this one of the campaigns' own and the benches'; empty in records from before there was
+        and this one of the campaigns' own and the benches'; empty in entries from before there was
         one.
     rows : list of list
         What was measured of each unit, where the campaign keeps that.
@@ -87,18 +87,18 @@ class Record:
             f"python -m tools.trust run {self.campaign} --seed {self.seed} --budget {self.budget}"
         )
 
-    def is_copy(self, other: Record) -> bool:
-        """Return whether another record is a copy of this run, its stored result read again."""
+    def is_copy(self, other: LedgerEntry) -> bool:
+        """Return whether another entry is a copy of this run, its stored result read again."""
         return {**asdict(self), "date": ""} == {**asdict(other), "date": ""}
 
 
-def record_of(campaign: str, seed: int, budget: int, answer: xr.Dataset) -> Record:
-    """Make the record of a finished run."""
-    told = [json.loads(str(text)) for text in answer.told.values]
+def make_entry(campaign: str, seed: int, budget: int, answer: xr.Dataset) -> LedgerEntry:
+    """Return the ledger entry of a finished run's dataset."""
+    details = [json.loads(str(text)) for text in answer.told.values]
     counts: Counter[str] = Counter()
-    for part in told:
+    for part in details:
         counts.update(part["counts"])
-    return Record(
+    return LedgerEntry(
         campaign=campaign,
         seed=seed,
         budget=budget,
@@ -107,20 +107,20 @@ def record_of(campaign: str, seed: int, budget: int, answer: xr.Dataset) -> Reco
         worst=float(f"{float(answer.worst.max()):.3g}"),
         worst_seed=int(answer.seed[int(answer.worst.values.argmax())]),
         counts=dict(sorted(counts.items())),
-        notes=[note for part in told for note in part["notes"]],
+        notes=[note for part in details for note in part["notes"]],
         seconds=round(float(answer.seconds.sum()), 2),
         date=time.strftime("%Y-%m-%d", time.gmtime()),
         version=__version__,
         fmu=str(answer.attrs["fmu_guid"]),
         package=digest(PACKAGE),
-        machine=machine(),
+        machine=describe_machine(),
         campaigns=str(answer.attrs["sources"]),
-        rows=[row for part in told for row in part["rows"]],
+        rows=[row for part in details for row in part["rows"]],
     )
 
 
 def digest(*folders: Path) -> str:
-    """Return a digest of a program's sources, with their names."""
+    """Return a digest of the sources in some folders, with their names."""
     hashed = hashlib.sha256()
     for folder in folders:
         for path in sorted(path for path in folder.rglob("*") if path.suffix in SOURCES):
@@ -129,7 +129,7 @@ def digest(*folders: Path) -> str:
     return hashed.hexdigest()[:16]
 
 
-def machine() -> str:
+def describe_machine() -> str:
     """Return a description of the machine in one line, without its owner."""
     try:
         text = Path("/proc/cpuinfo").read_text("utf-8")
@@ -140,18 +140,18 @@ def machine() -> str:
     return f"{model}, {os.cpu_count()} cores, {system}, Python {platform.python_version()}"
 
 
-def read(path: Path = RECORDS) -> list[Record]:
-    """Return all records, the oldest first."""
+def read_entries(path: Path = LEDGER) -> list[LedgerEntry]:
+    """Return all ledger entries, the oldest first."""
     lines = path.read_text("utf-8").splitlines() if path.exists() else []
-    return [Record(**json.loads(line)) for line in lines]
+    return [LedgerEntry(**json.loads(line)) for line in lines]
 
 
-def append(record: Record, path: Path = RECORDS) -> bool:
-    """Append a run's record to the file; return False if it is there already."""
-    if any(record.is_copy(other) for other in read(path)):
+def append_entry(entry: LedgerEntry, path: Path = LEDGER) -> bool:
+    """Append an entry to the ledger's file; return False if it is there already."""
+    if any(entry.is_copy(other) for other in read_entries(path)):
         return False
-    row: dict[str, Any] = asdict(record)
-    if not record.rows:
+    row: dict[str, Any] = asdict(entry)
+    if not entry.rows:
         del row["rows"]
     with path.open("a", encoding="utf-8") as file:
         file.write(json.dumps(row) + "\n")

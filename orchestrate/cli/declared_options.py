@@ -1,4 +1,4 @@
-"""An option as the signature and the docstring of its public function declare it."""
+"""Make options from the signature and the numpydoc docstring of a public function."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ LINK = re.compile(r"As in :func:`orchestrate\.(\w+)`")
 MARKUP = re.compile(r":\w+:`(?:orchestrate\.)?([^`]*)`|``([^`]*)``")
 
 
-def described(function: Callable[..., Any], name: str) -> tuple[str, str]:
-    """Return type and meaning of an argument, as the numpydoc docstring has them.
+def argument_documentation(function: Callable[..., Any], name: str) -> tuple[str, str]:
+    """Return an argument's type and description from the function's numpydoc docstring.
 
     Examples
     --------
@@ -35,12 +35,16 @@ def described(function: Callable[..., Any], name: str) -> tuple[str, str]:
         if name in names.split(", "):
             meaning = " ".join(body.split())
             linked = LINK.match(meaning)
-            return described(getattr(orchestrate, linked[1]), name) if linked else (kind, meaning)
+            return (
+                argument_documentation(getattr(orchestrate, linked[1]), name)
+                if linked
+                else (kind, meaning)
+            )
     raise LookupError(f"{function.__name__}: no {name} in its docstring")
 
 
-def help_of(meaning: str) -> str:
-    """Return the first sentence of a meaning as a command's help says it.
+def help_text(meaning: str) -> str:
+    """Return the first sentence of an argument's description as help text for ``argparse``.
 
     Examples
     --------
@@ -52,11 +56,11 @@ def help_of(meaning: str) -> str:
     return (plain[:1].lower() + plain[1:]).replace("%", "%%")
 
 
-def option_of(function: Callable[..., Any], name: str) -> dict[str, Any]:
-    """Return what ``argparse`` needs to know of an argument: type, default, choices and help."""
+def option_keywords(function: Callable[..., Any], name: str) -> dict[str, Any]:
+    """Return ``add_argument``'s keywords (type, default, choices, help) of an argument."""
     default = inspect.signature(function).parameters[name].default
-    kind, meaning = described(function, name)
-    text = help_of(meaning)
+    kind, meaning = argument_documentation(function, name)
+    text = help_text(meaning)
     if default is False:
         return {"action": "store_true", "help": text}
     if default is not None:

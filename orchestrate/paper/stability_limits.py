@@ -1,4 +1,4 @@
-"""Exact limits of stability of the responses that the paper names: branches through the sweeps'."""
+"""Job: exact stability limits of the paper's responses, by branches through the sweeps'."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-class Followed(NamedTuple):
-    """A branch.
+class BranchSpec(NamedTuple):
+    """A branch to trace: case, orbit's name, start frequency, period and limits.
 
     Attributes
     ----------
@@ -67,12 +67,12 @@ OWN = {
         ("T/2", 1.1, 1, (0.9, 1.37)),
     ),
 }
-BRANCHES = tuple(Followed(case, *row) for case in CASES for row in (*OWN[case], *WINDOWS))
+BRANCHES = tuple(BranchSpec(case, *row) for case in CASES for row in (*OWN[case], *WINDOWS))
 
 
 @dataclass(frozen=True, kw_only=True)
 class LimitsJob(Job):
-    """Stable windows of branches.
+    """Job: stable windows along each branch.
 
     Attributes
     ----------
@@ -85,11 +85,11 @@ class LimitsJob(Job):
 
     sweeps: tuple[str, ...]
     structures: tuple[Structure, ...] = tuple(CASES.values())
-    branches: tuple[Followed, ...] = BRANCHES
+    branches: tuple[BranchSpec, ...] = BRANCHES
     item: ClassVar[str] = "branch"
 
     def needs(self) -> tuple[str, ...]:
-        """Return the name of the job of the sweeps, in a tuple."""
+        """Return the names of the sweep jobs whose results it needs."""
         return self.sweeps
 
     def count(self) -> int:
@@ -97,13 +97,13 @@ class LimitsJob(Job):
         return len(self.branches)
 
     def items(self, inputs: Inputs) -> Sequence[tuple[int, Structure, tuple[float, ...]]]:
-        """Return number, structure and first state of each."""
+        """Return number, structure and start state of each branch."""
         items = []
         for number, one in enumerate(self.branches):
-            place = list(CASES).index(one.case)
-            row = inputs[self.sweeps[place]].sel(eta=one.eta, method="nearest")
+            index = list(CASES).index(one.case)
+            row = inputs[self.sweeps[index]].sel(eta=one.eta, method="nearest")
             state = tuple(map(float, row.end_state.values))
-            items.append((number, self.structures[place], state))
+            items.append((number, self.structures[index], state))
         return items
 
     def work(
@@ -112,12 +112,12 @@ class LimitsJob(Job):
         items: Sequence[tuple[int, Structure, tuple[float, ...]]],
         previous: Table | None,
     ) -> Table:
-        """Compute one branch."""
+        """Trace one branch; return its stable windows with their bifurcations."""
         ((number, structure, state),) = items
         one = self.branches[number]
-        given: Any = {"progress": False, "fmu": fmus[OSCILLATOR]}
-        start = orbit(structure, eta=one.eta, period=one.period, guess=state, **given)
-        windows = stable_windows(branch(structure, start=start, limits=one.limits, **given))
+        keywords: Any = {"progress": False, "fmu": fmus[OSCILLATOR]}
+        start = orbit(structure, eta=one.eta, period=one.period, guess=state, **keywords)
+        windows = stable_windows(branch(structure, start=start, limits=one.limits, **keywords))
         return {
             "branch": np.full(len(windows), number),
             "ends": np.array([(w.low, w.high) for w in windows]).reshape(-1, 2),
@@ -125,7 +125,7 @@ class LimitsJob(Job):
         }
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return the windows one after the other."""
+        """Return all stable windows one after the other."""
         import xarray as xr
 
         of = [self.branches[number] for number in table["branch"].tolist()]
@@ -142,8 +142,8 @@ class LimitsJob(Job):
         return xr.Dataset(variables, attrs={"title": "Exact limits of stability"})
 
 
-def windows_of(data: xr.Dataset, case: str, label: str) -> list[StableWindow]:
-    """Return the stable windows of one orbit of a case, upwards."""
+def stable_windows_of(data: xr.Dataset, case: str, label: str) -> list[StableWindow]:
+    """Return the stable windows of one orbit of a case, by rising frequency."""
     which = (data.case.values == case) & (data.orbit.values == label)
     names = StableWindow._fields
     rows = zip(*(data[name].values[which].tolist() for name in names), strict=True)

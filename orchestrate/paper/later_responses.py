@@ -1,4 +1,4 @@
-"""Whether the paper's n = 500 periods suffice: its responses run on, to n = 5,000 and 50,000.
+"""Jobs that test the paper's transient of 500 periods by running responses on.
 
 Each frequency's response goes on from the state that the sweep has left it in, and is sampled and
 counted as in the sweep. So what differs is a transient that the sweep has not seen the end of.
@@ -31,7 +31,7 @@ NUMBERS = {
 
 @dataclass(frozen=True, kw_only=True)
 class LaterJob(StartStatesQuestion):
-    """A sweep's responses, some periods later.
+    """Job: features of a sweep's responses after further periods.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class LaterJob(StartStatesQuestion):
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[FollowedResponse], previous: Table | None
     ) -> Table:
-        """Compute some responses."""
+        """Run some responses on; return their multiplicity, impacts and largest gap."""
         rows = []
         with Instance(fmus[OSCILLATOR]) as instance:
             for item in items:
@@ -69,8 +69,10 @@ class LaterJob(StartStatesQuestion):
         return xr.Dataset(variables, self.series.coordinates(), {"title": title})
 
 
-def changed(swept: xr.Dataset, later: xr.Dataset, tolerance: float) -> dict[str, np.ndarray]:
-    """Return which of a sweep's responses are others later, by what has become of them.
+def classify_changes(
+    swept: xr.Dataset, later: xr.Dataset, tolerance: float
+) -> dict[str, np.ndarray]:
+    """Return Boolean arrays of a sweep's responses that changed later, by kind of change.
 
     Parameters
     ----------
