@@ -133,7 +133,7 @@ def with_readable_lengths(*answers: xr.Dataset) -> list[xr.Dataset]:
 
 
 def largest_length(data: xr.Dataset) -> float:
-    """Return the largest absolute value among a dataset's variables in m; 0 without any."""
+    """Return the largest absolute value of a dataset's variables with unit m; 0 if it has none."""
     lengths = [
         float(abs(array).max())
         for array in data.data_vars.values()

@@ -71,7 +71,7 @@ def format_plane(data: xr.Dataset) -> str:
 
 
 def print_entropy(data: xr.Dataset) -> None:
-    """Print the plane's basin entropy if it has enough start states for that."""
+    """Print the basin entropy of a plane of start states; nothing if they are too few."""
     if data.sizes["attractor"] < 2 or min(data.attractor_of.shape) < FEWEST_STARTS:
         return
     mixed = orchestrate.basin_entropy(data)

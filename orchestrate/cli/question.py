@@ -384,7 +384,7 @@ def print_attractors(data: xr.Dataset, whole: str) -> None:
 
 
 def read_earlier_result(option: str, path: Path) -> xr.Dataset:
-    """Read a NetCDF result of an earlier command; raise with the option's name if it is none.
+    """Read the NetCDF result of an earlier command; raise naming the option if it is none.
 
     Raises
     ------

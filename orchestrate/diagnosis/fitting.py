@@ -96,7 +96,7 @@ class Search:
         return np.stack(columns, axis=1)
 
     def refine(self, start: Mapping[str, float], steps: int, tolerance: float) -> Solution:
-        """Minimise the misfit from a start (trust region reflective, with bounds)."""
+        """Minimise the misfit of model and record from start parameters (SciPy's trf)."""
         from lmfit import Minimizer
 
         hypothesis, bounds = self.hypothesis, self.hypothesis.bounds(self.evidence)

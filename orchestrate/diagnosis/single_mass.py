@@ -109,7 +109,7 @@ def run_function() -> Any:
 def run_in_python(
     numbers: tuple[float, ...], cubics: Floats, step: float, parts: int, bound: float, out: Floats
 ) -> int:
-    """Integrate in Python, for machines without a compiler; return how many cubics were done."""
+    """Integrate one mass under cubic excitation in Python; return how many cubics were done."""
     stiffness, damping, square, cube, friction, slow, stop, position, side = numbers
 
     def acceleration(base: float, x: float, v: float) -> float:

@@ -149,7 +149,7 @@ def codimension_two_variables(setting: Setting, table: Table) -> dict[str, Varia
 
 
 def start_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
-    """Solve for the bifurcation at which the curve begins; return its equations and the root.
+    """Solve for the bifurcation at which a border curve begins; return equations and root.
 
     Raises
     ------

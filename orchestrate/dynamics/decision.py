@@ -236,7 +236,7 @@ class MotionDecider:
         return without_copies(orbit)
 
     def guess_from(self, state: Floats, periods: int) -> tuple[Guess, float]:
-        """Record impacts of some periods in the FMU as guess of an orbit; return it, its phase."""
+        """Run the FMU some periods; return its impacts as guess of an orbit, and its phase."""
         instance, frequency = self.eventful, self.point.excitation.frequency
         assert instance is not None
         form, span = self.system.form(self.values), periods * self.point.excitation.period

@@ -109,7 +109,7 @@ class AttractorsAtValue:
             self.labels[members] = len(self.motions) - 1
 
     def motion_from_features(self, row: Floats, state: Floats, decided: int) -> SettledMotion:
-        """Rebuild a settled motion from its stored feature row and a state on it at phase 0."""
+        """Rebuild a settled motion from its stored row of numbers and its state at phase 0."""
         decider, n = self.decider, int(row[0])
         known = decider.known_motion_at(state, n)
         if known is None and decided == ORBIT:

@@ -1,4 +1,4 @@
-"""Continuation loop that traces a branch: steps, bifurcations located by test functions, end.
+"""Trace a branch: predictor-corrector steps; folds and other bifurcations located; its end.
 
 Every branch is traced by the same loop (:meth:`BranchTracer.trace`), whatever its equations are:
 periodic orbits (:mod:`.orbit_tracer`), bifurcations over two parameters (:mod:`.borders`), motions

@@ -1,4 +1,4 @@
-"""Draw orbit diagrams (Figures 6, 10, 11): samples of the gap and impacts over a parameter."""
+"""Draw a sweep as an orbit diagram (Figures 6, 10, 11): gap samples, impacts over a parameter."""
 
 from __future__ import annotations
 

@@ -127,7 +127,7 @@ def smooth_edges(angle: np.ndarray, means: np.ndarray, count: int) -> np.ndarray
 
 
 def means_over(data: xr.Dataset, count: int) -> dict[str, np.ndarray]:
-    """Return mean speed and powers of ``count`` revolutions around each sample; NaN at ends."""
+    """Return moving means of motor speed and powers over ``count`` revolutions, NaN at ends."""
     angle, time, half = np.abs(data.angle.values), data.time.values, 0.5 * count * TURN
     distance = np.maximum.accumulate(angle)
     before, after = (np.interp(angle + side, distance, time) for side in (-half, half))

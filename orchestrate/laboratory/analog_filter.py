@@ -235,6 +235,6 @@ def anti_aliasing(sample_rate: float) -> tuple[Complexes, Complexes]:
 
 
 def in_series(parts: Sequence[tuple[Complexes, Complexes]]) -> AnalogFilter:
-    """Combine filters in series, as one filter."""
+    """Return one analog filter that acts as filters one after another."""
     zeros, poles = (np.concatenate(found) for found in zip(*parts, strict=True))
     return AnalogFilter.from_zpk(zeros, poles)

@@ -210,7 +210,7 @@ def column_label(table: Columns, column: Column) -> str:
 
 
 def scaled_values(table: Columns, column: Column, factor: float) -> Floats:
-    """Return a column's values times a factor; raise with the row where one is not a number."""
+    """Return a column as numbers times a unit's factor; raise naming a non-number's row."""
     wrong = np.flatnonzero(~np.isfinite(column.values))
     if len(wrong):
         row, value = wrong[0] + table.first_row, column.values[wrong[0]]

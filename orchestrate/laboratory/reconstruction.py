@@ -168,7 +168,7 @@ class Motion:
 
 
 def taylor(series: Floats, lengths: Floats) -> Floats:
-    """Evaluate Taylor series at given lengths of time, shape (2, n)."""
+    """Evaluate Taylor series of two motions at n times after expansion; return shape (2, n)."""
     found = np.zeros(series.shape[1:])
     for n in range(len(series) - 1, -1, -1):
         found = series[n] + found * lengths / (n + 1)

@@ -38,7 +38,7 @@ def compute(
     warmup_items: Sequence[Any],
     code: Mapping[str, str] | None = None,
 ) -> tuple[bytes, Table]:
-    """Compute a job's chunk in a worker; return bytes of its start state, and its result table.
+    """Compute a chunk of a job in a worker; return its table, and the start state used, as bytes.
 
     Parameters
     ----------

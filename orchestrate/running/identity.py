@@ -1,4 +1,4 @@
-"""Identity of a stored result: the question with its parameters, the FMUs, and the code.
+"""Identity of a result, by which a stale one is known: question, parameters, FMUs and code.
 
 These three decide the numbers of a result. If one of them has changed, a stored result does
 not answer the question any more, and :func:`difference` says what has changed.

@@ -1,4 +1,4 @@
-"""Runner: submits the chunks of jobs to workers and collects results until all are stored.
+"""Runner: submits chunks of jobs to workers, stores what returns, shows the progress bar.
 
 Any worker may take any chunk that is ready, the earliest job's first. Small questions are answered
 in this process; where much is left after the first chunks, processes are started. Who computes

@@ -540,7 +540,7 @@ class Structure(Described):
         return dataclasses.replace(self, bonded=True)
 
     def as_delaminated(self) -> Structure:
-        """Return a copy with delamination: its masses can separate and impact."""
+        """Return a delaminated copy of equal parameters: its masses can separate and impact."""
         return dataclasses.replace(self, bonded=False)
 
     def get(self, name: str) -> float:

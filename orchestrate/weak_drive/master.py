@@ -1,4 +1,4 @@
-"""Co-simulation master for two FMUs: the structure in its box, and the motor that shakes the box.
+"""Co-simulation master of structure and motor FMU; halves steps whose coupling error is too large.
 
 The structure's ``box_force`` depends on its states only, the box's acceleration on the force: there
 is no algebraic loop, but what each side assumes of the other over a step decides everything.

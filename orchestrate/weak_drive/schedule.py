@@ -26,7 +26,7 @@ def check(
     high: float = math.inf,
     exclusive: bool = False,
 ) -> None:
-    """Check that a number is finite and in a range, both ends included, or not the lower one."""
+    """Raise unless a number is finite and within a range; ``exclusive``: above its lower end."""
     number = isinstance(value, numbers.Real) and not isinstance(value, bool)
     if not (number and math.isfinite(value) and low <= value <= high) or (
         exclusive and value == low

@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 
 
 def linear_restitution(ratio: float) -> float:
-    """Return the restitution of a spring with a dashpot that never pulls, by damping ratio.
+    """Return the restitution of a spring-dashpot contact without pull, by damping ratio.
 
     Parameters
     ----------

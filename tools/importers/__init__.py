@@ -223,7 +223,7 @@ class Importer:
 
 
 def kernel_objects(model: str) -> dict[str, bytes]:
-    """Compile a model's kernel; return its object file by this machine's platform."""
+    """Compile a model's C kernel; return a dict from this machine's platform to its object file."""
     source = kernel_source(forms.MODELS[model])
     return {this_machine(): kernel_object(this_machine(), source)}
 

@@ -172,7 +172,7 @@ def limit_memory() -> None:
 
 
 def import_all() -> None:
-    """Import what every command needs, once for all children."""
+    """Import what every command needs before forking, once for all forked commands."""
     import matplotlib.pyplot
     import xarray
 

@@ -140,7 +140,7 @@ def write_attack(
 
 
 def run_on_attack(arguments: list[str], folder: Path) -> tuple[FinishedCommand, list[str]]:
-    """Run the command; return how it ended, and the files it wrote outside its folder."""
+    """Run a command on hostile input; return its exit, and files written outside its folder."""
     temporary = folder / "temporary"
     before = {path for path in escaped_paths(folder) if path.exists()}
     ended = ChildCommand(arguments, temporary, limit_memory).wait(2.0 * SLOW)

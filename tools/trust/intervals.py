@@ -99,7 +99,7 @@ def fit_noisy_record(rng: np.random.Generator) -> list[float | None]:
 def simulate_record(
     beam: orchestrate.Structure, middle: float, noise: float, rng: np.random.Generator
 ) -> Any:
-    """Return what three sensors read of a sweep over the resonance, with noise."""
+    """Simulate what sensors on base and halves read, with noise, in a swept sine."""
     low, high = (end * middle for end in ENDS)
     sweep = orchestrate.SweptSine(first=low, last=high, duration=DURATION, acceleration=5.0)
     history = orchestrate.shake(beam, sweep, sample_rate=RATE, progress=False)
