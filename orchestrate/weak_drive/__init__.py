@@ -1,4 +1,4 @@
-"""The weak drive: a structure and the motor that shakes it, two FMUs coupled.
+"""Couple a structure with a motor of limited power, as two FMUs, and find its speed jumps.
 
 ======================  ============================================================
 module                  idea

@@ -1,4 +1,4 @@
-"""Averaged theory of the weak drive, bonded structure: motor against mean torque of vibration.
+"""Compute speed branch, folds and stability of the bonded weak drive by averaged theory.
 
 At a speed Omega the box answers the unbalance as a linear system does, y = Omega^2 H(i Omega)
 S/M_t; the vibration's mean torque is T_v(Omega) = -epsilon Omega^4 Im H(i Omega) / 2, and the motor
@@ -30,7 +30,7 @@ FOLD, TORUS = bifurcations.FOLD.label, bifurcations.TORUS.label
 
 
 class Place(NamedTuple):
-    """Point of the branch of stationary motions: a fold, or a Neimark-Sacker point.
+    """Store a bifurcation point of the branch: voltage, speed, and fold or Neimark-Sacker.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class Place(NamedTuple):
 
 
 def mechanics(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomial, Polynomial]:
-    """Return polynomials in s: masses' springs and dampers, their inertia, and the box alone."""
+    """Return the polynomials in s of the masses' springs, of their inertia and of the box."""
     beta, mu = drive.beta(structure), structure.mu
     damping = 2.0 * beta * (structure.D1 + mu * structure.D2)
     pull = Polynomial([beta * (1.0 + structure.kappa), damping])
@@ -57,7 +57,7 @@ def mechanics(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomia
 
 
 def transfer(structure: Structure, drive: Drive, Omega: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """Return two transfer functions: force on the box to its position, that to the bonded masses'.
+    """Return the transfer functions from box force to box position and from box to masses.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def transfer(structure: Structure, drive: Drive, Omega: ArrayLike) -> tuple[np.n
 
 
 def no_load_speed(structure: Structure, drive: Drive, Omega: ArrayLike) -> np.ndarray:
-    """Return the voltage eta0 that holds a speed, eta0 = Omega + T_v/b."""
+    """Return the voltage, as no-load speed over omega, that holds each given speed."""
     Omega = np.asarray(Omega, dtype=float)
     H, _ = transfer(structure, drive, Omega)
     torque = drive.epsilon * Omega**4 * H.imag / (2.0 * drive.b(structure))
@@ -85,30 +85,30 @@ def no_load_speed(structure: Structure, drive: Drive, Omega: ArrayLike) -> np.nd
 
 
 def amplitude(structure: Structure, drive: Drive, Omega: ArrayLike) -> np.ndarray:
-    """Return the amplitude of the masses relative to the box, in S/M_t."""
+    """Return the masses' amplitude relative to the box at each speed, in units of S/M_t."""
     H, ratio = transfer(structure, drive, Omega)
     return np.asarray(np.abs(np.asarray(Omega) ** 2 * H * ratio))
 
 
 def resonance(structure: Structure, drive: Drive) -> float:
-    """Return the speed over omega at which bonded masses resonate in the box, the faster one."""
+    """Return the speed over omega at which the bonded masses resonate in the box."""
     return float(np.abs(free_roots(structure, drive)).max())
 
 
 def half_width(structure: Structure, drive: Drive) -> float:
-    """Return half the resonance's width at half power over omega: its decay rate."""
+    """Return the half width of the bonded resonance at half power, over omega."""
     roots = free_roots(structure, drive)
     return float(-roots[np.argmax(np.abs(roots))].real)
 
 
 def free_roots(structure: Structure, drive: Drive) -> np.ndarray:
-    """Return the roots of free vibrations of bonded masses and box, over omega."""
+    """Return the complex eigenvalues of free vibration of bonded masses and box, over omega."""
     pull, masses, box = mechanics(structure, drive)
     return np.asarray((box * (pull + masses) + pull * masses).roots())
 
 
 def folds(structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.0) -> list[Place]:
-    """Return where the speed jumps: zeros of d eta0 / d Omega.
+    """Find the folds of the averaged branch, where the speed jumps (Sommerfeld effect).
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def folds(structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.
 
 
 def dividing_speed(structure: Structure, drive: Drive) -> float:
-    """Return the speed over omega between stationary motions below and beyond the resonance.
+    """Return the speed over omega that divides motions below and beyond the resonance.
 
     Half way between the speeds of the outer folds, where all motions are unstable; the resonance's
     speed where there are none.
@@ -143,7 +143,7 @@ def dividing_speed(structure: Structure, drive: Drive) -> float:
 
 
 def slope(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomial]:
-    """Return the derivative d eta0 / d Omega as numerator and denominator, polynomials in Omega."""
+    """Return numerator and denominator of the slope d eta0 / d Omega as polynomials in Omega."""
     pull, masses, box = (on_the_axis(part) for part in mechanics(structure, drive))
     above, below = pull + masses, box * (pull + masses) + pull * masses
     torque = imaginary(above * conjugate(below)) * Polynomial([0.0, 0.0, 0.0, 0.0, 1.0])
@@ -155,7 +155,7 @@ def slope(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomial]:
 def least_slope(
     structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.0, count: int = 10_001
 ) -> float:
-    """Return the least slope d eta0 / d Omega of the branch: negative between folds.
+    """Return the smallest slope d eta0 / d Omega in a range of speeds; negative with folds.
 
     Parameters
     ----------
@@ -172,7 +172,7 @@ def least_slope(
 
 
 def growth(structure: Structure, drive: Drive, Omega: float) -> np.ndarray:
-    """Return growth rates of slow disturbances: the roots s, without the 0 of a shifted angle.
+    """Return the growth rates of small slow disturbances of a stationary motion.
 
     Parameters
     ----------
@@ -204,7 +204,7 @@ def growth(structure: Structure, drive: Drive, Omega: float) -> np.ndarray:
 def torus_points(
     structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.0, count: int = 401
 ) -> list[Place]:
-    """Return the Neimark-Sacker points: where a pair of :func:`growth` passes the imaginary axis.
+    """Find the Neimark-Sacker points, where a slow oscillation of the speed starts to grow.
 
     Parameters
     ----------
@@ -218,7 +218,7 @@ def torus_points(
     from scipy.optimize import brentq
 
     def test(Omega: float) -> float:
-        """Return the product of all sums of two roots: 0 where a pair is imaginary (Hurwitz)."""
+        """Return the product of all sums of two growth rates; it is 0 at a bifurcation."""
         roots = growth(structure, drive, Omega)
         sums = np.add.outer(roots, roots)[np.triu_indices(len(roots), 1)]
         return float(np.prod(-sums / np.abs(sums).max()).real)
@@ -236,7 +236,7 @@ def torus_points(
 
 
 def losses(structure: Structure, drive: Drive) -> tuple[Place | None, Place | None]:
-    """Return where slow ramps up, and down, lose their stable motion; None for never.
+    """Return the point where a slow voltage ramp loses stability, upward and downward.
 
     Returns
     -------
@@ -255,7 +255,7 @@ def losses(structure: Structure, drive: Drive) -> tuple[Place | None, Place | No
 
 
 def stability(structure: Structure, drive: Drive) -> tuple[list[Place], list[bool]]:
-    """Return folds and Neimark-Sacker points by speed, and flags of stability around them.
+    """Return all folds and Neimark-Sacker points by speed, and which motions are stable.
 
     Returns
     -------
@@ -273,23 +273,23 @@ def stability(structure: Structure, drive: Drive) -> tuple[list[Place], list[boo
 
 
 def on_the_axis(polynomial: Polynomial) -> Polynomial:
-    """Return a polynomial in s as one in Omega, with s = i Omega."""
+    """Convert a polynomial in s into one in Omega by setting s = i Omega."""
     powers = 1j ** np.arange(len(polynomial.coef))
     return Polynomial(np.asarray(polynomial.coef, dtype=complex) * powers)
 
 
 def conjugate(polynomial: Polynomial) -> Polynomial:
-    """Return the conjugate of a polynomial for real arguments."""
+    """Return the polynomial with complex conjugate coefficients."""
     return Polynomial(polynomial.coef.conj())
 
 
 def imaginary(polynomial: Polynomial) -> Polynomial:
-    """Return the imaginary part of a polynomial for real arguments."""
+    """Return the polynomial made of the imaginary parts of the coefficients."""
     return Polynomial(polynomial.coef.imag)
 
 
 def polish_root(polynomial: Polynomial, root: float) -> float:
-    """Improve a root by Newton's method, as long as the polynomial's value becomes smaller."""
+    """Improve a root of a polynomial by at most three Newton steps."""
     derivative = polynomial.deriv()
     value, slope = polynomial(root), derivative(root)
     for _ in range(3):

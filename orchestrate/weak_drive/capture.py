@@ -1,4 +1,4 @@
-"""Capture: whether a motor switched on from rest passes the resonance, or hangs at it.
+"""Find whether a motor switched on from rest passes the resonance or is captured by it.
 
 The voltage is switched on at once. Where it is low the speed settles below the resonance: the motor
 is captured, though at the same voltage it would stay beyond, once there. The border between is
@@ -54,7 +54,7 @@ THEORY = 2e-4  # over K omega: the averaged theory's own error of a fold, with r
 
 
 class System(NamedTuple):
-    """Structure and drive."""
+    """Store a structure together with its drive."""
 
     structure: Structure
     drive: Drive
@@ -62,7 +62,7 @@ class System(NamedTuple):
 
 @dataclass(frozen=True)
 class CaptureJob(Job):
-    """Job of starts from rest, one value of the parameter per item.
+    """Run starts from rest at several voltages for each value of a parameter.
 
     Attributes
     ----------
@@ -89,16 +89,16 @@ class CaptureJob(Job):
     item: ClassVar[str] = "value"
 
     def count(self) -> int:
-        """Return the number of values of the parameter."""
+        """Return the number of parameter values; at least one."""
         return max(1, len(self.values))
 
     def items(self, inputs: Inputs) -> Sequence[System]:
-        """Return structure and drive of each value."""
+        """Return one pair of structure and drive for each parameter value."""
         system = System(self.structure, self.drive)
         return [with_value(system, self.over, value) for value in self.values] or [system]
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[System], previous: Any) -> Table:
-        """Compute the outcomes at all voltages, and the threshold, for some values."""
+        """Simulate starts at all voltages and bisect for the threshold voltage."""
         rows, borders = [], []
         for system in items:
             start = partial(self.start, fmus, system)
@@ -109,7 +109,7 @@ class CaptureJob(Job):
         return {"outcomes": np.array(rows, dtype=float), "borders": np.array(borders)}
 
     def start(self, fmus: Mapping[str, Path], system: System, voltage: float) -> Outcome:
-        """Run a start from rest until the speed settles."""
+        """Simulate one start from rest at a voltage until the speed has settled."""
         test = settling_test(*system, self.stay)
         if voltage <= system.drive.motor_constant * test.threshold:
             return Outcome(NO_LOAD)
@@ -119,12 +119,12 @@ class CaptureJob(Job):
             return run_until_settled(run, range(job.steps()), test.outcome)
 
     def limit(self, system: System) -> float:
-        """Return the time after which a start that has not settled is undecided, s."""
+        """Return the longest simulated time of a start, s; after it it is undecided."""
         distance = self.tolerance / system.drive.volts(system.structure)
         return self.time or usual_limit(*system, distance)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return passed, captured or undecided over voltage and parameter, and the threshold."""
+        """Build the dataset of outcomes over voltage and of the threshold voltages."""
         import xarray as xr
 
         kept = (slice(None),) if self.over else (0,)
@@ -161,7 +161,7 @@ class CaptureJob(Job):
         return xr.Dataset(variables, coordinates, {"title": title})
 
     def fold(self, system: System) -> float:
-        """Return the averaged theory's highest fold, V; NaN where it has none, or does not hold."""
+        """Return the voltage of the highest fold by averaged theory, V; NaN if unknown."""
         structure, drive = system
         if not structure.bonded or self.control is not None:
             return math.nan
@@ -172,7 +172,7 @@ class CaptureJob(Job):
 def run_until_settled(
     run: Run, steps: range, outcome: Callable[[np.ndarray, np.ndarray], Outcome]
 ) -> Outcome:
-    """Run until ``outcome`` of times and speeds of the revolutions is decided, or to the end.
+    """Simulate a run until its recorded speed decides the outcome, or to its end.
 
     It is asked each time the run has become a fifth longer.
     """
@@ -190,7 +190,7 @@ def run_until_settled(
 
 
 class End(NamedTuple):
-    """One end of the threshold's interval: voltage, V, and the speed reached there, rad/s."""
+    """Store one end of the bracket of the threshold: its voltage, V, and final speed, rad/s."""
 
     voltage: float = math.nan
     speed: float = math.nan
@@ -202,7 +202,7 @@ def threshold_voltage(
     start: Callable[[float], Outcome],
     tolerance: float,
 ) -> tuple[End, End]:
-    """Return two ends by bisection: the highest voltage captured, and the lowest passing above it.
+    """Bracket by bisection the voltage from which a start passes the resonance.
 
     Bisection brings them together to ``tolerance``. An undecided start is neither: the interval
     that is left then is wider than that, and both its sides are brought close to it.
@@ -238,7 +238,7 @@ def threshold_voltage(
 
 
 def with_value(system: System, over: str, value: float) -> System:
-    """Return a system with another value of one parameter, of its drive or its structure.
+    """Replace one parameter of the drive or of the structure, and return both.
 
     Raises
     ------
@@ -251,7 +251,7 @@ def with_value(system: System, over: str, value: float) -> System:
 
 
 def axis(over: str, values: ArrayLike) -> Variable:
-    """Return the coordinate along a parameter, for a dataset."""
+    """Build the dataset's coordinate for the varied parameter, with its unit."""
     if over in DRIVE:
         numbers = np.asarray(values, dtype=float)
         return variable(over, numbers, DRIVE[over].unit, DRIVE[over].description)
@@ -259,7 +259,7 @@ def axis(over: str, values: ArrayLike) -> Variable:
 
 
 def voltages_of(voltage: tuple[float, float], count: int) -> tuple[float, ...]:
-    """Return ``count`` voltages at equal distances between two ends, V."""
+    """Return equally spaced voltages between the two given ends, V."""
     try:
         low, high = (float(value) for value in voltage)
     except (TypeError, ValueError):
@@ -272,7 +272,7 @@ def voltages_of(voltage: tuple[float, float], count: int) -> tuple[float, ...]:
 
 
 def values_of(over: str | None, values: ArrayLike | None, system: System) -> tuple[float, ...]:
-    """Check the parameter's values, each with the system, and return them."""
+    """Check the values of the varied parameter and return them as a tuple of numbers."""
     if (over is None) != (values is None):
         raise InputError(f"over = {over!r} and values = {values!r}: expected both, or none of them")
     if over is None:
@@ -303,7 +303,7 @@ def capture(
     step: float | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Find whether a motor switched on from rest passes the resonance, and the voltage it takes.
+    """Find the voltage from which a motor switched on from rest passes the resonance.
 
     Parameters
     ----------

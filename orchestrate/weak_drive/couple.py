@@ -1,4 +1,4 @@
-"""The coupled system under a voltage that comes and goes: each revolution of the motor is one row.
+"""Run structure and motor FMUs under a varying voltage and report where the speed jumps.
 
 The steps of a run follow each other. It is cut into chunks; each hands over the states of both FMUs
 and of the master, so an interrupted run goes on with the same bits.
@@ -71,7 +71,7 @@ HOLD, HOLD_OF_ROTOR = 4000.0, 200.0  # usual longest hold: in 1/omega, and in th
 
 @dataclass(frozen=True)
 class CoupleJob(CoupledRun):
-    """Run of the coupled system as a job, a chunk of steps after the other."""
+    """Run the coupled FMUs in chunks of steps; test doubtful jumps by holding voltages."""
 
     chunk_size: ClassVar[int] = 4_000
     sequential: ClassVar[bool] = True
@@ -79,23 +79,23 @@ class CoupleJob(CoupledRun):
     item: ClassVar[str] = "step"
 
     def steps(self) -> int:
-        """Return the number of communication steps."""
+        """Return the number of communication steps of the run."""
         return math.ceil(self.schedule.duration / self.scheme.h - 1e-9)
 
     def count(self) -> int:
-        """Return the number of steps, and one for the verdicts on the jumps."""
+        """Return the number of items: all communication steps and one held-voltage test."""
         return self.steps() + 1
 
     def items(self, inputs: Inputs) -> Sequence[int]:
-        """Return the steps, and one more for the verdicts."""
+        """Return the item indices: all communication steps, then the held-voltage test."""
         return range(self.count())
 
     def chunks(self) -> list[Chunk]:
-        """Return chunks of steps; the verdicts are a chunk of their own."""
+        """Split the items into chunks; the held-voltage test is its own last chunk."""
         return with_final_chunk(super().chunks())
 
     def run_here(self, fmus: Mapping[str, Path]) -> Table:
-        """Compute the whole run in this process."""
+        """Run all chunks one after the other in this process and join their tables."""
         chunks: list[Table] = []
         for chunk in self.chunks():
             previous = chunks[-1] if chunks else None
@@ -105,7 +105,7 @@ class CoupleJob(CoupledRun):
         return concatenate_tables(chunks)
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
-        """Compute a chunk of steps, or the verdicts at the end."""
+        """Compute one chunk of communication steps, or the held-voltage test at the end."""
         return self.work_on(fmus, items, previous, self.chunk_size, lambda run: run.revolve(items))
 
     def work_on(
@@ -116,7 +116,7 @@ class CoupleJob(CoupledRun):
         every: int,
         revolve: Callable[[Run], Table],
     ) -> Table:
-        """Compute a chunk of steps, with all that the next one needs; or the verdicts at the end.
+        """Compute one chunk with a given stepping function and return its final state too.
 
         Parameters
         ----------
@@ -137,11 +137,11 @@ class CoupleJob(CoupledRun):
             return {**revolve(run), **run.get_state(), **no_verdicts()}
 
     def progress_note(self, first: int) -> str:
-        """Return the note that the progress bar shows during the held-voltage test."""
+        """Return the progress bar's note for the chunk of the held-voltage test."""
         return "voltages held where a jump is in doubt" if first == self.steps() else ""
 
     def verdicts(self, fmus: Mapping[str, Path], table: Table, every: int) -> Table:
-        """Run the held-voltage test where the record does not decide; return what is stored.
+        """Hold voltages where the ramp's record leaves a jump in doubt; return verdicts.
 
         Parameters
         ----------
@@ -161,6 +161,7 @@ class CoupleJob(CoupledRun):
         with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
 
             def begin(schedule: Schedule) -> Run:
+                """Reset both FMU instances and start a run with another voltage schedule."""
                 for instance in (oscillator, shaker):
                     instance.reset()
                 return Run(replace(self, schedule=schedule), oscillator, shaker)
@@ -184,7 +185,7 @@ class CoupleJob(CoupledRun):
         places: Sequence[Passing],
         up: bool,
     ) -> np.ndarray:
-        """Hold voltages at further places of the record, less those that are clear or held."""
+        """Hold voltages where the record suggests further jumps; return verdicts."""
         found = [(THROUGH, verdict) for verdict in course.further]
         known, volts = outcomes(course), self.drive.volts(self.structure)
         sign = 1.0 if up else -1.0
@@ -208,14 +209,14 @@ class CoupleJob(CoupledRun):
         return as_rows(found)
 
     def earlier(self, table: Table, passing: Passing, up: bool) -> Passing:
-        """Return a place that begins before: a ramp shows late that a motion is lost."""
+        """Move the start of a suspected jump earlier, because a ramp shows losses late."""
         time, rows = table["time"], self.sweep_leg(table, up)[1]
         late = LATE / (self.drive.b(self.structure) * self.structure.omega)
         before = max(int(np.searchsorted(time, time[passing.before] - late)) - 1, int(rows[0]))
         return passing._replace(before=min(before, passing.before))
 
     def further_places(self, table: Table, up: bool) -> list[Passing]:
-        """Return where else a motion may be lost in a direction, by rows of the table."""
+        """Find suspected further jumps in one direction, as rows of the table."""
         leg, rows = self.sweep_leg(table, up)
         if self.control or not rows.size:
             return []
@@ -233,7 +234,7 @@ class CoupleJob(CoupledRun):
         return places
 
     def sweep_leg(self, table: Table, up: bool) -> tuple[SweepLeg, np.ndarray]:
-        """Return the revolutions on which the voltage goes up or down, and their row indices."""
+        """Return the revolutions with rising (or falling) voltage and their row indices."""
         eta0 = np.abs(table["voltage"]) / self.drive.volts(self.structure)
         Omega = np.abs(table["speed"]) / self.structure.omega
         trend = self.schedule.trend(table["time"])
@@ -241,7 +242,7 @@ class CoupleJob(CoupledRun):
         return SweepLeg(table["time"][rows] * self.structure.omega, eta0[rows], Omega[rows]), rows
 
     def passing(self, table: Table, up: bool) -> Passing | None:
-        """Return how the speed passes the resonance, by rows of the table; None if it does not."""
+        """Find how the speed passes the resonance in one direction; None if it does not."""
         leg, rows = self.sweep_leg(table, up)
         divide = own_resonance.dividing_speed(self.structure, self.drive)
         rows_in_leg = find_passing(leg, self.drive.b(self.structure), up, divide)
@@ -252,7 +253,7 @@ class CoupleJob(CoupledRun):
         return Passing(row, before, after, rows_in_leg.look, half)
 
     def doubt(self, table: Table, up: bool) -> tuple[Passing, tuple[int, int]] | None:
-        """Return a doubtful passing, and first and last step of its sweep; None if it is clear."""
+        """Return a doubtful passage of the resonance in steps; None if the record is clear."""
         passing = None if self.control else self.passing(table, up)
         theory = theories(self.structure, self.drive)[UPWARD.index(up)]
         if passing is None or not is_doubtful(passing, self.structure.bonded, theory):
@@ -260,7 +261,7 @@ class CoupleJob(CoupledRun):
         return self.by_steps(table, passing, up)
 
     def by_steps(self, table: Table, passing: Passing, up: bool) -> tuple[Passing, tuple[int, int]]:
-        """Return a passing by steps of the run, and first and last step of its sweep."""
+        """Convert a passage from table rows to communication steps, with its sweep's ends."""
         rows = self.sweep_leg(table, up)[1]
         times = table["time"][[*passing[:3], rows[0], rows[-1]]]
         row, before, after, first, last = (
@@ -269,7 +270,7 @@ class CoupleJob(CoupledRun):
         return Passing(row, before, after, passing.look, float(row)), (first, last)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return all revolutions and the jumps up and down as a dataset with units.
+        """Build the dataset of all revolutions, of the jumps and of their verdicts.
 
         Raises
         ------
@@ -314,7 +315,7 @@ class CoupleJob(CoupledRun):
         )
 
     def jumps(self, table: Table) -> dict[str, Variable]:
-        """Return the jumps up and down, or why there is none; if bonded, with the theory's."""
+        """Build the variables of the jump in each direction, or the reason for none."""
         held = [Verdict(int(row[0]), *row[1:]) for row in table["verdicts"][-1]]
         theory = theories(self.structure, self.drive)
         found = [self.losses(table, i, held[i]) for i in range(len(UPWARD))]
@@ -346,7 +347,7 @@ class CoupleJob(CoupledRun):
         return columns | held_columns(final)
 
     def losses(self, table: Table, i: int, primary: Verdict) -> tuple[Loss | None, list[Loss]]:
-        """Return the passing of the resonance in a direction, and all other losses there."""
+        """Collect all losses of stability in a direction; that at the resonance first."""
         if self.control:
             return None, []
         up, volts = UPWARD[i], self.drive.volts(self.structure)
@@ -361,7 +362,7 @@ class CoupleJob(CoupledRun):
         return gather_losses(table, rows, self.passing(table, up), primary, places, further)
 
     def theory(self, jumps: np.ndarray) -> dict[str, Variable]:
-        """Return where and by what the averaged theory loses the bonded structure's motion."""
+        """Build the variables that compare bonded jumps with the averaged theory."""
         structure, volts = self.structure, self.drive.volts(self.structure)
         text = "how late the jump comes on the ramp, by the averaged theory (bonded only)"
         late = {"units": "V", "long_name": text}
@@ -378,14 +379,14 @@ class CoupleJob(CoupledRun):
         }
 
     def why_none(self, table: Table, up: bool) -> str:
-        """Return why the speed does not pass the resonance for good in a direction."""
+        """Explain why the speed does not pass the resonance in a direction."""
         if self.control:
             return "a controller sets the voltage"
         resonance = own_resonance.resonance(self.structure, self.drive)
         return why_none(self.sweep_leg(table, up)[0], up, resonance)
 
     def ends_within(self, table: Table, up: bool) -> str:
-        """Return why a direction is undecided: the sweep ends short of a resonance; else empty."""
+        """Explain that the sweep ends before a resonance; empty text if it does not."""
         leg, rows = self.sweep_leg(table, up)
         low, high = own_resonance.dividing_speeds(self.structure, self.drive)
         end = float(leg.Omega[-LAST_REVOLUTIONS:].mean())
@@ -400,7 +401,7 @@ class CoupleJob(CoupledRun):
         )
 
     def attributes(self, table: Table) -> dict[str, str | float]:
-        """Return the title, and what the coupling has lost of the motor's work."""
+        """Return the dataset's title and the relative energy errors of the coupling."""
         state = "bonded" if self.structure.bonded else "delaminated"
         motor = float(table["motor"][-1])
         return {
@@ -411,7 +412,7 @@ class CoupleJob(CoupledRun):
 
 
 def no_verdicts() -> Table:
-    """Return empty arrays: chunks of steps have no held-voltage results."""
+    """Return empty verdict arrays, for chunks that consist of communication steps."""
     return {
         name: values[:0]
         for name, values in stored_verdicts(
@@ -421,7 +422,7 @@ def no_verdicts() -> Table:
 
 
 def stored_verdicts(verdicts: Sequence[Verdict], further: Sequence[np.ndarray]) -> Table:
-    """Return the verdicts on the passings, and those on further places, as they are stored."""
+    """Pack the verdicts at the resonance and the further ones into arrays to store."""
     return {
         "verdicts": np.array(verdicts, dtype=float)[np.newaxis],
         "further_verdicts": np.array(further)[np.newaxis],
@@ -429,12 +430,12 @@ def stored_verdicts(verdicts: Sequence[Verdict], further: Sequence[np.ndarray]) 
 
 
 def concatenate_tables(tables: Sequence[Table]) -> Table:
-    """Concatenate the tables of chunks."""
+    """Join the tables of successive chunks."""
     return {name: np.concatenate([part[name] for part in tables]) for name in tables[0]}
 
 
 def held_columns(verdicts: Sequence[Verdict]) -> dict[str, Variable]:
-    """Return the results of the held-voltage test, and between which voltages."""
+    """Build the variables of the held-voltage verdicts and of the voltage brackets."""
     codes = [int(verdict.outcome) for verdict in verdicts]
     middles = [0.5 * (verdict.low + verdict.high) for verdict in verdicts]
     errors = [0.5 * abs(verdict.high - verdict.low) for verdict in verdicts]
@@ -448,9 +449,10 @@ def held_columns(verdicts: Sequence[Verdict]) -> dict[str, Variable]:
 
 
 def jump_columns(table: Table, jumps: Sequence[Passing | None]) -> dict[str, Variable]:
-    """Return voltage, speed, amplitude and rate at jumps; NaN where there is none."""
+    """Build the variables of voltage, time, speed and amplitude at each jump."""
 
     def at(name: str, row_name: str) -> list[float]:
+        """Interpolate one column of the table at each jump; NaN without a jump."""
         values = table[name]
         return [
             math.nan
@@ -460,6 +462,7 @@ def jump_columns(table: Table, jumps: Sequence[Passing | None]) -> dict[str, Var
         ]
 
     def rate(jump: Passing | None) -> float:
+        """Return the mean rate of the voltage across a jump, V/s."""
         if jump is None:
             return math.nan
         ends = [jump.before, jump.after]
@@ -484,7 +487,7 @@ def jump_columns(table: Table, jumps: Sequence[Passing | None]) -> dict[str, Var
 
 
 def require_motor(drive: Drive) -> None:
-    """Check that a voltage turns the motor."""
+    """Raise an error if the drive has no motor constant."""
     if not drive.motor_constant > 0.0:
         raise InputError(f"motor_constant = {drive.motor_constant} N.m/A: expected a number > 0")
 
@@ -500,7 +503,7 @@ def schedule_of(
     back: bool = True,
     spin_up: float | None = None,
 ) -> Schedule:
-    """Return a schedule from the arguments of :func:`couple`."""
+    """Build the voltage schedule from the arguments of :func:`couple`."""
     if isinstance(voltage, Schedule):
         return voltage
     try:
@@ -534,7 +537,7 @@ def scheme_of(
     tolerance: float | None = None,
     sampled: bool = False,
 ) -> Scheme:
-    """Return a scheme from arguments of :func:`couple`; ``sampled``: each step is a sample."""
+    """Choose algorithm, communication step and tolerance from :func:`couple` arguments."""
     omega = structure.omega
     if tolerance is None:
         controlled = step is None and Scheme(algorithm).goes_back
@@ -556,7 +559,7 @@ def couple_job(
     control: Controller | None = None,
     hold: float | None = None,
 ) -> CoupleJob:
-    """Return the job of a run with this schedule.
+    """Check the arguments of a coupled run and build its job.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Many coupled runs at once: sets, rates, bonded and delaminated, shared out by the one runner.
+"""Run many coupled systems side by side: several systems, ramp rates, bonded or not.
 
 Each run is a job of its own: with a folder as store it is a file of its own there, goes on where it
 was interrupted, and is not computed again by a later call with more sets or rates.
@@ -34,7 +34,7 @@ System = tuple[Structure, Drive]
 
 
 def ends_of(structure: Structure, drive: Drive) -> tuple[float, float]:
-    """Return voltages over K omega, by the averaged theory: below all resonances, and past all."""
+    """Return the two ends of the voltage ramp, over K omega, from below to past resonance."""
     low, high = own_resonance.resonances(structure, drive)
     first, last = (
         float(averaged.no_load_speed(structure, drive, speed))
@@ -53,7 +53,7 @@ def job_of(
     back: bool,
     step: float | None,
 ) -> CoupleJob:
-    """Return the coupled run of one system, kind and rate, from non-dimensional numbers."""
+    """Build the job of one coupled run from non-dimensional voltages and rate."""
     structure, drive = system
     structure = structure.as_bonded() if kind == "bonded" else structure.as_delaminated()
     require_motor(drive)
@@ -77,7 +77,7 @@ def couple_all(
     step: float | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Couple many structures with their motors, at many rates, side by side.
+    """Couple many structures with their motors, at many ramp rates, side by side.
 
     Parameters
     ----------

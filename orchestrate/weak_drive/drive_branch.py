@@ -1,4 +1,4 @@
-"""Branches of the coupled system: its stationary motions round all folds, stable and unstable.
+"""Trace the branches of stationary motions of the weak drive, round folds, with stability.
 
 Each point is a periodic motion of structure and motor together, the fluctuation of the speed
 included, with the voltage that holds it and its Floquet multipliers. Where the voltage is largest
@@ -69,7 +69,7 @@ Leg = BranchSegment[Motion]
 
 @dataclass(frozen=True)
 class DriveBranchJob(Job):
-    """Branches of both structures; attributes are as in :func:`orchestrate.drive_branch`."""
+    """Trace the branches of the bonded and the delaminated structure."""
 
     structure: Structure
     drive: Drive
@@ -84,17 +84,17 @@ class DriveBranchJob(Job):
     item: ClassVar[str] = "branch"
 
     def count(self) -> int:
-        """Return two: bonded and delaminated."""
+        """Return the number of structures: bonded and delaminated."""
         return len(STRUCTURES)
 
     def items(self, inputs: Inputs) -> Sequence[Structure]:
-        """Return both structures."""
+        """Return the structure as bonded and as delaminated."""
         return self.structure.as_bonded(), self.structure.as_delaminated()
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Structure], previous: Table | None
     ) -> Table:
-        """Trace the branches of some structures: each a row of legs, NaN beyond a leg's end."""
+        """Trace all legs of each structure and return them as arrays padded with NaN."""
         rows = []
         for structure in items:
             with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
@@ -109,15 +109,15 @@ class DriveBranchJob(Job):
 
     @property
     def settings(self) -> ContinuationSettings:
-        """Settings of the tracer, which does not count the start as a point."""
+        """Return the continuation settings: longest step and number of points."""
         return ContinuationSettings(self.longest, self.most - 1)
 
     def max_turns(self, structure: Structure) -> int:
-        """Return the largest period that is followed, in revolutions."""
+        """Return the longest period that is traced, in revolutions."""
         return 1 if structure.bonded else self.period
 
     def legs(self, fmus: tuple[Instance, Instance], structure: Structure) -> list[Leg]:
-        """Trace the branch from the lowest speed; from the highest too where that one ends before.
+        """Trace the branch from the lowest speed, and from the highest if needed.
 
         Then those of twice the period, off the first doublings of both.
         """
@@ -138,21 +138,21 @@ class DriveBranchJob(Job):
         return [*legs, *(Leg(end=NOT_BEGUN) for _ in LEGS[len(legs) :])]
 
     def is_to_double(self, flip: Bifurcation[Motion], legs: Sequence[Leg], turns: int) -> bool:
-        """Return whether a branch of twice the period begins here that is not traced yet."""
+        """Return whether a period doubling starts a leg that is not traced yet."""
         if flip.kind != FLIP or 2 * flip.point.period.revolutions > turns:
             return False
         ends = [leg.points[-1].place for leg in legs if leg.end == HALVED]
         return not any(np.abs(flip.point.place - end).max() < 2.0 * self.longest for end in ends)
 
     def doubled_leg(self, shooter: Shooter, flip: Motion, speeds: tuple[float, float]) -> Leg:
-        """Trace the branch of twice the period off a period doubling."""
+        """Trace the leg of twice the period from a period doubling."""
         try:
             return trace_branch(shooter, double_period(shooter, flip), speeds, self.settings)
         except NoConvergenceError:
             return Leg(end=NO_START)
 
     def leg(self, shooter: Shooter, speeds: tuple[float, float], up: bool) -> Leg:
-        """Trace the branch from one of two speeds over omega, at which a simulation is held.
+        """Trace one leg from the lowest or the highest speed, begun by simulation.
 
         It is traced with the shortest period after which its first motion repeats.
         """
@@ -175,7 +175,7 @@ class DriveBranchJob(Job):
         return trace_branch(shooter, start, speeds, self.settings)
 
     def numbers(self, motions: Sequence[Motion]) -> np.ndarray:
-        """Return the columns of motions, padded with NaN, shape (most, numbers)."""
+        """Convert motions to a table of speed, voltage, amplitude and multipliers."""
         table = np.full((self.most, len(COLUMNS) + MULTIPLIERS), np.nan, dtype=complex)
         volts, omega = self.drive.volts(self.structure), self.structure.omega
         for row, motion in zip(table, motions, strict=False):
@@ -186,14 +186,14 @@ class DriveBranchJob(Job):
         return table
 
     def codes(self, leg: Leg) -> np.ndarray:
-        """Return the kinds of a leg's bifurcations as numbers, padded with -1."""
+        """Return the kinds of a leg's bifurcations as integers, padded with -1."""
         numbers = np.full(self.most, -1)
         codes = [BIFURCATIONS.index(each.kind) for each in leg.bifurcations][: self.most]
         numbers[: len(codes)] = codes
         return numbers
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return both branches, and their bifurcations."""
+        """Build the dataset of both branches and of their bifurcations."""
         import xarray as xr
 
         points = table["points"]
@@ -221,12 +221,12 @@ class DriveBranchJob(Job):
 
 
 def labels(unit: str, text: str) -> dict[str, str]:
-    """Return the attributes of a variable."""
+    """Return the unit and the long name of a variable as its attributes."""
     return {"units": unit, "long_name": text}
 
 
 def motion_variables(dims: tuple[str, ...], numbers: np.ndarray) -> dict[str, Variable]:
-    """Return columns of motions as variables of a dataset."""
+    """Convert a table of motions to the variables of a dataset."""
     variables: dict[str, Variable] = {
         name: (dims, numbers[..., i].real, labels(unit, text))
         for i, (name, (unit, text)) in enumerate(COLUMNS.items())
@@ -254,7 +254,7 @@ def drive_branch(
     settle: float | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Trace stationary motions of structure and motor together, stable and unstable, round folds.
+    """Trace stationary motions of structure and motor, stable and unstable, round folds.
 
     Parameters
     ----------

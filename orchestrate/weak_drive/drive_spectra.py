@@ -1,4 +1,4 @@
-"""Figure 3: spectra of accelerations where a motor of limited power hangs at the resonance.
+"""Compute acceleration spectra while a motor of limited power hangs at the resonance.
 
 The voltage is taken slowly to a value below the jump and held. Then the displacement in space is
 sampled over whole revolutions, and its spectrum multiplied by the square of the frequency: an
@@ -43,7 +43,7 @@ SHARES = (0.6, 0.45, 0.3, 0.15)  # of the way from the jump down to the jump up:
 
 @dataclass(frozen=True)
 class DriveSpectraJob(Job):
-    """Job of the spectra of both structures; fields as in :func:`orchestrate.drive_spectra`.
+    """Compute the spectra of the bonded and the delaminated structure.
 
     Attributes
     ----------
@@ -63,22 +63,22 @@ class DriveSpectraJob(Job):
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
 
     def count(self) -> int:
-        """Return two: bonded and delaminated."""
+        """Return the number of structures: bonded and delaminated."""
         return len(KINDS)
 
     def items(self, inputs: Inputs) -> Sequence[Structure]:
-        """Return both structures."""
+        """Return the structure as bonded and as delaminated."""
         return self.structure.as_bonded(), self.structure.as_delaminated()
 
     def orders(self) -> np.ndarray:
-        """Return the lines as multiples of the motor's speed."""
+        """Return the spectral lines as multiples of the motor's speed."""
         orders = np.arange(self.revolutions * self.points // 2 + 1) / self.revolutions
         return np.asarray(orders[orders <= self.highest])
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Structure], previous: Table | None
     ) -> Table:
-        """Compute spectra of both masses and the motor's speed."""
+        """Compute both masses' acceleration spectra and the mean motor speed."""
         records = [self.record(fmus, structure) for structure in items]
         lines = len(self.orders())
         spectra, speeds = [], []
@@ -89,7 +89,7 @@ class DriveSpectraJob(Job):
         return {"acceleration": np.array(spectra), "speed": np.array(speeds)}
 
     def record(self, fmus: Mapping[str, Path], structure: Structure) -> tuple[np.ndarray, float]:
-        """Return both masses' displacements in space, (2, samples), m, and mean speed, rad/s."""
+        """Approach and hold the voltage; return sampled displacements and speed."""
         scheme = scheme_of(structure, self.step, "rollback", 0.0)
         job = couple_job(structure, self.drive, self.approach, scheme)
         steps = range(math.ceil((self.approach.duration + self.hold) / self.step))
@@ -104,7 +104,7 @@ class DriveSpectraJob(Job):
             return self.sample(run, TURN / speed / self.points), float(speed)
 
     def sample(self, run: Run, interval: float) -> np.ndarray:
-        """Return both masses' displacements in space at equal times, from those at rest, m.
+        """Sample both masses' absolute displacements at equal times, m.
 
         A preload's own displacements would leak into the lowest lines.
         """
@@ -118,13 +118,13 @@ class DriveSpectraJob(Job):
         return np.array([motion.x1 - rest_1 + box, motion.x2 - rest_2 + box])
 
     def hangs(self, fmus: Mapping[str, Path]) -> bool:
-        """Return whether the delaminated structure, the first to jump, is still at resonance."""
+        """Return whether the delaminated structure still hangs at the resonance."""
         short, structure = replace(self, revolutions=8, points=4), self.structure.as_delaminated()
         divide = own_resonance.dividing_speed(structure, self.drive) * structure.omega
         return short.record(fmus, structure)[1] < divide
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return amplitudes over the lines."""
+        """Build the dataset of acceleration amplitudes over spectral lines."""
         import xarray as xr
 
         orders, speeds = self.orders(), table["speed"]
@@ -187,7 +187,7 @@ def drive_spectra(
     highest: float = 12.0,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Compute spectra of the masses' accelerations in space, shaken by a motor of limited power.
+    """Compute spectra of both masses' absolute accelerations under a weak motor.
 
     Parameters
     ----------

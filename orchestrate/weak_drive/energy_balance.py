@@ -1,4 +1,4 @@
-"""The energy balance: where the motor's work has gone, and what the coupling has lost of it.
+"""Balance the energies of a coupled run: motor work, losses and the coupling's energy defect.
 
 The shaker's FMU keeps its own account. What the structure has lost, in dampers and impacts, follows
 from the work that the box's acceleration did on it, as it was told it, less the energy it has
@@ -20,7 +20,7 @@ from .polynomials import coefficients, end_value, product, quartic
 
 
 class Energies(NamedTuple):
-    """Energies since the start, J: the motor's work and where it has gone.
+    """Store the energies since the start, J: the motor's work and where it has gone.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class Energies(NamedTuple):
 
 
 class EnergyBalance:
-    """Energy accounts of a run.
+    """Sum up the energies of a coupled run, step by step.
 
     Parameters
     ----------
@@ -68,6 +68,7 @@ class EnergyBalance:
     def __init__(
         self, structure: Structure, motion: OscillatorOutputs, shaking: ShakerOutputs
     ) -> None:
+        """Record the energies at the start, from both FMUs' outputs."""
         self._masses = structure.m1, structure.m2
         self._stiffnesses = structure.k1, structure.k2
         self._rest, self._preload = structure.at_rest, structure.preload
@@ -75,7 +76,7 @@ class EnergyBalance:
         self.start = self._accounts(motion, shaking)
 
     def relative_energy(self, motion: OscillatorOutputs) -> float:
-        """Return the energy of the structure, seen from the box: 0 at rest.
+        """Return the structure's energy by its motion relative to the box, J.
 
         A preload F adds F times the gap to the springs' energy by the displacements from rest; so
         little is lost of a motion that is small beside it.
@@ -87,7 +88,7 @@ class EnergyBalance:
         return own + self._preload * motion.x_rel
 
     def energy(self, motion: OscillatorOutputs, velocity: float) -> float:
-        """Return the energy of the structure in space, the box moving with ``velocity``."""
+        """Return the structure's energy by its absolute motion, for a box velocity, J."""
         m1, m2 = self._masses
         momentum = m1 * motion.v1 + m2 * motion.v2
         return self.relative_energy(motion) + velocity * (momentum + 0.5 * (m1 + m2) * velocity)
@@ -100,7 +101,7 @@ class EnergyBalance:
         defect: float,
         h: float,
     ) -> None:
-        """Add a step.
+        """Add the energy lost in the structure over one step, and the step's defect.
 
         Parameters
         ----------
@@ -123,7 +124,7 @@ class EnergyBalance:
     def _momentum(
         self, before: OscillatorOutputs, after: OscillatorOutputs, acceleration: Cubic, h: float
     ) -> tuple[float, ...]:
-        """Return coefficients in t/h of the masses' momentum over a step, relative to the box."""
+        """Return the masses' relative momentum over a step as a quartic in t/h."""
         m1, m2 = self._masses
         mass = m1 + m2
         ends = (m1 * before.v1 + m2 * before.v2, m1 * after.v1 + m2 * after.v2)
@@ -133,7 +134,7 @@ class EnergyBalance:
         return quartic(ends, (first, last), mean)
 
     def _accounts(self, motion: OscillatorOutputs, shaking: ShakerOutputs) -> tuple[float, ...]:
-        """Return energies since the start: motor, damper of the box, impacts, stored, dampers."""
+        """Return motor work, box damping, impact loss, stored energy, mass damping."""
         return (
             shaking.motor_energy,
             shaking.box_damper_energy,
@@ -143,17 +144,17 @@ class EnergyBalance:
         )
 
     def energies(self, motion: OscillatorOutputs, shaking: ShakerOutputs) -> Energies:
-        """Return the balance at a communication point, since it was opened."""
+        """Return all energies since the start, given both FMUs' present outputs."""
         now = self._accounts(motion, shaking)
         motor, *others = (value - start for value, start in zip(now, self.start, strict=True))
         accounts = (motor, *others, motor - sum(others), self.defect, self.defect_sizes)
         return Energies._make(accounts)
 
     def get_state(self) -> list[float]:
-        """Return the accounts as a list of floats."""
+        """Return the sums as a list of floats, to be restored later."""
         return [self.lost, self.defect, self.defect_sizes, *self.start]
 
     def set_state(self, numbers: Sequence[float]) -> None:
-        """Return to a state that :meth:`get_state` gave."""
+        """Restore the sums that :meth:`get_state` returned."""
         self.lost, self.defect, self.defect_sizes = numbers[:3]
         self.start = tuple(numbers[3:])

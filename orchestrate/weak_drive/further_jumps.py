@@ -1,4 +1,4 @@
-"""Further jumps of a ramp: places of its record where another motion may be lost.
+"""Search a ramp's record for speed jumps besides the passing of the resonance.
 
 Beside the passing of the resonance the speed may jump once more, by less. On a stable branch below
 the resonance the torque that the vibration takes grows with the speed. It is the slip less what
@@ -39,7 +39,7 @@ APART = 4  # widths of the mean between two places; for fewer no scatter is know
 def find_further(
     leg: SweepLeg, b: float, up: bool, threshold: float, main: tuple[int, int] | None = None
 ) -> list[Passing]:
-    """Find where a motion may be lost beside the passing of the resonance, in the ramp's order.
+    """Find where the ramp may lose a motion besides the passing of the resonance.
 
     Parameters
     ----------
@@ -65,9 +65,11 @@ def find_further(
     found: list[Passing] = []
 
     def spans() -> list[tuple[int, int]]:
+        """Return the row ranges that already belong to a jump."""
         return [(other.before, other.after) for other in found] + ([main] if main else [])
 
     def is_elsewhere(before: int, after: int) -> bool:
+        """Return whether a row range overlaps no jump that is already found."""
         return all(after < low or before > high for low, high in spans())
 
     for high, low in falls(torque, LEAST):
@@ -99,14 +101,14 @@ def find_further(
 
 
 def vibration_torque(means: SweepLeg, b: float, width: int) -> np.ndarray:
-    """Return the torque that the vibration takes, as a speed over omega; of 2 widths less rows."""
+    """Compute the mean torque taken by the vibration, as a speed over omega."""
     middle = slice(width, len(means.time) - width)
     acceleration = lag_difference(means.Omega, 2 * width) / lag_difference(means.time, 2 * width)
     return np.asarray((means.eta0 - means.Omega)[middle] - acceleration / b)
 
 
 def falls(values: np.ndarray, least: float) -> list[tuple[int, int]]:
-    """Return from where to where values fall by a least amount, between rises by it."""
+    """Find the spans from a maximum to the next minimum that fall by at least `least`."""
     found, high, low, falling = [], 0, 0, False
     for i, value in enumerate(values.tolist()):
         if falling:
@@ -122,7 +124,7 @@ def falls(values: np.ndarray, least: float) -> list[tuple[int, int]]:
 
 
 def scatter_of(values: np.ndarray, width: int) -> float:
-    """Return the standard deviation of values about a smooth course; infinite for too few."""
+    """Estimate the standard deviation of values about a smooth trend."""
     if len(values) < APART * width:
         return math.inf
     third = values
@@ -132,6 +134,6 @@ def scatter_of(values: np.ndarray, width: int) -> float:
 
 
 def stretches(runs: np.ndarray, first: int, last: int) -> list[tuple[int, int]]:
-    """Return first and last index of each stretch of true values that begins in a range."""
+    """Return first and last index of each run of true values that begins in a range."""
     begins = np.flatnonzero(runs & ~np.concatenate([[False], runs[:-1]]))
     return [extent(runs, int(i)) for i in begins if first <= i <= last]

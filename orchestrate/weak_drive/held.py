@@ -1,4 +1,4 @@
-"""Held-voltage test: bracket the voltage at which a motion is lost near the resonance.
+"""Bracket the voltage at which a speed jump happens, by holding voltages until speeds settle.
 
 Where the record of a ramp does not tell a jump from a steep branch, a state of the run is restored
 and its voltage is held until the speed has settled. From there the voltage goes on in short steps,
@@ -49,7 +49,7 @@ MEANINGS = {
 
 
 class Verdict(NamedTuple):
-    """Result of the held-voltage test in one direction.
+    """Store a result of the held-voltage test: the outcome and the bracket of voltages.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class Verdict(NamedTuple):
 
 
 class HeldCourse(NamedTuple):
-    """What a course of held voltages tells.
+    """Store the verdicts on the largest and on all other speed changes of a held course.
 
     Attributes
     ----------
@@ -82,7 +82,7 @@ class HeldCourse(NamedTuple):
 
 
 class Settled(NamedTuple):
-    """The end of a motion at a held voltage.
+    """Store where the speed settled at a held voltage, and the state reached.
 
     Attributes
     ----------
@@ -110,7 +110,7 @@ class Settled(NamedTuple):
 
 @dataclass(frozen=True)
 class HoldSettings:
-    """Settings of the held-voltage test.
+    """Set steps, tolerances and limits of the held-voltage test.
 
     Attributes
     ----------
@@ -173,7 +173,7 @@ class HoldSettings:
 
 
 class HeldVoltageTest:
-    """Test of a past run, from whose states the voltage is held.
+    """Test whether a past ramp lost a motion, by restoring states and holding voltages.
 
     Parameters
     ----------
@@ -200,13 +200,14 @@ class HeldVoltageTest:
         longest: float,
         settings: HoldSettings | None = None,
     ) -> None:
+        """Store the ramp's schedule, its units and the settings of the test."""
         self.begin, self.schedule, self.step = begin, schedule, step
         self.omega, self.volts, self.longest = omega, volts, longest
         self.settings = settings or HoldSettings()
         self.checkpoints: dict[int, Table] = {}
 
     def for_further_jumps(self) -> HeldVoltageTest:
-        """Return this test, its checkpoints shared, for jumps beside the passing's."""
+        """Return a copy of this test with the settings for further jumps."""
         test, settings = copy(self), self.settings
         test.settings = replace(
             settings, two_motions=settings.further_motions, smallest_jump=settings.further_jump
@@ -214,13 +215,13 @@ class HeldVoltageTest:
         return test
 
     def add_checkpoints(self, table: Table, every: int, steps: int) -> None:
-        """Store the states of a table, one after each ``every`` steps."""
+        """Store the ramp's saved states by their communication step."""
         for i in range(len(table["master_memory"])):
             state = {name: table[name][[i]] for name in MEMORY}
             self.checkpoints[min((i + 1) * every, steps)] = state
 
     def state(self, step: int) -> Table | None:
-        """Return the state before a step; None for the start."""
+        """Return the ramp's state before a step, recomputed from a checkpoint."""
         if step not in self.checkpoints and step:
             last = max((known for known in self.checkpoints if known < step), default=0)
             run = self.begin(self.schedule)
@@ -234,19 +235,19 @@ class HeldVoltageTest:
         return self.checkpoints.get(step)
 
     def hold_step(self, step: int) -> Settled:
-        """Hold the run's voltage of a step from its state there on."""
+        """Hold the voltage that the ramp has at a step, from its state there."""
         return self.hold(self.state(step), self.voltage(step))
 
     def voltage(self, step: int) -> float:
-        """Return the run's voltage at a step, V."""
+        """Return the voltage of the ramp at a communication step, V."""
         return self.schedule.voltage((step + 0.5) * self.step)
 
     def step_from(self, point: Settled, voltage: float) -> Settled:
-        """Change the voltage in one step, and hold it."""
+        """Change the voltage in one step from a held point, and hold it there."""
         return self.hold(point.state, voltage)._replace(origin=point.voltage)
 
     def hold(self, state: Table | None, voltage: float) -> Settled:
-        """Hold a voltage from a state on until the speed has settled, or the time is over."""
+        """Simulate a constant voltage from a state until the speed settles."""
         count = math.ceil(self.longest / self.step)
         piece = max(1, round(150.0 / self.omega / self.step))
         run, speeds = self.begin(Constant(voltage, count * self.step)), np.zeros(0)
@@ -274,7 +275,7 @@ class HeldVoltageTest:
         up: bool,
         resonance: tuple[float, float] | None = None,
     ) -> HeldCourse:
-        """Classify whether motions are lost on the way past a speed.
+        """Decide whether a passage of a speed threshold loses the motion, and where.
 
         Parameters
         ----------
@@ -293,6 +294,7 @@ class HeldVoltageTest:
         near, far = (resonance or (threshold, threshold))[:: 1 if up else -1]
 
         def beyond(point: Settled, threshold: float = threshold) -> bool:
+            """Return whether a held speed has passed a threshold in the voltage's direction."""
             return sign * (point.speed - threshold) > 0.0
 
         step, back = steps.before, max(1, steps.row - steps.before)
@@ -318,7 +320,7 @@ class HeldVoltageTest:
         return HeldCourse(verdict, tuple(others))
 
     def changes(self, points: list[Settled], sign: float) -> list[Verdict]:
-        """Bracket the largest change, and then all others that may be losses.
+        """Bracket the largest speed change and all others that may be jumps.
 
         Others count where the speed changes from one voltage to the next by more than the voltage
         does, and by as much as tells two motions apart: a branch is steeper only beside a fold.
@@ -335,14 +337,14 @@ class HeldVoltageTest:
         return verdicts
 
     def may_be_a_loss(self, low: Settled, high: Settled, sign: float) -> bool:
-        """Return whether the speed changes more than the voltage, by two motions' difference."""
+        """Return whether the speed changes too much for one stable branch."""
         allowed = abs(high.voltage - low.voltage) / self.volts + self.smallest_change(low, high)
         return sign * (high.speed - low.speed) > allowed
 
     def further(
         self, point: Settled, voltage: float, last: int, sign: float, speed: float
     ) -> list[Settled]:
-        """Go on in steps until a speed is well past, as far as the run went; return points."""
+        """Step the voltage further until the speed is well past a threshold."""
         end, points = self.voltage(last), [point]
         step, missing = sign * self.settings.stair * self.volts, sign * (speed - point.speed)
         left = self.settings.max_stairs + math.ceil(max(missing, 0.0) / self.settings.stair)
@@ -356,13 +358,13 @@ class HeldVoltageTest:
         return points[1:]
 
     def target(self, after: int, last: int, sign: float) -> float:
-        """Return the voltage to go to, V: well past the passing, within the run's range."""
+        """Return the voltage where the held steps are to end, well past the jump, V."""
         past = self.voltage(after) + sign * self.settings.past * self.volts
         end = self.voltage(last)
         return min(past, end) if sign > 0.0 else max(past, end)
 
     def comes_back(self, points: list[Settled]) -> bool:
-        """Go the same steps back; return whether the speeds are the same, as far as they settle."""
+        """Step the voltages back; return whether the same speeds settle again."""
         last = points[-1]
         for point in reversed(points[:-1]):
             back = self.step_from(last, point.voltage)
@@ -372,7 +374,7 @@ class HeldVoltageTest:
         return True
 
     def stairs(self, low: Settled, target: float) -> list[Settled]:
-        """Go to a voltage in steps; return the first point and those that settled."""
+        """Step the voltage to a target; return the points at which it settled."""
         span = abs(target - low.voltage) / self.volts
         count = max(1, min(math.ceil(span / self.settings.stair), self.settings.max_stairs))
         points = [low]
@@ -383,12 +385,12 @@ class HeldVoltageTest:
         return points
 
     def falls_back(self, low: Settled, sign: float) -> bool:
-        """Return whether a held speed falls behind the ramp's: then it went to another motion."""
+        """Return whether the held speed left the motion that the ramp was on."""
         allowed = 2.0 * self.settings.distinct + 3.0 * low.error
         return sign * (low.speed - low.begin) < -allowed
 
     def between(self, points: list[Settled], sign: float) -> Verdict:
-        """Bracket the largest rise (``sign`` -1: fall) of the settled speed, and say what it is."""
+        """Halve voltage steps until the largest speed change is bracketed, and judge it."""
         ended = math.nan
         for _ in range(self.settings.max_holds):
             i, low, high = largest_change(points, sign)
@@ -419,17 +421,17 @@ class HeldVoltageTest:
         return Verdict(UNDECIDED, low.voltage, high.voltage)
 
     def smallest_change(self, low: Settled, high: Settled) -> float:
-        """Return the change of the speed over omega below which two neighbours show no jump."""
+        """Return the smallest speed change that may be a jump, over omega."""
         settings = self.settings
         return min(settings.smallest_jump + noise(low, high), settings.largest_scatter)
 
     def inside(self, low: Settled, high: Settled) -> Iterator[Settled]:
-        """Hold voltages between two points and yield the results: the middle first."""
+        """Hold voltages between two points and yield each result, the middle first."""
         for part in (0.5, 0.25, 0.75):
             yield self.step_from(low, low.voltage + part * (high.voltage - low.voltage))
 
     def there_and_back(self, low: Settled, high: Settled) -> int:
-        """Go back to the lower voltage: a motion was lost where the speed does not come back."""
+        """Step back to the lower voltage; return LOST if its speed is another."""
         back = self.step_from(high, low.voltage)
         if abs(back.speed - low.speed) > self.settings.two_motions + noise(back, low):
             return LOST if self.later(back) is back else UNDECIDED
@@ -437,7 +439,7 @@ class HeldVoltageTest:
         return FOLLOWS if comes_back else UNDECIDED
 
     def later(self, point: Settled) -> Settled:
-        """Hold an irregular motion's voltage again and return what comes; others unchanged.
+        """Hold an irregular motion again; return its new point if the speed differs.
 
         An irregular one may have been lost before its voltage ended; others have settled.
         """
@@ -449,7 +451,7 @@ class HeldVoltageTest:
         return point
 
     def replaced(self, points: list[Settled], i: int) -> bool:
-        """Replace a point by the motion that a slow course is in there; return whether it is other.
+        """Replace a point by what a slower course reaches; return if it differs.
 
         The point's motion may end meanwhile, if it is irregular. And an irregular motion before may
         have fallen into it by chance, where it exists in a narrow range of voltages: where it ends
@@ -471,39 +473,39 @@ class HeldVoltageTest:
         return is_other
 
     def is_irregular(self, point: Settled) -> bool:
-        """Return whether a point's speed scatters by more than a settled one may."""
+        """Return whether the speed of a point scatters, as in chaotic motion."""
         return point.error > self.settings.tolerance
 
     def is_within(self, low: Settled, high: Settled, width: float) -> bool:
-        """Return whether two voltages are closer than a width, over K omega."""
+        """Return whether two points' voltages are closer than a width over K omega."""
         return abs(high.voltage - low.voltage) <= width * self.volts
 
     def differ(self, point: Settled, other: Settled) -> bool:
-        """Return whether both points have settled, at different speeds."""
+        """Return whether two points have settled at clearly different speeds."""
         return abs(point.speed - other.speed) > self.settings.distinct + noise(point, other)
 
 
 def noise(point: Settled, other: Settled) -> float:
-    """Return three standard errors of the difference of two speeds."""
+    """Return three standard errors of the difference between two settled speeds."""
     return 3.0 * math.hypot(point.error, other.error)
 
 
 def largest_change(points: list[Settled], sign: float) -> tuple[int, Settled, Settled]:
-    """Find neighbours between which the speed rises (-1: falls) most; return index and both."""
+    """Find the neighbouring points with the largest speed change; return index and both."""
     pairs = list(pairwise(points))
     i = int(np.argmax([sign * (high.speed - low.speed) for low, high in pairs]))
     return i, *pairs[i]
 
 
 def block_means(speeds: np.ndarray, settings: HoldSettings) -> np.ndarray:
-    """Return mean speeds of blocks of revolutions; the first block, a transient, is left out."""
+    """Return the mean speeds of blocks of revolutions, without the first block."""
     count = len(speeds) // settings.block
     blocks = speeds[: count * settings.block].reshape(count, settings.block)
     return np.asarray(blocks.mean(axis=1)[1:])
 
 
 def settled_speed(means: np.ndarray, settings: HoldSettings) -> tuple[float, float]:
-    """Return the speed that block means settle at, and its error; NaN where they do not settle.
+    """Extrapolate the limit of block means (Aitken); return it with its error, or NaN.
 
     Means that approach a limit as an exponential say it before they are there (Aitken's process):
     three such limits in turn must agree. By a fold the approach is slower than any exponential, and
@@ -536,7 +538,7 @@ def settled_speed(means: np.ndarray, settings: HoldSettings) -> tuple[float, flo
 
 
 def with_final_chunk(chunks: list[Chunk]) -> list[Chunk]:
-    """Return chunks with the final item, the held-voltage test, as a chunk of its own."""
+    """Split the last item, the held-voltage test, into a chunk of its own."""
     last = chunks[-1]
     if last.stop - last.start == 1:
         return chunks

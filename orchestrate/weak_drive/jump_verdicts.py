@@ -1,4 +1,4 @@
-"""Verdict on each direction: jump, none or undecided, and why; checked against the averaged theory.
+"""Decide for each voltage direction whether the speed jumps, and explain the decision.
 
 For a bonded structure the averaged theory knows where the motion is lost. A verdict that it
 contradicts by more than its own error is not given: the direction is undecided.
@@ -27,7 +27,7 @@ SMOOTH_TEXT = "no jump: the speed follows the voltage through the resonance"
 
 
 class Theory(NamedTuple):
-    """Prediction of the averaged theory for the bonded structure, in one direction of the voltage.
+    """Store where averaged theory predicts that the bonded structure loses stability.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class Theory(NamedTuple):
 
 @lru_cache(maxsize=64)
 def theories(structure: Structure, drive: Drive) -> tuple[Theory, Theory]:
-    """Return the averaged theory's predictions for both directions, up and down."""
+    """Return the averaged theory's predictions for rising and for falling voltage."""
     folds = averaged.folds(structure, drive)
     narrow = bool(folds) and abs(folds[0].eta0 - folds[-1].eta0) < NARROW
     slope = averaged.least_slope(structure, drive)
@@ -61,7 +61,7 @@ def theories(structure: Structure, drive: Drive) -> tuple[Theory, Theory]:
 
 
 def is_doubtful(passing: Passing, bonded: bool, theory: Theory) -> bool:
-    """Return whether the held-voltage test is needed: no clear record, or theory objects."""
+    """Return whether a passage has to be checked by holding voltages."""
     if passing.look == JUMP:
         return bonded and not theory.losses
     if passing.look == SMOOTH:
@@ -70,7 +70,7 @@ def is_doubtful(passing: Passing, bonded: bool, theory: Theory) -> bool:
 
 
 def check_against_theory(verdict: Verdict, theory: Theory, volts: float) -> Verdict:
-    """Return the verdict on a bonded structure; undecided where the averaged theory objects."""
+    """Change a bonded structure's verdict to undecided if averaged theory objects."""
     if theory.narrow or verdict.outcome not in (LOST, FOLLOWS):
         return verdict
     if verdict.outcome == FOLLOWS:
@@ -84,7 +84,7 @@ def check_against_theory(verdict: Verdict, theory: Theory, volts: float) -> Verd
 
 
 def reason(passing: Passing, held: Verdict, final: Verdict, theory: Theory, hold: float) -> str:
-    """Format why no jump is reported, though the speed passes the resonance.
+    """Explain in words why a passage of the resonance is not reported as a jump.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def reason(passing: Passing, held: Verdict, final: Verdict, theory: Theory, hold
 
 
 def undecided(held: Verdict, theory: Theory, hold: float) -> str:
-    """Format why nothing is reported, and what helps."""
+    """Explain in words why a direction is undecided, and what would help."""
     if held.outcome == UNDECIDED:
         known = math.isfinite(held.low) and math.isfinite(held.high)
         between = f" between {held.low:.5g} and {held.high:.5g} V" if known else ""
@@ -120,7 +120,7 @@ def undecided(held: Verdict, theory: Theory, hold: float) -> str:
 
 
 def how_decided(passing: Passing | None, final: Verdict) -> str:
-    """Format how jump or none was decided; empty where the speed does not pass the resonance."""
+    """Say whether the ramp's record or held voltages decided; empty without a passage."""
     if passing is None:
         return ""
     if final.outcome == UNDECIDED:
@@ -129,7 +129,7 @@ def how_decided(passing: Passing | None, final: Verdict) -> str:
 
 
 def is_jump(passing: Passing | None, final: Verdict) -> bool:
-    """Return whether the speed jumps."""
+    """Return whether record and verdict together show a jump of the speed."""
     if passing is None:
         return False
     return final.outcome == LOST or (final.outcome == NOT_ASKED and passing.look == JUMP)

@@ -1,4 +1,4 @@
-"""All losses of a ramp in one direction, in its order: which is the jump, and which are further.
+"""Collect all losses of stability on one ramp, and pick the jump and the further jumps.
 
 The held course through the resonance may cross more than one loss, and the record may show more
 than the passing of the resonance. Each is told by the same rules. The first sure one is the jump.
@@ -26,7 +26,7 @@ SAME = 2e-4  # of K omega: brackets so close are of one loss
 
 
 class Loss(NamedTuple):
-    """A loss of stability on a ramp, or a place where there may be one.
+    """Store one loss of stability on a ramp, certain or suspected.
 
     Attributes
     ----------
@@ -44,17 +44,17 @@ class Loss(NamedTuple):
 
     @property
     def is_sure(self) -> bool:
-        """Whether the speed jumps."""
+        """Return whether the speed certainly jumps."""
         return is_jump(self.passing, self.verdict)
 
 
 def no_rows() -> np.ndarray:
-    """Return the stored form of no further verdicts; shape (``ROWS``, 4)."""
+    """Return the stored array that holds no verdicts, filled with NaN."""
     return np.full((ROWS, 4), math.nan)
 
 
 def as_rows(verdicts: Sequence[tuple[int, Verdict]]) -> np.ndarray:
-    """Return verdicts with the places that they are about as an array to store."""
+    """Convert verdicts, each with the index of its suspected jump, to an array."""
     rows = no_rows()
     for i, (place, verdict) in enumerate(verdicts[:ROWS]):
         rows[i] = (place, *verdict)
@@ -62,7 +62,7 @@ def as_rows(verdicts: Sequence[tuple[int, Verdict]]) -> np.ndarray:
 
 
 def from_rows(rows: np.ndarray) -> list[tuple[int, Verdict]]:
-    """Return the verdicts that :func:`as_rows` stored."""
+    """Convert the array of :func:`as_rows` back to indices and verdicts."""
     known = rows[np.isfinite(rows[:, 0])]
     return [(int(row[0]), Verdict(int(row[1]), *row[2:])) for row in known.tolist()]
 
@@ -70,9 +70,10 @@ def from_rows(rows: np.ndarray) -> list[tuple[int, Verdict]]:
 def without_known(
     verdicts: Sequence[Verdict], known: Sequence[Verdict], volts: float
 ) -> list[Verdict]:
-    """Return verdicts less those on losses that are known already, from another course."""
+    """Drop the verdicts whose brackets overlap losses that are already known."""
 
     def is_known(verdict: Verdict) -> bool:
+        """Return whether a verdict's bracket overlaps a known loss."""
         low, high = sorted((verdict.low, verdict.high))
         ends = [sorted((other.low, other.high)) for other in known]
         return any(
@@ -83,7 +84,7 @@ def without_known(
 
 
 def outcomes(course: HeldCourse) -> list[Verdict]:
-    """Return the verdicts of a course on losses, sure and undecided ones."""
+    """Return those verdicts of a held course that are losses or undecided."""
     return [
         verdict
         for verdict in (course.verdict, *course.further)
@@ -92,7 +93,7 @@ def outcomes(course: HeldCourse) -> list[Verdict]:
 
 
 def reached(table: Table, rows: np.ndarray, voltage: float) -> Passing:
-    """Return where a ramp reaches a voltage, for a loss that its record does not show."""
+    """Return where on a ramp a given voltage is reached, as a doubtful passing."""
     voltages = table["voltage"][rows]
     sign = math.copysign(1.0, voltages[-1] - voltages[0])
     half = float(np.interp(sign * voltage, sign * voltages, rows))
@@ -108,7 +109,7 @@ def gather_losses(
     places: Sequence[Passing],
     further: Sequence[tuple[int, Verdict]],
 ) -> tuple[Loss | None, list[Loss]]:
-    """Return the passing of the resonance with its verdict, and all other losses.
+    """Combine record and verdicts into the loss at the resonance and all others.
 
     Parameters
     ----------
@@ -146,7 +147,7 @@ def gather_losses(
 def in_order(
     table: Table, rows: np.ndarray, passings: Sequence[Passing], verdicts: Sequence[Verdict]
 ) -> list[Loss]:
-    """Return losses in the ramp's order, each with the place where the record shows it.
+    """Assign verdicts to places in the record, both in the order of the ramp.
 
     The last one is shown last. Earlier ones that the record does not show are where the ramp
     reaches their voltages.
@@ -167,7 +168,7 @@ def in_order(
 def jump_and_further(
     main: Loss | None, others: Sequence[Loss], sign: float
 ) -> tuple[Loss | None, list[Loss]]:
-    """Return the first sure loss on the way, else the passing itself; and all further ones."""
+    """Pick the first certain loss as the jump; return it and the further ones."""
     known = [*([main] if main else []), *others]
     sure = [loss for loss in known if loss.is_sure]
     first = min(sure, key=lambda loss: sign * loss.voltage, default=main)
@@ -180,7 +181,7 @@ def jump_and_further(
 
 
 def further_columns(table: Table, further: Sequence[Sequence[Loss]]) -> dict[str, Variable]:
-    """Return further jumps of both directions, sure and undecided ones, in the ramp's order."""
+    """Build the dataset's variables of the further jumps in both directions."""
     shape = len(further), SLOTS
     names = ("further_jumps", "further_time", "further_held", "further_error")
     numbers = {name: np.full(shape, math.nan) for name in names}

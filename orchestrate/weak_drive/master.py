@@ -1,4 +1,4 @@
-"""Co-simulation master for two FMUs: the structure in its box, and the motor that shakes the box.
+"""Step the two coupled FMUs (co-simulation master) and choose the communication step.
 
 The structure's ``box_force`` depends on its states only, the box's acceleration on the force: there
 is no algebraic loop, but what each side assumes of the other over a step decides everything.
@@ -51,7 +51,7 @@ STATE_INDEX = {  # of what is remembered
 def parts_of(
     numbers: Any,
 ) -> tuple[Any, OscillatorOutputs, ShakerOutputs, Any]:
-    """Split a state; return the master's own part, both FMUs' outputs, and the energy balance's."""
+    """Split a saved state into master, structure, motor and energy balance."""
     motion, shaking = (
         STATE_INDEX[OscillatorOutputs._fields[0]],
         STATE_INDEX[ShakerOutputs._fields[0]],
@@ -62,7 +62,7 @@ def parts_of(
 
 
 class Algorithm(NamedTuple):
-    """Algorithm of a communication step.
+    """Describe a coupling algorithm: passes per step and order of extrapolation.
 
     Attributes
     ----------
@@ -95,7 +95,7 @@ ALGORITHMS = {
 
 @dataclass(frozen=True)
 class Scheme:
-    """Settings of a communication step.
+    """Set the coupling algorithm, the communication step and its error control.
 
     Attributes
     ----------
@@ -130,6 +130,7 @@ class Scheme:
     beginning: tuple[int, ...] = (1, 1, 2, 4, 8)
 
     def __post_init__(self) -> None:
+        """Check algorithm, step length and tolerance."""
         if self.algorithm not in ALGORITHMS:
             raise InputError(f"algorithm {self.algorithm}: expected one of {', '.join(ALGORITHMS)}")
         if not (math.isfinite(self.h) and self.h > 0.0):
@@ -146,17 +147,17 @@ class Scheme:
 
     @property
     def passes(self) -> int:
-        """Number of times that a step is done."""
+        """Return how often each communication step is computed; 0 for Jacobi."""
         return ALGORITHMS[self.algorithm].passes
 
     @property
     def goes_back(self) -> bool:
-        """Whether FMU states are saved and restored."""
+        """Return whether the algorithm rolls the FMUs back to repeat a step."""
         return self.passes > 1
 
 
 class Master:
-    """Co-simulation master of two initialised instances.
+    """Step two initialised FMU instances together and exchange force and acceleration.
 
     :class:`.compiled.CompiledMaster` does the same with the same bits, faster.
 
@@ -194,6 +195,7 @@ class Master:
         scheme: Scheme,
         start_time: float = 0.0,
     ) -> None:
+        """Connect both instances and read their initial outputs."""
         self.oscillator = Channel(oscillator, OscillatorInputs._fields, OscillatorOutputs._fields)
         self.shaker = Channel(shaker, ShakerInputs._fields, ShakerOutputs._fields)
         self.scheme, self._algorithm = scheme, ALGORITHMS[scheme.algorithm]
@@ -208,7 +210,7 @@ class Master:
         self._do = self._gauss_seidel_step if scheme.passes else self._jacobi_step
 
     def step(self, voltage: float, h: float | None = None) -> None:
-        """Do one communication interval at a constant voltage, V; of length ``h``, s, if given."""
+        """Run one communication interval at a constant voltage, V."""
         h = h or self.scheme.h
         begin = self.time
         if self.scheme.tolerance:
@@ -227,7 +229,7 @@ class Master:
         h: float | None = None,
         kept: np.ndarray | None = None,
     ) -> int:
-        """Do intervals one after the other until a revolution is complete.
+        """Run communication intervals until a revolution ends; return the next index.
 
         Parameters
         ----------
@@ -254,7 +256,7 @@ class Master:
         return len(voltages)
 
     def _substeps_by_defect(self, voltage: float, h: float) -> None:
-        """Do an interval in halved steps until the energy defect of each is small enough.
+        """Choose communication substeps so that each energy defect is small.
 
         A step is halved where its defect is too large. After one with a defect that twice the
         length would still do with, the next is twice as long, where that ends on its own grid: so
@@ -276,12 +278,12 @@ class Master:
                 self._restart_extrapolation()
 
     def _restart_extrapolation(self) -> None:
-        """Restart the extrapolation after an impact: the force has a corner there, or jumps."""
+        """Restart the extrapolation after an impact, where the force may jump."""
         self.slope = self.h_before = 0.0
         self.shaking = self._outputs_with_force(self.motion)
 
     def _step(self, voltage: float, h: float, may_refuse: bool = False) -> float:
-        """Do a step unless its defect forbids; return the defect over the work exchanged."""
+        """Try one communication step; return its relative energy defect."""
         if voltage != self.voltage:  # the acceleration belongs to the inputs as set now
             self.voltage = voltage
             self.shaking = self._outputs_with_force(self.motion)
@@ -300,13 +302,13 @@ class Master:
         return size
 
     def _over_exchanged(self, done: Step, taken: float, defect: float) -> float:
-        """Return a defect over the work that motor, box and masses exchange in the step."""
+        """Return a step's energy defect relative to the work exchanged in it."""
         work = done.shaking.motor_energy - self.shaking.motor_energy
         exchanged = abs(taken) + abs(work)
         return abs(defect) / exchanged if exchanged else 0.0
 
     def _advance(self, done: Step, h: float) -> None:
-        """Take the step's end as the present point, and account for its energies."""
+        """Accept a finished step: move time, outputs and extrapolation to its end."""
         if self.revolution:
             ends = self.motion, self.shaking
             self.revolution.add(self.structure, ends, done, self.time, h)
@@ -318,25 +320,27 @@ class Master:
         self.motion, self.shaking = done.motion, self._outputs_with_force(done.motion)
 
     def _motion(self) -> OscillatorOutputs:
+        """Read the outputs of the structure FMU."""
         return tuple.__new__(OscillatorOutputs, self.oscillator.get())  # as _make, in half its time
 
     def _shaking(self) -> ShakerOutputs:
+        """Read the outputs of the motor FMU."""
         return tuple.__new__(ShakerOutputs, self.shaker.get())
 
     def _outputs_with_force(self, motion: OscillatorOutputs) -> ShakerOutputs:
-        """Return the shaker's outputs with the force at the present point, and its slope."""
+        """Set force and voltage of the present point; return the motor's outputs."""
         self.shaker.put(motion.box_force, self.slope, 0.0, 0.0, self.voltage)
         return self._shaking()
 
     # -- what each side assumes of the other --
 
     def force_of(self, motion: OscillatorOutputs, h: float) -> Cubic:
-        """Return the force over a step to ``motion``: with its ends, mean and moment."""
+        """Fit the force over a step by a cubic with exact mean and first moment."""
         mean, moment = motion.box_impulse / h, motion.box_impulse_moment / (h * h)
         return matched_cubic(self.motion.box_force, motion.box_force, mean, moment, h)
 
     def _force_for_shaker(self, motion: OscillatorOutputs, h: float) -> Cubic:
-        """Return the force over that step as it is passed to the shaker."""
+        """Return the force over a step as the cubic that the motor FMU gets."""
         if self.scheme.matched:
             return self.force_of(motion, h)
         return parabola(
@@ -344,7 +348,7 @@ class Master:
         )
 
     def _acceleration_for_structure(self, after: ShakerOutputs, h: float) -> Cubic:
-        """Return the acceleration over a step of the shaker, as the structure takes it."""
+        """Fit the box acceleration over a step for the structure FMU."""
         now = self.shaking
         first, last = now.box_acceleration, after.box_acceleration
         if not self.scheme.matched:
@@ -354,7 +358,7 @@ class Master:
         return matched_cubic(first, last, mean, moment, h)
 
     def _extrapolated_acceleration(self) -> Cubic:
-        """Extrapolate the acceleration from this point and the one before."""
+        """Extrapolate the box acceleration over the coming step."""
         value, jerk, h = self.shaking.box_acceleration, self.shaking.box_jerk, self.h_before
         terms = self._algorithm.terms
         if terms == 1:
@@ -368,7 +372,7 @@ class Master:
         return value, jerk, 2.0 * (bend + twist * h), 6.0 * twist
 
     def _extrapolated_force(self) -> Cubic:
-        """Extrapolate the force where both instances go at once: held constant, or a line."""
+        """Extrapolate the force over the coming step, for the Jacobi algorithms."""
         force, h = self.motion.box_force, self.h_before
         line = self._algorithm.terms > 1 and h
         return force, (force - self.force_before) / h if line else 0.0, 0.0, 0.0
@@ -376,7 +380,7 @@ class Master:
     # -- the schemes --
 
     def _jacobi_step(self, h: float) -> Step:
-        """Step each with what is known of the other before the step (Jacobi)."""
+        """Step both FMUs at once, each with extrapolated inputs (Jacobi)."""
         acceleration = self._extrapolated_acceleration()
         self.oscillator.put(*acceleration)
         self.oscillator.step(self.time, h)
@@ -385,7 +389,7 @@ class Master:
         return Step(acceleration, self._motion(), self._shaking())
 
     def _gauss_seidel_step(self, h: float) -> Step:
-        """Step structure, then shaker; once, twice, or until the force does not change."""
+        """Step the structure, then the motor; roll back and repeat if asked."""
         passes = self._algorithm.passes
         if self.scheme.goes_back:
             self.oscillator.save()
@@ -406,7 +410,7 @@ class Master:
         return Step(acceleration, motion, self._shaking())
 
     def _pass(self, acceleration: Cubic, h: float) -> tuple[OscillatorOutputs, Cubic]:
-        """Step structure and shaker once; return the structure's end and the shaker's force."""
+        """Step the structure and then the motor once; return motion and force."""
         self.oscillator.put(*acceleration)
         self.oscillator.step(self.time, h)
         motion = self._motion()
@@ -416,7 +420,7 @@ class Master:
         return motion, force
 
     def _converged(self, motion: OscillatorOutputs, last: OscillatorOutputs) -> bool:
-        """Return whether an iteration has changed nothing but roundings."""
+        """Return whether two iterations of a step agree up to rounding."""
         now, then = (
             (state.box_force, state.box_impulse, state.box_impulse_moment)
             for state in (motion, last)
@@ -427,12 +431,12 @@ class Master:
     # -- to go on elsewhere --
 
     def get_state(self) -> list[float]:
-        """Return the master's own state: with those of both FMUs, all that a run goes on from."""
+        """Return the master's own state as a list of floats, to be restored later."""
         own_state = [float(getattr(self, name)) for name in MASTER_STATE]
         return [*own_state, *self.motion, *self.shaking, *self.balance.get_state()]
 
     def set_state(self, numbers: Sequence[float]) -> None:
-        """Return to a state that :meth:`get_state` gave."""
+        """Restore the state that :meth:`get_state` returned."""
         own_state, self.motion, self.shaking, balance = parts_of(numbers)
         for name, value in zip(MASTER_STATE, own_state, strict=True):
             setattr(self, name, value)
@@ -440,6 +444,6 @@ class Master:
         self.balance.set_state(balance)
 
     def close(self) -> None:
-        """Free the states saved in the FMUs."""
+        """Free the FMU states saved for rollback."""
         self.oscillator.close()
         self.shaker.close()

@@ -1,4 +1,4 @@
-"""The passage through the resonance at full resolution: every communication step of a run is kept.
+"""Record the passage through the resonance at every communication step, with spectra.
 
 Of a long run only what lies around the jumps may be kept. :func:`waterfall` makes spectra over the
 motor's revolutions of it.
@@ -62,7 +62,7 @@ KEPT = "sampled "  # before the names of samples in a table that has revolutions
 
 @dataclass(frozen=True)
 class PassageJob(Job):
-    """Job of a run that keeps all its communication points.
+    """Run the coupled FMUs and keep the state after every communication step.
 
     Attributes
     ----------
@@ -81,21 +81,22 @@ class PassageJob(Job):
     item: ClassVar[str] = "step"
 
     def count(self) -> int:
-        """Return the number of steps, and one for the verdicts on the jumps."""
+        """Return the number of items: all communication steps and one held-voltage test."""
         return self.run.count()
 
     def items(self, inputs: Inputs) -> Sequence[int]:
-        """Return the steps, and one more for the verdicts."""
+        """Return the item indices: all communication steps, then the held-voltage test."""
         return range(self.count())
 
     def chunks(self) -> list[Chunk]:
-        """Return chunks of steps; the verdicts are a chunk of their own."""
+        """Split the items into chunks; the held-voltage test is its own last chunk."""
         return with_final_chunk(super().chunks())
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
-        """Compute some steps, with all that the next chunk needs; or the verdicts at the end."""
+        """Compute one chunk of steps with all samples, or the held-voltage test."""
 
         def revolve(run: Run) -> Table:
+            """Run the steps; return revolutions and the samples after every step."""
             kept = np.empty((len(items), len(run.master.get_state())))
             revolutions = run.revolve(items, kept)
             columns = samples(run.master, kept)
@@ -105,7 +106,7 @@ class PassageJob(Job):
         return self.run.work_on(fmus, items, previous, self.chunk_size, revolve)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return samples over time, and the jumps."""
+        """Build the dataset of samples over time and of the jumps."""
         import xarray as xr
 
         of_run = {name: table[name] for name in (*COLUMNS, "verdicts", "further_verdicts")}
@@ -125,7 +126,7 @@ class PassageJob(Job):
         return xr.Dataset(variables, time, {**revolutions.attrs, **title}).merge(of_jumps)
 
     def centres(self, revolutions: xr.Dataset) -> tuple[np.ndarray, str]:
-        """Return the times around which samples are stored, s, and what happens at them."""
+        """Return the times around which samples are kept, s, and a text on them."""
         jumps = revolutions.jump_time.values
         passed = float(revolutions.passage_time)
         if self.around is None:
@@ -138,7 +139,7 @@ class PassageJob(Job):
 
 
 def samples(master: Master, kept: np.ndarray) -> tuple[Any, ...]:
-    """Return a tuple of arrays, the communication points of a master's states, as ``SAMPLES``."""
+    """Convert saved master states to columns of samples, in the order of ``SAMPLES``."""
     own_state, motion, shaking, balance = parts_of(kept.T)
     accounts = copy(master.balance)
     accounts.set_state(balance)
@@ -228,7 +229,7 @@ def passage(
 def waterfall(
     found: xr.Dataset, *, mass: int = 1, revolutions: int = 16, highest: float = 6.0
 ) -> xr.Dataset:
-    """Compute spectra of a mass's acceleration in space, one revolution of the motor after another.
+    """Compute spectra of a mass's absolute acceleration, revolution after revolution.
 
     Parameters
     ----------
@@ -299,7 +300,7 @@ def waterfall(
 
 
 def over_angle(data: xr.Dataset, mass: int, points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Interpolate displacements in space at equal angles; return times and displacements.
+    """Interpolate a mass's absolute displacement at equal steps of the motor's angle.
 
     Where the motor turns back for a moment, samples are left out until it has come as far again.
     """
@@ -315,14 +316,14 @@ def over_angle(data: xr.Dataset, mass: int, points: int) -> tuple[np.ndarray, np
 
 
 def hann_lines(pieces: np.ndarray) -> np.ndarray:
-    """Return amplitudes of the lines of each piece, with a Hann window."""
+    """Return the amplitude spectrum of each piece of a signal, with a Hann window."""
     window = np.hanning(pieces.shape[1] + 1)[:-1]
     centred = (pieces - pieces.mean(axis=1, keepdims=True)) * window
     return np.asarray(np.abs(np.fft.rfft(centred, axis=1)) * 2.0 / window.sum())
 
 
 def check_spectra(data: Any, mass: int, revolutions: int, highest: float) -> None:
-    """Check that spectra over revolutions can be made."""
+    """Raise an error unless spectra over revolutions can be computed."""
     if mass not in (1, 2):
         raise InputError(f"mass = {mass!r}: expected 1 or 2")
     checked_integer("revolutions", revolutions, 1)

@@ -1,4 +1,4 @@
-"""The coupled system as an SSP 1.0 package for other tools: two FMUs, connections, parameters.
+"""Write the coupled system as an SSP 1.0 package, for simulation in other tools.
 
 What all tools read alike was found by trying: parameter bindings of the components, none of the
 system; connections between components only; no connector for the voltage, which some tools would
@@ -46,12 +46,12 @@ Values = Mapping[str, float | bool]
 
 
 def tag(prefix: str, name: str) -> str:
-    """Return an XML name with its namespace."""
+    """Return an XML tag with its namespace."""
     return f"{{{NAMESPACES[prefix]}}}{name}"
 
 
 def document(root: ET.Element) -> bytes:
-    """Serialize an XML document."""
+    """Convert an XML element to the bytes of an XML file."""
     for prefix, address in NAMESPACES.items():
         ET.register_namespace(prefix, address)
     ET.indent(root)
@@ -60,18 +60,18 @@ def document(root: ET.Element) -> bytes:
 
 
 def ssv(component: str) -> str:
-    """Return the path of a component's parameter file in the package."""
+    """Return the path of a component's parameter file inside the package."""
     return f"resources/{component}.ssv"
 
 
 def units_of(fmus: Mapping[str, Description], name: str) -> list[str]:
-    """Return units of a component's connectors: of its inputs, then of its outputs."""
+    """Return the units of a component's inputs and outputs, from its FMU."""
     ports = (*INPUTS[name], *OUTPUTS[name])
     return [str(fmus[name].variable(port).unit) for port in ports]
 
 
 def add_units(root: ET.Element, fmus: Mapping[str, Description]) -> None:
-    """Add the connectors' units in SI, each once."""
+    """Add the definitions of all used units to the XML document."""
     parent = ET.SubElement(root, tag("ssd", "Units"))
     used = {unit: fmus[name].units[unit] for name in MODELS for unit in units_of(fmus, name)}
     for unit, powers in sorted(used.items()):
@@ -80,7 +80,7 @@ def add_units(root: ET.Element, fmus: Mapping[str, Description]) -> None:
 
 
 def add_component(elements: ET.Element, name: str, units: Sequence[str]) -> None:
-    """Add a component with its connectors, in their units, and its parameters."""
+    """Add one FMU with its connectors and parameter file to the XML document."""
     source, kind = f"resources/{MODELS[name]}.fmu", "application/x-fmu-sharedlibrary"
     component = ET.SubElement(
         elements, tag("ssd", "Component"), name=name, type=kind, source=source
@@ -99,7 +99,7 @@ def add_component(elements: ET.Element, name: str, units: Sequence[str]) -> None
 def system_description(
     description: str, stop_time: float, fmus: Mapping[str, Description]
 ) -> bytes:
-    """Return ``SystemStructure.ssd``."""
+    """Build the XML file that describes both FMUs and their connections."""
     root = ET.Element(tag("ssd", "SystemStructureDescription"), name="WeakDrive", version="1.0")
     system = ET.SubElement(root, tag("ssd", "System"), name="WeakDrive", description=description)
     elements = ET.SubElement(system, tag("ssd", "Elements"))
@@ -120,7 +120,7 @@ def system_description(
 
 
 def parameter_values(values: Values) -> bytes:
-    """Return a component's parameter file; false parameters keep their defaults."""
+    """Build the XML file of a component's parameter values."""
     root = ET.Element(tag("ssv", "ParameterSet"), version="1.0", name=SET)
     group = ET.SubElement(root, tag("ssv", "Parameters"))
     for variable, value in values.items():
@@ -135,7 +135,7 @@ def parameter_values(values: Values) -> bytes:
 
 
 def write_archive(path: Path, files: Mapping[str, bytes]) -> None:
-    """Write a zip file that has the same bytes whenever it is written."""
+    """Write files into a zip archive, reproducible to the byte."""
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in files.items():
             archive.writestr(zipfile.ZipInfo(name), content, zipfile.ZIP_DEFLATED)
@@ -151,7 +151,7 @@ def write_ssp(
     stop_time: float | None = None,
     fmus: Sequence[str | PathLike[str]] | None = None,
 ) -> Path:
-    """Write the coupled system as an SSP package, for this structure and drive.
+    """Write the coupled system of a structure and a drive as an SSP package.
 
     Parameters
     ----------
@@ -213,7 +213,7 @@ def write_ssp(
 
 
 def exported() -> list[Path]:
-    """Return the FMUs of FMI 2.0."""
+    """Return the paths of the two exported FMUs of FMI 2.0."""
     from ..access.exported import find
 
     return [find(model, form="fmi2").path for model in MODELS.values()]

@@ -1,4 +1,4 @@
-"""Verdicts on jumps: random drives, bonded and delaminated, at four rates, against known folds."""
+"""Check the jump verdicts of `couple` on random drives against traced branches."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ SLOPES = (-0.6, 0.3)  # least slopes d eta0 / d Omega of drives that nearly have
 
 
 class Truth(NamedTuple):
-    """Where a slow ramp loses its motion, from the branches.
+    """Store where a slow ramp must lose its motion, by the traced branches.
 
     Attributes
     ----------
@@ -56,12 +56,12 @@ class Truth(NamedTuple):
 
     @property
     def places(self) -> tuple[tuple[float, float], ...]:
-        """Ranges of the voltage in each of which a motion is lost."""
+        """Return the voltage ranges in each of which a motion is lost, over K omega."""
         return ((self.low, self.high), *((fold, fold) for fold in self.further))
 
 
 class Answer(NamedTuple):
-    """Answer of ``couple`` for one direction; voltages over K omega.
+    """Store what `couple` reports for one direction, with voltages over K omega.
 
     Attributes
     ----------
@@ -96,7 +96,7 @@ def draw(rng: np.random.Generator) -> System:
 
 
 def with_folds(rng: np.random.Generator) -> System:
-    """Draw systems until the averaged theory has folds that are not too close."""
+    """Draw random systems until one has clearly separated averaged folds."""
     while True:
         system = draw(rng)
         folds = averaged.folds(*system)
@@ -105,7 +105,7 @@ def with_folds(rng: np.random.Generator) -> System:
 
 
 def with_slope(system: System, slope: float) -> System:
-    """Return the system with the unbalance that makes the least slope d eta0/d Omega ``slope``."""
+    """Scale the unbalance so that the branch has a given smallest slope."""
     structure, drive = system
     share = (1.0 - slope) / (1.0 - averaged.least_slope(*system))
     numbers = {
@@ -115,7 +115,7 @@ def with_slope(system: System, slope: float) -> System:
 
 
 def ends_of(system: System) -> tuple[float, float]:
-    """Return lowest and highest voltage of ramps over K omega: past both jumps, past a lag."""
+    """Return the two ends of the voltage ramp, over K omega, past both jumps."""
     folds = averaged.folds(*system)
     at = averaged.resonance(*system)
     places = [fold.eta0 for fold in folds] or [float(averaged.no_load_speed(*system, at))]
@@ -123,7 +123,7 @@ def ends_of(system: System) -> tuple[float, float]:
 
 
 def answers(system: System, rate: float) -> tuple[Answer, ...]:
-    """Run ``couple`` at a rate; return its answer up, then that down."""
+    """Run `couple` at one rate; return its answers upward and downward."""
     structure, drive = system
     volts = drive.volts(structure)
     first, last = (end * volts for end in ends_of(system))
@@ -136,7 +136,7 @@ def answers(system: System, rate: float) -> tuple[Answer, ...]:
 
 
 def further_of(at: xr.Dataset, volts: float) -> tuple[Answer, ...]:
-    """Return the answers on further jumps in one direction from the dataset."""
+    """Read the answers on further jumps in one direction from a dataset."""
     found = []
     for place in at.order.values:
         one = at.sel(order=place)
@@ -152,7 +152,7 @@ def further_of(at: xr.Dataset, volts: float) -> tuple[Answer, ...]:
 
 
 def answer_of(at: xr.Dataset, volts: float) -> Answer:
-    """Return the answer in one direction from the dataset."""
+    """Read the answer on the jump in one direction from a dataset."""
     code, held, error = (float(at[name]) for name in ("held_verdict", "held_jumps", "held_error"))
     jump = float(at.jumps) / volts
     if code == LOST:
@@ -167,7 +167,7 @@ def answer_of(at: xr.Dataset, volts: float) -> Answer:
 
 
 def truths(system: System) -> dict[tuple[str, str], Truth]:
-    """Return where both structures lose their motion, up and down, from their branches."""
+    """Trace both structures' branches; return where each direction loses its motion."""
     structure, drive = system
     folds, omega = averaged.folds(*system), structure.omega
     at = averaged.resonance(*system)
@@ -190,7 +190,7 @@ def truths(system: System) -> dict[tuple[str, str], Truth]:
 
 
 def fold_that_is_met(system: System, branch: xr.Dataset, way: str) -> Truth:
-    """Return the delaminated fold at which a slow course of held voltages jumps.
+    """Find by held voltages at which delaminated fold a slow ramp jumps.
 
     Branches have more folds than a ramp meets; and where it meets one it may go on with another
     motion of nearly the same speed. So voltages are held closely before and past each fold, in one
@@ -217,7 +217,7 @@ def fold_that_is_met(system: System, branch: xr.Dataset, way: str) -> Truth:
 
 
 def folds_of(system: System, branch: xr.Dataset, way: str) -> list[tuple[float, float]]:
-    """Return voltages over K omega and speeds over omega of folds that end motions one way."""
+    """Return voltage and speed of the delaminated folds that end motions in one direction."""
     structure, drive = system
     units = drive.volts(structure), structure.omega
     legs = branch.sel(structure="delaminated")
@@ -246,24 +246,24 @@ def folds_of(system: System, branch: xr.Dataset, way: str) -> list[tuple[float, 
 
 
 def first_of(system: System, way: str) -> float:
-    """Return the start of a course in a direction, over K omega."""
+    """Return the voltage at which a course in one direction starts, over K omega."""
     return ends_of(system)[WAYS.index(way)]
 
 
 def ordered(voltages: Sequence[float], way: str) -> list[float]:
-    """Return the voltages in the order of a course's direction."""
+    """Sort voltages in the order of a direction."""
     return sorted(voltages, reverse=way == "down")
 
 
 def refuted(system: System, answer: Answer, way: str) -> str:
-    """Hold voltages by themselves; return what they say against an answer, or empty."""
+    """Test an answer by separate held voltages; return the contradiction or empty text."""
     if answer.said == "lost" and answer.held:
         return refuted_bracket(system, answer, way)
     return refuted_by_grid(system, answer, way) if answer.said in ("lost", "none") else ""
 
 
 def refuted_bracket(system: System, answer: Answer, way: str) -> str:
-    """Hold voltages before and past the bracket, and go back to its beginning.
+    """Test a bracket by held voltages, at two rates; return any contradiction.
 
     A motion with a narrow basin is thrown out of it by the ramp between two holds, long before it
     ends: what speaks against an answer has to do so on a slow way too.
@@ -276,7 +276,7 @@ def refuted_bracket(system: System, answer: Answer, way: str) -> str:
 
 
 def bracket_problem(system: System, answer: Answer, way: str, rate: float) -> str:
-    """Return what held voltages say against a bracket, with a rate between the holds, or empty.
+    """Hold voltages around a bracket at one rate; return any contradiction.
 
     An irregular motion may be lost before: so the first one is further away, and the speed past a
     jump differs the more from the one there.
@@ -295,7 +295,7 @@ def bracket_problem(system: System, answer: Answer, way: str, rate: float) -> st
 
 
 def refuted_by_grid(system: System, answer: Answer, way: str) -> str:
-    """Hold voltages through the resonance and back: two speeds at one of them, or none.
+    """Hold a grid of voltages there and back; return any contradiction.
 
     A jump through the resonance leaves the speed behind the voltage until it jumps: on the way
     there the speed has passed less far than on the way back. Two motions the other way round are
@@ -319,7 +319,7 @@ def refuted_by_grid(system: System, answer: Answer, way: str) -> str:
 
 
 def truth(branch: xr.Dataset, kind: str, way: str, units: tuple[float, float]) -> Truth:
-    """Return the first loss of stability along a branch, from below or from above.
+    """Read from one traced branch where its motion is first lost in a direction.
 
     Unknown where that is no fold: of the delaminated structure, whose impacts may become irregular
     there without any change of the speed.
@@ -360,7 +360,7 @@ def truth(branch: xr.Dataset, kind: str, way: str, units: tuple[float, float]) -
 
 
 def complaint(answer: Answer, known: Truth, way: str) -> str:
-    """Return what is wrong with an answer; empty where nothing is, or nothing is known."""
+    """Compare an answer with the truth; return the error or empty text."""
     if known.kind == UNKNOWN or answer.said == "not passed":
         return ""
     told = [one for one in (answer, *answer.further) if one.said == "lost"]
@@ -377,14 +377,14 @@ def complaint(answer: Answer, known: Truth, way: str) -> str:
 
 
 def agrees(answer: Answer, place: tuple[float, float], way: str) -> bool:
-    """Return whether an answer is about a loss of a motion in a range of the voltage."""
+    """Return whether an answer's bracket matches a range where a motion is lost."""
     early, late = (EARLY, np.inf) if not answer.held else (TOLERANCE, TOLERANCE)
     before, after = (early, late) if way == "up" else (late, early)
     return place[0] - before <= answer.high and answer.low <= place[1] + after
 
 
 def unknown_ones(answer: Answer, known: Truth, way: str) -> list[Answer]:
-    """Return the sure answers on losses that the branches do not know."""
+    """Return the certain answers that the traced branches neither confirm nor deny."""
     sure = [one for one in (answer, *answer.further) if one.said == "lost"]
     if known.kind == UNKNOWN:
         return sure or [answer]
@@ -396,7 +396,7 @@ def unknown_ones(answer: Answer, known: Truth, way: str) -> list[Answer]:
 def judged(
     system: System, kind: str, known: dict[str, Truth], rates: Sequence[float] = RATES
 ) -> Iterator[tuple[str, str]]:
-    """Yield each answer's name for the counts, and what is wrong with it."""
+    """Check the answers on one structure at all rates; yield each with any error."""
     said: dict[str, set[str]] = {way: set() for way in WAYS}
     for rate in rates:
         for way, answer in zip(WAYS, answers(system, rate), strict=True):
@@ -421,7 +421,7 @@ def judged(
 
 
 class Verdicts(Campaign):
-    """Campaign: verdicts on random drives at four rates, with folds and near their edge."""
+    """Run the campaign that checks jump verdicts on random drives at four rates."""
 
     name, title = "verdicts", "Jump, none, or undecided"
     asks = (
@@ -441,7 +441,7 @@ class Verdicts(Campaign):
     unit, target, batch, package = "drives", 40, 1, True
 
     def run(self, fmu: Path, seed: int, count: int) -> BatchOutcome:
-        """Check the verdicts on ``count`` drives."""
+        """Check the verdicts on `count` random drives; return the counts and errors."""
         rng, counts, notes = np.random.default_rng(seed), Counter[str](), []
         wrong = 0
         for number in range(count):
@@ -461,7 +461,7 @@ class Verdicts(Campaign):
         return BatchOutcome(count, wrong, counts=+counts, notes=tuple(notes))
 
     def judge(self, system: System, rates: Sequence[float]) -> Iterator[tuple[str, str]]:
-        """Judge both structures of a drive; yield each answer's name, and what is wrong with it."""
+        """Check both structures of one drive; yield each answer with any error."""
         known = truths(system)
         for kind in KINDS:
             of_kind = {way: known[kind, way] for way in WAYS}
