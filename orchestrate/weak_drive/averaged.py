@@ -46,7 +46,7 @@ class Place(NamedTuple):
 
 
 def mechanics(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomial, Polynomial]:
-    """Return the polynomials in s of the masses' springs, of their inertia and of the box."""
+    """Return the polynomials in s of masses' springs and dampers, masses' inertia, and box."""
     beta, mu = drive.beta(structure), structure.mu
     damping = 2.0 * beta * (structure.D1 + mu * structure.D2)
     pull = Polynomial([beta * (1.0 + structure.kappa), damping])

@@ -174,7 +174,7 @@ def run_until_settled(
 ) -> Outcome:
     """Simulate a run until its recorded speed decides the outcome, or to its end.
 
-    It is asked each time the run has become a fifth longer.
+    The function ``outcome`` judges times and speeds each time the run is a fifth longer.
     """
     times, speeds = np.zeros(0), np.zeros(0)
     first = 0
@@ -204,8 +204,9 @@ def threshold_voltage(
 ) -> tuple[End, End]:
     """Bracket by bisection the voltage from which a start passes the resonance.
 
-    Bisection brings them together to ``tolerance``. An undecided start is neither: the interval
-    that is left then is wider than that, and both its sides are brought close to it.
+    The highest voltage that is captured and the lowest above it that passes are brought together to
+    ``tolerance``. An undecided start is neither: the bracket is wider then, and both its ends are
+    brought close to the undecided voltages.
 
     Returns
     -------

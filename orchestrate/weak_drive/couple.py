@@ -65,7 +65,7 @@ TOLERANCE = 1e-8  # of the step control: errors of the displacements are about t
 LONGEST, FIXED = 0.4, 0.1  # steps with the control and without, in 1/omega
 LAST_REVOLUTIONS = 20  # of a ramp: their mean speed is where it ends
 LATE = 3.0  # of the rotor's time 1/b: how much later a ramp may show what it loses
-UPWARD = (True, False)  # ways: whether the voltage rises
+UPWARD = (True, False)  # both directions: whether the voltage rises
 HOLD, HOLD_OF_ROTOR = 4000.0, 200.0  # usual longest hold: in 1/omega, and in the rotor's time 1/b
 
 

@@ -119,7 +119,7 @@ class DriveBranchJob(Job):
     def legs(self, fmus: tuple[Instance, Instance], structure: Structure) -> list[Leg]:
         """Trace the branch from the lowest speed, and from the highest if needed.
 
-        Then those of twice the period, off the first doublings of both.
+        Then legs of twice the period are traced from the first period doublings of both.
         """
         omega, drive = structure.omega, self.drive
         low, high = (speed / omega for speed in self.speeds)

@@ -1,6 +1,6 @@
 """Compute acceleration spectra while a motor of limited power hangs at the resonance.
 
-The voltage is taken slowly to a value below the jump and held. Then the displacement in space is
+The voltage is taken slowly to a value below the jump and held. Then the absolute displacement is
 sampled over whole revolutions, and its spectrum multiplied by the square of the frequency: an
 impact is a kink of the displacement, and so is not missed between samples.
 """
@@ -89,7 +89,7 @@ class DriveSpectraJob(Job):
         return {"acceleration": np.array(spectra), "speed": np.array(speeds)}
 
     def record(self, fmus: Mapping[str, Path], structure: Structure) -> tuple[np.ndarray, float]:
-        """Approach and hold the voltage; return sampled displacements and speed."""
+        """Hold the voltage; return displacements (2, samples), m, and speed, rad/s."""
         scheme = scheme_of(structure, self.step, "rollback", 0.0)
         job = couple_job(structure, self.drive, self.approach, scheme)
         steps = range(math.ceil((self.approach.duration + self.hold) / self.step))
@@ -132,7 +132,7 @@ class DriveSpectraJob(Job):
             "acceleration": (
                 ("kind", "mass", "order"),
                 table["acceleration"],
-                {"units": "m/s2", "long_name": "amplitude of the acceleration in space"},
+                {"units": "m/s2", "long_name": "amplitude of the absolute acceleration"},
             ),
             "speed": ("kind", speeds, {"units": "rad/s", "long_name": "mean speed of the motor"}),
         }

@@ -159,7 +159,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
     def accepts(self, root: Root) -> bool:
         """Return whether a new motion has as many impacts as the one before.
 
-        With others it lies beyond a grazing.
+        With another number of impacts it lies beyond a grazing.
         """
         return self.shooter.shoot(root.unknowns).like(self.shot)
 
@@ -184,7 +184,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
     def end_before(self, step: BranchStep[Motion]) -> tuple[str, Iterable[Motion]]:
         """Return why the leg ends if it has reached half the period; else empty text.
 
-        Beyond it come the same motions again, half a period later.
+        Beyond that point the same motions come again, half a period later.
         """
         change = half_period_change(self.shooter, step.after.root)
         return (HALVED if self.half_period_change @ change < 0.0 else ""), ()

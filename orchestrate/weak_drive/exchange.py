@@ -19,7 +19,10 @@ class OscillatorInputs(NamedTuple):
 
 
 class OscillatorOutputs(NamedTuple):
-    """Store the outputs of the structure FMU at a communication point, SI units."""
+    """Store the outputs of the structure FMU at a communication point, SI units.
+
+    Displacements count from the unloaded springs; the gap ``x_rel`` is 0 in contact.
+    """
 
     x1: float
     x2: float

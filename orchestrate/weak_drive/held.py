@@ -441,7 +441,8 @@ class HeldVoltageTest:
     def later(self, point: Settled) -> Settled:
         """Hold an irregular motion again; return its new point if the speed differs.
 
-        An irregular one may have been lost before its voltage ended; others have settled.
+        An irregular motion may be lost while its voltage is still held; other points are returned
+        unchanged.
         """
         later, left = point, self.settings.again if point.error > 0.0 else 0
         for _ in range(left):

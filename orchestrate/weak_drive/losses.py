@@ -109,7 +109,7 @@ def gather_losses(
     places: Sequence[Passing],
     further: Sequence[tuple[int, Verdict]],
 ) -> tuple[Loss | None, list[Loss]]:
-    """Combine record and verdicts into the loss at the resonance and all others.
+    """Combine record and verdicts: return the loss at the resonance, and all others.
 
     Parameters
     ----------
@@ -149,8 +149,8 @@ def in_order(
 ) -> list[Loss]:
     """Assign verdicts to places in the record, both in the order of the ramp.
 
-    The last one is shown last. Earlier ones that the record does not show are where the ramp
-    reaches their voltages.
+    The last verdict belongs to the last place. Earlier losses that the record does not show are put
+    where the ramp reaches their voltages.
     """
     voltages = table["voltage"]
     sign = math.copysign(1.0, voltages[rows[-1]] - voltages[rows[0]])
@@ -168,7 +168,7 @@ def in_order(
 def jump_and_further(
     main: Loss | None, others: Sequence[Loss], sign: float
 ) -> tuple[Loss | None, list[Loss]]:
-    """Pick the first certain loss as the jump; return it and the further ones."""
+    """Pick the first certain loss as the jump, else the main one; return it and the rest."""
     known = [*([main] if main else []), *others]
     sure = [loss for loss in known if loss.is_sure]
     first = min(sure, key=lambda loss: sign * loss.voltage, default=main)

@@ -117,7 +117,7 @@ def shift(structure: Structure, drive: Drive) -> float:
 
 
 def clear_shift(structure: Structure, drive: Drive) -> float:
-    """Return the shift of the resonance if it is clearly resolved, else 0."""
+    """Return the resonance shift if it exceeds fold range and resonance width, else 0."""
     distance = shift(structure, drive)
     folds = averaged.folds(structure, drive) if distance else []
     half = 0.5 * (folds[-1].Omega - folds[0].Omega) if folds else 0.0

@@ -285,7 +285,7 @@ def waterfall(
     speed = TURN * (length - 1) / points / (at[ends] - at[begins])
     middle = at[begins + length // 2]
     volts = np.interp(middle, found.time, found.voltage)
-    text = f"amplitude of the acceleration of mass {mass} in space"
+    text = f"amplitude of the absolute acceleration of mass {mass}"
     amplitude = lines[:, shown] * np.outer(speed, order[shown]) ** 2
     variables = {
         "acceleration": variable(("time", "order"), amplitude, "m/s2", text),

@@ -189,12 +189,12 @@ def settling_test(structure: Structure, drive: Drive, stay: int) -> SettlingTest
 
 
 def motor_time(structure: Structure, drive: Drive) -> float:
-    """Return the time constant of the motor without load, s."""
+    """Return the time constant 1/b of the motor without load, s; it is limited."""
     return min(1.0 / drive.b(structure), LONGEST_MEMORY) / structure.omega
 
 
 def slowest_time(structure: Structure, drive: Drive) -> float:
-    """Return the longest time constant of motor and dampers, s.
+    """Return the longest time constant of motor and dampers, s; each is limited.
 
     The motor's is 1/b, those of vibrations are 1/D of each damper.
     """

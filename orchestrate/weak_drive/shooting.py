@@ -218,14 +218,10 @@ class Shooter:
         return np.array([values[name] for name in self.names]) / self.units
 
     def settle(self, voltage: float, speed: float, time: float) -> Floats:
-        """Simulate at a nearly fixed speed until the motion settles; return the state.
+        """Simulate for a time at a nearly fixed speed (heavy rotor); return the state.
 
-        A preload presses them together.
-
-        A preload brings them together. The speed is held by a heavy rotor: so motions are found
-        that a motor would not stay on.
-
-        The speed is held by a heavy rotor: so motions are found that a motor would not stay on.
+        A delaminated structure begins with the masses apart; a preload presses them together. A
+        heavy rotor holds the speed: so motions are found that a motor would not stay on.
         """
         self.begin_together(self.structure.bonded)
         longest = time + (self.turns + 1) * TURN / speed

@@ -120,7 +120,7 @@ def system_description(
 
 
 def parameter_values(values: Values) -> bytes:
-    """Build the XML file of a component's parameter values."""
+    """Build the XML file of a component's parameters; false ones are left out."""
     root = ET.Element(tag("ssv", "ParameterSet"), version="1.0", name=SET)
     group = ET.SubElement(root, tag("ssv", "Parameters"))
     for variable, value in values.items():
