@@ -29,7 +29,7 @@ from ..structures.structure import Structure
 FOLD, TORUS = bifurcations.FOLD.label, bifurcations.TORUS.label
 
 
-class Place(NamedTuple):
+class BifurcationPoint(NamedTuple):
     """Store a bifurcation point of the branch: voltage, speed, and fold or Neimark-Sacker.
 
     Attributes
@@ -45,7 +45,9 @@ class Place(NamedTuple):
     kind: str
 
 
-def mechanics(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomial, Polynomial]:
+def mechanical_polynomials(
+    structure: Structure, drive: Drive
+) -> tuple[Polynomial, Polynomial, Polynomial]:
     """Return the polynomials in s of masses' springs and dampers, masses' inertia, and box."""
     beta, mu = drive.beta(structure), structure.mu
     damping = 2.0 * beta * (structure.D1 + mu * structure.D2)
@@ -56,7 +58,9 @@ def mechanics(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomia
     return pull, masses, box
 
 
-def transfer(structure: Structure, drive: Drive, Omega: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+def transfer_functions(
+    structure: Structure, drive: Drive, Omega: ArrayLike
+) -> tuple[np.ndarray, np.ndarray]:
     """Return the transfer functions from box force to box position and from box to masses.
 
     Parameters
@@ -71,7 +75,7 @@ def transfer(structure: Structure, drive: Drive, Omega: ArrayLike) -> tuple[np.n
     H, ratio : ndarray of complex
     """
     s = 1j * np.asarray(Omega, dtype=float)
-    pull, masses, box = (part(s) for part in mechanics(structure, drive))
+    pull, masses, box = (part(s) for part in mechanical_polynomials(structure, drive))
     ratio = -masses / (masses + pull)
     return 1.0 / (box - pull * ratio), ratio
 
@@ -79,35 +83,37 @@ def transfer(structure: Structure, drive: Drive, Omega: ArrayLike) -> tuple[np.n
 def no_load_speed(structure: Structure, drive: Drive, Omega: ArrayLike) -> np.ndarray:
     """Return the voltage, as no-load speed over omega, that holds each given speed."""
     Omega = np.asarray(Omega, dtype=float)
-    H, _ = transfer(structure, drive, Omega)
+    H, _ = transfer_functions(structure, drive, Omega)
     torque = drive.epsilon * Omega**4 * H.imag / (2.0 * drive.b(structure))
     return np.asarray(Omega - torque)
 
 
 def amplitude(structure: Structure, drive: Drive, Omega: ArrayLike) -> np.ndarray:
     """Return the masses' amplitude relative to the box at each speed, in units of S/M_t."""
-    H, ratio = transfer(structure, drive, Omega)
+    H, ratio = transfer_functions(structure, drive, Omega)
     return np.asarray(np.abs(np.asarray(Omega) ** 2 * H * ratio))
 
 
 def resonance(structure: Structure, drive: Drive) -> float:
     """Return the speed over omega at which the bonded masses resonate in the box."""
-    return float(np.abs(free_roots(structure, drive)).max())
+    return float(np.abs(free_vibration_roots(structure, drive)).max())
 
 
-def half_width(structure: Structure, drive: Drive) -> float:
+def resonance_half_width(structure: Structure, drive: Drive) -> float:
     """Return the half width of the bonded resonance at half power, over omega."""
-    roots = free_roots(structure, drive)
+    roots = free_vibration_roots(structure, drive)
     return float(-roots[np.argmax(np.abs(roots))].real)
 
 
-def free_roots(structure: Structure, drive: Drive) -> np.ndarray:
+def free_vibration_roots(structure: Structure, drive: Drive) -> np.ndarray:
     """Return the complex eigenvalues of free vibration of bonded masses and box, over omega."""
-    pull, masses, box = mechanics(structure, drive)
+    pull, masses, box = mechanical_polynomials(structure, drive)
     return np.asarray((box * (pull + masses) + pull * masses).roots())
 
 
-def folds(structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.0) -> list[Place]:
+def folds(
+    structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.0
+) -> list[BifurcationPoint]:
     """Find the folds of the averaged branch, where the speed jumps (Sommerfeld effect).
 
     Parameters
@@ -123,11 +129,14 @@ def folds(structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.
         By speed: a jump up, where eta0 is largest, then a jump down, and so on; empty without
         folds.
     """
-    numerator, denominator = slope(structure, drive)
+    numerator, denominator = slope_polynomials(structure, drive)
     roots = numerator.roots()
     real = np.sort(roots.real[np.abs(roots.imag) < 1e-6 * np.abs(roots)])
     speeds = [polish_root(numerator, root) for root in real if low <= root <= high]
-    return [Place(float(no_load_speed(structure, drive, Omega)), Omega, FOLD) for Omega in speeds]
+    return [
+        BifurcationPoint(float(no_load_speed(structure, drive, Omega)), Omega, FOLD)
+        for Omega in speeds
+    ]
 
 
 def dividing_speed(structure: Structure, drive: Drive) -> float:
@@ -142,17 +151,21 @@ def dividing_speed(structure: Structure, drive: Drive) -> float:
     return 0.5 * (ends[0].Omega + ends[-1].Omega)
 
 
-def slope(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomial]:
+def slope_polynomials(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomial]:
     """Return numerator and denominator of the slope d eta0 / d Omega as polynomials in Omega."""
-    pull, masses, box = (on_the_axis(part) for part in mechanics(structure, drive))
+    pull, masses, box = (
+        substitute_i_omega(part) for part in mechanical_polynomials(structure, drive)
+    )
     above, below = pull + masses, box * (pull + masses) + pull * masses
-    torque = imaginary(above * conjugate(below)) * Polynomial([0.0, 0.0, 0.0, 0.0, 1.0])
-    size = imaginary(1j * below * conjugate(below))  # |below|^2
+    torque = imaginary_part(above * conjugate_polynomial(below)) * Polynomial(
+        [0.0, 0.0, 0.0, 0.0, 1.0]
+    )
+    size = imaginary_part(1j * below * conjugate_polynomial(below))  # |below|^2
     factor = drive.epsilon / (2.0 * drive.b(structure))
     return size**2 - factor * (torque.deriv() * size - torque * size.deriv()), size**2
 
 
-def least_slope(
+def smallest_slope(
     structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.0, count: int = 10_001
 ) -> float:
     """Return the smallest slope d eta0 / d Omega in a range of speeds; negative with folds.
@@ -166,12 +179,12 @@ def least_slope(
     count : int
         Speeds that are looked at.
     """
-    numerator, denominator = slope(structure, drive)
+    numerator, denominator = slope_polynomials(structure, drive)
     speeds = np.linspace(low, high, count)
     return float((numerator(speeds) / denominator(speeds)).min())
 
 
-def growth(structure: Structure, drive: Drive, Omega: float) -> np.ndarray:
+def growth_rates(structure: Structure, drive: Drive, Omega: float) -> np.ndarray:
     """Return the growth rates of small slow disturbances of a stationary motion.
 
     Parameters
@@ -185,7 +198,7 @@ def growth(structure: Structure, drive: Drive, Omega: float) -> np.ndarray:
     ndarray of complex
         Over omega; the one that grows fastest first.
     """
-    pull, masses, box = mechanics(structure, drive)
+    pull, masses, box = mechanical_polynomials(structure, drive)
     above = (pull + masses) * Polynomial([0.0, 0.0, 0.0, 0.0, 1.0])
     below = box * (pull + masses) + pull * masses
     at, side = 1j * Omega, Polynomial([1j * Omega, 1.0])
@@ -201,9 +214,9 @@ def growth(structure: Structure, drive: Drive, Omega: float) -> np.ndarray:
     return np.asarray(roots[np.argsort(-roots.real)])
 
 
-def torus_points(
+def neimark_sacker_points(
     structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.0, count: int = 401
-) -> list[Place]:
+) -> list[BifurcationPoint]:
     """Find the Neimark-Sacker points, where a slow oscillation of the speed starts to grow.
 
     Parameters
@@ -219,7 +232,7 @@ def torus_points(
 
     def test(Omega: float) -> float:
         """Return the product of all sums of two growth rates; it is 0 at a bifurcation."""
-        roots = growth(structure, drive, Omega)
+        roots = growth_rates(structure, drive, Omega)
         sums = np.add.outer(roots, roots)[np.triu_indices(len(roots), 1)]
         return float(np.prod(-sums / np.abs(sums).max()).real)
 
@@ -228,14 +241,18 @@ def torus_points(
     points = []
     for i in np.flatnonzero(signs[1:] != signs[:-1]):
         Omega = float(brentq(test, speeds[i], speeds[i + 1], xtol=1e-12))
-        roots = growth(structure, drive, Omega)
+        roots = growth_rates(structure, drive, Omega)
         pairs = roots[np.abs(roots.imag) > 1e-9]
         if np.abs(pairs.real).min() < 1e-6:  # no two real ones of opposite signs
-            points.append(Place(float(no_load_speed(structure, drive, Omega)), Omega, TORUS))
+            points.append(
+                BifurcationPoint(float(no_load_speed(structure, drive, Omega)), Omega, TORUS)
+            )
     return points
 
 
-def losses(structure: Structure, drive: Drive) -> tuple[Place | None, Place | None]:
+def stability_limits(
+    structure: Structure, drive: Drive
+) -> tuple[BifurcationPoint | None, BifurcationPoint | None]:
     """Return the point where a slow voltage ramp loses stability, upward and downward.
 
     Returns
@@ -244,7 +261,7 @@ def losses(structure: Structure, drive: Drive) -> tuple[Place | None, Place | No
         The end of the stable branch that comes from below, and of the one from beyond; None where
         all motions are stable.
     """
-    points, stable = stability(structure, drive)
+    points, stable = branch_stability(structure, drive)
     if not points:
         return None, None
     ends = [point for point in points if point.kind != TORUS]
@@ -254,7 +271,9 @@ def losses(structure: Structure, drive: Drive) -> tuple[Place | None, Place | No
     return (points[below[-1]] if below else None, points[beyond[0] - 1] if beyond else None)
 
 
-def stability(structure: Structure, drive: Drive) -> tuple[list[Place], list[bool]]:
+def branch_stability(
+    structure: Structure, drive: Drive
+) -> tuple[list[BifurcationPoint], list[bool]]:
     """Return all folds and Neimark-Sacker points by speed, and which motions are stable.
 
     Returns
@@ -264,26 +283,26 @@ def stability(structure: Structure, drive: Drive) -> tuple[list[Place], list[boo
         Of the motions below the first point, between each and the next, and beyond the last one.
     """
     at = resonance(structure, drive)
-    torus = torus_points(structure, drive, 0.8 * at, 1.5 * at, count=151)
+    torus = neimark_sacker_points(structure, drive, 0.8 * at, 1.5 * at, count=151)
     points = sorted([*folds(structure, drive), *torus], key=lambda point: point.Omega)
     speeds = [point.Omega for point in points]
     between = [0.5 * (low + high) for low, high in pairwise(speeds)]
     middles = [0.99 * speeds[0], *between, 1.01 * speeds[-1]] if points else [at]
-    return points, [bool(growth(structure, drive, Omega)[0].real < 0.0) for Omega in middles]
+    return points, [bool(growth_rates(structure, drive, Omega)[0].real < 0.0) for Omega in middles]
 
 
-def on_the_axis(polynomial: Polynomial) -> Polynomial:
+def substitute_i_omega(polynomial: Polynomial) -> Polynomial:
     """Convert a polynomial in s into one in Omega by setting s = i Omega."""
     powers = 1j ** np.arange(len(polynomial.coef))
     return Polynomial(np.asarray(polynomial.coef, dtype=complex) * powers)
 
 
-def conjugate(polynomial: Polynomial) -> Polynomial:
+def conjugate_polynomial(polynomial: Polynomial) -> Polynomial:
     """Return the polynomial with complex conjugate coefficients."""
     return Polynomial(polynomial.coef.conj())
 
 
-def imaginary(polynomial: Polynomial) -> Polynomial:
+def imaginary_part(polynomial: Polynomial) -> Polynomial:
     """Return the polynomial made of the imaginary parts of the coefficients."""
     return Polynomial(polynomial.coef.imag)
 

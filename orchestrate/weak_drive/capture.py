@@ -30,7 +30,7 @@ from ..structures.ranges import DRIVE
 from ..structures.structure import Structure
 from . import averaged
 from .controllers import Controller
-from .couple import couple_job, require_motor, scheme_of
+from .couple import couple_job, require_motor, scheme_from_arguments
 from .master import Scheme
 from .run import Run, begin_run
 from .schedule import Constant, check
@@ -95,7 +95,7 @@ class CaptureJob(Job):
     def items(self, inputs: Inputs) -> Sequence[System]:
         """Return one pair of structure and drive for each parameter value."""
         system = System(self.structure, self.drive)
-        return [with_value(system, self.over, value) for value in self.values] or [system]
+        return [replace_parameter(system, self.over, value) for value in self.values] or [system]
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[System], previous: Any) -> Table:
         """Simulate starts at all voltages and bisect for the threshold voltage."""
@@ -155,7 +155,7 @@ class CaptureJob(Job):
         tried = variable("voltage", np.array(self.voltages), "V", "voltage switched on from rest")
         coordinates = {"voltage": tried}
         if self.over:
-            coordinates[self.over] = axis(self.over, self.values)
+            coordinates[self.over] = parameter_coordinate(self.over, self.values)
         state = "bonded" if self.structure.bonded else "delaminated"
         title = f"Capture at the resonance from rest, {state} structure"
         return xr.Dataset(variables, coordinates, {"title": title})
@@ -189,7 +189,7 @@ def run_until_settled(
     return Outcome(UNDECIDED)
 
 
-class End(NamedTuple):
+class ThresholdEnd(NamedTuple):
     """Store one end of the bracket of the threshold: its voltage, V, and final speed, rad/s."""
 
     voltage: float = math.nan
@@ -201,7 +201,7 @@ def threshold_voltage(
     outcomes: Sequence[Outcome],
     start: Callable[[float], Outcome],
     tolerance: float,
-) -> tuple[End, End]:
+) -> tuple[ThresholdEnd, ThresholdEnd]:
     """Bracket by bisection the voltage from which a start passes the resonance.
 
     The highest voltage that is captured and the lowest above it that passes are brought together to
@@ -215,10 +215,10 @@ def threshold_voltage(
     """
     captured = [i for i, found in enumerate(outcomes) if found.captured]
     if not captured or not outcomes[-1].passed:
-        return End(), End()
+        return ThresholdEnd(), ThresholdEnd()
     last = captured[-1]
     first = 1 + max(i for i, found in enumerate(outcomes) if not found.passed)
-    low, high = (End(voltages[i], outcomes[i].speed) for i in (last, first))
+    low, high = (ThresholdEnd(voltages[i], outcomes[i].speed) for i in (last, first))
     doubtful = (voltages[last + 1], voltages[first - 1]) if first - last > 1 else None
     while True:
         begin, end = doubtful or (high.voltage, low.voltage)
@@ -230,15 +230,15 @@ def threshold_voltage(
             return low, high
         found = start(middle)
         if found.captured:
-            low = End(middle, found.speed)
+            low = ThresholdEnd(middle, found.speed)
             doubtful = None if middle > begin else doubtful
         elif found.passed and middle > end:
-            high = End(middle, found.speed)
+            high = ThresholdEnd(middle, found.speed)
         else:  # undecided, or passes below an undecided one
             doubtful = (min(middle, begin), max(middle, end)) if doubtful else (middle, middle)
 
 
-def with_value(system: System, over: str, value: float) -> System:
+def replace_parameter(system: System, over: str, value: float) -> System:
     """Replace one parameter of the drive or of the structure, and return both.
 
     Raises
@@ -251,7 +251,7 @@ def with_value(system: System, over: str, value: float) -> System:
     return system._replace(structure=system.structure.replace(**{over: value}))
 
 
-def axis(over: str, values: ArrayLike) -> Variable:
+def parameter_coordinate(over: str, values: ArrayLike) -> Variable:
     """Build the dataset's coordinate for the varied parameter, with its unit."""
     if over in DRIVE:
         numbers = np.asarray(values, dtype=float)
@@ -259,7 +259,7 @@ def axis(over: str, values: ArrayLike) -> Variable:
     return parameter_variable(over, over, values)
 
 
-def voltages_of(voltage: tuple[float, float], count: int) -> tuple[float, ...]:
+def voltage_grid(voltage: tuple[float, float], count: int) -> tuple[float, ...]:
     """Return equally spaced voltages between the two given ends, V."""
     try:
         low, high = (float(value) for value in voltage)
@@ -272,7 +272,9 @@ def voltages_of(voltage: tuple[float, float], count: int) -> tuple[float, ...]:
     return tuple(np.linspace(low, high, checked_integer("count", count, 2)).tolist())
 
 
-def values_of(over: str | None, values: ArrayLike | None, system: System) -> tuple[float, ...]:
+def check_parameter_values(
+    over: str | None, values: ArrayLike | None, system: System
+) -> tuple[float, ...]:
     """Check the values of the varied parameter and return them as a tuple of numbers."""
     if (over is None) != (values is None):
         raise InputError(f"over = {over!r} and values = {values!r}: expected both, or none of them")
@@ -285,7 +287,7 @@ def values_of(over: str | None, values: ArrayLike | None, system: System) -> tup
     if not numbers or len(set(numbers)) != len(numbers):
         raise InputError(f"values = {values!r}: expected one number or more, each once")
     for value in numbers:
-        with_value(system, over, value)
+        replace_parameter(system, over, value)
     return numbers
 
 
@@ -376,13 +378,13 @@ def capture(
     """
     require_motor(drive)
     system = System(structure, drive)
-    parameter_values = values_of(over, values, system)
-    voltages = voltages_of(voltage, count)
+    parameter_values = check_parameter_values(over, values, system)
+    voltages = voltage_grid(voltage, count)
     check("tolerance", tolerance, "V", low=0.0, exclusive=True)
     if time is not None:
         check("time", time, "s", low=0.0, exclusive=True)
     stay = checked_integer("stay", stay, 1)
-    scheme = scheme_of(structure, step, sampled=control is not None)
+    scheme = scheme_from_arguments(structure, step, sampled=control is not None)
     job = CaptureJob(
         "capture",
         *(structure, drive, over or "", parameter_values, voltages),

@@ -1,7 +1,7 @@
 """Run the master's communication steps in compiled C code, with bit-identical results.
 
 ``compiled.c`` calls the FMUs' functions itself, past Python: where two FMI 3.0 instances are native
-and the library can be had, :func:`master_of` makes a master that steps so. Structures are those of
+and the library can be had, :func:`create_master` makes a master that steps so. Structures are those of
 the C source.
 """
 
@@ -60,7 +60,7 @@ class Pair(ctypes.Structure):
 
 
 @functools.cache
-def step_function() -> Any:
+def load_step_function() -> Any:
     """Load the C function that runs communication steps, once; None if unavailable."""
     run = loaded_function(SOURCE)
     if run is None:
@@ -69,7 +69,7 @@ def step_function() -> Any:
     return run
 
 
-def master_of(
+def create_master(
     oscillator: Instance,
     shaker: Instance,
     structure: Structure,
@@ -80,7 +80,7 @@ def master_of(
     native = all(
         channel.is_fmi3 and not channel.description.needs_tool for channel in (oscillator, shaker)
     )
-    kind = CompiledMaster if native and step_function() else Master
+    kind = CompiledMaster if native and load_step_function() else Master
     return kind(oscillator, shaker, structure, scheme, start_time)
 
 
@@ -97,8 +97,8 @@ class CompiledMaster(Master):
     ) -> None:
         """Prepare the buffers that the C library reads and writes."""
         super().__init__(oscillator, shaker, structure, scheme, start_time)
-        self._run = step_function()
-        self._pair = pair_of(self.oscillator, self.shaker, structure, scheme)
+        self._run = load_step_function()
+        self._pair = fill_pair(self.oscillator, self.shaker, structure, scheme)
         self._memory = array("d", self.get_state())
         self._seen = array("d", bytes(8 * len(PLACES)))
 
@@ -124,8 +124,8 @@ class CompiledMaster(Master):
         self.oscillator.begin()
         self.shaker.begin()
         done = self._run(
-            *(byref(self._pair), address(self._memory)),
-            *(address(self._seen) if revolution else None, address(buffer)),
+            *(byref(self._pair), buffer_address(self._memory)),
+            *(buffer_address(self._seen) if revolution else None, buffer_address(buffer)),
             *(first, len(buffer), h or self.scheme.h),
             None if kept is None else kept.ctypes.data,
         )
@@ -151,14 +151,14 @@ class CompiledMaster(Master):
         self._memory[:] = array("d", numbers)
 
 
-def address(numbers: array[float]) -> int:
+def buffer_address(numbers: array[float]) -> int:
     """Return the memory address of an array's first number."""
     return numbers.buffer_info()[0]
 
 
-def pair_of(oscillator: Channel, shaker: Channel, structure: Structure, scheme: Scheme) -> Pair:
+def fill_pair(oscillator: Channel, shaker: Channel, structure: Structure, scheme: Scheme) -> Pair:
     """Fill the C structure with both FMU instances, the structure and the step settings."""
-    pair = Pair(side_of(oscillator), side_of(shaker))
+    pair = Pair(fill_fmu_side(oscillator), fill_fmu_side(shaker))
     for name in ("m1", "m2", "k1", "k2", "d1", "d2", "preload"):
         setattr(pair, name, getattr(structure, name))
     pair.rest_1, pair.rest_2 = structure.at_rest
@@ -172,7 +172,7 @@ def pair_of(oscillator: Channel, shaker: Channel, structure: Structure, scheme: 
     return pair
 
 
-def side_of(channel: Channel) -> FmuSide:
+def fill_fmu_side(channel: Channel) -> FmuSide:
     """Fill the C structure of one FMU instance; keep its channel alive while it is used."""
     pointers = channel.pointers()
     counts = len(pointers.inputs), len(pointers.outputs)

@@ -60,7 +60,7 @@ class Controller(ABC):
         return self.update(measured, state)
 
 
-def within(voltage: float, available: float) -> float:
+def limit_voltage(voltage: float, available: float) -> float:
     """Limit a voltage to the range from 0 to the available voltage, which may be negative."""
     low, high = min(0.0, available), max(0.0, available)
     return min(max(voltage, low), high)
@@ -122,7 +122,7 @@ class SpeedControl(Controller):
         deviation = setpoint - measured.speed
         grown = integral + deviation * measured.h / self.reset_time
         demand = self.gain * (deviation + grown)
-        voltage = within(demand, measured.available)
+        voltage = limit_voltage(demand, measured.available)
         if (
             voltage == demand or (demand - voltage) * deviation < 0.0
         ):  # not limited, or leaving that

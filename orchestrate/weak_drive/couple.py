@@ -24,7 +24,7 @@ from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged, own_resonance
 from .controllers import Controller
-from .further_jumps import find_further
+from .further_jumps import find_further_jumps
 from .held import (
     FOLLOWS,
     MEANINGS,
@@ -35,21 +35,27 @@ from .held import (
     Verdict,
     with_final_chunk,
 )
-from .jump_verdicts import check_against_theory, how_decided, is_doubtful, reason, theories
-from .jumps import JUMP, Passing, SweepLeg, find_passing, stays_beyond, why_none
+from .jump_verdicts import (
+    averaged_predictions,
+    check_against_theory,
+    describe_decision,
+    explain_no_jump,
+    is_doubtful,
+)
+from .jumps import JUMP, Passing, SweepLeg, explain_not_passed, find_passing, time_beyond_threshold
 from .losses import (
     MOST,
     SLOTS,
     THROUGH,
     Loss,
-    as_rows,
-    from_rows,
-    further_columns,
+    drop_known_losses,
+    empty_verdict_rows,
+    further_jump_variables,
     gather_losses,
-    jump_and_further,
-    no_rows,
-    outcomes,
-    without_known,
+    loss_verdicts,
+    pick_jump,
+    verdicts_from_rows,
+    verdicts_to_rows,
 )
 from .master import Scheme
 from .revolutions import COLUMNS
@@ -134,7 +140,7 @@ class CoupleJob(CoupledRun):
         with begin_run(self, fmus) as run:
             if previous is not None:
                 run.set_state(previous)
-            return {**revolve(run), **run.get_state(), **no_verdicts()}
+            return {**revolve(run), **run.get_state(), **empty_verdicts()}
 
     def progress_note(self, first: int) -> str:
         """Return the progress bar's note for the chunk of the held-voltage test."""
@@ -152,9 +158,9 @@ class CoupleJob(CoupledRun):
         """
         doubts = [self.doubt(table, up) for up in UPWARD]
         places = [self.further_places(table, up) for up in UPWARD]
-        verdicts, further = [Verdict(NOT_ASKED)] * len(doubts), [no_rows()] * len(doubts)
+        verdicts, further = [Verdict(NOT_ASKED)] * len(doubts), [empty_verdict_rows()] * len(doubts)
         if not any(doubts) and not any(places):
-            return stored_verdicts(verdicts, further)
+            return pack_verdicts(verdicts, further)
         structure, drive = self.structure, self.drive
         threshold = own_resonance.dividing_speed(structure, drive)
         resonance = own_resonance.dividing_speeds(structure, drive)
@@ -175,7 +181,7 @@ class CoupleJob(CoupledRun):
                     course = test.classify(*doubt, threshold, UPWARD[i], resonance)
                 verdicts[i] = course.verdict
                 further[i] = self.further_verdicts(test, table, course, places[i], UPWARD[i])
-        return stored_verdicts(verdicts, further)
+        return pack_verdicts(verdicts, further)
 
     def further_verdicts(
         self,
@@ -187,7 +193,7 @@ class CoupleJob(CoupledRun):
     ) -> np.ndarray:
         """Hold voltages where the record suggests further jumps; return verdicts."""
         found = [(THROUGH, verdict) for verdict in course.further]
-        known, volts = outcomes(course), self.drive.volts(self.structure)
+        known, volts = loss_verdicts(course), self.drive.volts(self.structure)
         sign = 1.0 if up else -1.0
         crossed = sorted(known, key=lambda verdict: sign * verdict.low)[:-1]  # before the passing
         Omega = np.abs(table["speed"]) / self.structure.omega
@@ -203,10 +209,10 @@ class CoupleJob(CoupledRun):
             held = test.for_further_jumps().classify(
                 *self.by_steps(table, self.earlier(table, passing, up), up), middle, up
             )
-            told = without_known(outcomes(held), known, volts)
+            told = drop_known_losses(loss_verdicts(held), known, volts)
             known += told
             found += [(place, verdict) for verdict in told or [Verdict(FOLLOWS)]]
-        return as_rows(found)
+        return verdicts_to_rows(found)
 
     def earlier(self, table: Table, passing: Passing, up: bool) -> Passing:
         """Move the start of a suspected jump earlier, because a ramp shows losses late."""
@@ -229,7 +235,9 @@ class CoupleJob(CoupledRun):
             one_ramp = SweepLeg(*(values[part] for values in leg))
             places += [
                 Passing(row + first, before + first, after + first, look, half + first)
-                for row, before, after, look, half in find_further(one_ramp, b, up, divide, span)
+                for row, before, after, look, half in find_further_jumps(
+                    one_ramp, b, up, divide, span
+                )
             ]
         return places
 
@@ -255,7 +263,7 @@ class CoupleJob(CoupledRun):
     def doubt(self, table: Table, up: bool) -> tuple[Passing, tuple[int, int]] | None:
         """Return a doubtful passage of the resonance in steps; None if the record is clear."""
         passing = None if self.control else self.passing(table, up)
-        theory = theories(self.structure, self.drive)[UPWARD.index(up)]
+        theory = averaged_predictions(self.structure, self.drive)[UPWARD.index(up)]
         if passing is None or not is_doubtful(passing, self.structure.bonded, theory):
             return None
         return self.by_steps(table, passing, up)
@@ -302,7 +310,7 @@ class CoupleJob(CoupledRun):
         }
         divide = own_resonance.dividing_speed(self.structure, self.drive)
         text = "time from which the mean speed stays beyond the resonance; NaN where it does not"
-        passed = stays_beyond(table["time"], np.abs(Omega), divide)
+        passed = time_beyond_threshold(table["time"], np.abs(Omega), divide)
         variables["passage_time"] = ((), passed, {"units": "s", "long_name": text})
         dataset = xr.Dataset(
             {**variables, **self.jumps(table)}, coordinates, self.attributes(table)
@@ -317,15 +325,14 @@ class CoupleJob(CoupledRun):
     def jumps(self, table: Table) -> dict[str, Variable]:
         """Build the variables of the jump in each direction, or the reason for none."""
         held = [Verdict(int(row[0]), *row[1:]) for row in table["verdicts"][-1]]
-        theory = theories(self.structure, self.drive)
+        theory = averaged_predictions(self.structure, self.drive)
         found = [self.losses(table, i, held[i]) for i in range(len(UPWARD))]
         told = [
-            jump_and_further(*pair, 1.0 if up else -1.0)
-            for pair, up in zip(found, UPWARD, strict=True)
+            pick_jump(*pair, 1.0 if up else -1.0) for pair, up in zip(found, UPWARD, strict=True)
         ]
         jumps = [first.passing if first and first.is_sure else None for first, _ in told]
         final = [first.verdict if first else held[i] for i, (first, _) in enumerate(told)]
-        columns = jump_columns(table, jumps)
+        columns = jump_variables(table, jumps)
         columns |= self.theory(np.array(columns["jumps"][1], dtype=float))
         reasons = []
         for i, (first, _) in enumerate(told):
@@ -334,26 +341,27 @@ class CoupleJob(CoupledRun):
             elif jumps[i] is None:
                 ends = self.ends_within(table, UPWARD[i]) if held[i].outcome == UNDECIDED else ""
                 reasons.append(
-                    ends or reason(first.passing, held[i], final[i], theory[i], self.hold)
+                    ends or explain_no_jump(first.passing, held[i], final[i], theory[i], self.hold)
                 )
             else:
                 reasons.append("")
         decided = [
-            how_decided(first and first.passing, final[i]) for i, (first, _) in enumerate(told)
+            describe_decision(first and first.passing, final[i])
+            for i, (first, _) in enumerate(told)
         ]
         columns["no_jump"] = ("jump", reasons, {"long_name": "why there is no jump"})
         columns["decided"] = ("jump", decided, {"long_name": "how jump or none was told"})
-        columns |= further_columns(table, [further for _, further in told])
-        return columns | held_columns(final)
+        columns |= further_jump_variables(table, [further for _, further in told])
+        return columns | held_voltage_variables(final)
 
     def losses(self, table: Table, i: int, primary: Verdict) -> tuple[Loss | None, list[Loss]]:
         """Collect all losses of stability in a direction; that at the resonance first."""
         if self.control:
             return None, []
         up, volts = UPWARD[i], self.drive.volts(self.structure)
-        further = from_rows(table["further_verdicts"][-1, i])
+        further = verdicts_from_rows(table["further_verdicts"][-1, i])
         if self.structure.bonded:
-            theory = theories(self.structure, self.drive)[i]
+            theory = averaged_predictions(self.structure, self.drive)[i]
             primary = check_against_theory(primary, theory, volts)
             further = [
                 (place, check_against_theory(verdict, theory, volts)) for place, verdict in further
@@ -368,7 +376,7 @@ class CoupleJob(CoupledRun):
         late = {"units": "V", "long_name": text}
         if not structure.bonded:
             return {"jump_lag": ("jump", [math.nan, math.nan], late)}
-        points = averaged.losses(structure, self.drive)
+        points = averaged.stability_limits(structure, self.drive)
         ends = [volts * point.eta0 if point else math.nan for point in points]
         kinds = [point.kind if point else "" for point in points]
         text = "voltage at which the motion is lost, by the averaged theory"
@@ -383,7 +391,7 @@ class CoupleJob(CoupledRun):
         if self.control:
             return "a controller sets the voltage"
         resonance = own_resonance.resonance(self.structure, self.drive)
-        return why_none(self.sweep_leg(table, up)[0], up, resonance)
+        return explain_not_passed(self.sweep_leg(table, up)[0], up, resonance)
 
     def ends_within(self, table: Table, up: bool) -> str:
         """Explain that the sweep ends before a resonance; empty text if it does not."""
@@ -411,17 +419,17 @@ class CoupleJob(CoupledRun):
         }
 
 
-def no_verdicts() -> Table:
+def empty_verdicts() -> Table:
     """Return empty verdict arrays, for chunks that consist of communication steps."""
     return {
         name: values[:0]
-        for name, values in stored_verdicts(
-            [Verdict(NOT_ASKED)] * len(UPWARD), [no_rows()] * len(UPWARD)
+        for name, values in pack_verdicts(
+            [Verdict(NOT_ASKED)] * len(UPWARD), [empty_verdict_rows()] * len(UPWARD)
         ).items()
     }
 
 
-def stored_verdicts(verdicts: Sequence[Verdict], further: Sequence[np.ndarray]) -> Table:
+def pack_verdicts(verdicts: Sequence[Verdict], further: Sequence[np.ndarray]) -> Table:
     """Pack the verdicts at the resonance and the further ones into arrays to store."""
     return {
         "verdicts": np.array(verdicts, dtype=float)[np.newaxis],
@@ -434,7 +442,7 @@ def concatenate_tables(tables: Sequence[Table]) -> Table:
     return {name: np.concatenate([part[name] for part in tables]) for name in tables[0]}
 
 
-def held_columns(verdicts: Sequence[Verdict]) -> dict[str, Variable]:
+def held_voltage_variables(verdicts: Sequence[Verdict]) -> dict[str, Variable]:
     """Build the variables of the held-voltage verdicts and of the voltage brackets."""
     codes = [int(verdict.outcome) for verdict in verdicts]
     middles = [0.5 * (verdict.low + verdict.high) for verdict in verdicts]
@@ -448,7 +456,7 @@ def held_columns(verdicts: Sequence[Verdict]) -> dict[str, Variable]:
     }
 
 
-def jump_columns(table: Table, jumps: Sequence[Passing | None]) -> dict[str, Variable]:
+def jump_variables(table: Table, jumps: Sequence[Passing | None]) -> dict[str, Variable]:
     """Build the variables of voltage, time, speed and amplitude at each jump."""
 
     def at(name: str, row_name: str) -> list[float]:
@@ -492,7 +500,7 @@ def require_motor(drive: Drive) -> None:
         raise InputError(f"motor_constant = {drive.motor_constant} N.m/A: expected a number > 0")
 
 
-def schedule_of(
+def schedule_from_arguments(
     structure: Structure,
     drive: Drive,
     voltage: float | tuple[float, float] | Schedule,
@@ -530,7 +538,7 @@ def schedule_of(
     return replace(ramp, spin_up=float(spin_up), low=low) if spin_up else ramp
 
 
-def scheme_of(
+def scheme_from_arguments(
     structure: Structure,
     step: float | None,
     algorithm: str = "rollback",
@@ -728,7 +736,7 @@ def couple(
     if spin_up is None and speed_start is not None:
         spin_up = 0.0
     settings = (duration, rate, settle, increment, back, spin_up)
-    schedule = schedule_of(structure, drive, voltage, *settings)
-    scheme = scheme_of(structure, step, algorithm, tolerance, control is not None)
+    schedule = schedule_from_arguments(structure, drive, voltage, *settings)
+    scheme = scheme_from_arguments(structure, step, algorithm, tolerance, control is not None)
     job = couple_job(structure, drive, schedule, scheme, speed_start, control, hold)
     return answer(job, running, finder(running))

@@ -20,7 +20,13 @@ from ..running.runner import gather
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged, own_resonance
-from .couple import CoupleJob, couple_job, require_motor, schedule_of, scheme_of
+from .couple import (
+    CoupleJob,
+    couple_job,
+    require_motor,
+    schedule_from_arguments,
+    scheme_from_arguments,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -33,7 +39,7 @@ BELOW, BEYOND, PAST = 0.97, 1.05, 0.05  # speeds over the resonance; voltage pas
 System = tuple[Structure, Drive]
 
 
-def ends_of(structure: Structure, drive: Drive) -> tuple[float, float]:
+def voltage_range(structure: Structure, drive: Drive) -> tuple[float, float]:
     """Return the two ends of the voltage ramp, over K omega, from below to past resonance."""
     low, high = own_resonance.resonances(structure, drive)
     first, last = (
@@ -44,7 +50,7 @@ def ends_of(structure: Structure, drive: Drive) -> tuple[float, float]:
     return first, max([last, *(fold.eta0 + PAST for fold in folds)])
 
 
-def job_of(
+def couple_job_from_numbers(
     name: str,
     system: System,
     kind: str,
@@ -58,11 +64,11 @@ def job_of(
     structure = structure.as_bonded() if kind == "bonded" else structure.as_delaminated()
     require_motor(drive)
     volts, omega = drive.volts(structure), structure.omega
-    first, last = ends_of(structure.as_bonded(), drive) if eta0 is None else eta0
-    schedule = schedule_of(
+    first, last = voltage_range(structure.as_bonded(), drive) if eta0 is None else eta0
+    schedule = schedule_from_arguments(
         structure, drive, (first * volts, last * volts), rate=rate * volts * omega, back=back
     )
-    scheme = scheme_of(structure, None if step is None else step / omega)
+    scheme = scheme_from_arguments(structure, None if step is None else step / omega)
     job = couple_job(structure, drive, schedule, scheme)
     return replace(job, name=f"couple_{name}_{kind}_{rate:g}")
 
@@ -129,7 +135,10 @@ def couple_all(
         if not (math.isfinite(rate) and rate > 0.0):
             raise InputError(f"rate = {rate}: expected a number > 0, of eta0 in a time 1/omega")
     runs = list(product(systems, kinds, dict.fromkeys(rates)))
-    jobs = [job_of(name, systems[name], kind, rate, eta0, back, step) for name, kind, rate in runs]
+    jobs = [
+        couple_job_from_numbers(name, systems[name], kind, rate, eta0, back, step)
+        for name, kind, rate in runs
+    ]
     if not jobs:
         raise InputError("kinds, rates: expected one of each, or more")
     found = [

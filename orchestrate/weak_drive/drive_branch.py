@@ -202,16 +202,16 @@ class DriveBranchJob(Job):
         variables = motion_variables(along, points)
         largest = np.nan_to_num(np.abs(points[..., len(COLUMNS)]), nan=np.inf)
         text = "whether the motion is stable"
-        variables["stable"] = (along, largest < 1.0 - ON_CIRCLE, labels("1", text))
+        variables["stable"] = (along, largest < 1.0 - ON_CIRCLE, variable_attributes("1", text))
         ends = np.array(ENDS)[table["ends"]]
-        variables["end"] = (along[:2], ends, labels("1", "why the branch ends"))
+        variables["end"] = (along[:2], ends, variable_attributes("1", "why the branch ends"))
         kinds = table["kinds"]
         located = kinds >= 0
         at = motion_variables(("bifurcation",), table["events"][located])
         structures = np.array(STRUCTURES)[np.argwhere(located)[:, 0]]
         names = np.array([KINDS[kind] for kind in BIFURCATIONS])[kinds[located]]
-        at["structure"] = (("bifurcation",), structures, labels("1", "structure"))
-        at["kind"] = (("bifurcation",), names, labels("1", "kind of bifurcation"))
+        at["structure"] = (("bifurcation",), structures, variable_attributes("1", "structure"))
+        at["kind"] = (("bifurcation",), names, variable_attributes("1", "kind of bifurcation"))
         variables |= {f"bifurcation_{name}": values for name, values in at.items()}
         coordinates = {
             "structure": ("structure", list(STRUCTURES), {"long_name": "structure"}),
@@ -220,7 +220,7 @@ class DriveBranchJob(Job):
         return xr.Dataset(variables, coordinates, {"title": "Branches of the weak drive"})
 
 
-def labels(unit: str, text: str) -> dict[str, str]:
+def variable_attributes(unit: str, text: str) -> dict[str, str]:
     """Return the unit and the long name of a variable as its attributes."""
     return {"units": unit, "long_name": text}
 
@@ -228,7 +228,7 @@ def labels(unit: str, text: str) -> dict[str, str]:
 def motion_variables(dims: tuple[str, ...], numbers: np.ndarray) -> dict[str, Variable]:
     """Convert a table of motions to the variables of a dataset."""
     variables: dict[str, Variable] = {
-        name: (dims, numbers[..., i].real, labels(unit, text))
+        name: (dims, numbers[..., i].real, variable_attributes(unit, text))
         for i, (name, (unit, text)) in enumerate(COLUMNS.items())
     }
     largest = numbers[..., len(COLUMNS) :]
@@ -237,7 +237,7 @@ def motion_variables(dims: tuple[str, ...], numbers: np.ndarray) -> dict[str, Va
         ("real", "real", largest.real),
         ("imag", "imaginary", largest.imag),
     ):
-        attributes = labels("1", f"{text}, {name} part")
+        attributes = variable_attributes("1", f"{text}, {name} part")
         variables[f"multiplier_{part}"] = ((*dims, "multiplier"), values, attributes)
     return variables
 

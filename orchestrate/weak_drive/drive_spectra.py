@@ -26,8 +26,8 @@ from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged, own_resonance
-from .couple import couple_job, scheme_of
-from .master import parts_of
+from .couple import couple_job, scheme_from_arguments
+from .master import split_state
 from .run import Run, begin_run
 from .schedule import Ramp, check
 
@@ -90,7 +90,7 @@ class DriveSpectraJob(Job):
 
     def record(self, fmus: Mapping[str, Path], structure: Structure) -> tuple[np.ndarray, float]:
         """Hold the voltage; return displacements (2, samples), m, and speed, rad/s."""
-        scheme = scheme_of(structure, self.step, "rollback", 0.0)
+        scheme = scheme_from_arguments(structure, self.step, "rollback", 0.0)
         job = couple_job(structure, self.drive, self.approach, scheme)
         steps = range(math.ceil((self.approach.duration + self.hold) / self.step))
         with begin_run(job, fmus) as run:
@@ -112,7 +112,7 @@ class DriveSpectraJob(Job):
         kept = np.empty((count, len(run.master.get_state())))
         run.master.revolution = None
         run.master.run([self.approach.last] * count, h=interval, kept=kept)
-        _, motion, shaking, _ = parts_of(kept.T)
+        _, motion, shaking, _ = split_state(kept.T)
         rest_1, rest_2 = run.job.structure.at_rest
         box = shaking.box_position
         return np.array([motion.x1 - rest_1 + box, motion.x2 - rest_2 + box])
@@ -246,7 +246,7 @@ def drive_spectra(
     points = checked_integer("points", points, 4)
     if not 0.0 < highest <= points / 2:
         raise InputError(f"highest = {highest}: expected 0 < highest <= points/2 = {points / 2:g}")
-    step = scheme_of(structure, step, "rollback", 0.0).h
+    step = scheme_from_arguments(structure, step, "rollback", 0.0).h
     record = (revolutions, points, float(highest))
     tried = (
         [voltage_at_resonance(structure, drive, share) for share in SHARES]

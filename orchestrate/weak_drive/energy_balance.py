@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from ..structures.structure import Structure
 from .exchange import Cubic, OscillatorOutputs, ShakerOutputs
-from .polynomials import coefficients, end_value, product, quartic
+from .polynomials import end_value, integrate_product, matched_quartic, normalized_coefficients
 
 
 class Energies(NamedTuple):
@@ -114,8 +114,8 @@ class EnergyBalance:
         h : float
             Length of the step, s.
         """
-        work = h * product(
-            self._momentum(before, after, acceleration, h), coefficients(acceleration, h)
+        work = h * integrate_product(
+            self._momentum(before, after, acceleration, h), normalized_coefficients(acceleration, h)
         )
         self.lost += self.relative_energy(before) - self.relative_energy(after) - work
         self.defect += defect
@@ -131,7 +131,7 @@ class EnergyBalance:
         first = -h * (before.box_force + mass * acceleration[0])
         last = -h * (after.box_force + mass * end_value(acceleration, h))
         mean = (m1 * (after.x1 - before.x1) + m2 * (after.x2 - before.x2)) / h
-        return quartic(ends, (first, last), mean)
+        return matched_quartic(ends, (first, last), mean)
 
     def _accounts(self, motion: OscillatorOutputs, shaking: ShakerOutputs) -> tuple[float, ...]:
         """Return motor work, box damping, impact loss, stored energy, mass damping."""

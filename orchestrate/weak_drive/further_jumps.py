@@ -22,12 +22,12 @@ from .jumps import (
     Criterion,
     Passing,
     SweepLeg,
-    extent,
+    classify_stretch,
     fast_rows,
     lag_difference,
-    look_of,
     mean_width,
     running_mean,
+    true_stretch_around,
 )
 
 SMALLEST = 8e-3  # change of the speed over omega from which on there is a further jump
@@ -36,7 +36,7 @@ LASTING = 10  # widths of the mean before and after, over which an irregular mot
 APART = 4  # widths of the mean between two places; for fewer no scatter is known
 
 
-def find_further(
+def find_further_jumps(
     leg: SweepLeg, b: float, up: bool, threshold: float, main: tuple[int, int] | None = None
 ) -> list[Passing]:
     """Find where the ramp may lose a motion besides the passing of the resonance.
@@ -72,17 +72,23 @@ def find_further(
         """Return whether a row range overlaps no jump that is already found."""
         return all(after < low or before > high for low, high in spans())
 
-    for high, low in falls(torque, LEAST):
+    for high, low in find_falls(torque, LEAST):
         before, after = high + first, low + first
         ended = [end - first for _, end in spans() if end <= before]
-        looks = {look_of(leg, means, b, sign, part, limits) for part in stretches(fast, high, low)}
+        looks = {
+            classify_stretch(leg, means, b, sign, part, limits)
+            for part in true_stretches(fast, high, low)
+        }
         is_natural = leg.Omega[before] > threshold and not looks - {SMOOTH}
         if not high or is_natural or not is_elsewhere(before, after):
             continue
         earlier = torque[max(0, high - limits.around * width, *ended) : high]
         later = torque[low : low + limits.around * width]
         known = earlier if ended or len(earlier) >= APART * width else later
-        noise, fall = limits.clearness * scatter_of(known, width), torque[high] - torque[low]
+        noise, fall = (
+            limits.clearness * scatter_about_trend(known, width),
+            torque[high] - torque[low],
+        )
         reach = LASTING * width
         lasts = noise <= LEAST or earlier[-reach:].mean() - later[:reach].mean() > 0.5 * fall
         if fall > max(LEAST, noise) and lasts:
@@ -90,10 +96,10 @@ def find_further(
             half = float(before + rows[0])
             look = JUMP if looks == {JUMP} and fall > SMALLEST else DOUBTFUL
             found.append(Passing(math.ceil(half), before, after, look, half))
-    for before, after in stretches(fast, 0, len(fast)):
+    for before, after in true_stretches(fast, 0, len(fast)):
         last = min(after + 2 * width, len(leg.time) - 1)
         excess = sign * (leg.Omega[last] - leg.Omega[before]) - np.ptp(leg.eta0[before : last + 1])
-        is_jump = look_of(leg, means, b, sign, (before, after), limits) == JUMP
+        is_jump = classify_stretch(leg, means, b, sign, (before, after), limits) == JUMP
         if is_jump and excess > LEAST and is_elsewhere(before, last):
             half, look = 0.5 * (before + after), JUMP if excess > SMALLEST else DOUBTFUL
             found.append(Passing(math.ceil(half), before, last, look, half))
@@ -107,7 +113,7 @@ def vibration_torque(means: SweepLeg, b: float, width: int) -> np.ndarray:
     return np.asarray((means.eta0 - means.Omega)[middle] - acceleration / b)
 
 
-def falls(values: np.ndarray, least: float) -> list[tuple[int, int]]:
+def find_falls(values: np.ndarray, least: float) -> list[tuple[int, int]]:
     """Find the spans from a maximum to the next minimum that fall by at least `least`."""
     found, high, low, falling = [], 0, 0, False
     for i, value in enumerate(values.tolist()):
@@ -123,7 +129,7 @@ def falls(values: np.ndarray, least: float) -> list[tuple[int, int]]:
     return [*found, (high, low)] if falling else found
 
 
-def scatter_of(values: np.ndarray, width: int) -> float:
+def scatter_about_trend(values: np.ndarray, width: int) -> float:
     """Estimate the standard deviation of values about a smooth trend."""
     if len(values) < APART * width:
         return math.inf
@@ -133,7 +139,7 @@ def scatter_of(values: np.ndarray, width: int) -> float:
     return float(np.sqrt(np.mean(third**2) / 20.0))
 
 
-def stretches(runs: np.ndarray, first: int, last: int) -> list[tuple[int, int]]:
+def true_stretches(runs: np.ndarray, first: int, last: int) -> list[tuple[int, int]]:
     """Return first and last index of each run of true values that begins in a range."""
     begins = np.flatnonzero(runs & ~np.concatenate([[False], runs[:-1]]))
-    return [extent(runs, int(i)) for i in begins if first <= i <= last]
+    return [true_stretch_around(runs, int(i)) for i in begins if first <= i <= last]

@@ -81,7 +81,7 @@ class HeldCourse(NamedTuple):
     further: tuple[Verdict, ...] = ()
 
 
-class Settled(NamedTuple):
+class HeldPoint(NamedTuple):
     """Store where the speed settled at a held voltage, and the state reached.
 
     Attributes
@@ -234,7 +234,7 @@ class HeldVoltageTest:
                 run.master.close()
         return self.checkpoints.get(step)
 
-    def hold_step(self, step: int) -> Settled:
+    def hold_step(self, step: int) -> HeldPoint:
         """Hold the voltage that the ramp has at a step, from its state there."""
         return self.hold(self.state(step), self.voltage(step))
 
@@ -242,11 +242,11 @@ class HeldVoltageTest:
         """Return the voltage of the ramp at a communication step, V."""
         return self.schedule.voltage((step + 0.5) * self.step)
 
-    def step_from(self, point: Settled, voltage: float) -> Settled:
+    def step_from(self, point: HeldPoint, voltage: float) -> HeldPoint:
         """Change the voltage in one step from a held point, and hold it there."""
         return self.hold(point.state, voltage)._replace(origin=point.voltage)
 
-    def hold(self, state: Table | None, voltage: float) -> Settled:
+    def hold(self, state: Table | None, voltage: float) -> HeldPoint:
         """Simulate a constant voltage from a state until the speed settles."""
         count = math.ceil(self.longest / self.step)
         piece = max(1, round(150.0 / self.omega / self.step))
@@ -263,7 +263,7 @@ class HeldVoltageTest:
                 if math.isfinite(speed):
                     break
             begin = float(speeds[:FIRST].mean()) if speeds.size else math.nan
-            return Settled(voltage, speed, error, begin, run.get_state(), math.nan)
+            return HeldPoint(voltage, speed, error, begin, run.get_state(), math.nan)
         finally:
             run.master.close()
 
@@ -293,7 +293,7 @@ class HeldVoltageTest:
         sign = 1.0 if up else -1.0
         near, far = (resonance or (threshold, threshold))[:: 1 if up else -1]
 
-        def beyond(point: Settled, threshold: float = threshold) -> bool:
+        def beyond(point: HeldPoint, threshold: float = threshold) -> bool:
             """Return whether a held speed has passed a threshold in the voltage's direction."""
             return sign * (point.speed - threshold) > 0.0
 
@@ -319,7 +319,7 @@ class HeldVoltageTest:
             verdict = Verdict(UNDECIDED, low.voltage, points[-1].voltage)
         return HeldCourse(verdict, tuple(others))
 
-    def changes(self, points: list[Settled], sign: float) -> list[Verdict]:
+    def changes(self, points: list[HeldPoint], sign: float) -> list[Verdict]:
         """Bracket the largest speed change and all others that may be jumps.
 
         Others count where the speed changes from one voltage to the next by more than the voltage
@@ -336,14 +336,14 @@ class HeldVoltageTest:
                 verdicts += [verdict for verdict in found if verdict.outcome != FOLLOWS]
         return verdicts
 
-    def may_be_a_loss(self, low: Settled, high: Settled, sign: float) -> bool:
+    def may_be_a_loss(self, low: HeldPoint, high: HeldPoint, sign: float) -> bool:
         """Return whether the speed changes too much for one stable branch."""
         allowed = abs(high.voltage - low.voltage) / self.volts + self.smallest_change(low, high)
         return sign * (high.speed - low.speed) > allowed
 
     def further(
-        self, point: Settled, voltage: float, last: int, sign: float, speed: float
-    ) -> list[Settled]:
+        self, point: HeldPoint, voltage: float, last: int, sign: float, speed: float
+    ) -> list[HeldPoint]:
         """Step the voltage further until the speed is well past a threshold."""
         end, points = self.voltage(last), [point]
         step, missing = sign * self.settings.stair * self.volts, sign * (speed - point.speed)
@@ -363,7 +363,7 @@ class HeldVoltageTest:
         end = self.voltage(last)
         return min(past, end) if sign > 0.0 else max(past, end)
 
-    def comes_back(self, points: list[Settled]) -> bool:
+    def comes_back(self, points: list[HeldPoint]) -> bool:
         """Step the voltages back; return whether the same speeds settle again."""
         last = points[-1]
         for point in reversed(points[:-1]):
@@ -373,7 +373,7 @@ class HeldVoltageTest:
             last = back if math.isfinite(back.speed) else last
         return True
 
-    def stairs(self, low: Settled, target: float) -> list[Settled]:
+    def stairs(self, low: HeldPoint, target: float) -> list[HeldPoint]:
         """Step the voltage to a target; return the points at which it settled."""
         span = abs(target - low.voltage) / self.volts
         count = max(1, min(math.ceil(span / self.settings.stair), self.settings.max_stairs))
@@ -384,12 +384,12 @@ class HeldVoltageTest:
                 points.append(point)
         return points
 
-    def falls_back(self, low: Settled, sign: float) -> bool:
+    def falls_back(self, low: HeldPoint, sign: float) -> bool:
         """Return whether the held speed left the motion that the ramp was on."""
         allowed = 2.0 * self.settings.distinct + 3.0 * low.error
         return sign * (low.speed - low.begin) < -allowed
 
-    def between(self, points: list[Settled], sign: float) -> Verdict:
+    def between(self, points: list[HeldPoint], sign: float) -> Verdict:
         """Halve voltage steps until the largest speed change is bracketed, and judge it."""
         ended = math.nan
         for _ in range(self.settings.max_holds):
@@ -420,25 +420,29 @@ class HeldVoltageTest:
             points.insert(i + 1, middle)
         return Verdict(UNDECIDED, low.voltage, high.voltage)
 
-    def smallest_change(self, low: Settled, high: Settled) -> float:
+    def smallest_change(self, low: HeldPoint, high: HeldPoint) -> float:
         """Return the smallest speed change that may be a jump, over omega."""
         settings = self.settings
-        return min(settings.smallest_jump + noise(low, high), settings.largest_scatter)
+        return min(
+            settings.smallest_jump + speed_difference_error(low, high), settings.largest_scatter
+        )
 
-    def inside(self, low: Settled, high: Settled) -> Iterator[Settled]:
+    def inside(self, low: HeldPoint, high: HeldPoint) -> Iterator[HeldPoint]:
         """Hold voltages between two points and yield each result, the middle first."""
         for part in (0.5, 0.25, 0.75):
             yield self.step_from(low, low.voltage + part * (high.voltage - low.voltage))
 
-    def there_and_back(self, low: Settled, high: Settled) -> int:
+    def there_and_back(self, low: HeldPoint, high: HeldPoint) -> int:
         """Step back to the lower voltage; return LOST if its speed is another."""
         back = self.step_from(high, low.voltage)
-        if abs(back.speed - low.speed) > self.settings.two_motions + noise(back, low):
+        if abs(back.speed - low.speed) > self.settings.two_motions + speed_difference_error(
+            back, low
+        ):
             return LOST if self.later(back) is back else UNDECIDED
         comes_back = math.isfinite(back.speed) and not self.differ(back, low)
         return FOLLOWS if comes_back else UNDECIDED
 
-    def later(self, point: Settled) -> Settled:
+    def later(self, point: HeldPoint) -> HeldPoint:
         """Hold an irregular motion again; return its new point if the speed differs.
 
         An irregular motion may be lost while its voltage is still held; other points are returned
@@ -451,7 +455,7 @@ class HeldVoltageTest:
                 return later
         return point
 
-    def replaced(self, points: list[Settled], i: int) -> bool:
+    def replaced(self, points: list[HeldPoint], i: int) -> bool:
         """Replace a point by what a slower course reaches; return if it differs.
 
         The point's motion may end meanwhile, if it is irregular. And an irregular motion before may
@@ -473,25 +477,27 @@ class HeldVoltageTest:
         is_other, points[i] = later is not points[i], later
         return is_other
 
-    def is_irregular(self, point: Settled) -> bool:
+    def is_irregular(self, point: HeldPoint) -> bool:
         """Return whether the speed of a point scatters, as in chaotic motion."""
         return point.error > self.settings.tolerance
 
-    def is_within(self, low: Settled, high: Settled, width: float) -> bool:
+    def is_within(self, low: HeldPoint, high: HeldPoint, width: float) -> bool:
         """Return whether two points' voltages are closer than a width over K omega."""
         return abs(high.voltage - low.voltage) <= width * self.volts
 
-    def differ(self, point: Settled, other: Settled) -> bool:
+    def differ(self, point: HeldPoint, other: HeldPoint) -> bool:
         """Return whether two points have settled at clearly different speeds."""
-        return abs(point.speed - other.speed) > self.settings.distinct + noise(point, other)
+        return abs(point.speed - other.speed) > self.settings.distinct + speed_difference_error(
+            point, other
+        )
 
 
-def noise(point: Settled, other: Settled) -> float:
+def speed_difference_error(point: HeldPoint, other: HeldPoint) -> float:
     """Return three standard errors of the difference between two settled speeds."""
     return 3.0 * math.hypot(point.error, other.error)
 
 
-def largest_change(points: list[Settled], sign: float) -> tuple[int, Settled, Settled]:
+def largest_change(points: list[HeldPoint], sign: float) -> tuple[int, HeldPoint, HeldPoint]:
     """Find the neighbouring points with the largest speed change; return index and both."""
     pairs = list(pairwise(points))
     i = int(np.argmax([sign * (high.speed - low.speed) for low, high in pairs]))

@@ -26,7 +26,7 @@ LEFT_BEFORE_TEXT = "left its branch before the ramp: it does so at the first vol
 SMOOTH_TEXT = "no jump: the speed follows the voltage through the resonance"
 
 
-class Theory(NamedTuple):
+class AveragedPrediction(NamedTuple):
     """Store where averaged theory predicts that the bonded structure loses stability.
 
     Attributes
@@ -46,21 +46,25 @@ class Theory(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def theories(structure: Structure, drive: Drive) -> tuple[Theory, Theory]:
+def averaged_predictions(
+    structure: Structure, drive: Drive
+) -> tuple[AveragedPrediction, AveragedPrediction]:
     """Return the averaged theory's predictions for rising and for falling voltage."""
     folds = averaged.folds(structure, drive)
     narrow = bool(folds) and abs(folds[0].eta0 - folds[-1].eta0) < NARROW
-    slope = averaged.least_slope(structure, drive)
+    slope = averaged.smallest_slope(structure, drive)
     up, down = (
-        Theory(tuple(candidate.eta0 for candidate in (point, *fold) if candidate), narrow, slope)
+        AveragedPrediction(
+            tuple(candidate.eta0 for candidate in (point, *fold) if candidate), narrow, slope
+        )
         for point, fold in zip(
-            averaged.losses(structure, drive), (folds[:1], folds[-1:]), strict=True
+            averaged.stability_limits(structure, drive), (folds[:1], folds[-1:]), strict=True
         )
     )
     return up, down
 
 
-def is_doubtful(passing: Passing, bonded: bool, theory: Theory) -> bool:
+def is_doubtful(passing: Passing, bonded: bool, theory: AveragedPrediction) -> bool:
     """Return whether a passage has to be checked by holding voltages."""
     if passing.look == JUMP:
         return bonded and not theory.losses
@@ -69,7 +73,7 @@ def is_doubtful(passing: Passing, bonded: bool, theory: Theory) -> bool:
     return passing.look == DOUBTFUL
 
 
-def check_against_theory(verdict: Verdict, theory: Theory, volts: float) -> Verdict:
+def check_against_theory(verdict: Verdict, theory: AveragedPrediction, volts: float) -> Verdict:
     """Change a bonded structure's verdict to undecided if averaged theory objects."""
     if theory.narrow or verdict.outcome not in (LOST, FOLLOWS):
         return verdict
@@ -83,7 +87,9 @@ def check_against_theory(verdict: Verdict, theory: Theory, volts: float) -> Verd
     return verdict._replace(outcome=UNDECIDED)
 
 
-def reason(passing: Passing, held: Verdict, final: Verdict, theory: Theory, hold: float) -> str:
+def explain_no_jump(
+    passing: Passing, held: Verdict, final: Verdict, theory: AveragedPrediction, hold: float
+) -> str:
     """Explain in words why a passage of the resonance is not reported as a jump.
 
     Parameters
@@ -96,14 +102,14 @@ def reason(passing: Passing, held: Verdict, final: Verdict, theory: Theory, hold
         Time for which voltages were held at most, s.
     """
     if final.outcome == UNDECIDED:
-        return undecided(held, theory, hold)
+        return explain_undecided(held, theory, hold)
     if passing.look == UNFINISHED:
         return "the ramp ends while the speed passes the resonance"
     texts = {FOLLOWS: FOLLOWS_TEXT, LEFT_BEFORE: LEFT_BEFORE_TEXT}
     return texts.get(int(final.outcome), SMOOTH_TEXT)
 
 
-def undecided(held: Verdict, theory: Theory, hold: float) -> str:
+def explain_undecided(held: Verdict, theory: AveragedPrediction, hold: float) -> str:
     """Explain in words why a direction is undecided, and what would help."""
     if held.outcome == UNDECIDED:
         known = math.isfinite(held.low) and math.isfinite(held.high)
@@ -119,7 +125,7 @@ def undecided(held: Verdict, theory: Theory, hold: float) -> str:
     return f"undecided: held voltages {ours}, the averaged theory {theirs}; see drive_branch"
 
 
-def how_decided(passing: Passing | None, final: Verdict) -> str:
+def describe_decision(passing: Passing | None, final: Verdict) -> str:
     """Say whether the ramp's record or held voltages decided; empty without a passage."""
     if passing is None:
         return ""

@@ -23,7 +23,7 @@ from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
-from .couple import couple_job, require_motor, schedule_of, scheme_of
+from .couple import couple_job, require_motor, schedule_from_arguments, scheme_from_arguments
 from .master import Scheme
 from .schedule import Ramp, Schedule
 
@@ -69,14 +69,14 @@ def extrapolate(rates: np.ndarray, voltages: np.ndarray) -> tuple[float, float]:
     count = int(known.sum())
     if count < 2:
         return float("nan"), float("nan")
-    line, _ = at_zero(rates[known], voltages[known], (EXPONENT,))
+    line, _ = fit_rate_powers(rates[known], voltages[known], (EXPONENT,))
     if count == 2:
         return line, float("nan")
-    value, scatter = at_zero(rates[known], voltages[known], (EXPONENT, 1.0))
+    value, scatter = fit_rate_powers(rates[known], voltages[known], (EXPONENT, 1.0))
     return value, float(np.hypot(scatter, 0.5 * (value - line)))
 
 
-def at_zero(
+def fit_rate_powers(
     rates: np.ndarray, voltages: np.ndarray, exponents: tuple[float, ...]
 ) -> tuple[float, float]:
     """Fit jump voltages by powers of the rate; return the value at rate 0 and its error."""
@@ -248,15 +248,17 @@ def jump_voltages(
     if len(set(volt_rates)) < 2:
         raise InputError(f"rates = {rates}: expected two different ones or more, in V/s")
     schedules = tuple(
-        ramp(schedule_of(structure, drive, voltage, None, rate, settle, 0.0, back))
+        require_ramp(
+            schedule_from_arguments(structure, drive, voltage, None, rate, settle, 0.0, back)
+        )
         for rate in sorted(volt_rates)
     )
-    scheme = scheme_of(structure, step)
+    scheme = scheme_from_arguments(structure, step)
     job = JumpVoltagesJob("jump_voltages", structure, drive, schedules, scheme)
     return answer(job, running, finder(running))
 
 
-def ramp(schedule: Schedule) -> Ramp:
+def require_ramp(schedule: Schedule) -> Ramp:
     """Return the schedule if it is a ramp; raise an error otherwise."""
     if not isinstance(schedule, Ramp):
         raise InputError("voltage: expected (first, last) in V, the ends of ramps")

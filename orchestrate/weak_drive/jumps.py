@@ -114,11 +114,11 @@ def find_passing(
     near = np.flatnonzero(fast[max(0, cross - 2 * width) : cross + 2 * width + 1])
     if near.size:
         cross = max(0, cross - 2 * width) + int(near[np.argmin(np.abs(near - 2 * width))])
-    before, after = extent(fast, cross) if fast[cross] else (cross, cross + width)
+    before, after = true_stretch_around(fast, cross) if fast[cross] else (cross, cross + width)
     last = min(after + 2 * width, len(leg.time) - 1)
     half = half_slip_row(np.abs(leg.eta0 - leg.Omega), before, up)
     half = float(cross + width) if half is None else half
-    look = look_of(leg, means, b, sign, (before, after), limits) if fast[cross] else SMOOTH
+    look = classify_stretch(leg, means, b, sign, (before, after), limits) if fast[cross] else SMOOTH
     return Passing(math.ceil(half), before, last, look, half)
 
 
@@ -136,7 +136,7 @@ def fast_rows(means: SweepLeg, width: int, sign: float, limits: Criterion) -> np
     return np.asarray(rise > limits.growth * np.abs(lag_difference(means.eta0, width)))
 
 
-def look_of(
+def classify_stretch(
     leg: SweepLeg,
     means: SweepLeg,
     b: float,
@@ -191,7 +191,7 @@ def lag_difference(values: np.ndarray, width: int) -> np.ndarray:
     return np.asarray(values[width:] - values[:-width])
 
 
-def extent(runs: np.ndarray, top: int) -> tuple[int, int]:
+def true_stretch_around(runs: np.ndarray, top: int) -> tuple[int, int]:
     """Return first and last index of the run of true values that contains an index."""
     breaks = np.flatnonzero(~runs)
     before, after = breaks[breaks < top], breaks[breaks > top]
@@ -216,7 +216,7 @@ def half_slip_row(slip: np.ndarray, before: int, up: bool) -> float | None:
     return before + row - float(min(max(ahead, 0.0), 1.0))
 
 
-def stays_beyond(time: np.ndarray, Omega: np.ndarray, threshold: float) -> float:
+def time_beyond_threshold(time: np.ndarray, Omega: np.ndarray, threshold: float) -> float:
     """Return the time from which the speed stays above a threshold; NaN if it does not."""
     below = np.flatnonzero(Omega <= threshold)
     if not len(Omega) or Omega[-1] <= threshold:
@@ -224,7 +224,7 @@ def stays_beyond(time: np.ndarray, Omega: np.ndarray, threshold: float) -> float
     return float(time[below[-1] + 1]) if below.size else float(time[0])
 
 
-def why_none(leg: SweepLeg, up: bool, resonance: float) -> str:
+def explain_not_passed(leg: SweepLeg, up: bool, resonance: float) -> str:
     """Explain in words why the speed does not pass the resonance for good.
 
     Parameters

@@ -15,7 +15,7 @@ import numpy as np
 from ..response.labels import Variable
 from ..running.job import Table
 from .held import LOST, NOT_ASKED, UNDECIDED, HeldCourse, Verdict
-from .jump_verdicts import how_decided, is_jump
+from .jump_verdicts import describe_decision, is_jump
 from .jumps import DOUBTFUL, JUMP, Passing
 
 SLOTS = 6  # further jumps of a direction that a dataset tells
@@ -48,26 +48,26 @@ class Loss(NamedTuple):
         return is_jump(self.passing, self.verdict)
 
 
-def no_rows() -> np.ndarray:
+def empty_verdict_rows() -> np.ndarray:
     """Return the stored array that holds no verdicts, filled with NaN."""
     return np.full((ROWS, 4), math.nan)
 
 
-def as_rows(verdicts: Sequence[tuple[int, Verdict]]) -> np.ndarray:
+def verdicts_to_rows(verdicts: Sequence[tuple[int, Verdict]]) -> np.ndarray:
     """Convert verdicts, each with the index of its suspected jump, to an array."""
-    rows = no_rows()
+    rows = empty_verdict_rows()
     for i, (place, verdict) in enumerate(verdicts[:ROWS]):
         rows[i] = (place, *verdict)
     return rows
 
 
-def from_rows(rows: np.ndarray) -> list[tuple[int, Verdict]]:
-    """Convert the array of :func:`as_rows` back to indices and verdicts."""
+def verdicts_from_rows(rows: np.ndarray) -> list[tuple[int, Verdict]]:
+    """Convert the array of :func:`verdicts_to_rows` back to indices and verdicts."""
     known = rows[np.isfinite(rows[:, 0])]
     return [(int(row[0]), Verdict(int(row[1]), *row[2:])) for row in known.tolist()]
 
 
-def without_known(
+def drop_known_losses(
     verdicts: Sequence[Verdict], known: Sequence[Verdict], volts: float
 ) -> list[Verdict]:
     """Drop the verdicts whose brackets overlap losses that are already known."""
@@ -83,7 +83,7 @@ def without_known(
     return [verdict for verdict in verdicts if not is_known(verdict)]
 
 
-def outcomes(course: HeldCourse) -> list[Verdict]:
+def loss_verdicts(course: HeldCourse) -> list[Verdict]:
     """Return those verdicts of a held course that are losses or undecided."""
     return [
         verdict
@@ -92,7 +92,7 @@ def outcomes(course: HeldCourse) -> list[Verdict]:
     ]
 
 
-def reached(table: Table, rows: np.ndarray, voltage: float) -> Passing:
+def ramp_position(table: Table, rows: np.ndarray, voltage: float) -> Passing:
     """Return where on a ramp a given voltage is reached, as a doubtful passing."""
     voltages = table["voltage"][rows]
     sign = math.copysign(1.0, voltages[-1] - voltages[0])
@@ -133,18 +133,18 @@ def gather_losses(
     ]
     main, others = None, []
     if passing is not None:
-        *before, last = in_order(table, rows, [*covered, passing], [primary, *through])
+        *before, last = losses_in_ramp_order(table, rows, [*covered, passing], [primary, *through])
         main, others = last, before
     for place, look in enumerate(places):
         found = [verdict for other, verdict in further if other == place]
         untold = Verdict(NOT_ASKED if look.look == JUMP else UNDECIDED)
         told = [verdict for verdict in found if verdict.outcome in (LOST, UNDECIDED)]
         if told or not found:
-            others += in_order(table, rows, [look], told or [untold])
+            others += losses_in_ramp_order(table, rows, [look], told or [untold])
     return main, others
 
 
-def in_order(
+def losses_in_ramp_order(
     table: Table, rows: np.ndarray, passings: Sequence[Passing], verdicts: Sequence[Verdict]
 ) -> list[Loss]:
     """Assign verdicts to places in the record, both in the order of the ramp.
@@ -159,13 +159,13 @@ def in_order(
     for i, verdict in enumerate(reversed(ordered)):
         middle = 0.5 * (verdict.low + verdict.high)
         shown = i < len(passings)
-        passing = passings[-1 - i] if shown else reached(table, rows, middle)
+        passing = passings[-1 - i] if shown else ramp_position(table, rows, middle)
         seen = float(np.interp(passing.half, np.arange(len(voltages)), voltages))
         losses.append(Loss(passing, verdict, middle if math.isfinite(middle) else seen))
     return losses[::-1]
 
 
-def jump_and_further(
+def pick_jump(
     main: Loss | None, others: Sequence[Loss], sign: float
 ) -> tuple[Loss | None, list[Loss]]:
     """Pick the first certain loss as the jump, else the main one; return it and the rest."""
@@ -180,7 +180,7 @@ def jump_and_further(
     return first, sorted(told, key=lambda loss: sign * loss.voltage)
 
 
-def further_columns(table: Table, further: Sequence[Sequence[Loss]]) -> dict[str, Variable]:
+def further_jump_variables(table: Table, further: Sequence[Sequence[Loss]]) -> dict[str, Variable]:
     """Build the dataset's variables of the further jumps in both directions."""
     shape = len(further), SLOTS
     names = ("further_jumps", "further_time", "further_held", "further_error")
@@ -190,7 +190,7 @@ def further_columns(table: Table, further: Sequence[Sequence[Loss]]) -> dict[str
     for i, losses in enumerate(further):
         for j, loss in enumerate(losses[:SLOTS]):
             passing, (_, low, high) = loss.passing, loss.verdict
-            decided[i, j] = how_decided(passing, loss.verdict)
+            decided[i, j] = describe_decision(passing, loss.verdict)
             if loss.is_sure:
                 for name, column in (("further_jumps", "voltage"), ("further_time", "time")):
                     numbers[name][i, j] = np.interp(passing.half, rows, table[column])

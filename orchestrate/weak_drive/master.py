@@ -34,7 +34,7 @@ from .exchange import (
     Step,
 )
 from .extremes import Revolution
-from .polynomials import end_slope, matched_cubic, parabola, work
+from .polynomials import end_slope, integrate_work, matched_cubic, parabola_through_points
 
 MASTER_STATE = (
     *("time", "voltage", "slope", "force_before", "h_before"),
@@ -48,7 +48,7 @@ STATE_INDEX = {  # of what is remembered
 }
 
 
-def parts_of(
+def split_state(
     numbers: Any,
 ) -> tuple[Any, OscillatorOutputs, ShakerOutputs, Any]:
     """Split a saved state into master, structure, motor and energy balance."""
@@ -290,7 +290,7 @@ class Master:
         done = self._do(h)
         force = self.force_of(done.motion, h)
         taken = done.shaking.box_force_work - self.shaking.box_force_work
-        defect = taken - work(force, self.shaking.box_velocity, done.acceleration, h)
+        defect = taken - integrate_work(force, self.shaking.box_velocity, done.acceleration, h)
         size = self._over_exchanged(done, taken, defect)
         if may_refuse and size > self.scheme.tolerance:
             self.oscillator.restore()
@@ -343,7 +343,7 @@ class Master:
         """Return the force over a step as the cubic that the motor FMU gets."""
         if self.scheme.matched:
             return self.force_of(motion, h)
-        return parabola(
+        return parabola_through_points(
             self.force_before, self.motion.box_force, motion.box_force, self.h_before, h
         )
 
@@ -352,7 +352,7 @@ class Master:
         now = self.shaking
         first, last = now.box_acceleration, after.box_acceleration
         if not self.scheme.matched:
-            return parabola(self.acceleration_before, first, last, self.h_before, h)
+            return parabola_through_points(self.acceleration_before, first, last, self.h_before, h)
         mean = (after.box_velocity - now.box_velocity) / h
         moment = mean - ((after.box_position - now.box_position) / h - now.box_velocity) / h
         return matched_cubic(first, last, mean, moment, h)
@@ -437,7 +437,7 @@ class Master:
 
     def set_state(self, numbers: Sequence[float]) -> None:
         """Restore the state that :meth:`get_state` returned."""
-        own_state, self.motion, self.shaking, balance = parts_of(numbers)
+        own_state, self.motion, self.shaking, balance = split_state(numbers)
         for name, value in zip(MASTER_STATE, own_state, strict=True):
             setattr(self, name, value)
         self.level = int(self.level)

@@ -56,7 +56,7 @@ def elastic_resonance(structure: Structure, drive: Drive) -> float:
         ends = low * (1.0 + CLOSE), high * (1.0 - CLOSE)
         if gap_at_impact(ends[0]) < 0.0 < gap_at_impact(ends[1]):
             root = float(brentq(gap_at_impact, *ends, xtol=1e-12))
-            if keeps_open(w, n, root):
+            if gap_stays_open(w, n, root):
                 roots.append(root)
     return min(roots, key=lambda root: abs(root - bonded), default=bonded)
 
@@ -74,7 +74,7 @@ def free_modes(structure: Structure, drive: Drive) -> tuple[np.ndarray, np.ndarr
     return np.sqrt(np.maximum(squares, SLOWEST**2)), modes[1] - modes[0]
 
 
-def keeps_open(w: np.ndarray, n: np.ndarray, Omega: float) -> bool:
+def gap_stays_open(w: np.ndarray, n: np.ndarray, Omega: float) -> bool:
     """Return whether the gap stays open between two impacts of a mode."""
     angles = np.pi / Omega * np.linspace(-1.0, 1.0, SAMPLES + 1)[1:-1]
     gaps = np.cos(np.outer(angles, w)) @ (n**2 / (w * np.sin(w * np.pi / Omega)))
@@ -87,7 +87,7 @@ def resonance(structure: Structure, drive: Drive) -> float:
     That of the bonded structure also serves the delaminated one, unless its own lies clearly apart:
     by more than half the distance of the bonded folds, and half the width of its resonance.
     """
-    return averaged.resonance(structure, drive) + clear_shift(structure, drive)
+    return averaged.resonance(structure, drive) + resolved_resonance_shift(structure, drive)
 
 
 def resonances(structure: Structure, drive: Drive) -> tuple[float, float]:
@@ -99,27 +99,27 @@ def resonances(structure: Structure, drive: Drive) -> tuple[float, float]:
 
 def dividing_speed(structure: Structure, drive: Drive) -> float:
     """Return the speed over omega that divides motions below and beyond resonance."""
-    return averaged.dividing_speed(structure, drive) + clear_shift(structure, drive)
+    return averaged.dividing_speed(structure, drive) + resolved_resonance_shift(structure, drive)
 
 
 def dividing_speeds(structure: Structure, drive: Drive) -> tuple[float, float]:
     """Return the lowest and the highest speed over omega that may divide motions."""
     bonded = averaged.dividing_speed(structure, drive)
-    low, high = sorted((bonded, bonded + shift(structure, drive)))
+    low, high = sorted((bonded, bonded + resonance_shift(structure, drive)))
     return low, high
 
 
-def shift(structure: Structure, drive: Drive) -> float:
+def resonance_shift(structure: Structure, drive: Drive) -> float:
     """Return the structure's resonance speed minus the bonded one, over omega."""
     if structure.bonded:
         return 0.0
     return elastic_resonance(structure, drive) - averaged.resonance(structure, drive)
 
 
-def clear_shift(structure: Structure, drive: Drive) -> float:
+def resolved_resonance_shift(structure: Structure, drive: Drive) -> float:
     """Return the resonance shift if it exceeds fold range and resonance width, else 0."""
-    distance = shift(structure, drive)
+    distance = resonance_shift(structure, drive)
     folds = averaged.folds(structure, drive) if distance else []
     half = 0.5 * (folds[-1].Omega - folds[0].Omega) if folds else 0.0
-    clear = abs(distance) > max(half, averaged.half_width(structure, drive))
+    clear = abs(distance) > max(half, averaged.resonance_half_width(structure, drive))
     return distance if clear else 0.0

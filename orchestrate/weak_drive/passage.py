@@ -26,9 +26,15 @@ from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from .controllers import Controller
-from .couple import CoupleJob, couple_job, require_motor, schedule_of, scheme_of
+from .couple import (
+    CoupleJob,
+    couple_job,
+    require_motor,
+    schedule_from_arguments,
+    scheme_from_arguments,
+)
 from .held import with_final_chunk
-from .master import STATE_INDEX, Master, parts_of
+from .master import STATE_INDEX, Master, split_state
 from .revolutions import COLUMNS
 from .run import Run
 from .schedule import Schedule, check
@@ -99,7 +105,7 @@ class PassageJob(Job):
             """Run the steps; return revolutions and the samples after every step."""
             kept = np.empty((len(items), len(run.master.get_state())))
             revolutions = run.revolve(items, kept)
-            columns = samples(run.master, kept)
+            columns = sample_columns(run.master, kept)
             names = (KEPT + name for name in SAMPLES)
             return {**revolutions, **dict(zip(names, columns, strict=True))}
 
@@ -138,9 +144,9 @@ class PassageJob(Job):
         return np.array([self.run.schedule.duration - self.around]), "the end, there is no jump"
 
 
-def samples(master: Master, kept: np.ndarray) -> tuple[Any, ...]:
+def sample_columns(master: Master, kept: np.ndarray) -> tuple[Any, ...]:
     """Convert saved master states to columns of samples, in the order of ``SAMPLES``."""
-    own_state, motion, shaking, balance = parts_of(kept.T)
+    own_state, motion, shaking, balance = split_state(kept.T)
     accounts = copy(master.balance)
     accounts.set_state(balance)
     energies = accounts.energies(motion, shaking)
@@ -219,8 +225,8 @@ def passage(
     if spin_up is None and speed_start is not None:
         spin_up = 0.0
     settings = (duration, rate, settle, 0.0, back, spin_up)
-    schedule = schedule_of(structure, drive, voltage, *settings)
-    scheme = scheme_of(structure, step, sampled=True)
+    schedule = schedule_from_arguments(structure, drive, voltage, *settings)
+    scheme = scheme_from_arguments(structure, step, sampled=True)
     run = couple_job(structure, drive, schedule, scheme, speed_start, control, hold)
     name = run.name.replace("couple", "passage")
     return answer(PassageJob(name, run, around), running, finder(running))
@@ -272,13 +278,13 @@ def waterfall(
 
     check_spectra(found, mass, revolutions, highest)
     points = max(16, math.ceil(4.0 * highest))
-    at, moved = over_angle(found, mass, points)
+    at, moved = resample_over_angle(found, mass, points)
     length, hop = revolutions * points, max(1, revolutions // 4) * points
     begins = np.arange(0, len(at) - length + 1, hop)
     if not begins.size:
         turns = len(at) // points
         raise InputError(f"revolutions = {revolutions}: expected at most the {turns} there are")
-    lines = hann_lines(moved[begins[:, np.newaxis] + np.arange(length)])
+    lines = hann_spectrum(moved[begins[:, np.newaxis] + np.arange(length)])
     order = np.arange(lines.shape[1]) / revolutions
     shown = order <= highest
     ends = begins + length - 1
@@ -299,7 +305,7 @@ def waterfall(
     return xr.Dataset(variables, coordinates, {"title": "Spectra over the motor's revolutions"})
 
 
-def over_angle(data: xr.Dataset, mass: int, points: int) -> tuple[np.ndarray, np.ndarray]:
+def resample_over_angle(data: xr.Dataset, mass: int, points: int) -> tuple[np.ndarray, np.ndarray]:
     """Interpolate a mass's absolute displacement at equal steps of the motor's angle.
 
     Where the motor turns back for a moment, samples are left out until it has come as far again.
@@ -315,7 +321,7 @@ def over_angle(data: xr.Dataset, mass: int, points: int) -> tuple[np.ndarray, np
     return at, CubicHermiteSpline(time, position, velocity)(at)
 
 
-def hann_lines(pieces: np.ndarray) -> np.ndarray:
+def hann_spectrum(pieces: np.ndarray) -> np.ndarray:
     """Return the amplitude spectrum of each piece of a signal, with a Hann window."""
     window = np.hanning(pieces.shape[1] + 1)[:-1]
     centred = (pieces - pieces.mean(axis=1, keepdims=True)) * window

@@ -36,7 +36,9 @@ def matched_cubic(first: float, last: float, mean: float, moment: float, h: floa
     return first, b / h, 2.0 * c / (h * h), 6.0 * d / (h * h * h)
 
 
-def parabola(before: float, first: float, last: float, h_before: float, h: float) -> Cubic:
+def parabola_through_points(
+    before: float, first: float, last: float, h_before: float, h: float
+) -> Cubic:
     """Return the parabola through three communication points; a line without the first."""
     rise = (last - first) / h
     if h_before == 0.0:
@@ -57,20 +59,20 @@ def end_slope(cubic: Cubic, h: float) -> float:
     return f1 + h * (f2 + 0.5 * h * f3)
 
 
-def coefficients(cubic: Cubic, h: float) -> Cubic:
+def normalized_coefficients(cubic: Cubic, h: float) -> Cubic:
     """Convert a cubic's time derivatives to coefficients in s = t/h."""
     f0, f1, f2, f3 = cubic
     return f0, f1 * h, f2 * h * h / 2.0, f3 * h * h * h / 6.0
 
 
-def work(force: Cubic, velocity: float, acceleration: Cubic, h: float) -> float:
+def integrate_work(force: Cubic, velocity: float, acceleration: Cubic, h: float) -> float:
     """Integrate a cubic force times a velocity over a step; return the work, J."""
     a0, a1, a2, a3 = acceleration
     speeds = (velocity, a0 * h, a1 * h * h / 2.0, a2 * h * h * h / 6.0, a3 * h * h * h * h / 24.0)
-    return h * product(coefficients(force, h), speeds)
+    return h * integrate_product(normalized_coefficients(force, h), speeds)
 
 
-def product(f: Sequence[float], g: Sequence[float]) -> float:
+def integrate_product(f: Sequence[float], g: Sequence[float]) -> float:
     """Integrate the product of two polynomials in s from 0 to 1."""
     total = 0.0
     for a, powers in zip(f, POWERS):  # noqa: B905 the table is as long as needed
@@ -79,7 +81,7 @@ def product(f: Sequence[float], g: Sequence[float]) -> float:
     return total
 
 
-def quartic(
+def matched_quartic(
     ends: tuple[float, float], slopes: tuple[float, float], mean: float
 ) -> tuple[float, ...]:
     """Return the quartic in s with given end values, end slopes and mean."""

@@ -16,7 +16,7 @@ from ..access.models import OSCILLATOR, SHAKER
 from ..running.job import Job, Table
 from ..structures.drive import Drive
 from ..structures.structure import Structure
-from .compiled import master_of
+from .compiled import create_master
 from .controllers import Controller, Measurement
 from .master import Scheme
 from .revolutions import COLUMNS, Revolutions
@@ -74,7 +74,7 @@ class Run:
         oscillator.initialize(**oscillator_start(job.structure))
         voltage = job.schedule.voltage(0.0)
         shaker.initialize(**job.drive.parameters(), speed_start=job.speed_start, voltage=voltage)
-        self.master = master_of(oscillator, shaker, job.structure, job.scheme)
+        self.master = create_master(oscillator, shaker, job.structure, job.scheme)
         self.revolutions = Revolutions(self.master, self.impact_count)
         self.control_memory = job.control.begin(job.speed_start) if job.control else ()
 

@@ -63,7 +63,7 @@ class Outcome(NamedTuple):
         return self.decision not in (UNDECIDED, NEITHER) and not self.passed
 
 
-class Settled(NamedTuple):
+class SettledEnd(NamedTuple):
     """Store the settled end of a speed record and how much it may still change.
 
     Attributes
@@ -132,7 +132,7 @@ class SettlingTest:
         near = np.abs(speed[since : since + MEAN]) > self.threshold
         return Outcome(settled.decision, True, float(time[since + last_crossing(near)]), last)
 
-    def converged(self, means: np.ndarray, turn: float) -> Settled | None:
+    def converged(self, means: np.ndarray, turn: float) -> SettledEnd | None:
         """Return the end of an exponentially converging record; else None.
 
         The ranges of four stretches that follow each other shrink by ``QUOTIENT`` or more each
@@ -149,10 +149,10 @@ class SettlingTest:
                 after < max(NOISE, QUOTIENT * before) for before, after in pairwise(ranges)
             )
             if shrink and ranges[-1] < CLOSE:
-                return Settled(CONVERGED, means[-width:], float(ranges[-1]) + NOISE)
+                return SettledEnd(CONVERGED, means[-width:], float(ranges[-1]) + NOISE)
         return None
 
-    def bounded(self, means: np.ndarray, turn: float) -> Settled | None:
+    def bounded(self, means: np.ndarray, turn: float) -> SettledEnd | None:
         """Return the end of a record that stays in constant bounds; else None.
 
         The last quarter of the record is compared with the one before: its extremes, its mean and
@@ -167,7 +167,7 @@ class SettlingTest:
         drift = abs(late.mean() - early.mean())
         if grown > 0.2 * size or drift > 0.1 * size or np.ptp(late) < 0.5 * size:
             return None
-        return Settled(BOUNDED, means[-2 * quarter :], 0.2 * size)
+        return SettledEnd(BOUNDED, means[-2 * quarter :], 0.2 * size)
 
 
 def last_crossing(beyond: np.ndarray) -> int:
@@ -182,18 +182,18 @@ def settling_test(structure: Structure, drive: Drive, stay: int) -> SettlingTest
     return SettlingTest(
         threshold=own_resonance.dividing_speed(structure, drive) * omega,
         omega=omega,
-        slow=slowest_time(structure, drive),
-        motor=motor_time(structure, drive),
+        slow=longest_time_constant(structure, drive),
+        motor=motor_time_constant(structure, drive),
         stay=stay,
     )
 
 
-def motor_time(structure: Structure, drive: Drive) -> float:
+def motor_time_constant(structure: Structure, drive: Drive) -> float:
     """Return the time constant 1/b of the motor without load, s; it is limited."""
     return min(1.0 / drive.b(structure), LONGEST_MEMORY) / structure.omega
 
 
-def slowest_time(structure: Structure, drive: Drive) -> float:
+def longest_time_constant(structure: Structure, drive: Drive) -> float:
     """Return the longest time constant of motor and dampers, s; each is limited.
 
     The motor's is 1/b, those of vibrations are 1/D of each damper.
@@ -229,7 +229,7 @@ def time_past_the_fold(structure: Structure, drive: Drive, distance: float) -> f
     voltages = averaged.no_load_speed(structure, drive, speeds)
     slope = float(voltages[2] - voltages[0]) / small
     bend = 2.0 * (top.eta0 - float(voltages[1])) / small**2
-    growth = float(averaged.growth(structure, drive, float(speeds[1]))[0].real)
+    growth = float(averaged.growth_rates(structure, drive, float(speeds[1]))[0].real)
     rate = -growth / slope
     if not (rate > 0.0 and bend > 0.0):  # the motion is lost before its fold
         return 0.0
@@ -247,4 +247,4 @@ def usual_limit(structure: Structure, drive: Drive, distance: float) -> float:
         Of voltages from the fold's that are to be decided, over K omega.
     """
     creeping = time_past_the_fold(structure.as_bonded(), drive, distance)
-    return PATIENCE * slowest_time(structure, drive) + 10.0 * creeping
+    return PATIENCE * longest_time_constant(structure, drive) + 10.0 * creeping

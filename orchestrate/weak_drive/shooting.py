@@ -20,7 +20,7 @@ from ..dynamics.continuation import NoConvergenceError, fix_sign
 from ..errors import FmuError
 from ..structures.drive import Drive
 from ..structures.structure import Structure
-from .compiled import master_of
+from .compiled import create_master
 from .extremes import Revolution
 from .master import STATE_INDEX, Master, Scheme
 from .run import oscillator_start
@@ -200,7 +200,7 @@ class Shooter:
         oscillator.initialize(**oscillator_start(self.structure), **structure_starts)
         more = {"angle_start": self.angle, "voltage": voltage}
         shaker.initialize(**self.drive.parameters(), **starts, **more)
-        return master_of(oscillator, shaker, self.structure, Scheme("rollback", h))
+        return create_master(oscillator, shaker, self.structure, Scheme("rollback", h))
 
     def begin_period(self, unknowns: Floats) -> tuple[Master, float]:
         """Initialise both FMUs at a period's start; return master and voltage, V."""
@@ -403,8 +403,8 @@ class Shooter:
             return known[change].end if known[change].like(base) else None
 
         for change in CHANGES:
-            for difference in (central, one_sided):
-                for size in (change,) if difference is central else (change, -change):
+            for difference in (central_difference, one_sided_difference):
+                for size in (change,) if difference is central_difference else (change, -change):
                     fine = difference(end_state_shifted_by, size)
                     coarse = difference(end_state_shifted_by, 2.0 * size)
                     if fine is None or coarse is None:
@@ -438,13 +438,13 @@ class Shooter:
 Ends = Callable[[float], "Floats | None"]  # of a period, by a change of an unknown
 
 
-def central(end: Ends, change: float) -> Floats | None:
+def central_difference(end: Ends, change: float) -> Floats | None:
     """Compute a derivative by central differences; None across a grazing."""
     after, before = end(change), end(-change)
     return None if after is None or before is None else (after - before) / (2.0 * change)
 
 
-def one_sided(end: Ends, change: float) -> Floats | None:
+def one_sided_difference(end: Ends, change: float) -> Floats | None:
     """Compute a derivative by one-sided second-order differences; None across a grazing."""
     here, near, far = end(0.0), end(change), end(2.0 * change)
     if here is None or near is None or far is None:

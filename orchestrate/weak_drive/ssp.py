@@ -45,12 +45,12 @@ SET = "initialValues"  # some tools apply sets by their name: the same for both 
 Values = Mapping[str, float | bool]
 
 
-def tag(prefix: str, name: str) -> str:
+def qualified_tag(prefix: str, name: str) -> str:
     """Return an XML tag with its namespace."""
     return f"{{{NAMESPACES[prefix]}}}{name}"
 
 
-def document(root: ET.Element) -> bytes:
+def xml_bytes(root: ET.Element) -> bytes:
     """Convert an XML element to the bytes of an XML file."""
     for prefix, address in NAMESPACES.items():
         ET.register_namespace(prefix, address)
@@ -59,12 +59,12 @@ def document(root: ET.Element) -> bytes:
     return text + b"\n"
 
 
-def ssv(component: str) -> str:
+def parameter_file_path(component: str) -> str:
     """Return the path of a component's parameter file inside the package."""
     return f"resources/{component}.ssv"
 
 
-def units_of(fmus: Mapping[str, Description], name: str) -> list[str]:
+def connector_units(fmus: Mapping[str, Description], name: str) -> list[str]:
     """Return the units of a component's inputs and outputs, from its FMU."""
     ports = (*INPUTS[name], *OUTPUTS[name])
     return [str(fmus[name].variable(port).unit) for port in ports]
@@ -72,40 +72,50 @@ def units_of(fmus: Mapping[str, Description], name: str) -> list[str]:
 
 def add_units(root: ET.Element, fmus: Mapping[str, Description]) -> None:
     """Add the definitions of all used units to the XML document."""
-    parent = ET.SubElement(root, tag("ssd", "Units"))
-    used = {unit: fmus[name].units[unit] for name in MODELS for unit in units_of(fmus, name)}
+    parent = ET.SubElement(root, qualified_tag("ssd", "Units"))
+    used = {unit: fmus[name].units[unit] for name in MODELS for unit in connector_units(fmus, name)}
     for unit, powers in sorted(used.items()):
-        element = ET.SubElement(parent, tag("ssc", "Unit"), name=unit)
-        ET.SubElement(element, tag("ssc", "BaseUnit"), {k: str(v) for k, v in powers.items()})
+        element = ET.SubElement(parent, qualified_tag("ssc", "Unit"), name=unit)
+        ET.SubElement(
+            element, qualified_tag("ssc", "BaseUnit"), {k: str(v) for k, v in powers.items()}
+        )
 
 
 def add_component(elements: ET.Element, name: str, units: Sequence[str]) -> None:
     """Add one FMU with its connectors and parameter file to the XML document."""
     source, kind = f"resources/{MODELS[name]}.fmu", "application/x-fmu-sharedlibrary"
     component = ET.SubElement(
-        elements, tag("ssd", "Component"), name=name, type=kind, source=source
+        elements, qualified_tag("ssd", "Component"), name=name, type=kind, source=source
     )
-    connectors = ET.SubElement(component, tag("ssd", "Connectors"))
+    connectors = ET.SubElement(component, qualified_tag("ssd", "Connectors"))
     ports = [("input", port) for port in INPUTS[name]] + [
         ("output", port) for port in OUTPUTS[name]
     ]
     for (kind, port), unit in zip(ports, units, strict=True):
-        connector = ET.SubElement(connectors, tag("ssd", "Connector"), name=port, kind=kind)
-        ET.SubElement(connector, tag("ssc", "Real"), unit=unit)
-    bindings = ET.SubElement(component, tag("ssd", "ParameterBindings"))
-    ET.SubElement(bindings, tag("ssd", "ParameterBinding"), source=ssv(name))
+        connector = ET.SubElement(
+            connectors, qualified_tag("ssd", "Connector"), name=port, kind=kind
+        )
+        ET.SubElement(connector, qualified_tag("ssc", "Real"), unit=unit)
+    bindings = ET.SubElement(component, qualified_tag("ssd", "ParameterBindings"))
+    ET.SubElement(
+        bindings, qualified_tag("ssd", "ParameterBinding"), source=parameter_file_path(name)
+    )
 
 
 def system_description(
     description: str, stop_time: float, fmus: Mapping[str, Description]
 ) -> bytes:
     """Build the XML file that describes both FMUs and their connections."""
-    root = ET.Element(tag("ssd", "SystemStructureDescription"), name="WeakDrive", version="1.0")
-    system = ET.SubElement(root, tag("ssd", "System"), name="WeakDrive", description=description)
-    elements = ET.SubElement(system, tag("ssd", "Elements"))
+    root = ET.Element(
+        qualified_tag("ssd", "SystemStructureDescription"), name="WeakDrive", version="1.0"
+    )
+    system = ET.SubElement(
+        root, qualified_tag("ssd", "System"), name="WeakDrive", description=description
+    )
+    elements = ET.SubElement(system, qualified_tag("ssd", "Elements"))
     for name in MODELS:
-        add_component(elements, name, units_of(fmus, name))
-    links = ET.SubElement(system, tag("ssd", "Connections"))
+        add_component(elements, name, connector_units(fmus, name))
+    links = ET.SubElement(system, qualified_tag("ssd", "Connections"))
     for start, end, port in CONNECTIONS:
         places = {
             "startElement": start,
@@ -113,25 +123,27 @@ def system_description(
             "endElement": end,
             "endConnector": port,
         }
-        ET.SubElement(links, tag("ssd", "Connection"), places)
+        ET.SubElement(links, qualified_tag("ssd", "Connection"), places)
     add_units(root, fmus)
-    ET.SubElement(root, tag("ssd", "DefaultExperiment"), startTime="0.0", stopTime=repr(stop_time))
-    return document(root)
+    ET.SubElement(
+        root, qualified_tag("ssd", "DefaultExperiment"), startTime="0.0", stopTime=repr(stop_time)
+    )
+    return xml_bytes(root)
 
 
 def parameter_values(values: Values) -> bytes:
     """Build the XML file of a component's parameters; false ones are left out."""
-    root = ET.Element(tag("ssv", "ParameterSet"), version="1.0", name=SET)
-    group = ET.SubElement(root, tag("ssv", "Parameters"))
+    root = ET.Element(qualified_tag("ssv", "ParameterSet"), version="1.0", name=SET)
+    group = ET.SubElement(root, qualified_tag("ssv", "Parameters"))
     for variable, value in values.items():
         if value is False:
             continue
-        parameter = ET.SubElement(group, tag("ssv", "Parameter"), name=variable)
+        parameter = ET.SubElement(group, qualified_tag("ssv", "Parameter"), name=variable)
         if value is True:
-            ET.SubElement(parameter, tag("ssv", "Boolean"), value="true")
+            ET.SubElement(parameter, qualified_tag("ssv", "Boolean"), value="true")
         else:
-            ET.SubElement(parameter, tag("ssv", "Real"), value=repr(float(value)))
-    return document(root)
+            ET.SubElement(parameter, qualified_tag("ssv", "Real"), value=repr(float(value)))
+    return xml_bytes(root)
 
 
 def write_archive(path: Path, files: Mapping[str, bytes]) -> None:
@@ -203,16 +215,18 @@ def write_ssp(
         "shaker": {**drive.parameters(), "speed_start": speed, "voltage": voltage},
     }
     text = f"Motor and box with a {state} structure, at {voltage:g} V"
-    paths = [Path(fmu) for fmu in fmus or exported()]
+    paths = [Path(fmu) for fmu in fmus or exported_fmus()]
     known = {name: describe(fmu) for name, fmu in zip(MODELS, paths, strict=True)}
     files = {"SystemStructure.ssd": system_description(text, float(stop), known)}
-    files |= {ssv(name): parameter_values(values) for name, values in starts.items()}
+    files |= {
+        parameter_file_path(name): parameter_values(values) for name, values in starts.items()
+    }
     for model, fmu in zip(MODELS.values(), paths, strict=True):
         files[f"resources/{model}.fmu"] = fmu.read_bytes()
     return write_whole(path, lambda temporary: write_archive(temporary, files))
 
 
-def exported() -> list[Path]:
+def exported_fmus() -> list[Path]:
     """Return the paths of the two exported FMUs of FMI 2.0."""
     from ..access.exported import find
 

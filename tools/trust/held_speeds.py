@@ -73,10 +73,10 @@ def held_speeds(
     )
     run = couple(structure, drive, voltage=schedule, hold=1.0 / omega, progress=False)
     time, speed = run.time.values * omega, np.abs(run.Omega.values)
-    return np.array([settled(time, speed, end, hold) for end in ends])
+    return np.array([settled_speed(time, speed, end, hold) for end in ends])
 
 
-def settled(time: np.ndarray, speed: np.ndarray, end: float, hold: float) -> float:
+def settled_speed(time: np.ndarray, speed: np.ndarray, end: float, hold: float) -> float:
     """Return the mean speed at the end of a hold; NaN if it still changes."""
     before, last = (
         speed[(time > end - quarters * hold / 4.0) & (time <= end - (quarters - 1) * hold / 4.0)]

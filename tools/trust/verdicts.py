@@ -82,7 +82,7 @@ class Answer(NamedTuple):
     further: tuple[Answer, ...] = ()
 
 
-def draw(rng: np.random.Generator) -> System:
+def draw_system(rng: np.random.Generator) -> System:
     """Draw a random structure with a random drive."""
     damping = rng.uniform(0.006, 0.03)
     b = float(np.exp(rng.uniform(np.log(0.01), np.log(0.5))))
@@ -95,26 +95,26 @@ def draw(rng: np.random.Generator) -> System:
     return System(structure, Drive.nondimensional(**numbers, structure=structure))
 
 
-def with_folds(rng: np.random.Generator) -> System:
+def draw_with_folds(rng: np.random.Generator) -> System:
     """Draw random systems until one has clearly separated averaged folds."""
     while True:
-        system = draw(rng)
+        system = draw_system(rng)
         folds = averaged.folds(*system)
         if folds and folds[0].eta0 - folds[-1].eta0 > NARROW:
             return system
 
 
-def with_slope(system: System, slope: float) -> System:
+def scale_to_slope(system: System, slope: float) -> System:
     """Scale the unbalance so that the branch has a given smallest slope."""
     structure, drive = system
-    share = (1.0 - slope) / (1.0 - averaged.least_slope(*system))
+    share = (1.0 - slope) / (1.0 - averaged.smallest_slope(*system))
     numbers = {
         name: getattr(drive, name)(structure) for name in ("beta", "b", "Omega_b", "D_b")
     } | {"epsilon": drive.epsilon * share}
     return System(structure, Drive.nondimensional(**numbers, structure=structure))
 
 
-def ends_of(system: System) -> tuple[float, float]:
+def ramp_ends(system: System) -> tuple[float, float]:
     """Return the two ends of the voltage ramp, over K omega, past both jumps."""
     folds = averaged.folds(*system)
     at = averaged.resonance(*system)
@@ -122,20 +122,20 @@ def ends_of(system: System) -> tuple[float, float]:
     return min(places) - 0.15, max(places) + 0.15
 
 
-def answers(system: System, rate: float) -> tuple[Answer, ...]:
+def run_couple(system: System, rate: float) -> tuple[Answer, ...]:
     """Run `couple` at one rate; return its answers upward and downward."""
     structure, drive = system
     volts = drive.volts(structure)
-    first, last = (end * volts for end in ends_of(system))
+    first, last = (end * volts for end in ramp_ends(system))
     rate *= volts * structure.omega
     run = couple(structure, drive, voltage=(first, last), rate=rate, progress=False)
     return tuple(
-        answer_of(at, volts)._replace(further=further_of(at, volts))
+        read_answer(at, volts)._replace(further=read_further_answers(at, volts))
         for at in (run.sel(jump=way) for way in WAYS)
     )
 
 
-def further_of(at: xr.Dataset, volts: float) -> tuple[Answer, ...]:
+def read_further_answers(at: xr.Dataset, volts: float) -> tuple[Answer, ...]:
     """Read the answers on further jumps in one direction from a dataset."""
     found = []
     for place in at.order.values:
@@ -151,7 +151,7 @@ def further_of(at: xr.Dataset, volts: float) -> tuple[Answer, ...]:
     return tuple(found)
 
 
-def answer_of(at: xr.Dataset, volts: float) -> Answer:
+def read_answer(at: xr.Dataset, volts: float) -> Answer:
     """Read the answer on the jump in one direction from a dataset."""
     code, held, error = (float(at[name]) for name in ("held_verdict", "held_jumps", "held_error"))
     jump = float(at.jumps) / volts
@@ -166,7 +166,7 @@ def answer_of(at: xr.Dataset, volts: float) -> Answer:
     return Answer("none", np.nan, np.nan, code == FOLLOWS)
 
 
-def truths(system: System) -> dict[tuple[str, str], Truth]:
+def trace_truths(system: System) -> dict[tuple[str, str], Truth]:
     """Trace both structures' branches; return where each direction loses its motion."""
     structure, drive = system
     folds, omega = averaged.folds(*system), structure.omega
@@ -178,7 +178,7 @@ def truths(system: System) -> dict[tuple[str, str], Truth]:
     branch = drive_branch(structure, drive, speed=speed, longest=0.03, progress=False)
     units = drive.volts(structure), omega
     known = {
-        (kind, way): truth(branch.sel(structure=kind), kind, way, units)
+        (kind, way): first_loss_on_leg(branch.sel(structure=kind), kind, way, units)
         for kind in KINDS
         for way in WAYS
     }
@@ -199,12 +199,12 @@ def fold_that_is_met(system: System, branch: xr.Dataset, way: str) -> Truth:
     another. Unknown without any; where there are more, all count.
     """
     sign = 1.0 if way == "up" else -1.0
-    folds = sorted(folds_of(system, branch, way), reverse=way == "down")
+    folds = sorted(delaminated_folds(system, branch, way), reverse=way == "down")
     if not folds:
         return Truth(UNKNOWN)
     course = [voltage + side * sign * BESIDE for voltage, _ in folds for side in (-1.0, 1.0)]
-    course = ordered(course, way)
-    speeds = dict(zip(course, held_speeds(system, first_of(system, way), course), strict=True))
+    course = sort_in_direction(course, way)
+    speeds = dict(zip(course, held_speeds(system, course_start(system, way), course), strict=True))
     met = []
     for voltage, speed in folds:
         before, past = (speeds[voltage + side * sign * BESIDE] for side in (-1.0, 1.0))
@@ -216,7 +216,7 @@ def fold_that_is_met(system: System, branch: xr.Dataset, way: str) -> Truth:
     return Truth(FOLD, largest, largest, tuple(others))
 
 
-def folds_of(system: System, branch: xr.Dataset, way: str) -> list[tuple[float, float]]:
+def delaminated_folds(system: System, branch: xr.Dataset, way: str) -> list[tuple[float, float]]:
     """Return voltage and speed of the delaminated folds that end motions in one direction."""
     structure, drive = system
     units = drive.volts(structure), structure.omega
@@ -245,24 +245,24 @@ def folds_of(system: System, branch: xr.Dataset, way: str) -> list[tuple[float, 
     return folds
 
 
-def first_of(system: System, way: str) -> float:
+def course_start(system: System, way: str) -> float:
     """Return the voltage at which a course in one direction starts, over K omega."""
-    return ends_of(system)[WAYS.index(way)]
+    return ramp_ends(system)[WAYS.index(way)]
 
 
-def ordered(voltages: Sequence[float], way: str) -> list[float]:
+def sort_in_direction(voltages: Sequence[float], way: str) -> list[float]:
     """Sort voltages in the order of a direction."""
     return sorted(voltages, reverse=way == "down")
 
 
-def refuted(system: System, answer: Answer, way: str) -> str:
+def contradiction(system: System, answer: Answer, way: str) -> str:
     """Test an answer by separate held voltages; return the contradiction or empty text."""
     if answer.said == "lost" and answer.held:
-        return refuted_bracket(system, answer, way)
-    return refuted_by_grid(system, answer, way) if answer.said in ("lost", "none") else ""
+        return bracket_contradiction(system, answer, way)
+    return grid_contradiction(system, answer, way) if answer.said in ("lost", "none") else ""
 
 
-def refuted_bracket(system: System, answer: Answer, way: str) -> str:
+def bracket_contradiction(system: System, answer: Answer, way: str) -> str:
     """Test a bracket by held voltages, at two rates; return any contradiction.
 
     A motion with a narrow basin is thrown out of it by the ramp between two holds, long before it
@@ -282,10 +282,10 @@ def bracket_problem(system: System, answer: Answer, way: str, rate: float) -> st
     jump differs the more from the one there.
     """
     sign = 1.0 if way == "up" else -1.0
-    stays, lost = ordered((answer.low, answer.high), way)
+    stays, lost = sort_in_direction((answer.low, answer.high), way)
     far, past = stays - sign * EARLY, lost + sign * 0.5 * TOLERANCE
     before, there, beyond, back = held_speeds(
-        system, first_of(system, way), (far, stays, past, stays), rate=rate
+        system, course_start(system, way), (far, stays, past, stays), rate=rate
     )
     if abs(beyond - before) < SAME:
         return f"lost at {stays:.5f}, but past it, held, the speed is that of {far:.5f}"
@@ -294,7 +294,7 @@ def bracket_problem(system: System, answer: Answer, way: str, rate: float) -> st
     return ""
 
 
-def refuted_by_grid(system: System, answer: Answer, way: str) -> str:
+def grid_contradiction(system: System, answer: Answer, way: str) -> str:
     """Hold a grid of voltages there and back; return any contradiction.
 
     A jump through the resonance leaves the speed behind the voltage until it jumps: on the way
@@ -302,12 +302,12 @@ def refuted_by_grid(system: System, answer: Answer, way: str) -> str:
     lost against the way of the voltage: they exchange beside the resonance, and no verdict is about
     them.
     """
-    low, high = ends_of(system)
+    low, high = ramp_ends(system)
     sign = 1.0 if way == "up" else -1.0
     ends = (low + 0.15 - AROUND[0], high - 0.15 + AROUND[1])
-    voltages = ordered(np.arange(*ends, GRID).tolist(), way)
+    voltages = sort_in_direction(np.arange(*ends, GRID).tolist(), way)
     there_and_back = [*voltages, *voltages[::-1]]
-    speeds = held_speeds(system, first_of(system, way), there_and_back, SHORT)
+    speeds = held_speeds(system, course_start(system, way), there_and_back, SHORT)
     behind = sign * (speeds[::-1][: len(voltages)] - speeds[: len(voltages)])
     if answer.said == "lost":
         unlike = (behind >= SAME) | np.isnan(behind)
@@ -318,7 +318,7 @@ def refuted_by_grid(system: System, answer: Answer, way: str) -> str:
     return f"none, but two motions last at {at:.5f}: speeds {np.nanmax(behind):.4f} apart"
 
 
-def truth(branch: xr.Dataset, kind: str, way: str, units: tuple[float, float]) -> Truth:
+def first_loss_on_leg(branch: xr.Dataset, kind: str, way: str, units: tuple[float, float]) -> Truth:
     """Read from one traced branch where its motion is first lost in a direction.
 
     Unknown where that is no fold: of the delaminated structure, whose impacts may become irregular
@@ -359,7 +359,7 @@ def truth(branch: xr.Dataset, kind: str, way: str, units: tuple[float, float]) -
     return Truth(UNKNOWN)
 
 
-def complaint(answer: Answer, known: Truth, way: str) -> str:
+def error_in_answer(answer: Answer, known: Truth, way: str) -> str:
     """Compare an answer with the truth; return the error or empty text."""
     if known.kind == UNKNOWN or answer.said == "not passed":
         return ""
@@ -371,38 +371,40 @@ def complaint(answer: Answer, known: Truth, way: str) -> str:
     if answer.said == "undecided":
         return ""
     for place in known.places:
-        if not any(agrees(one, place, way) for one in (*told, *answer.further)):
+        if not any(matches_range(one, place, way) for one in (*told, *answer.further)):
             return f"lost at {told[0].low:.5f} to {told[0].high:.5f}, in truth at {place[0]:.5f}"
     return ""
 
 
-def agrees(answer: Answer, place: tuple[float, float], way: str) -> bool:
+def matches_range(answer: Answer, place: tuple[float, float], way: str) -> bool:
     """Return whether an answer's bracket matches a range where a motion is lost."""
     early, late = (EARLY, np.inf) if not answer.held else (TOLERANCE, TOLERANCE)
     before, after = (early, late) if way == "up" else (late, early)
     return place[0] - before <= answer.high and answer.low <= place[1] + after
 
 
-def unknown_ones(answer: Answer, known: Truth, way: str) -> list[Answer]:
+def answers_without_truth(answer: Answer, known: Truth, way: str) -> list[Answer]:
     """Return the certain answers that the traced branches neither confirm nor deny."""
     sure = [one for one in (answer, *answer.further) if one.said == "lost"]
     if known.kind == UNKNOWN:
         return sure or [answer]
     if known.kind == NONE or not answer.further:
         return []
-    return [one for one in sure if not any(agrees(one, place, way) for place in known.places)]
+    return [
+        one for one in sure if not any(matches_range(one, place, way) for place in known.places)
+    ]
 
 
-def judged(
+def check_answers(
     system: System, kind: str, known: dict[str, Truth], rates: Sequence[float] = RATES
 ) -> Iterator[tuple[str, str]]:
     """Check the answers on one structure at all rates; yield each with any error."""
     said: dict[str, set[str]] = {way: set() for way in WAYS}
     for rate in rates:
-        for way, answer in zip(WAYS, answers(system, rate), strict=True):
+        for way, answer in zip(WAYS, run_couple(system, rate), strict=True):
             new = answer.said not in said[way]
-            for one in unknown_ones(answer, known[way], way) if new else ():
-                problem = refuted(system, one, way)
+            for one in answers_without_truth(answer, known[way], way) if new else ():
+                problem = contradiction(system, one, way)
                 yield (
                     "held by themselves",
                     f"{kind}, {way}, rate {rate:g}: {problem}" * bool(problem),
@@ -411,7 +413,7 @@ def judged(
             by = "by held voltages" if answer.held else "by the record"
             decided = answer.said in ("lost", "none")
             name = f"{answer.said} {by}" if decided else answer.said
-            wrong = complaint(answer, known[way], way)
+            wrong = error_in_answer(answer, known[way], way)
             yield name, f"{kind}, {way}, rate {rate:g}: {wrong}" if wrong else ""
             for one in answer.further:
                 yield f"further jump {one.said}", ""
@@ -445,8 +447,8 @@ class Verdicts(Campaign):
         rng, counts, notes = np.random.default_rng(seed), Counter[str](), []
         wrong = 0
         for number in range(count):
-            folded = with_folds(rng)
-            edge = with_slope(folded, float(rng.uniform(*SLOPES)))
+            folded = draw_with_folds(rng)
+            edge = scale_to_slope(folded, float(rng.uniform(*SLOPES)))
             before = len(notes)
             both = (("with folds", folded, RATES), ("near the edge", edge, FEW_RATES))
             for name, system, rates in both:
@@ -462,9 +464,9 @@ class Verdicts(Campaign):
 
     def judge(self, system: System, rates: Sequence[float]) -> Iterator[tuple[str, str]]:
         """Check both structures of one drive; yield each answer with any error."""
-        known = truths(system)
+        known = trace_truths(system)
         for kind in KINDS:
             of_kind = {way: known[kind, way] for way in WAYS}
             for way in WAYS:
                 yield f"truth {of_kind[way].kind}", ""
-            yield from judged(system.of_kind(kind), kind, of_kind, rates)
+            yield from check_answers(system.of_kind(kind), kind, of_kind, rates)

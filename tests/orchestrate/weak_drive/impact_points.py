@@ -9,7 +9,7 @@ from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.access.events import EventInstance
 from orchestrate.weak_drive.exchange import Step
 from orchestrate.weak_drive.master import ALGORITHMS, Master, Scheme
-from orchestrate.weak_drive.polynomials import end_slope, end_value, work
+from orchestrate.weak_drive.polynomials import end_slope, end_value, integrate_work
 
 from .coupled import QUICK, oscillator_start, settled, starts_of, state_of
 from .monolithic import Monolith
@@ -65,7 +65,7 @@ class ImpactPoints(Counting):
         done, h, event = self.both(h)
         force = self.force_of(done.motion, h)
         taken = done.shaking.box_force_work - self.shaking.box_force_work
-        defect = taken - work(force, self.shaking.box_velocity, done.acceleration, h)
+        defect = taken - integrate_work(force, self.shaking.box_velocity, done.acceleration, h)
         size = self._over_exchanged(done, taken, defect)
         if may_refuse and size > self.scheme.tolerance:
             self.oscillator.restore()

@@ -10,7 +10,7 @@ from orchestrate import couple
 from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.dynamics.bifurcations import FOLD
 from orchestrate.weak_drive import averaged
-from orchestrate.weak_drive.couple import Run, couple_job, scheme_of
+from orchestrate.weak_drive.couple import Run, couple_job, scheme_from_arguments
 from orchestrate.weak_drive.drive_tracer import motion_near
 from orchestrate.weak_drive.held import LOST, HeldVoltageTest
 from orchestrate.weak_drive.jumps import Passing
@@ -35,7 +35,7 @@ def leg_of(system, range_, most=40):
 
 def held_verdict(system, ramp):
     """What held voltages say of a ramp up."""
-    job = couple_job(*system, ramp, scheme_of(system.structure, None), 0.0)
+    job = couple_job(*system, ramp, scheme_from_arguments(system.structure, None), 0.0)
     fmus = {model: find(model).path for model in (OSCILLATOR, SHAKER)}
     table = job.work(fmus, range(job.steps()), None)
     passing, (_, rows) = job.passing(table, up=True), job.sweep_leg(table, up=True)

@@ -10,9 +10,9 @@ from orchestrate.weak_drive.held import (
     LEFT_BEFORE,
     LOST,
     UNDECIDED,
+    HeldPoint,
     HeldVoltageTest,
     HoldSettings,
-    Settled,
     settled_speed,
 )
 from orchestrate.weak_drive.jumps import DOUBTFUL, Passing
@@ -136,7 +136,7 @@ class Scripted(HeldVoltageTest):
 
     def at(self, voltage, higher=0.0, begin=0.0):
         speed = 1.3 + 0.5 * (voltage - 1.5) + higher
-        return Settled(voltage, speed, 0.0, speed + begin, {}, np.nan)
+        return HeldPoint(voltage, speed, 0.0, speed + begin, {}, np.nan)
 
     def hold_step(self, step):
         self.held.append(step)
