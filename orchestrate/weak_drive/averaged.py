@@ -230,17 +230,17 @@ def neimark_sacker_points(
     """
     from scipy.optimize import brentq
 
-    def test(Omega: float) -> float:
+    def hurwitz_product(Omega: float) -> float:
         """Return the product of all sums of two growth rates; it is 0 at a bifurcation."""
         roots = growth_rates(structure, drive, Omega)
         sums = np.add.outer(roots, roots)[np.triu_indices(len(roots), 1)]
         return float(np.prod(-sums / np.abs(sums).max()).real)
 
     speeds = np.linspace(low, high, count)
-    signs = np.sign([test(Omega) for Omega in speeds])
+    signs = np.sign([hurwitz_product(Omega) for Omega in speeds])
     points = []
     for i in np.flatnonzero(signs[1:] != signs[:-1]):
-        Omega = float(brentq(test, speeds[i], speeds[i + 1], xtol=1e-12))
+        Omega = float(brentq(hurwitz_product, speeds[i], speeds[i + 1], xtol=1e-12))
         roots = growth_rates(structure, drive, Omega)
         pairs = roots[np.abs(roots.imag) > 1e-9]
         if np.abs(pairs.real).min() < 1e-6:  # no two real ones of opposite signs

@@ -101,24 +101,24 @@ class CaptureJob(Job):
         """Simulate starts at all voltages and bisect for the threshold voltage."""
         rows, borders = [], []
         for system in items:
-            start = partial(self.start, fmus, system)
+            start = partial(self.run_from_rest, fmus, system)
             outcomes = [start(voltage) for voltage in self.voltages]
             rows.append(outcomes)
             low, high = threshold_voltage(self.voltages, outcomes, start, self.tolerance)
             borders.append([*low, *high])
         return {"outcomes": np.array(rows, dtype=float), "borders": np.array(borders)}
 
-    def start(self, fmus: Mapping[str, Path], system: System, voltage: float) -> Outcome:
+    def run_from_rest(self, fmus: Mapping[str, Path], system: System, voltage: float) -> Outcome:
         """Simulate one start from rest at a voltage until the speed has settled."""
         test = settling_test(*system, self.stay)
         if voltage <= system.drive.motor_constant * test.threshold:
             return Outcome(NO_LOAD)
-        schedule = Constant(voltage, self.limit(system))
+        schedule = Constant(voltage, self.time_limit(system))
         job = couple_job(*system, schedule, self.scheme, 0.0, self.control)
         with begin_run(job, fmus) as run:
-            return run_until_settled(run, range(job.steps()), test.outcome)
+            return run_until_settled(run, range(job.steps()), test.judge_record)
 
-    def limit(self, system: System) -> float:
+    def time_limit(self, system: System) -> float:
         """Return the longest simulated time of a start, s; after it it is undecided."""
         distance = self.tolerance / system.drive.volts(system.structure)
         return self.time or usual_limit(*system, distance)
@@ -135,7 +135,7 @@ class CaptureJob(Job):
         text = "time from which the speed stays beyond the resonance; NaN where it does not"
         how = "how the outcome was decided"
         edge = "voltage from which a motor switched on from rest passes the resonance"
-        folds = np.array([self.fold(system) for system in self.items(inputs)])[kept]
+        folds = np.array([self.highest_fold(system) for system in self.items(inputs)])[kept]
         known = "voltage above which no motion below the resonance exists, by the averaged theory"
         volts = np.array([drive.volts(structure) for structure, drive in self.items(inputs)])
         above = low - folds > THEORY * volts[kept]
@@ -160,7 +160,7 @@ class CaptureJob(Job):
         title = f"Capture at the resonance from rest, {state} structure"
         return xr.Dataset(variables, coordinates, {"title": title})
 
-    def fold(self, system: System) -> float:
+    def highest_fold(self, system: System) -> float:
         """Return the voltage of the highest fold by averaged theory, V; NaN if unknown."""
         structure, drive = system
         if not structure.bonded or self.control is not None:
@@ -391,5 +391,5 @@ def capture(
         *(float(tolerance), float(time or 0.0), stay, scheme, control),
     )
     for each in job.items({}):  # refused now, not amid the work
-        couple_job(*each, Constant(voltages[-1], job.limit(each)), scheme, 0.0, control)
+        couple_job(*each, Constant(voltages[-1], job.time_limit(each)), scheme, 0.0, control)
     return answer(job, running, finder(running))

@@ -1,8 +1,8 @@
 """Run the master's communication steps in compiled C code, with bit-identical results.
 
 ``compiled.c`` calls the FMUs' functions itself, past Python: where two FMI 3.0 instances are native
-and the library can be had, :func:`create_master` makes a master that steps so. Structures are those of
-the C source.
+and the library can be had, :func:`create_master` makes a master that steps so. Structures are those
+of the C source.
 """
 
 from __future__ import annotations

@@ -136,7 +136,7 @@ class CoupleJob(CoupledRun):
         if items[0] == self.steps():
             assert previous is not None
             nothing = {name: values[:0] for name, values in previous.items()}
-            return {**nothing, **self.verdicts(fmus, previous, every)}
+            return {**nothing, **self.run_held_voltage_tests(fmus, previous, every)}
         with begin_run(self, fmus) as run:
             if previous is not None:
                 run.set_state(previous)
@@ -146,7 +146,7 @@ class CoupleJob(CoupledRun):
         """Return the progress bar's note for the chunk of the held-voltage test."""
         return "voltages held where a jump is in doubt" if first == self.steps() else ""
 
-    def verdicts(self, fmus: Mapping[str, Path], table: Table, every: int) -> Table:
+    def run_held_voltage_tests(self, fmus: Mapping[str, Path], table: Table, every: int) -> Table:
         """Hold voltages where the ramp's record leaves a jump in doubt; return verdicts.
 
         Parameters
@@ -156,8 +156,8 @@ class CoupleJob(CoupledRun):
             Revolutions, and the states after ``every`` steps each.
         every : int
         """
-        doubts = [self.doubt(table, up) for up in UPWARD]
-        places = [self.further_places(table, up) for up in UPWARD]
+        doubts = [self.doubtful_passing(table, up) for up in UPWARD]
+        places = [self.find_further_passings(table, up) for up in UPWARD]
         verdicts, further = [Verdict(NOT_ASKED)] * len(doubts), [empty_verdict_rows()] * len(doubts)
         if not any(doubts) and not any(places):
             return pack_verdicts(verdicts, further)
@@ -166,24 +166,24 @@ class CoupleJob(CoupledRun):
         resonance = own_resonance.dividing_speeds(structure, drive)
         with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
 
-            def begin(schedule: Schedule) -> Run:
+            def start_run(schedule: Schedule) -> Run:
                 """Reset both FMU instances and start a run with another voltage schedule."""
                 for instance in (oscillator, shaker):
                     instance.reset()
                 return Run(replace(self, schedule=schedule), oscillator, shaker)
 
             units = (self.scheme.h, structure.omega, drive.volts(structure))
-            test = HeldVoltageTest(begin, self.schedule, *units, self.hold)
+            test = HeldVoltageTest(start_run, self.schedule, *units, self.hold)
             test.add_checkpoints(table, every, self.steps())
             for i, doubt in enumerate(doubts):
                 course = HeldCourse(Verdict(NOT_ASKED))
                 if doubt is not None:
                     course = test.classify(*doubt, threshold, UPWARD[i], resonance)
                 verdicts[i] = course.verdict
-                further[i] = self.further_verdicts(test, table, course, places[i], UPWARD[i])
+                further[i] = self.run_further_tests(test, table, course, places[i], UPWARD[i])
         return pack_verdicts(verdicts, further)
 
-    def further_verdicts(
+    def run_further_tests(
         self,
         test: HeldVoltageTest,
         table: Table,
@@ -207,27 +207,27 @@ class CoupleJob(CoupledRun):
                 continue
             middle = float(Omega[ends].mean())
             held = test.for_further_jumps().classify(
-                *self.by_steps(table, self.earlier(table, passing, up), up), middle, up
+                *self.to_steps(table, self.begin_earlier(table, passing, up), up), middle, up
             )
             told = drop_known_losses(loss_verdicts(held), known, volts)
             known += told
             found += [(place, verdict) for verdict in told or [Verdict(FOLLOWS)]]
         return verdicts_to_rows(found)
 
-    def earlier(self, table: Table, passing: Passing, up: bool) -> Passing:
+    def begin_earlier(self, table: Table, passing: Passing, up: bool) -> Passing:
         """Move the start of a suspected jump earlier, because a ramp shows losses late."""
         time, rows = table["time"], self.sweep_leg(table, up)[1]
         late = LATE / (self.drive.b(self.structure) * self.structure.omega)
         before = max(int(np.searchsorted(time, time[passing.before] - late)) - 1, int(rows[0]))
         return passing._replace(before=min(before, passing.before))
 
-    def further_places(self, table: Table, up: bool) -> list[Passing]:
+    def find_further_passings(self, table: Table, up: bool) -> list[Passing]:
         """Find suspected further jumps in one direction, as rows of the table."""
         leg, rows = self.sweep_leg(table, up)
         if self.control or not rows.size:
             return []
         divide = own_resonance.dividing_speed(self.structure, self.drive)
-        main, b = self.passing(table, up), self.drive.b(self.structure)
+        main, b = self.resonance_passing(table, up), self.drive.b(self.structure)
         places = []
         for part in np.split(np.arange(len(rows)), np.flatnonzero(np.diff(rows) > 1) + 1):
             first = int(rows[part[0]])
@@ -249,7 +249,7 @@ class CoupleJob(CoupledRun):
         rows = np.flatnonzero(trend > 0 if up else trend < 0)
         return SweepLeg(table["time"][rows] * self.structure.omega, eta0[rows], Omega[rows]), rows
 
-    def passing(self, table: Table, up: bool) -> Passing | None:
+    def resonance_passing(self, table: Table, up: bool) -> Passing | None:
         """Find how the speed passes the resonance in one direction; None if it does not."""
         leg, rows = self.sweep_leg(table, up)
         divide = own_resonance.dividing_speed(self.structure, self.drive)
@@ -260,15 +260,15 @@ class CoupleJob(CoupledRun):
         half = float(np.interp(rows_in_leg.half, np.arange(len(rows)), rows))
         return Passing(row, before, after, rows_in_leg.look, half)
 
-    def doubt(self, table: Table, up: bool) -> tuple[Passing, tuple[int, int]] | None:
+    def doubtful_passing(self, table: Table, up: bool) -> tuple[Passing, tuple[int, int]] | None:
         """Return a doubtful passage of the resonance in steps; None if the record is clear."""
-        passing = None if self.control else self.passing(table, up)
+        passing = None if self.control else self.resonance_passing(table, up)
         theory = averaged_predictions(self.structure, self.drive)[UPWARD.index(up)]
         if passing is None or not is_doubtful(passing, self.structure.bonded, theory):
             return None
-        return self.by_steps(table, passing, up)
+        return self.to_steps(table, passing, up)
 
-    def by_steps(self, table: Table, passing: Passing, up: bool) -> tuple[Passing, tuple[int, int]]:
+    def to_steps(self, table: Table, passing: Passing, up: bool) -> tuple[Passing, tuple[int, int]]:
         """Convert a passage from table rows to communication steps, with its sweep's ends."""
         rows = self.sweep_leg(table, up)[1]
         times = table["time"][[*passing[:3], rows[0], rows[-1]]]
@@ -313,7 +313,7 @@ class CoupleJob(CoupledRun):
         passed = time_beyond_threshold(table["time"], np.abs(Omega), divide)
         variables["passage_time"] = ((), passed, {"units": "s", "long_name": text})
         dataset = xr.Dataset(
-            {**variables, **self.jumps(table)}, coordinates, self.attributes(table)
+            {**variables, **self.all_jump_variables(table)}, coordinates, self.attributes(table)
         )
         names = {"long_name": "direction in which the speed jumps"}
         places = {"units": "1", "long_name": "place of a further jump, in the ramp's order"}
@@ -322,24 +322,28 @@ class CoupleJob(CoupledRun):
             order=("order", np.arange(1, SLOTS + 1), places),
         )
 
-    def jumps(self, table: Table) -> dict[str, Variable]:
+    def all_jump_variables(self, table: Table) -> dict[str, Variable]:
         """Build the variables of the jump in each direction, or the reason for none."""
         held = [Verdict(int(row[0]), *row[1:]) for row in table["verdicts"][-1]]
         theory = averaged_predictions(self.structure, self.drive)
-        found = [self.losses(table, i, held[i]) for i in range(len(UPWARD))]
+        found = [self.collect_losses(table, i, held[i]) for i in range(len(UPWARD))]
         told = [
             pick_jump(*pair, 1.0 if up else -1.0) for pair, up in zip(found, UPWARD, strict=True)
         ]
         jumps = [first.passing if first and first.is_sure else None for first, _ in told]
         final = [first.verdict if first else held[i] for i, (first, _) in enumerate(told)]
         columns = jump_variables(table, jumps)
-        columns |= self.theory(np.array(columns["jumps"][1], dtype=float))
+        columns |= self.theory_variables(np.array(columns["jumps"][1], dtype=float))
         reasons = []
         for i, (first, _) in enumerate(told):
             if first is None:
-                reasons.append(self.why_none(table, UPWARD[i]))
+                reasons.append(self.explain_no_passing(table, UPWARD[i]))
             elif jumps[i] is None:
-                ends = self.ends_within(table, UPWARD[i]) if held[i].outcome == UNDECIDED else ""
+                ends = (
+                    self.explain_short_sweep(table, UPWARD[i])
+                    if held[i].outcome == UNDECIDED
+                    else ""
+                )
                 reasons.append(
                     ends or explain_no_jump(first.passing, held[i], final[i], theory[i], self.hold)
                 )
@@ -354,7 +358,9 @@ class CoupleJob(CoupledRun):
         columns |= further_jump_variables(table, [further for _, further in told])
         return columns | held_voltage_variables(final)
 
-    def losses(self, table: Table, i: int, primary: Verdict) -> tuple[Loss | None, list[Loss]]:
+    def collect_losses(
+        self, table: Table, i: int, primary: Verdict
+    ) -> tuple[Loss | None, list[Loss]]:
         """Collect all losses of stability in a direction; that at the resonance first."""
         if self.control:
             return None, []
@@ -366,10 +372,12 @@ class CoupleJob(CoupledRun):
             further = [
                 (place, check_against_theory(verdict, theory, volts)) for place, verdict in further
             ]
-        rows, places = self.sweep_leg(table, up)[1], self.further_places(table, up)
-        return gather_losses(table, rows, self.passing(table, up), primary, places, further)
+        rows, places = self.sweep_leg(table, up)[1], self.find_further_passings(table, up)
+        return gather_losses(
+            table, rows, self.resonance_passing(table, up), primary, places, further
+        )
 
-    def theory(self, jumps: np.ndarray) -> dict[str, Variable]:
+    def theory_variables(self, jumps: np.ndarray) -> dict[str, Variable]:
         """Build the variables that compare bonded jumps with the averaged theory."""
         structure, volts = self.structure, self.drive.volts(self.structure)
         text = "how late the jump comes on the ramp, by the averaged theory (bonded only)"
@@ -386,14 +394,14 @@ class CoupleJob(CoupledRun):
             "jump_lag": ("jump", (jumps - ends).tolist(), late),
         }
 
-    def why_none(self, table: Table, up: bool) -> str:
+    def explain_no_passing(self, table: Table, up: bool) -> str:
         """Explain why the speed does not pass the resonance in a direction."""
         if self.control:
             return "a controller sets the voltage"
         resonance = own_resonance.resonance(self.structure, self.drive)
         return explain_not_passed(self.sweep_leg(table, up)[0], up, resonance)
 
-    def ends_within(self, table: Table, up: bool) -> str:
+    def explain_short_sweep(self, table: Table, up: bool) -> str:
         """Explain that the sweep ends before a resonance; empty text if it does not."""
         leg, rows = self.sweep_leg(table, up)
         low, high = own_resonance.dividing_speeds(self.structure, self.drive)
@@ -459,7 +467,7 @@ def held_voltage_variables(verdicts: Sequence[Verdict]) -> dict[str, Variable]:
 def jump_variables(table: Table, jumps: Sequence[Passing | None]) -> dict[str, Variable]:
     """Build the variables of voltage, time, speed and amplitude at each jump."""
 
-    def at(name: str, row_name: str) -> list[float]:
+    def interpolated(name: str, row_name: str) -> list[float]:
         """Interpolate one column of the table at each jump; NaN without a jump."""
         values = table[name]
         return [
@@ -486,7 +494,7 @@ def jump_variables(table: Table, jumps: Sequence[Passing | None]) -> dict[str, V
         "jump_amplitude_after": ("amplitude", "after", "m", "amplitude after the jump"),
     }
     columns: dict[str, Variable] = {
-        key: ("jump", at(name, row_name), {"units": unit, "long_name": text})
+        key: ("jump", interpolated(name, row_name), {"units": unit, "long_name": text})
         for key, (name, row_name, unit, text) in wanted.items()
     }
     text = "change of the voltage per time during the jump"

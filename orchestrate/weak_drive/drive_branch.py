@@ -98,12 +98,12 @@ class DriveBranchJob(Job):
         rows = []
         for structure in items:
             with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
-                rows.append(self.legs((oscillator, shaker), structure))
+                rows.append(self.trace_legs((oscillator, shaker), structure))
         at = [[[each.point for each in leg.bifurcations] for leg in legs] for legs in rows]
         return {
-            "points": np.array([[self.numbers(leg.points) for leg in legs] for legs in rows]),
-            "events": np.array([[self.numbers(motions) for motions in legs] for legs in at]),
-            "kinds": np.array([[self.codes(leg) for leg in legs] for legs in rows]),
+            "points": np.array([[self.motion_table(leg.points) for leg in legs] for legs in rows]),
+            "events": np.array([[self.motion_table(motions) for motions in legs] for legs in at]),
+            "kinds": np.array([[self.bifurcation_codes(leg) for leg in legs] for legs in rows]),
             "ends": np.array([[ENDS.index(leg.end) for leg in legs] for legs in rows]),
         }
 
@@ -116,7 +116,7 @@ class DriveBranchJob(Job):
         """Return the longest period that is traced, in revolutions."""
         return 1 if structure.bonded else self.period
 
-    def legs(self, fmus: tuple[Instance, Instance], structure: Structure) -> list[Leg]:
+    def trace_legs(self, fmus: tuple[Instance, Instance], structure: Structure) -> list[Leg]:
         """Trace the branch from the lowest speed, and from the highest if needed.
 
         Then legs of twice the period are traced from the first period doublings of both.
@@ -127,31 +127,33 @@ class DriveBranchJob(Job):
         length = float(sizes.max()) * drive.length
         turns = self.max_turns(structure)
         shooter = Shooter(fmus, structure, drive, turns, self.steps, length)
-        below = self.leg(shooter, (low, high), up=True)
-        passed = below.end == LIMIT and below.points[-1].place[1] > 0.5 * (low + high)
-        above = Leg(end=NOT_BEGUN) if passed else self.leg(shooter, (low, high), up=False)
+        below = self.trace_leg(shooter, (low, high), up=True)
+        passed = below.end == LIMIT and below.points[-1].coordinates[1] > 0.5 * (low + high)
+        above = Leg(end=NOT_BEGUN) if passed else self.trace_leg(shooter, (low, high), up=False)
         legs = [below, above]
         for leg in (below, above):
             for flip in leg.bifurcations:
-                if len(legs) < len(LEGS) and self.is_to_double(flip, legs, turns):
-                    legs.append(self.doubled_leg(shooter, flip.point, (low, high)))
+                if len(legs) < len(LEGS) and self.needs_doubled_leg(flip, legs, turns):
+                    legs.append(self.trace_doubled_leg(shooter, flip.point, (low, high)))
         return [*legs, *(Leg(end=NOT_BEGUN) for _ in LEGS[len(legs) :])]
 
-    def is_to_double(self, flip: Bifurcation[Motion], legs: Sequence[Leg], turns: int) -> bool:
+    def needs_doubled_leg(self, flip: Bifurcation[Motion], legs: Sequence[Leg], turns: int) -> bool:
         """Return whether a period doubling starts a leg that is not traced yet."""
         if flip.kind != FLIP or 2 * flip.point.period.revolutions > turns:
             return False
-        ends = [leg.points[-1].place for leg in legs if leg.end == HALVED]
-        return not any(np.abs(flip.point.place - end).max() < 2.0 * self.longest for end in ends)
+        ends = [leg.points[-1].coordinates for leg in legs if leg.end == HALVED]
+        return not any(
+            np.abs(flip.point.coordinates - end).max() < 2.0 * self.longest for end in ends
+        )
 
-    def doubled_leg(self, shooter: Shooter, flip: Motion, speeds: tuple[float, float]) -> Leg:
+    def trace_doubled_leg(self, shooter: Shooter, flip: Motion, speeds: tuple[float, float]) -> Leg:
         """Trace the leg of twice the period from a period doubling."""
         try:
             return trace_branch(shooter, double_period(shooter, flip), speeds, self.settings)
         except NoConvergenceError:
             return Leg(end=NO_START)
 
-    def leg(self, shooter: Shooter, speeds: tuple[float, float], up: bool) -> Leg:
+    def trace_leg(self, shooter: Shooter, speeds: tuple[float, float], up: bool) -> Leg:
         """Trace one leg from the lowest or the highest speed, begun by simulation.
 
         It is traced with the shortest period after which its first motion repeats.
@@ -174,18 +176,18 @@ class DriveBranchJob(Job):
             return Leg(end=NO_START)
         return trace_branch(shooter, start, speeds, self.settings)
 
-    def numbers(self, motions: Sequence[Motion]) -> np.ndarray:
+    def motion_table(self, motions: Sequence[Motion]) -> np.ndarray:
         """Convert motions to a table of speed, voltage, amplitude and multipliers."""
         table = np.full((self.most, len(COLUMNS) + MULTIPLIERS), np.nan, dtype=complex)
         volts, omega = self.drive.volts(self.structure), self.structure.omega
         for row, motion in zip(table, motions, strict=False):
-            voltage, speed = motion.place
+            voltage, speed = motion.coordinates
             turns = motion.period.revolutions
             sizes = motion.period.amplitude, motion.period.impacts / turns, turns
             row[:] = [speed * omega, voltage * volts, *sizes, *motion.multipliers[:MULTIPLIERS]]
         return table
 
-    def codes(self, leg: Leg) -> np.ndarray:
+    def bifurcation_codes(self, leg: Leg) -> np.ndarray:
         """Return the kinds of a leg's bifurcations as integers, padded with -1."""
         numbers = np.full(self.most, -1)
         codes = [BIFURCATIONS.index(each.kind) for each in leg.bifurcations][: self.most]

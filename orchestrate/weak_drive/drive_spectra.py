@@ -79,7 +79,7 @@ class DriveSpectraJob(Job):
         self, fmus: Mapping[str, Path], items: Sequence[Structure], previous: Table | None
     ) -> Table:
         """Compute both masses' acceleration spectra and the mean motor speed."""
-        records = [self.record(fmus, structure) for structure in items]
+        records = [self.record_displacements(fmus, structure) for structure in items]
         lines = len(self.orders())
         spectra, speeds = [], []
         for displacement, speed in records:
@@ -88,7 +88,9 @@ class DriveSpectraJob(Job):
             speeds.append(speed)
         return {"acceleration": np.array(spectra), "speed": np.array(speeds)}
 
-    def record(self, fmus: Mapping[str, Path], structure: Structure) -> tuple[np.ndarray, float]:
+    def record_displacements(
+        self, fmus: Mapping[str, Path], structure: Structure
+    ) -> tuple[np.ndarray, float]:
         """Hold the voltage; return displacements (2, samples), m, and speed, rad/s."""
         scheme = scheme_from_arguments(structure, self.step, "rollback", 0.0)
         job = couple_job(structure, self.drive, self.approach, scheme)
@@ -101,9 +103,9 @@ class DriveSpectraJob(Job):
                     "raise the voltage or the duration"
                 )
             speed = TURN * (len(ends) - 1) / (ends[-1] - ends[0])
-            return self.sample(run, TURN / speed / self.points), float(speed)
+            return self.sample_displacements(run, TURN / speed / self.points), float(speed)
 
-    def sample(self, run: Run, interval: float) -> np.ndarray:
+    def sample_displacements(self, run: Run, interval: float) -> np.ndarray:
         """Sample both masses' absolute displacements at equal times, m.
 
         A preload's own displacements would leak into the lowest lines.
@@ -117,11 +119,11 @@ class DriveSpectraJob(Job):
         box = shaking.box_position
         return np.array([motion.x1 - rest_1 + box, motion.x2 - rest_2 + box])
 
-    def hangs(self, fmus: Mapping[str, Path]) -> bool:
+    def hangs_at_resonance(self, fmus: Mapping[str, Path]) -> bool:
         """Return whether the delaminated structure still hangs at the resonance."""
         short, structure = replace(self, revolutions=8, points=4), self.structure.as_delaminated()
         divide = own_resonance.dividing_speed(structure, self.drive) * structure.omega
-        return short.record(fmus, structure)[1] < divide
+        return short.record_displacements(fmus, structure)[1] < divide
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Build the dataset of acceleration amplitudes over spectral lines."""
@@ -263,5 +265,5 @@ def drive_spectra(
     find_fmu = finder(running)
     if voltage is None:
         fmus = {model: find_fmu(model).path for model in DriveSpectraJob.models}
-        jobs = [next((job for job in jobs if job.hangs(fmus)), jobs[-1])]
+        jobs = [next((job for job in jobs if job.hangs_at_resonance(fmus)), jobs[-1])]
     return answer(jobs[0], running, find_fmu)

@@ -80,7 +80,7 @@ class Motion(NamedTuple):
     together: bool
 
     @property
-    def place(self) -> Floats:
+    def coordinates(self) -> Floats:
         """Return the motion's voltage over K omega and its speed over omega."""
         return self.root.unknowns[-2:]
 
@@ -90,7 +90,7 @@ class ShooterStepper(ArclengthStepper[Shooter]):
 
     jacobian: Floats
 
-    def put_to(self, motion: Motion) -> None:
+    def move_to(self, motion: Motion) -> None:
         """Make a motion the current one, with its Jacobian."""
         self.root, self.jacobian = motion.root, motion.matrix
 
@@ -151,7 +151,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
     def go_on_from(self, point: Motion) -> Motion:
         """Continue from a motion whose period is begun far from impacts."""
         motion = start_far_from_impacts(self.shooter, point)
-        self.stepper.put_to(motion)
+        self.stepper.move_to(motion)
         self.shot = self.shooter.shoot(motion.root.unknowns)
         self.half_period_change = half_period_change(self.shooter, motion.root)
         return motion
@@ -161,7 +161,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
 
         With another number of impacts it lies beyond a grazing.
         """
-        return self.shooter.shoot(root.unknowns).like(self.shot)
+        return self.shooter.shoot(root.unknowns).is_connected_to(self.shot)
 
     def test(self, point: Motion, kind: BifurcationKind) -> float:
         """Evaluate the test function of a bifurcation, which is zero there."""
@@ -287,4 +287,4 @@ def half_period_change(shooter: Shooter, root: Root) -> Floats:
 
 def distance_between(first: Motion, second: Motion) -> float:
     """Return the distance of two motions in voltage and speed, both non-dimensional."""
-    return float(np.linalg.norm(first.place - second.place))
+    return float(np.linalg.norm(first.coordinates - second.coordinates))

@@ -87,7 +87,7 @@ class EnergyBalance:
         own = 0.5 * (m1 * v1 * v1 + m2 * v2 * v2 + k1 * x1 * x1 + k2 * x2 * x2)
         return own + self._preload * motion.x_rel
 
-    def energy(self, motion: OscillatorOutputs, velocity: float) -> float:
+    def absolute_energy(self, motion: OscillatorOutputs, velocity: float) -> float:
         """Return the structure's energy by its absolute motion, for a box velocity, J."""
         m1, m2 = self._masses
         momentum = m1 * motion.v1 + m2 * motion.v2
@@ -139,7 +139,7 @@ class EnergyBalance:
             shaking.motor_energy,
             shaking.box_damper_energy,
             motion.impact_energy,
-            shaking.stored_energy + self.energy(motion, shaking.box_velocity),
+            shaking.stored_energy + self.absolute_energy(motion, shaking.box_velocity),
             self.lost - motion.impact_energy,
         )
 

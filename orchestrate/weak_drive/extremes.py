@@ -172,6 +172,6 @@ class Revolution:
         self.box_high, self.box_low = max(self.box_high, y.high), min(self.box_low, y.low)
         self.acceleration = max(self.acceleration, abs(done.shaking.box_acceleration))
 
-    def complete(self, turns: float) -> bool:
+    def is_complete(self, turns: float) -> bool:
         """Return whether the motor has made one more full turn, in either direction."""
         return turns >= self.turn + 1.0 or turns <= self.turn - 1.0

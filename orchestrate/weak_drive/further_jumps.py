@@ -12,6 +12,7 @@ Non-dimensional, as :mod:`.jumps`.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -64,23 +65,15 @@ def find_further_jumps(
     torque, first = sign * vibration_torque(means, b, width), 3 * width // 2
     found: list[Passing] = []
 
-    def spans() -> list[tuple[int, int]]:
-        """Return the row ranges that already belong to a jump."""
-        return [(other.before, other.after) for other in found] + ([main] if main else [])
-
-    def is_elsewhere(before: int, after: int) -> bool:
-        """Return whether a row range overlaps no jump that is already found."""
-        return all(after < low or before > high for low, high in spans())
-
     for high, low in find_falls(torque, LEAST):
         before, after = high + first, low + first
-        ended = [end - first for _, end in spans() if end <= before]
+        ended = [end - first for _, end in taken_spans(found, main) if end <= before]
         looks = {
             classify_stretch(leg, means, b, sign, part, limits)
             for part in true_stretches(fast, high, low)
         }
         is_natural = leg.Omega[before] > threshold and not looks - {SMOOTH}
-        if not high or is_natural or not is_elsewhere(before, after):
+        if not high or is_natural or not lies_outside(before, after, taken_spans(found, main)):
             continue
         earlier = torque[max(0, high - limits.around * width, *ended) : high]
         later = torque[low : low + limits.around * width]
@@ -100,10 +93,20 @@ def find_further_jumps(
         last = min(after + 2 * width, len(leg.time) - 1)
         excess = sign * (leg.Omega[last] - leg.Omega[before]) - np.ptp(leg.eta0[before : last + 1])
         is_jump = classify_stretch(leg, means, b, sign, (before, after), limits) == JUMP
-        if is_jump and excess > LEAST and is_elsewhere(before, last):
+        if is_jump and excess > LEAST and lies_outside(before, last, taken_spans(found, main)):
             half, look = 0.5 * (before + after), JUMP if excess > SMALLEST else DOUBTFUL
             found.append(Passing(math.ceil(half), before, last, look, half))
     return sorted(found)
+
+
+def taken_spans(found: Sequence[Passing], main: tuple[int, int] | None) -> list[tuple[int, int]]:
+    """Return the row ranges that already belong to a jump or to the passing of the resonance."""
+    return [(other.before, other.after) for other in found] + ([main] if main else [])
+
+
+def lies_outside(before: int, after: int, spans: Sequence[tuple[int, int]]) -> bool:
+    """Return whether a range of rows overlaps none of some others."""
+    return all(after < low or before > high for low, high in spans)
 
 
 def vibration_torque(means: SweepLeg, b: float, width: int) -> np.ndarray:

@@ -220,7 +220,7 @@ class HeldVoltageTest:
             state = {name: table[name][[i]] for name in MEMORY}
             self.checkpoints[min((i + 1) * every, steps)] = state
 
-    def state(self, step: int) -> Table | None:
+    def state_before(self, step: int) -> Table | None:
         """Return the ramp's state before a step, recomputed from a checkpoint."""
         if step not in self.checkpoints and step:
             last = max((known for known in self.checkpoints if known < step), default=0)
@@ -236,17 +236,17 @@ class HeldVoltageTest:
 
     def hold_step(self, step: int) -> HeldPoint:
         """Hold the voltage that the ramp has at a step, from its state there."""
-        return self.hold(self.state(step), self.voltage(step))
+        return self.hold_voltage(self.state_before(step), self.ramp_voltage(step))
 
-    def voltage(self, step: int) -> float:
+    def ramp_voltage(self, step: int) -> float:
         """Return the voltage of the ramp at a communication step, V."""
         return self.schedule.voltage((step + 0.5) * self.step)
 
     def step_from(self, point: HeldPoint, voltage: float) -> HeldPoint:
         """Change the voltage in one step from a held point, and hold it there."""
-        return self.hold(point.state, voltage)._replace(origin=point.voltage)
+        return self.hold_voltage(point.state, voltage)._replace(origin=point.voltage)
 
-    def hold(self, state: Table | None, voltage: float) -> HeldPoint:
+    def hold_voltage(self, state: Table | None, voltage: float) -> HeldPoint:
         """Simulate a constant voltage from a state until the speed settles."""
         count = math.ceil(self.longest / self.step)
         piece = max(1, round(150.0 / self.omega / self.step))
@@ -293,46 +293,48 @@ class HeldVoltageTest:
         sign = 1.0 if up else -1.0
         near, far = (resonance or (threshold, threshold))[:: 1 if up else -1]
 
-        def beyond(point: HeldPoint, threshold: float = threshold) -> bool:
+        def is_beyond(point: HeldPoint, threshold: float = threshold) -> bool:
             """Return whether a held speed has passed a threshold in the voltage's direction."""
             return sign * (point.speed - threshold) > 0.0
 
         step, back = steps.before, max(1, steps.row - steps.before)
         low = self.hold_step(step)
-        while math.isnan(low.speed) or beyond(low, near) or self.falls_back(low, sign):
+        while math.isnan(low.speed) or is_beyond(low, near) or self.has_left_motion(low, sign):
             if step <= ends[0]:
                 if math.isnan(low.speed):
                     return HeldCourse(Verdict(UNDECIDED))
-                if beyond(low):
+                if is_beyond(low):
                     return HeldCourse(Verdict(LEFT_BEFORE))
                 break
             step, back = max(ends[0], step - back), 2 * back
             low = self.hold_step(step)
-        target = self.target(steps.after, ends[1], sign)
-        points = self.stairs(low, target)
-        if not beyond(points[-1], far):
-            points += self.further(points[-1], target, ends[1], sign, far)
-        if not beyond(points[-1]):
+        target = self.target_voltage(steps.after, ends[1], sign)
+        points = self.climb_stairs(low, target)
+        if not is_beyond(points[-1], far):
+            points += self.extend_past(points[-1], target, ends[1], sign, far)
+        if not is_beyond(points[-1]):
             return HeldCourse(Verdict(UNDECIDED, points[-1].voltage, target))
-        verdict, *others = self.changes(list(points), sign)
-        if verdict.outcome == FOLLOWS and not (beyond(points[-1], far) and self.comes_back(points)):
+        verdict, *others = self.bracket_changes(list(points), sign)
+        if verdict.outcome == FOLLOWS and not (
+            is_beyond(points[-1], far) and self.returns_same_way(points)
+        ):
             verdict = Verdict(UNDECIDED, low.voltage, points[-1].voltage)
         return HeldCourse(verdict, tuple(others))
 
-    def changes(self, points: list[HeldPoint], sign: float) -> list[Verdict]:
+    def bracket_changes(self, points: list[HeldPoint], sign: float) -> list[Verdict]:
         """Bracket the largest speed change and all others that may be jumps.
 
         Others count where the speed changes from one voltage to the next by more than the voltage
         does, and by as much as tells two motions apart: a branch is steeper only beside a fold.
         """
-        verdicts = [self.between(points, sign)]
+        verdicts = [self.bracket_largest_change(points, sign)]
         places = [i for i, point in enumerate(points) if point.voltage == verdicts[0].low]
         if verdicts[0].outcome != LOST or not places:
             return verdicts
         test = self.for_further_jumps()
         for part in (points[: places[0] + 1], points[places[0] + 1 :]):
             if any(test.may_be_a_loss(low, high, sign) for low, high in pairwise(part)):
-                found = test.changes(part, sign)
+                found = test.bracket_changes(part, sign)
                 verdicts += [verdict for verdict in found if verdict.outcome != FOLLOWS]
         return verdicts
 
@@ -341,11 +343,11 @@ class HeldVoltageTest:
         allowed = abs(high.voltage - low.voltage) / self.volts + self.smallest_change(low, high)
         return sign * (high.speed - low.speed) > allowed
 
-    def further(
+    def extend_past(
         self, point: HeldPoint, voltage: float, last: int, sign: float, speed: float
     ) -> list[HeldPoint]:
         """Step the voltage further until the speed is well past a threshold."""
-        end, points = self.voltage(last), [point]
+        end, points = self.ramp_voltage(last), [point]
         step, missing = sign * self.settings.stair * self.volts, sign * (speed - point.speed)
         left = self.settings.max_stairs + math.ceil(max(missing, 0.0) / self.settings.stair)
         while left and sign * (end - voltage) > 0.0:
@@ -357,13 +359,13 @@ class HeldVoltageTest:
                 left = min(left, round(self.settings.past / self.settings.stair))
         return points[1:]
 
-    def target(self, after: int, last: int, sign: float) -> float:
+    def target_voltage(self, after: int, last: int, sign: float) -> float:
         """Return the voltage where the held steps are to end, well past the jump, V."""
-        past = self.voltage(after) + sign * self.settings.past * self.volts
-        end = self.voltage(last)
+        past = self.ramp_voltage(after) + sign * self.settings.past * self.volts
+        end = self.ramp_voltage(last)
         return min(past, end) if sign > 0.0 else max(past, end)
 
-    def comes_back(self, points: list[HeldPoint]) -> bool:
+    def returns_same_way(self, points: list[HeldPoint]) -> bool:
         """Step the voltages back; return whether the same speeds settle again."""
         last = points[-1]
         for point in reversed(points[:-1]):
@@ -373,7 +375,7 @@ class HeldVoltageTest:
             last = back if math.isfinite(back.speed) else last
         return True
 
-    def stairs(self, low: HeldPoint, target: float) -> list[HeldPoint]:
+    def climb_stairs(self, low: HeldPoint, target: float) -> list[HeldPoint]:
         """Step the voltage to a target; return the points at which it settled."""
         span = abs(target - low.voltage) / self.volts
         count = max(1, min(math.ceil(span / self.settings.stair), self.settings.max_stairs))
@@ -384,12 +386,12 @@ class HeldVoltageTest:
                 points.append(point)
         return points
 
-    def falls_back(self, low: HeldPoint, sign: float) -> bool:
+    def has_left_motion(self, low: HeldPoint, sign: float) -> bool:
         """Return whether the held speed left the motion that the ramp was on."""
         allowed = 2.0 * self.settings.distinct + 3.0 * low.error
         return sign * (low.speed - low.begin) < -allowed
 
-    def between(self, points: list[HeldPoint], sign: float) -> Verdict:
+    def bracket_largest_change(self, points: list[HeldPoint], sign: float) -> Verdict:
         """Halve voltage steps until the largest speed change is bracketed, and judge it."""
         ended = math.nan
         for _ in range(self.settings.max_holds):
@@ -402,8 +404,8 @@ class HeldVoltageTest:
                 if self.differ(again, high):
                     points[i + 1] = again  # a longer step of the voltage had thrown it across
                     continue
-                what = self.there_and_back(low, high)
-                if what == LOST and self.replaced(points, i):
+                what = self.classify_return(low, high)
+                if what == LOST and self.replace_if_lost(points, i):
                     ended = low.voltage if math.isnan(ended) else ended
                     if abs(low.voltage - ended) <= self.settings.by_chance * self.volts:
                         continue  # it was lost before, as close as a bracket can tell
@@ -411,11 +413,12 @@ class HeldVoltageTest:
                 if what != FOLLOWS or self.is_within(low, high, self.settings.finest):
                     return Verdict(LOST if what == LOST else UNDECIDED, low.voltage, high.voltage)
             middle = next(
-                (point for point in self.inside(low, high) if point.speed == point.speed), None
+                (point for point in self.hold_between(low, high) if point.speed == point.speed),
+                None,
             )
             if middle is None:
-                lost = self.there_and_back(low, high) == LOST
-                lasts = lost and not self.replaced(points, i)
+                lost = self.classify_return(low, high) == LOST
+                lasts = lost and not self.replace_if_lost(points, i)
                 return Verdict(LOST if lasts else UNDECIDED, low.voltage, high.voltage)
             points.insert(i + 1, middle)
         return Verdict(UNDECIDED, low.voltage, high.voltage)
@@ -427,22 +430,22 @@ class HeldVoltageTest:
             settings.smallest_jump + speed_difference_error(low, high), settings.largest_scatter
         )
 
-    def inside(self, low: HeldPoint, high: HeldPoint) -> Iterator[HeldPoint]:
+    def hold_between(self, low: HeldPoint, high: HeldPoint) -> Iterator[HeldPoint]:
         """Hold voltages between two points and yield each result, the middle first."""
         for part in (0.5, 0.25, 0.75):
             yield self.step_from(low, low.voltage + part * (high.voltage - low.voltage))
 
-    def there_and_back(self, low: HeldPoint, high: HeldPoint) -> int:
+    def classify_return(self, low: HeldPoint, high: HeldPoint) -> int:
         """Step back to the lower voltage; return LOST if its speed is another."""
         back = self.step_from(high, low.voltage)
         if abs(back.speed - low.speed) > self.settings.two_motions + speed_difference_error(
             back, low
         ):
-            return LOST if self.later(back) is back else UNDECIDED
+            return LOST if self.hold_again(back) is back else UNDECIDED
         comes_back = math.isfinite(back.speed) and not self.differ(back, low)
         return FOLLOWS if comes_back else UNDECIDED
 
-    def later(self, point: HeldPoint) -> HeldPoint:
+    def hold_again(self, point: HeldPoint) -> HeldPoint:
         """Hold an irregular motion again; return its new point if the speed differs.
 
         An irregular motion may be lost while its voltage is still held; other points are returned
@@ -455,7 +458,7 @@ class HeldVoltageTest:
                 return later
         return point
 
-    def replaced(self, points: list[HeldPoint], i: int) -> bool:
+    def replace_if_lost(self, points: list[HeldPoint], i: int) -> bool:
         """Replace a point by what a slower course reaches; return if it differs.
 
         The point's motion may end meanwhile, if it is irregular. And an irregular motion before may
@@ -473,7 +476,7 @@ class HeldVoltageTest:
             if self.differ(path[-1], points[i]):
                 points[first + 1 : i + 1] = [one for one in path[1:] if math.isfinite(one.speed)]
                 return True
-        later = self.later(points[i])
+        later = self.hold_again(points[i])
         is_other, points[i] = later is not points[i], later
         return is_other
 

@@ -148,7 +148,7 @@ class JumpVoltagesJob(Job):
                 for kind in range(len(KINDS))
             ]
         )
-        ends[..., 1] = np.hypot(ends[..., 1], self.missed(ends[0, :, 0]))
+        ends[..., 1] = np.hypot(ends[..., 1], self.distance_from_folds(ends[0, :, 0]))
         every, each = ("rate", "structure", "jump"), ("structure", "jump")
         late = "voltage at which the speed jumps on the ramp"
         before = "mean speed where it leaves its branch"
@@ -169,7 +169,7 @@ class JumpVoltagesJob(Job):
         }
         return xr.Dataset(variables, coordinates, {"title": "Jump voltages of the weak drive"})
 
-    def missed(self, bonded: np.ndarray) -> np.ndarray:
+    def distance_from_folds(self, bonded: np.ndarray) -> np.ndarray:
         """Return how far bonded jumps at rate 0 lie from the averaged folds, V.
 
         0 where there is no jump, or the averaged theory has no folds.

@@ -201,7 +201,7 @@ class Master:
         self.scheme, self._algorithm = scheme, ALGORITHMS[scheme.algorithm]
         self.structure, self.time, self.voltage = structure, start_time, math.nan
         self.level = 0
-        self.motion, self.shaking = self._motion(), self._shaking()
+        self.motion, self.shaking = self._read_structure(), self._read_motor()
         self.revolution: Revolution | None = None
         self.slope = 0.0  # of the force, at the present communication point
         self.force_before = self.h_before = 0.0
@@ -219,7 +219,7 @@ class Master:
             known = self.h_before or self.scheme.goes_back
             beginning = (1,) if known else self.scheme.beginning
             for part in beginning:
-                self._step(voltage, h * part / sum(beginning))
+                self._try_step(voltage, h * part / sum(beginning))
         self.time = begin + h
 
     def run(
@@ -251,7 +251,7 @@ class Master:
             self.step(voltages[i], h)
             if kept is not None:
                 kept[i] = self.get_state()
-            if self.revolution and self.revolution.complete(self.shaking.angle / TURN):
+            if self.revolution and self.revolution.is_complete(self.shaking.angle / TURN):
                 return i + 1
         return len(voltages)
 
@@ -266,7 +266,9 @@ class Master:
         done = 0
         while done < max_parts:
             size, last_impact = max_parts >> self.level, self.motion.impact_time
-            defect = self._step(voltage, h / (1 << self.level), self.level < self.scheme.halvings)
+            defect = self._try_step(
+                voltage, h / (1 << self.level), self.level < self.scheme.halvings
+            )
             if defect > self.scheme.tolerance and self.level < self.scheme.halvings:
                 self.level += 1
                 continue
@@ -282,32 +284,32 @@ class Master:
         self.slope = self.h_before = 0.0
         self.shaking = self._outputs_with_force(self.motion)
 
-    def _step(self, voltage: float, h: float, may_refuse: bool = False) -> float:
+    def _try_step(self, voltage: float, h: float, may_refuse: bool = False) -> float:
         """Try one communication step; return its relative energy defect."""
         if voltage != self.voltage:  # the acceleration belongs to the inputs as set now
             self.voltage = voltage
             self.shaking = self._outputs_with_force(self.motion)
         done = self._do(h)
-        force = self.force_of(done.motion, h)
+        force = self.fit_force(done.motion, h)
         taken = done.shaking.box_force_work - self.shaking.box_force_work
         defect = taken - integrate_work(force, self.shaking.box_velocity, done.acceleration, h)
-        size = self._over_exchanged(done, taken, defect)
+        size = self._relative_defect(done, taken, defect)
         if may_refuse and size > self.scheme.tolerance:
             self.oscillator.restore()
             self.shaker.restore()
             return size
         self.slope = end_slope(force, h)
         self.balance.add(self.motion, done.motion, done.acceleration, defect, h)
-        self._advance(done, h)
+        self._accept_step(done, h)
         return size
 
-    def _over_exchanged(self, done: Step, taken: float, defect: float) -> float:
+    def _relative_defect(self, done: Step, taken: float, defect: float) -> float:
         """Return a step's energy defect relative to the work exchanged in it."""
         work = done.shaking.motor_energy - self.shaking.motor_energy
         exchanged = abs(taken) + abs(work)
         return abs(defect) / exchanged if exchanged else 0.0
 
-    def _advance(self, done: Step, h: float) -> None:
+    def _accept_step(self, done: Step, h: float) -> None:
         """Accept a finished step: move time, outputs and extrapolation to its end."""
         if self.revolution:
             ends = self.motion, self.shaking
@@ -319,22 +321,22 @@ class Master:
         self.time += h
         self.motion, self.shaking = done.motion, self._outputs_with_force(done.motion)
 
-    def _motion(self) -> OscillatorOutputs:
+    def _read_structure(self) -> OscillatorOutputs:
         """Read the outputs of the structure FMU."""
         return tuple.__new__(OscillatorOutputs, self.oscillator.get())  # as _make, in half its time
 
-    def _shaking(self) -> ShakerOutputs:
+    def _read_motor(self) -> ShakerOutputs:
         """Read the outputs of the motor FMU."""
         return tuple.__new__(ShakerOutputs, self.shaker.get())
 
     def _outputs_with_force(self, motion: OscillatorOutputs) -> ShakerOutputs:
         """Set force and voltage of the present point; return the motor's outputs."""
         self.shaker.put(motion.box_force, self.slope, 0.0, 0.0, self.voltage)
-        return self._shaking()
+        return self._read_motor()
 
     # -- what each side assumes of the other --
 
-    def force_of(self, motion: OscillatorOutputs, h: float) -> Cubic:
+    def fit_force(self, motion: OscillatorOutputs, h: float) -> Cubic:
         """Fit the force over a step by a cubic with exact mean and first moment."""
         mean, moment = motion.box_impulse / h, motion.box_impulse_moment / (h * h)
         return matched_cubic(self.motion.box_force, motion.box_force, mean, moment, h)
@@ -342,7 +344,7 @@ class Master:
     def _force_for_shaker(self, motion: OscillatorOutputs, h: float) -> Cubic:
         """Return the force over a step as the cubic that the motor FMU gets."""
         if self.scheme.matched:
-            return self.force_of(motion, h)
+            return self.fit_force(motion, h)
         return parabola_through_points(
             self.force_before, self.motion.box_force, motion.box_force, self.h_before, h
         )
@@ -386,7 +388,7 @@ class Master:
         self.oscillator.step(self.time, h)
         self.shaker.put(*self._extrapolated_force(), self.voltage)
         self.shaker.step(self.time, h)
-        return Step(acceleration, self._motion(), self._shaking())
+        return Step(acceleration, self._read_structure(), self._read_motor())
 
     def _gauss_seidel_step(self, h: float) -> Step:
         """Step the structure, then the motor; roll back and repeat if asked."""
@@ -401,19 +403,19 @@ class Master:
             if i:
                 self.oscillator.restore()
                 self.shaker.restore()
-            motion, force = self._pass(acceleration, h)
+            motion, force = self._step_both(acceleration, h)
             if i + 1 == passes or (last and self._converged(motion, last)):
                 break
             last = motion
             self.shaker.put(motion.box_force, end_slope(force, h), 0.0, 0.0, self.voltage)
-            acceleration = self._acceleration_for_structure(self._shaking(), h)
-        return Step(acceleration, motion, self._shaking())
+            acceleration = self._acceleration_for_structure(self._read_motor(), h)
+        return Step(acceleration, motion, self._read_motor())
 
-    def _pass(self, acceleration: Cubic, h: float) -> tuple[OscillatorOutputs, Cubic]:
+    def _step_both(self, acceleration: Cubic, h: float) -> tuple[OscillatorOutputs, Cubic]:
         """Step the structure and then the motor once; return motion and force."""
         self.oscillator.put(*acceleration)
         self.oscillator.step(self.time, h)
-        motion = self._motion()
+        motion = self._read_structure()
         force = self._force_for_shaker(motion, h)
         self.shaker.put(*force, self.voltage)
         self.shaker.step(self.time, h)

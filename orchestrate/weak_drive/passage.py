@@ -101,7 +101,7 @@ class PassageJob(Job):
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Compute one chunk of steps with all samples, or the held-voltage test."""
 
-        def revolve(run: Run) -> Table:
+        def revolve_with_samples(run: Run) -> Table:
             """Run the steps; return revolutions and the samples after every step."""
             kept = np.empty((len(items), len(run.master.get_state())))
             revolutions = run.revolve(items, kept)
@@ -109,7 +109,7 @@ class PassageJob(Job):
             names = (KEPT + name for name in SAMPLES)
             return {**revolutions, **dict(zip(names, columns, strict=True))}
 
-        return self.run.work_on(fmus, items, previous, self.chunk_size, revolve)
+        return self.run.work_on(fmus, items, previous, self.chunk_size, revolve_with_samples)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Build the dataset of samples over time and of the jumps."""
@@ -118,7 +118,7 @@ class PassageJob(Job):
         of_run = {name: table[name] for name in (*COLUMNS, "verdicts", "further_verdicts")}
         revolutions = self.run.dataset(of_run, inputs)
         samples = {name: table[KEPT + name] for name in SAMPLES}
-        centres, what = self.centres(revolutions)
+        centres, what = self.sample_centres(revolutions)
         away = np.abs(samples["time"][:, np.newaxis] - centres).min(axis=1, initial=math.inf)
         span = math.inf if self.around is None else (1.0 + 1e-9) * self.around
         kept = np.flatnonzero(away <= span)
@@ -131,7 +131,7 @@ class PassageJob(Job):
         title = {"title": f"Passage through the resonance, {state} structure", "kept": what}
         return xr.Dataset(variables, time, {**revolutions.attrs, **title}).merge(of_jumps)
 
-    def centres(self, revolutions: xr.Dataset) -> tuple[np.ndarray, str]:
+    def sample_centres(self, revolutions: xr.Dataset) -> tuple[np.ndarray, str]:
         """Return the times around which samples are kept, s, and a text on them."""
         jumps = revolutions.jump_time.values
         passed = float(revolutions.passage_time)

@@ -92,14 +92,14 @@ class Branches:
         self.kinds = data.bifurcation_kind.values
         self.places = np.stack([data.bifurcation_voltage.values, data.bifurcation_speed.values], 1)
         self.revolutions = data.bifurcation_revolutions.values
-        self.spans = np.array([self.span("voltage"), self.span("speed")])
+        self.spans = np.array([self.value_range("voltage"), self.value_range("speed")])
 
-    def span(self, name: str) -> float:
+    def value_range(self, name: str) -> float:
         """Return the range of a quantity over all legs; 1 if it is empty."""
         values = np.concatenate([getattr(leg, name) for leg in self.legs.values()] or [np.zeros(1)])
         return float(np.ptp(values)) or 1.0
 
-    def nearest(self, motions: Motions, i: int, kind: str) -> int | None:
+    def nearest_bifurcation(self, motions: Motions, i: int, kind: str) -> int | None:
         """Find the bifurcation of a kind between a motion and the next; None without one."""
         ends = np.stack([motions.voltage[i : i + 2], motions.speed[i : i + 2]], 1) / self.spans
         of_kind = [
@@ -113,7 +113,7 @@ class Branches:
         step = float(np.linalg.norm(ends[1] - ends[0]))
         return int(of_kind[int(away.argmin())]) if away.min() <= max(step, 1e-3) else None
 
-    def path(self, up: bool) -> Path:
+    def follow_ramp(self, up: bool) -> Path:
         """Follow a slow ramp up or down the voltage; return its path."""
         path, sign = Path(), 1.0 if up else -1.0
         motions = self.first_leg(up, sign)
@@ -121,7 +121,7 @@ class Branches:
             path.end = "its branch begins with no stable motion"
             return path
         for _ in range(MOST_EVENTS):
-            motions = self.follow(motions, path, sign)
+            motions = self.follow_to_loss(motions, path, sign)
             if motions is None:
                 return path
         path.end = "more than it is worth to follow"
@@ -138,7 +138,7 @@ class Branches:
         turned = (sign * np.diff(leg.voltage[: begin + 1]) < 0.0).any()
         return None if turned else leg.from_index(begin, forward=True)
 
-    def follow(self, motions: Motions, path: Path, sign: float) -> Motions | None:
+    def follow_to_loss(self, motions: Motions, path: Path, sign: float) -> Motions | None:
         """Follow a ramp until its motion is lost; return the motions it goes on with."""
         lost = False  # slowly, at a Neimark-Sacker point: a ramp does not see it
         for i in range(len(motions.speed) - 1):
@@ -146,27 +146,27 @@ class Branches:
             if not turned and (lost or motions.stable[i + 1]):
                 continue
             fold, torus, flip = (
-                self.nearest(motions, i, KINDS[kind]) for kind in (FOLD, TORUS, FLIP)
+                self.nearest_bifurcation(motions, i, KINDS[kind]) for kind in (FOLD, TORUS, FLIP)
             )
             if torus is not None and not lost:
                 path.slow_losses.append(torus)
                 lost = True
             if fold is not None or turned:
-                return self.jump(fold, path, sign)
+                return self.jump_at_fold(fold, path, sign)
             if not lost:
                 return self.leg_after_period_doubling(flip, motions, i, path, sign)
         if motions.end != LIMIT:
             path.end = f"its motion ends at {motions.voltage[-1]:.5f} V: {motions.end}"
         return None
 
-    def jump(self, fold: int | None, path: Path, sign: float) -> Motions | None:
+    def jump_at_fold(self, fold: int | None, path: Path, sign: float) -> Motions | None:
         """Record a jump at a fold; return the motions on which the ramp lands."""
         if fold is None:
             path.end = "its motion turns back at a fold that was not located"
             return None
         path.jumps.append(fold)
         voltage, speed = self.places[fold]
-        landings = self.stable_at(voltage, speed, sign)
+        landings = self.stable_motions_at(voltage, speed, sign)
         speeds = np.array([self.landing_speed(*landing, voltage) for landing in landings])
         if not landings or np.ptp(speeds) > SAME * self.spans[1]:
             count = "several stable motions" if landings else "no stable motion"
@@ -177,7 +177,9 @@ class Branches:
         forward = sign * (motions.voltage[i + 1] - motions.voltage[i]) > 0.0
         return motions.from_index(i + 1 if forward else i, forward)
 
-    def stable_at(self, voltage: float, speed: float, sign: float) -> list[tuple[Motions, int]]:
+    def stable_motions_at(
+        self, voltage: float, speed: float, sign: float
+    ) -> list[tuple[Motions, int]]:
         """Find all stable motions at a voltage that lie beyond a speed."""
         legs = []
         for motions in self.legs.values():
@@ -230,4 +232,4 @@ def ramp_paths(data: xr.Dataset, structure: str) -> dict[str, Path]:
     dict of Path
     """
     branches = Branches(data, structure)
-    return {"up": branches.path(True), "down": branches.path(False)}
+    return {"up": branches.follow_ramp(True), "down": branches.follow_ramp(False)}

@@ -61,7 +61,7 @@ class Revolutions:
         """
         master, now = self._master, self._now
         turns = master.shaking.angle / TURN
-        if not now.complete(turns):
+        if not now.is_complete(turns):
             return None
         turn = math.floor(turns) if turns > now.turn else math.ceil(turns)
         time = master.time - (master.shaking.angle - turn * TURN) / master.shaking.speed

@@ -82,7 +82,7 @@ class Run:
         """Return the number of impacts so far."""
         return float(self.oscillator.get("impact_count")[0])
 
-    def voltage(self, i: int) -> float:
+    def step_voltage(self, i: int) -> float:
         """Return the motor's voltage in a step, from the schedule or the controller, V."""
         h, control = self.job.scheme.h, self.job.control
         available = self.job.schedule.voltage((i + 0.5) * h)
@@ -102,7 +102,7 @@ class Run:
             Takes the master's memory after each step, a row each.
         """
         rows, begin = [], 0
-        for voltages in self.at_once(steps):
+        for voltages in self.voltage_batches(steps):
             piece = None if kept is None else kept[begin : begin + len(voltages)]
             done = 0
             while done < len(voltages):
@@ -114,12 +114,12 @@ class Run:
         table = np.array(rows, dtype=float).reshape(-1, len(COLUMNS))
         return dict(zip(COLUMNS, table.T.copy(), strict=True))
 
-    def at_once(self, steps: Sequence[int]) -> Iterator[array[float]]:
+    def voltage_batches(self, steps: Sequence[int]) -> Iterator[array[float]]:
         """Yield batches of voltages: all steps at once, or single steps under control."""
         if self.job.control is None:
-            yield array("d", map(self.voltage, steps))
+            yield array("d", map(self.step_voltage, steps))
         else:
-            yield from (array("d", (self.voltage(i),)) for i in steps)
+            yield from (array("d", (self.step_voltage(i),)) for i in steps)
 
     def get_state(self) -> Table:
         """Return the complete state of the run as a table of one row."""

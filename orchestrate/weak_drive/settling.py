@@ -105,7 +105,7 @@ class SettlingTest:
     motor: float
     stay: int
 
-    def outcome(self, time: np.ndarray, speed: np.ndarray) -> Outcome:
+    def judge_record(self, time: np.ndarray, speed: np.ndarray) -> Outcome:
         """Decide from the speed's record: captured, passed or undecided.
 
         Parameters
@@ -117,7 +117,7 @@ class SettlingTest:
             return Outcome(UNDECIDED)
         means = running_mean(np.abs(speed) / self.omega, MEAN)
         turn = float(np.median(np.diff(time[-MEAN:])))
-        settled = self.converged(means, turn) or self.bounded(means, turn)
+        settled = self.find_convergence(means, turn) or self.find_bounds(means, turn)
         if settled is None:
             return Outcome(UNDECIDED)
         last = float(means[-1]) * self.omega
@@ -132,7 +132,7 @@ class SettlingTest:
         near = np.abs(speed[since : since + MEAN]) > self.threshold
         return Outcome(settled.decision, True, float(time[since + last_crossing(near)]), last)
 
-    def converged(self, means: np.ndarray, turn: float) -> SettledEnd | None:
+    def find_convergence(self, means: np.ndarray, turn: float) -> SettledEnd | None:
         """Return the end of an exponentially converging record; else None.
 
         The ranges of four stretches that follow each other shrink by ``QUOTIENT`` or more each
@@ -152,7 +152,7 @@ class SettlingTest:
                 return SettledEnd(CONVERGED, means[-width:], float(ranges[-1]) + NOISE)
         return None
 
-    def bounded(self, means: np.ndarray, turn: float) -> SettledEnd | None:
+    def find_bounds(self, means: np.ndarray, turn: float) -> SettledEnd | None:
         """Return the end of a record that stays in constant bounds; else None.
 
         The last quarter of the record is compared with the one before: its extremes, its mean and

@@ -82,7 +82,7 @@ class Shot(NamedTuple):
     impacts: int
     contact: bool
 
-    def like(self, other: Shot) -> bool:
+    def is_connected_to(self, other: Shot) -> bool:
         """Return whether two motions have the same impacts, with no grazing between.
 
         In a chattering that ends in contact the last impacts come and go with next to no speed.
@@ -208,7 +208,7 @@ class Shooter:
         period = self.turns * TURN / (float(unknowns[-1]) * self.structure.omega)
         return self.start_master(unknowns[:-2], voltage, period / self.count), voltage
 
-    def state(self, master: Master) -> Floats:
+    def scaled_state(self, master: Master) -> Floats:
         """Return the present state of both FMUs, scaled by its units."""
         values = {**master.motion._asdict(), **master.shaking._asdict()}
         for name, at_rest in zip(("x1", "x2"), self.structure.at_rest, strict=True):
@@ -245,7 +245,7 @@ class Shooter:
             self.drive = own_drive
         self.angle = master.shaking.angle % TURN
         self.begin_together(self._touching(master) or self.structure.bonded)
-        found = self.state(master)
+        found = self.scaled_state(master)
         master.close()
         return found
 
@@ -269,7 +269,7 @@ class Shooter:
         except FmuError as error:
             raise NoConvergenceError(str(error)) from None
         turned = master.shaking.angle - self.angle - self.turns * TURN
-        end = np.append(self.state(master), turned)
+        end = np.append(self.scaled_state(master), turned)
         apart = self.together and master.motion.x_rel > 0.0
         master.close()
         if apart:
@@ -327,7 +327,7 @@ class Shooter:
         master.run([voltage] * steps)
         self.angle = master.shaking.angle % TURN
         self.begin_together(together)
-        shifted = np.append(self.state(master), unknowns[-2:])
+        shifted = np.append(self.scaled_state(master), unknowns[-2:])
         master.close()
         return shifted
 
@@ -400,7 +400,7 @@ class Shooter:
                 moved = unknowns.copy()
                 moved[which] += change
                 known[change] = self.shoot(moved)
-            return known[change].end if known[change].like(base) else None
+            return known[change].end if known[change].is_connected_to(base) else None
 
         for change in CHANGES:
             for difference in (central_difference, one_sided_difference):

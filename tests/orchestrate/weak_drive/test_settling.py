@@ -26,7 +26,7 @@ def decided(speed, test=TEST):
     """The first outcome of a record that grows by a twentieth each time, and when it comes."""
     count = 100
     while count <= len(speed):
-        outcome = test.outcome(TIME[:count], speed[:count])
+        outcome = test.judge_record(TIME[:count], speed[:count])
         if outcome.decision != UNDECIDED:
             return outcome, float(TIME[count - 1])
         count += count // 20

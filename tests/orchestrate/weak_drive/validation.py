@@ -194,7 +194,7 @@ def branch_of(system, most=120, range_=(0.95, 1.15)):
         Instance(find(OSCILLATOR).path) as one,
         Instance(find(SHAKER).path) as other,
     ):
-        return job.legs((one, other), system.structure), length
+        return job.trace_legs((one, other), system.structure), length
 
 
 def bifurcations(system, range_=(0.95, 1.15)):

@@ -80,8 +80,8 @@ def test_the_jump_of_a_ramp_down_is_late_downward():
 
 def test_answers_that_change_with_the_rate_are_findings(monkeypatch):
     said = iter([(LOST, NOTHING), (OPEN, NOTHING), (NOTHING, NOTHING), (LOST, NOTHING)])
-    monkeypatch.setattr(verdicts, "answers", lambda *_: next(said))
-    monkeypatch.setattr(verdicts, "refuted", lambda *_: "")
+    monkeypatch.setattr(verdicts, "run_couple", lambda *_: next(said))
+    monkeypatch.setattr(verdicts, "contradiction", lambda *_: "")
     system = verdicts.draw_with_folds(np.random.default_rng(1))
     found = list(
         verdicts.check_answers(system, "delaminated", dict.fromkeys(verdicts.WAYS, Truth(UNKNOWN)))
