@@ -282,12 +282,12 @@ def branch_stability(
     stable : list of bool
         Of the motions below the first point, between each and the next, and beyond the last one.
     """
-    at = resonance(structure, drive)
-    torus = neimark_sacker_points(structure, drive, 0.8 * at, 1.5 * at, count=151)
+    speed = resonance(structure, drive)
+    torus = neimark_sacker_points(structure, drive, 0.8 * speed, 1.5 * speed, count=151)
     points = sorted([*folds(structure, drive), *torus], key=lambda point: point.Omega)
     speeds = [point.Omega for point in points]
     between = [0.5 * (low + high) for low, high in pairwise(speeds)]
-    middles = [0.99 * speeds[0], *between, 1.01 * speeds[-1]] if points else [at]
+    middles = [0.99 * speeds[0], *between, 1.01 * speeds[-1]] if points else [speed]
     return points, [bool(growth_rates(structure, drive, Omega)[0].real < 0.0) for Omega in middles]
 
 

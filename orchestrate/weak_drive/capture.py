@@ -213,11 +213,11 @@ def threshold_voltage(
     low, high : End
         NaN where the highest voltage does not pass, or none captures.
     """
-    captured = [i for i, found in enumerate(outcomes) if found.captured]
+    captured = [i for i, outcome in enumerate(outcomes) if outcome.captured]
     if not captured or not outcomes[-1].passed:
         return ThresholdEnd(), ThresholdEnd()
     last = captured[-1]
-    first = 1 + max(i for i, found in enumerate(outcomes) if not found.passed)
+    first = 1 + max(i for i, outcome in enumerate(outcomes) if not outcome.passed)
     low, high = (ThresholdEnd(voltages[i], outcomes[i].speed) for i in (last, first))
     doubtful = (voltages[last + 1], voltages[first - 1]) if first - last > 1 else None
     while True:
@@ -228,12 +228,12 @@ def threshold_voltage(
             middle = 0.5 * (end + high.voltage)
         else:
             return low, high
-        found = start(middle)
-        if found.captured:
-            low = ThresholdEnd(middle, found.speed)
+        outcome = start(middle)
+        if outcome.captured:
+            low = ThresholdEnd(middle, outcome.speed)
             doubtful = None if middle > begin else doubtful
-        elif found.passed and middle > end:
-            high = ThresholdEnd(middle, found.speed)
+        elif outcome.passed and middle > end:
+            high = ThresholdEnd(middle, outcome.speed)
         else:  # undecided, or passes below an undecided one
             doubtful = (min(middle, begin), max(middle, end)) if doubtful else (middle, middle)
 

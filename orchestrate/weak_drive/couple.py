@@ -192,7 +192,7 @@ class CoupleJob(CoupledRun):
         up: bool,
     ) -> np.ndarray:
         """Hold voltages where the record suggests further jumps; return verdicts."""
-        found = [(THROUGH, verdict) for verdict in course.further]
+        results = [(THROUGH, verdict) for verdict in course.further]
         known, volts = loss_verdicts(course), self.drive.volts(self.structure)
         sign = 1.0 if up else -1.0
         crossed = sorted(known, key=lambda verdict: sign * verdict.low)[:-1]  # before the passing
@@ -203,16 +203,16 @@ class CoupleJob(CoupledRun):
                 continue
             if crossed and sign * (table["voltage"][passing.after] - crossed[0].low) > 0.0:
                 crossed = crossed[1:]
-                found.append((place, Verdict(NOT_ASKED)))  # the course has met what is seen here
+                results.append((place, Verdict(NOT_ASKED)))  # the course has met what is seen here
                 continue
             middle = float(Omega[ends].mean())
             held = test.for_further_jumps().classify(
                 *self.to_steps(table, self.begin_earlier(table, passing, up), up), middle, up
             )
-            told = drop_known_losses(loss_verdicts(held), known, volts)
-            known += told
-            found += [(place, verdict) for verdict in told or [Verdict(FOLLOWS)]]
-        return verdicts_to_rows(found)
+            new_verdicts = drop_known_losses(loss_verdicts(held), known, volts)
+            known += new_verdicts
+            results += [(place, verdict) for verdict in new_verdicts or [Verdict(FOLLOWS)]]
+        return verdicts_to_rows(results)
 
     def begin_earlier(self, table: Table, passing: Passing, up: bool) -> Passing:
         """Move the start of a suspected jump earlier, because a ramp shows losses late."""
@@ -226,7 +226,7 @@ class CoupleJob(CoupledRun):
         leg, rows = self.sweep_leg(table, up)
         if self.control or not rows.size:
             return []
-        divide = own_resonance.dividing_speed(self.structure, self.drive)
+        threshold = own_resonance.dividing_speed(self.structure, self.drive)
         main, b = self.resonance_passing(table, up), self.drive.b(self.structure)
         places = []
         for part in np.split(np.arange(len(rows)), np.flatnonzero(np.diff(rows) > 1) + 1):
@@ -236,7 +236,7 @@ class CoupleJob(CoupledRun):
             places += [
                 Passing(row + first, before + first, after + first, look, half + first)
                 for row, before, after, look, half in find_further_jumps(
-                    one_ramp, b, up, divide, span
+                    one_ramp, b, up, threshold, span
                 )
             ]
         return places
@@ -252,8 +252,8 @@ class CoupleJob(CoupledRun):
     def resonance_passing(self, table: Table, up: bool) -> Passing | None:
         """Find how the speed passes the resonance in one direction; None if it does not."""
         leg, rows = self.sweep_leg(table, up)
-        divide = own_resonance.dividing_speed(self.structure, self.drive)
-        rows_in_leg = find_passing(leg, self.drive.b(self.structure), up, divide)
+        threshold = own_resonance.dividing_speed(self.structure, self.drive)
+        rows_in_leg = find_passing(leg, self.drive.b(self.structure), up, threshold)
         if rows_in_leg is None:
             return None
         row, before, after = (int(rows[index]) for index in rows_in_leg[:3])
@@ -308,9 +308,9 @@ class CoupleJob(CoupledRun):
             ),
             "Omega": ("revolution", Omega, {"units": "1", "long_name": "mean speed over omega"}),
         }
-        divide = own_resonance.dividing_speed(self.structure, self.drive)
+        threshold = own_resonance.dividing_speed(self.structure, self.drive)
         text = "time from which the mean speed stays beyond the resonance; NaN where it does not"
-        passed = time_beyond_threshold(table["time"], np.abs(Omega), divide)
+        passed = time_beyond_threshold(table["time"], np.abs(Omega), threshold)
         variables["passage_time"] = ((), passed, {"units": "s", "long_name": text})
         dataset = xr.Dataset(
             {**variables, **self.all_jump_variables(table)}, coordinates, self.attributes(table)
@@ -326,16 +326,20 @@ class CoupleJob(CoupledRun):
         """Build the variables of the jump in each direction, or the reason for none."""
         held = [Verdict(int(row[0]), *row[1:]) for row in table["verdicts"][-1]]
         theory = averaged_predictions(self.structure, self.drive)
-        found = [self.collect_losses(table, i, held[i]) for i in range(len(UPWARD))]
-        told = [
-            pick_jump(*pair, 1.0 if up else -1.0) for pair, up in zip(found, UPWARD, strict=True)
+        losses = [self.collect_losses(table, i, held[i]) for i in range(len(UPWARD))]
+        jump_and_further = [
+            pick_jump(*pair, 1.0 if up else -1.0) for pair, up in zip(losses, UPWARD, strict=True)
         ]
-        jumps = [first.passing if first and first.is_sure else None for first, _ in told]
-        final = [first.verdict if first else held[i] for i, (first, _) in enumerate(told)]
+        jumps = [
+            first.passing if first and first.is_sure else None for first, _ in jump_and_further
+        ]
+        final = [
+            first.verdict if first else held[i] for i, (first, _) in enumerate(jump_and_further)
+        ]
         columns = jump_variables(table, jumps)
         columns |= self.theory_variables(np.array(columns["jumps"][1], dtype=float))
         reasons = []
-        for i, (first, _) in enumerate(told):
+        for i, (first, _) in enumerate(jump_and_further):
             if first is None:
                 reasons.append(self.explain_no_passing(table, UPWARD[i]))
             elif jumps[i] is None:
@@ -351,11 +355,11 @@ class CoupleJob(CoupledRun):
                 reasons.append("")
         decided = [
             describe_decision(first and first.passing, final[i])
-            for i, (first, _) in enumerate(told)
+            for i, (first, _) in enumerate(jump_and_further)
         ]
         columns["no_jump"] = ("jump", reasons, {"long_name": "why there is no jump"})
         columns["decided"] = ("jump", decided, {"long_name": "how jump or none was told"})
-        columns |= further_jump_variables(table, [further for _, further in told])
+        columns |= further_jump_variables(table, [further for _, further in jump_and_further])
         return columns | held_voltage_variables(final)
 
     def collect_losses(

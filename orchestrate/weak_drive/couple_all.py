@@ -141,11 +141,13 @@ def couple_all(
     ]
     if not jobs:
         raise InputError("kinds, rates: expected one of each, or more")
-    found = [
+    datasets = [
         run.assign_coords(eta0=run.eta0.reset_coords(drop=True), Omega=run.Omega)
         for run in gather(jobs, running, finder(running))
     ]
-    result = xr.concat(found, "run", join="outer", combine_attrs="drop_conflicts", data_vars="all")
+    result = xr.concat(
+        datasets, "run", join="outer", combine_attrs="drop_conflicts", data_vars="all"
+    )
     texts = ("name of the set", "structure", "change of the no-load speed over omega per 1/omega")
     units = (None, None, "1")
     for position, name in enumerate(("system", "structure", "rate")):

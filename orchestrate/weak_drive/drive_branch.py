@@ -99,10 +99,14 @@ class DriveBranchJob(Job):
         for structure in items:
             with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
                 rows.append(self.trace_legs((oscillator, shaker), structure))
-        at = [[[each.point for each in leg.bifurcations] for leg in legs] for legs in rows]
+        bifurcations = [
+            [[each.point for each in leg.bifurcations] for leg in legs] for legs in rows
+        ]
         return {
             "points": np.array([[self.motion_table(leg.points) for leg in legs] for legs in rows]),
-            "events": np.array([[self.motion_table(motions) for motions in legs] for legs in at]),
+            "events": np.array(
+                [[self.motion_table(motions) for motions in legs] for legs in bifurcations]
+            ),
             "kinds": np.array([[self.bifurcation_codes(leg) for leg in legs] for legs in rows]),
             "ends": np.array([[ENDS.index(leg.end) for leg in legs] for legs in rows]),
         }
@@ -209,12 +213,20 @@ class DriveBranchJob(Job):
         variables["end"] = (along[:2], ends, variable_attributes("1", "why the branch ends"))
         kinds = table["kinds"]
         located = kinds >= 0
-        at = motion_variables(("bifurcation",), table["events"][located])
+        located_motions = motion_variables(("bifurcation",), table["events"][located])
         structures = np.array(STRUCTURES)[np.argwhere(located)[:, 0]]
         names = np.array([KINDS[kind] for kind in BIFURCATIONS])[kinds[located]]
-        at["structure"] = (("bifurcation",), structures, variable_attributes("1", "structure"))
-        at["kind"] = (("bifurcation",), names, variable_attributes("1", "kind of bifurcation"))
-        variables |= {f"bifurcation_{name}": values for name, values in at.items()}
+        located_motions["structure"] = (
+            ("bifurcation",),
+            structures,
+            variable_attributes("1", "structure"),
+        )
+        located_motions["kind"] = (
+            ("bifurcation",),
+            names,
+            variable_attributes("1", "kind of bifurcation"),
+        )
+        variables |= {f"bifurcation_{name}": values for name, values in located_motions.items()}
         coordinates = {
             "structure": ("structure", list(STRUCTURES), {"long_name": "structure"}),
             "leg": ("leg", list(LEGS), {"long_name": "where the branch was begun"}),

@@ -122,8 +122,8 @@ class DriveSpectraJob(Job):
     def hangs_at_resonance(self, fmus: Mapping[str, Path]) -> bool:
         """Return whether the delaminated structure still hangs at the resonance."""
         short, structure = replace(self, revolutions=8, points=4), self.structure.as_delaminated()
-        divide = own_resonance.dividing_speed(structure, self.drive) * structure.omega
-        return short.record_displacements(fmus, structure)[1] < divide
+        threshold = own_resonance.dividing_speed(structure, self.drive) * structure.omega
+        return short.record_displacements(fmus, structure)[1] < threshold
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Build the dataset of acceleration amplitudes over spectral lines."""

@@ -63,17 +63,17 @@ def find_further_jumps(
     means = SweepLeg(*(running_mean(values, width) for values in leg))
     fast = fast_rows(means, width, sign, limits)
     torque, first = sign * vibration_torque(means, b, width), 3 * width // 2
-    found: list[Passing] = []
+    passings: list[Passing] = []
 
     for high, low in find_falls(torque, LEAST):
         before, after = high + first, low + first
-        ended = [end - first for _, end in taken_spans(found, main) if end <= before]
+        ended = [end - first for _, end in taken_spans(passings, main) if end <= before]
         looks = {
             classify_stretch(leg, means, b, sign, part, limits)
             for part in true_stretches(fast, high, low)
         }
         is_natural = leg.Omega[before] > threshold and not looks - {SMOOTH}
-        if not high or is_natural or not lies_outside(before, after, taken_spans(found, main)):
+        if not high or is_natural or not lies_outside(before, after, taken_spans(passings, main)):
             continue
         earlier = torque[max(0, high - limits.around * width, *ended) : high]
         later = torque[low : low + limits.around * width]
@@ -88,15 +88,15 @@ def find_further_jumps(
             rows = np.flatnonzero(torque[high : low + 1] < 0.5 * (torque[high] + torque[low]))
             half = float(before + rows[0])
             look = JUMP if looks == {JUMP} and fall > SMALLEST else DOUBTFUL
-            found.append(Passing(math.ceil(half), before, after, look, half))
+            passings.append(Passing(math.ceil(half), before, after, look, half))
     for before, after in true_stretches(fast, 0, len(fast)):
         last = min(after + 2 * width, len(leg.time) - 1)
         excess = sign * (leg.Omega[last] - leg.Omega[before]) - np.ptp(leg.eta0[before : last + 1])
         is_jump = classify_stretch(leg, means, b, sign, (before, after), limits) == JUMP
-        if is_jump and excess > LEAST and lies_outside(before, last, taken_spans(found, main)):
+        if is_jump and excess > LEAST and lies_outside(before, last, taken_spans(passings, main)):
             half, look = 0.5 * (before + after), JUMP if excess > SMALLEST else DOUBTFUL
-            found.append(Passing(math.ceil(half), before, last, look, half))
-    return sorted(found)
+            passings.append(Passing(math.ceil(half), before, last, look, half))
+    return sorted(passings)
 
 
 def taken_spans(found: Sequence[Passing], main: tuple[int, int] | None) -> list[tuple[int, int]]:
@@ -118,18 +118,18 @@ def vibration_torque(means: SweepLeg, b: float, width: int) -> np.ndarray:
 
 def find_falls(values: np.ndarray, least: float) -> list[tuple[int, int]]:
     """Find the spans from a maximum to the next minimum that fall by at least `least`."""
-    found, high, low, falling = [], 0, 0, False
+    spans, high, low, falling = [], 0, 0, False
     for i, value in enumerate(values.tolist()):
         if falling:
             low = i if value < values[low] else low
             if value >= values[low] + least:
-                found.append((high, low))
+                spans.append((high, low))
                 high, falling = i, False
         elif value > values[high]:
             high = i
         elif value <= values[high] - least:
             low, falling = i, True
-    return [*found, (high, low)] if falling else found
+    return [*spans, (high, low)] if falling else spans
 
 
 def scatter_about_trend(values: np.ndarray, width: int) -> float:

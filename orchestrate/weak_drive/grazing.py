@@ -75,10 +75,10 @@ def turning_gap(
     from scipy.interpolate import BPoly, PPoly
 
     ends = []
-    for at in (before, after):
-        first = (structure.k1 * at.x1 + structure.d1 * at.v1) / structure.m1
-        second = (structure.k2 * at.x2 + structure.d2 * at.v2) / structure.m2
-        ends.append([at.x_rel, at.v2 - at.v1, first - second])
+    for outputs in (before, after):
+        first = (structure.k1 * outputs.x1 + structure.d1 * outputs.v1) / structure.m1
+        second = (structure.k2 * outputs.x2 + structure.d2 * outputs.v2) / structure.m2
+        ends.append([outputs.x_rel, outputs.v2 - outputs.v1, first - second])
     gap = PPoly.from_bernstein_basis(BPoly.from_derivatives([0.0, h], ends))
     return float(gap(gap.derivative().roots(extrapolate=False)).min())
 

@@ -334,8 +334,8 @@ class HeldVoltageTest:
         test = self.for_further_jumps()
         for part in (points[: places[0] + 1], points[places[0] + 1 :]):
             if any(test.may_be_a_loss(low, high, sign) for low, high in pairwise(part)):
-                found = test.bracket_changes(part, sign)
-                verdicts += [verdict for verdict in found if verdict.outcome != FOLLOWS]
+                others = test.bracket_changes(part, sign)
+                verdicts += [verdict for verdict in others if verdict.outcome != FOLLOWS]
         return verdicts
 
     def may_be_a_loss(self, low: HeldPoint, high: HeldPoint, sign: float) -> bool:
@@ -474,7 +474,9 @@ class HeldVoltageTest:
             for point in points[first + 1 : i + 1]:
                 path.append(self.step_from(path[-1], point.voltage))
             if self.differ(path[-1], points[i]):
-                points[first + 1 : i + 1] = [one for one in path[1:] if math.isfinite(one.speed)]
+                points[first + 1 : i + 1] = [
+                    settled for settled in path[1:] if math.isfinite(settled.speed)
+                ]
                 return True
         later = self.hold_again(points[i])
         is_other, points[i] = later is not points[i], later

@@ -136,11 +136,11 @@ def gather_losses(
         *before, last = losses_in_ramp_order(table, rows, [*covered, passing], [primary, *through])
         main, others = last, before
     for place, look in enumerate(places):
-        found = [verdict for other, verdict in further if other == place]
+        about_place = [verdict for other, verdict in further if other == place]
         untold = Verdict(NOT_ASKED if look.look == JUMP else UNDECIDED)
-        told = [verdict for verdict in found if verdict.outcome in (LOST, UNDECIDED)]
-        if told or not found:
-            others += losses_in_ramp_order(table, rows, [look], told or [untold])
+        losses_here = [verdict for verdict in about_place if verdict.outcome in (LOST, UNDECIDED)]
+        if losses_here or not about_place:
+            others += losses_in_ramp_order(table, rows, [look], losses_here or [untold])
     return main, others
 
 
@@ -172,12 +172,12 @@ def pick_jump(
     known = [*([main] if main else []), *others]
     sure = [loss for loss in known if loss.is_sure]
     first = min(sure, key=lambda loss: sign * loss.voltage, default=main)
-    told = [
+    further = [
         loss
         for loss in known
         if loss is not first and (loss.is_sure or loss.verdict.outcome == UNDECIDED)
     ]
-    return first, sorted(told, key=lambda loss: sign * loss.voltage)
+    return first, sorted(further, key=lambda loss: sign * loss.voltage)
 
 
 def further_jump_variables(table: Table, further: Sequence[Sequence[Loss]]) -> dict[str, Variable]:

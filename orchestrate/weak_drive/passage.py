@@ -278,18 +278,18 @@ def waterfall(
 
     check_spectra(found, mass, revolutions, highest)
     points = max(16, math.ceil(4.0 * highest))
-    at, moved = resample_over_angle(found, mass, points)
+    times, moved = resample_over_angle(found, mass, points)
     length, hop = revolutions * points, max(1, revolutions // 4) * points
-    begins = np.arange(0, len(at) - length + 1, hop)
+    begins = np.arange(0, len(times) - length + 1, hop)
     if not begins.size:
-        turns = len(at) // points
+        turns = len(times) // points
         raise InputError(f"revolutions = {revolutions}: expected at most the {turns} there are")
     lines = hann_spectrum(moved[begins[:, np.newaxis] + np.arange(length)])
     order = np.arange(lines.shape[1]) / revolutions
     shown = order <= highest
     ends = begins + length - 1
-    speed = TURN * (length - 1) / points / (at[ends] - at[begins])
-    middle = at[begins + length // 2]
+    speed = TURN * (length - 1) / points / (times[ends] - times[begins])
+    middle = times[begins + length // 2]
     volts = np.interp(middle, found.time, found.voltage)
     text = f"amplitude of the absolute acceleration of mass {mass}"
     amplitude = lines[:, shown] * np.outer(speed, order[shown]) ** 2
@@ -315,10 +315,10 @@ def resample_over_angle(data: xr.Dataset, mass: int, points: int) -> tuple[np.nd
     angle, time = np.abs(data.angle.values - data.angle.values[0]), data.time.values
     forward = np.concatenate([[True], np.diff(np.maximum.accumulate(angle)) > 0.0])
     last = math.floor(angle[forward][-1] * points / TURN)
-    at = np.interp(np.arange(last) * TURN / points, angle[forward], time[forward])
+    times = np.interp(np.arange(last) * TURN / points, angle[forward], time[forward])
     position = (data[f"x{mass}"] + data.box_position).values
     velocity = (data[f"v{mass}"] + data.box_velocity).values
-    return at, CubicHermiteSpline(time, position, velocity)(at)
+    return times, CubicHermiteSpline(time, position, velocity)(times)
 
 
 def hann_spectrum(pieces: np.ndarray) -> np.ndarray:

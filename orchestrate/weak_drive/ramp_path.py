@@ -79,14 +79,14 @@ class Branches:
         branch = data.sel(structure=structure)
         self.legs: dict[str, Motions] = {}
         for leg in map(str, branch.leg.values):
-            at = branch.sel(leg=leg).dropna("point", subset=["voltage"])
-            if at.sizes["point"]:
+            motions = branch.sel(leg=leg).dropna("point", subset=["voltage"])
+            if motions.sizes["point"]:
                 self.legs[leg] = Motions(
-                    at.voltage.values,
-                    at.speed.values,
-                    at.stable.values.astype(bool),
-                    at.revolutions.values,
-                    at.end.item(),
+                    motions.voltage.values,
+                    motions.speed.values,
+                    motions.stable.values.astype(bool),
+                    motions.revolutions.values,
+                    motions.end.item(),
                 )
         self.own = np.flatnonzero(data.bifurcation_structure.values == structure)
         self.kinds = data.bifurcation_kind.values

@@ -245,9 +245,9 @@ class Shooter:
             self.drive = own_drive
         self.angle = master.shaking.angle % TURN
         self.begin_together(self._touching(master) or self.structure.bonded)
-        found = self.scaled_state(master)
+        state_at_end = self.scaled_state(master)
         master.close()
-        return found
+        return state_at_end
 
     def _touching(self, master: Master) -> bool:
         """Return whether the masses of a delaminated structure are in contact."""

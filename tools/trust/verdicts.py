@@ -117,8 +117,8 @@ def scale_to_slope(system: System, slope: float) -> System:
 def ramp_ends(system: System) -> tuple[float, float]:
     """Return the two ends of the voltage ramp, over K omega, past both jumps."""
     folds = averaged.folds(*system)
-    at = averaged.resonance(*system)
-    places = [fold.eta0 for fold in folds] or [float(averaged.no_load_speed(*system, at))]
+    resonance = averaged.resonance(*system)
+    places = [fold.eta0 for fold in folds] or [float(averaged.no_load_speed(*system, resonance))]
     return min(places) - 0.15, max(places) + 0.15
 
 
@@ -130,25 +130,28 @@ def run_couple(system: System, rate: float) -> tuple[Answer, ...]:
     rate *= volts * structure.omega
     run = couple(structure, drive, voltage=(first, last), rate=rate, progress=False)
     return tuple(
-        read_answer(at, volts)._replace(further=read_further_answers(at, volts))
-        for at in (run.sel(jump=way) for way in WAYS)
+        read_answer(direction, volts)._replace(further=read_further_answers(direction, volts))
+        for direction in (run.sel(jump=way) for way in WAYS)
     )
 
 
 def read_further_answers(at: xr.Dataset, volts: float) -> tuple[Answer, ...]:
     """Read the answers on further jumps in one direction from a dataset."""
-    found = []
+    answers = []
     for place in at.order.values:
-        one = at.sel(order=place)
-        how = str(one.further_decided.item())
+        jump_data = at.sel(order=place)
+        how = str(jump_data.further_decided.item())
         if how == "by the record":
-            jump = float(one.further_jumps) / volts
-            found.append(Answer("lost", jump, jump, False))
+            jump = float(jump_data.further_jumps) / volts
+            answers.append(Answer("lost", jump, jump, False))
         elif how:
-            middle, half = float(one.further_held) / volts, float(one.further_error) / volts
+            middle, half = (
+                float(jump_data.further_held) / volts,
+                float(jump_data.further_error) / volts,
+            )
             said = "undecided" if how == "undecided" else "lost"
-            found.append(Answer(said, middle - half, middle + half, True))
-    return tuple(found)
+            answers.append(Answer(said, middle - half, middle + half, True))
+    return tuple(answers)
 
 
 def read_answer(at: xr.Dataset, volts: float) -> Answer:
@@ -170,8 +173,8 @@ def trace_truths(system: System) -> dict[tuple[str, str], Truth]:
     """Trace both structures' branches; return where each direction loses its motion."""
     structure, drive = system
     folds, omega = averaged.folds(*system), structure.omega
-    at = averaged.resonance(*system)
-    speeds = [fold.Omega for fold in folds] or [at]
+    resonance = averaged.resonance(*system)
+    speeds = [fold.Omega for fold in folds] or [resonance]
     speed = ((min(speeds) - 0.1) * omega, (max(speeds) + 0.1) * omega)
     if len(folds) > 1 and abs(folds[0].eta0 - folds[-1].eta0) < NARROW:
         return dict.fromkeys(((kind, way) for kind in KINDS for way in WAYS), Truth(UNKNOWN))
@@ -234,11 +237,11 @@ def delaminated_folds(system: System, branch: xr.Dataset, way: str) -> list[tupl
                 for name, unit in zip(names, units, strict=True)
             ]
         )
-        leg, at = np.unravel_index(
+        leg, point = np.unravel_index(
             np.argmin(np.abs(points - fold[:, np.newaxis, np.newaxis]).max(axis=0)),
             points.shape[1:],
         )
-        around = points[0, leg, max(0, at - 1) : at + 2]
+        around = points[0, leg, max(0, point - 1) : point + 2]
         is_highest = fold[0] >= np.median(around[np.isfinite(around)])
         if is_highest == (way == "up"):
             folds.append((float(fold[0]), float(fold[1])))
@@ -314,8 +317,8 @@ def grid_contradiction(system: System, answer: Answer, way: str) -> str:
         return "" if unlike.any() else "lost, but held speeds come back everywhere"
     if not (behind > CHANGE).any():
         return ""
-    at = voltages[int(np.nanargmax(behind))]
-    return f"none, but two motions last at {at:.5f}: speeds {np.nanmax(behind):.4f} apart"
+    voltage = voltages[int(np.nanargmax(behind))]
+    return f"none, but two motions last at {voltage:.5f}: speeds {np.nanmax(behind):.4f} apart"
 
 
 def first_loss_on_leg(branch: xr.Dataset, kind: str, way: str, units: tuple[float, float]) -> Truth:
@@ -363,16 +366,16 @@ def error_in_answer(answer: Answer, known: Truth, way: str) -> str:
     """Compare an answer with the truth; return the error or empty text."""
     if known.kind == UNKNOWN or answer.said == "not passed":
         return ""
-    told = [one for one in (answer, *answer.further) if one.said == "lost"]
+    sure = [each for each in (answer, *answer.further) if each.said == "lost"]
     if known.kind == NONE:
-        return f"lost at {told[0].low:.5f}, but no motion is lost" if told else ""
-    if answer.said == "none" and not told:
+        return f"lost at {sure[0].low:.5f}, but no motion is lost" if sure else ""
+    if answer.said == "none" and not sure:
         return f"none, but a motion is lost at {known.low:.5f}"
     if answer.said == "undecided":
         return ""
     for place in known.places:
-        if not any(matches_range(one, place, way) for one in (*told, *answer.further)):
-            return f"lost at {told[0].low:.5f} to {told[0].high:.5f}, in truth at {place[0]:.5f}"
+        if not any(matches_range(each, place, way) for each in (*sure, *answer.further)):
+            return f"lost at {sure[0].low:.5f} to {sure[0].high:.5f}, in truth at {place[0]:.5f}"
     return ""
 
 
@@ -385,13 +388,13 @@ def matches_range(answer: Answer, place: tuple[float, float], way: str) -> bool:
 
 def answers_without_truth(answer: Answer, known: Truth, way: str) -> list[Answer]:
     """Return the certain answers that the traced branches neither confirm nor deny."""
-    sure = [one for one in (answer, *answer.further) if one.said == "lost"]
+    sure = [each for each in (answer, *answer.further) if each.said == "lost"]
     if known.kind == UNKNOWN:
         return sure or [answer]
     if known.kind == NONE or not answer.further:
         return []
     return [
-        one for one in sure if not any(matches_range(one, place, way) for place in known.places)
+        each for each in sure if not any(matches_range(each, place, way) for place in known.places)
     ]
 
 
@@ -403,8 +406,8 @@ def check_answers(
     for rate in rates:
         for way, answer in zip(WAYS, run_couple(system, rate), strict=True):
             new = answer.said not in said[way]
-            for one in answers_without_truth(answer, known[way], way) if new else ():
-                problem = contradiction(system, one, way)
+            for each in answers_without_truth(answer, known[way], way) if new else ():
+                problem = contradiction(system, each, way)
                 yield (
                     "held by themselves",
                     f"{kind}, {way}, rate {rate:g}: {problem}" * bool(problem),
@@ -415,8 +418,8 @@ def check_answers(
             name = f"{answer.said} {by}" if decided else answer.said
             wrong = error_in_answer(answer, known[way], way)
             yield name, f"{kind}, {way}, rate {rate:g}: {wrong}" if wrong else ""
-            for one in answer.further:
-                yield f"further jump {one.said}", ""
+            for each in answer.further:
+                yield f"further jump {each.said}", ""
     for way in WAYS:
         if {"lost", "none"} <= said[way]:
             yield "", f"{kind}, {way}: lost at some rates, none at others"
