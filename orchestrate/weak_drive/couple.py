@@ -24,7 +24,6 @@ from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged, own_resonance
 from .controllers import Controller
-from .further_jumps import find_further_jumps
 from .held import (
     FOLLOWS,
     MEANINGS,
@@ -40,9 +39,8 @@ from .jump_verdicts import (
     check_against_theory,
     describe_decision,
     explain_no_jump,
-    is_doubtful,
 )
-from .jumps import JUMP, Passing, SweepLeg, explain_not_passed, find_passing, time_beyond_threshold
+from .jumps import JUMP, Passing, time_beyond_threshold
 from .losses import (
     MOST,
     SLOTS,
@@ -58,6 +56,7 @@ from .losses import (
     verdicts_to_rows,
 )
 from .master import Scheme
+from .ramp_record import UPWARD, RampRecord
 from .revolutions import COLUMNS
 from .run import CoupledRun, Run, begin_run
 from .schedule import Constant, Ramp, Schedule, check
@@ -69,9 +68,6 @@ if TYPE_CHECKING:
 MAX_STEPS = 1e9  # more is a typing error: it would run for weeks
 TOLERANCE = 1e-8  # of the step control: errors of the displacements are about ten times as large
 LONGEST, FIXED = 0.4, 0.1  # steps with the control and without, in 1/omega
-LAST_REVOLUTIONS = 20  # of a ramp: their mean speed is where it ends
-LATE = 3.0  # of the rotor's time 1/b: how much later a ramp may show what it loses
-UPWARD = (True, False)  # both directions: whether the voltage rises
 HOLD, HOLD_OF_ROTOR = 4000.0, 200.0  # usual longest hold: in 1/omega, and in the rotor's time 1/b
 
 
@@ -83,10 +79,6 @@ class CoupleJob(CoupledRun):
     sequential: ClassVar[bool] = True
     has_final_chunk: ClassVar[bool] = True
     item: ClassVar[str] = "step"
-
-    def steps(self) -> int:
-        """Return the number of communication steps of the run."""
-        return math.ceil(self.schedule.duration / self.scheme.h - 1e-9)
 
     def count(self) -> int:
         """Return the number of items: all communication steps and one held-voltage test."""
@@ -156,8 +148,9 @@ class CoupleJob(CoupledRun):
             Revolutions, and the states after ``every`` steps each.
         every : int
         """
-        doubts = [self.doubtful_passing(table, up) for up in UPWARD]
-        places = [self.find_further_passings(table, up) for up in UPWARD]
+        record = RampRecord(self, table)
+        doubts = [record.doubtful_passing(up) for up in UPWARD]
+        places = [record.find_further_passings(up) for up in UPWARD]
         verdicts, further = [Verdict(NOT_ASKED)] * len(doubts), [empty_verdict_rows()] * len(doubts)
         if not any(doubts) and not any(places):
             return pack_verdicts(verdicts, further)
@@ -192,6 +185,7 @@ class CoupleJob(CoupledRun):
         up: bool,
     ) -> np.ndarray:
         """Hold voltages where the record suggests further jumps; return verdicts."""
+        record = RampRecord(self, table)
         results = [(THROUGH, verdict) for verdict in course.further]
         known, volts = loss_verdicts(course), self.drive.volts(self.structure)
         sign = 1.0 if up else -1.0
@@ -207,75 +201,12 @@ class CoupleJob(CoupledRun):
                 continue
             middle = float(Omega[ends].mean())
             held = test.for_further_jumps().classify(
-                *self.to_steps(table, self.begin_earlier(table, passing, up), up), middle, up
+                *record.to_steps(record.begin_earlier(passing, up), up), middle, up
             )
             new_verdicts = drop_known_losses(loss_verdicts(held), known, volts)
             known += new_verdicts
             results += [(place, verdict) for verdict in new_verdicts or [Verdict(FOLLOWS)]]
         return verdicts_to_rows(results)
-
-    def begin_earlier(self, table: Table, passing: Passing, up: bool) -> Passing:
-        """Move the start of a suspected jump earlier, because a ramp shows losses late."""
-        time, rows = table["time"], self.sweep_leg(table, up)[1]
-        late = LATE / (self.drive.b(self.structure) * self.structure.omega)
-        before = max(int(np.searchsorted(time, time[passing.before] - late)) - 1, int(rows[0]))
-        return passing._replace(before=min(before, passing.before))
-
-    def find_further_passings(self, table: Table, up: bool) -> list[Passing]:
-        """Find suspected further jumps in one direction, as rows of the table."""
-        leg, rows = self.sweep_leg(table, up)
-        if self.control or not rows.size:
-            return []
-        threshold = own_resonance.dividing_speed(self.structure, self.drive)
-        main, b = self.resonance_passing(table, up), self.drive.b(self.structure)
-        places = []
-        for part in np.split(np.arange(len(rows)), np.flatnonzero(np.diff(rows) > 1) + 1):
-            first = int(rows[part[0]])
-            span = None if main is None else (main.before - first, main.after - first)
-            one_ramp = SweepLeg(*(values[part] for values in leg))
-            places += [
-                Passing(row + first, before + first, after + first, look, half + first)
-                for row, before, after, look, half in find_further_jumps(
-                    one_ramp, b, up, threshold, span
-                )
-            ]
-        return places
-
-    def sweep_leg(self, table: Table, up: bool) -> tuple[SweepLeg, np.ndarray]:
-        """Return the revolutions with rising (or falling) voltage and their row indices."""
-        eta0 = np.abs(table["voltage"]) / self.drive.volts(self.structure)
-        Omega = np.abs(table["speed"]) / self.structure.omega
-        trend = self.schedule.trend(table["time"])
-        rows = np.flatnonzero(trend > 0 if up else trend < 0)
-        return SweepLeg(table["time"][rows] * self.structure.omega, eta0[rows], Omega[rows]), rows
-
-    def resonance_passing(self, table: Table, up: bool) -> Passing | None:
-        """Find how the speed passes the resonance in one direction; None if it does not."""
-        leg, rows = self.sweep_leg(table, up)
-        threshold = own_resonance.dividing_speed(self.structure, self.drive)
-        rows_in_leg = find_passing(leg, self.drive.b(self.structure), up, threshold)
-        if rows_in_leg is None:
-            return None
-        row, before, after = (int(rows[index]) for index in rows_in_leg[:3])
-        half = float(np.interp(rows_in_leg.half, np.arange(len(rows)), rows))
-        return Passing(row, before, after, rows_in_leg.look, half)
-
-    def doubtful_passing(self, table: Table, up: bool) -> tuple[Passing, tuple[int, int]] | None:
-        """Return a doubtful passage of the resonance in steps; None if the record is clear."""
-        passing = None if self.control else self.resonance_passing(table, up)
-        theory = averaged_predictions(self.structure, self.drive)[UPWARD.index(up)]
-        if passing is None or not is_doubtful(passing, self.structure.bonded, theory):
-            return None
-        return self.to_steps(table, passing, up)
-
-    def to_steps(self, table: Table, passing: Passing, up: bool) -> tuple[Passing, tuple[int, int]]:
-        """Convert a passage from table rows to communication steps, with its sweep's ends."""
-        rows = self.sweep_leg(table, up)[1]
-        times = table["time"][[*passing[:3], rows[0], rows[-1]]]
-        row, before, after, first, last = (
-            min(math.ceil(time / self.scheme.h), self.steps() - 1) for time in times
-        )
-        return Passing(row, before, after, passing.look, float(row)), (first, last)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Build the dataset of all revolutions, of the jumps and of their verdicts.
@@ -341,10 +272,10 @@ class CoupleJob(CoupledRun):
         reasons = []
         for i, (first, _) in enumerate(jump_and_further):
             if first is None:
-                reasons.append(self.explain_no_passing(table, UPWARD[i]))
+                reasons.append(RampRecord(self, table).explain_no_passing(UPWARD[i]))
             elif jumps[i] is None:
                 ends = (
-                    self.explain_short_sweep(table, UPWARD[i])
+                    RampRecord(self, table).explain_short_sweep(UPWARD[i])
                     if held[i].outcome == UNDECIDED
                     else ""
                 )
@@ -376,10 +307,9 @@ class CoupleJob(CoupledRun):
             further = [
                 (place, check_against_theory(verdict, theory, volts)) for place, verdict in further
             ]
-        rows, places = self.sweep_leg(table, up)[1], self.find_further_passings(table, up)
-        return gather_losses(
-            table, rows, self.resonance_passing(table, up), primary, places, further
-        )
+        record = RampRecord(self, table)
+        rows, places = record.sweep_leg(up)[1], record.find_further_passings(up)
+        return gather_losses(table, rows, record.resonance_passing(up), primary, places, further)
 
     def theory_variables(self, jumps: np.ndarray) -> dict[str, Variable]:
         """Build the variables that compare bonded jumps with the averaged theory."""
@@ -398,30 +328,11 @@ class CoupleJob(CoupledRun):
             "jump_lag": ("jump", (jumps - ends).tolist(), late),
         }
 
-    def explain_no_passing(self, table: Table, up: bool) -> str:
-        """Explain why the speed does not pass the resonance in a direction."""
-        if self.control:
-            return "a controller sets the voltage"
-        resonance = own_resonance.resonance(self.structure, self.drive)
-        return explain_not_passed(self.sweep_leg(table, up)[0], up, resonance)
-
-    def explain_short_sweep(self, table: Table, up: bool) -> str:
-        """Explain that the sweep ends before a resonance; empty text if it does not."""
-        leg, rows = self.sweep_leg(table, up)
-        low, high = own_resonance.dividing_speeds(self.structure, self.drive)
-        end = float(leg.Omega[-LAST_REVOLUTIONS:].mean())
-        if low == high or (end > high if up else end < low):
-            return ""
-        volts, beyond = float(table["voltage"][rows[-1]]), high if up else low
-        return (
-            f"undecided: the voltage goes to {volts:.5g} V only, which does not take the speed "
-            "past both resonances, the bonded structure's and the delaminated one's own; expected "
-            f"one that takes it {'above' if up else 'below'} "
-            f"{beyond * self.structure.omega:.5g} rad/s"
-        )
-
     def attributes(self, table: Table) -> dict[str, str | float]:
-        """Return the dataset's title and the relative energy errors of the coupling."""
+        """Return the dataset's title and the relative energy errors of the coupling.
+
+        ``missing_over_motor_work`` is the energy defect of the master over the motor's work.
+        """
         state = "bonded" if self.structure.bonded else "delaminated"
         motor = float(table["motor"][-1])
         return {

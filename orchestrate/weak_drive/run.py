@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from array import array
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -56,6 +57,10 @@ class CoupledRun(Job):
     control: Controller | None = None
 
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
+
+    def steps(self) -> int:
+        """Return the number of communication steps of the run."""
+        return math.ceil(self.schedule.duration / self.scheme.h - 1e-9)
 
 
 class Run:

@@ -14,6 +14,7 @@ from orchestrate.weak_drive.couple import Run, couple_job, scheme_from_arguments
 from orchestrate.weak_drive.drive_tracer import motion_near
 from orchestrate.weak_drive.held import LOST, HeldVoltageTest
 from orchestrate.weak_drive.jumps import Passing
+from orchestrate.weak_drive.ramp_record import RampRecord
 from orchestrate.weak_drive.schedule import Ramp
 from orchestrate.weak_drive.shooting import Shooter
 
@@ -38,7 +39,8 @@ def held_verdict(system, ramp):
     job = couple_job(*system, ramp, scheme_from_arguments(system.structure, None), 0.0)
     fmus = {model: find(model).path for model in (OSCILLATOR, SHAKER)}
     table = job.work(fmus, range(job.steps()), None)
-    passing, (_, rows) = job.resonance_passing(table, up=True), job.sweep_leg(table, up=True)
+    record = RampRecord(job, table)
+    passing, (_, rows) = record.resonance_passing(up=True), record.sweep_leg(up=True)
     times = table["time"][[*passing[:3], rows[0], rows[-1]]]
     row, before, after, *ends = (math.ceil(time / job.scheme.h) for time in times)
     with Instance(fmus[OSCILLATOR]) as one, Instance(fmus[SHAKER]) as other:
