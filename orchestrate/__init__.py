@@ -57,6 +57,7 @@ __all__ = sorted(PLACES)
 
 
 def __getattr__(name: str) -> Any:
+    """Import a public name when it is first used, and return it."""
     if name not in PLACES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     value = globals()[name] = getattr(import_module(f"{__name__}.{PLACES[name]}"), name)
@@ -64,4 +65,5 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
+    """Return the sorted public names of the package."""
     return __all__

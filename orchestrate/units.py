@@ -85,6 +85,7 @@ class Units:
         return tuple(filter(None, (getattr(self, field.name) for field in fields(self))))
 
     def __str__(self) -> str:
+        """Format the chosen units as one text, separated by commas."""
         return ", ".join(self.words)
 
     def with_defaults(self, usual: Units) -> Units:

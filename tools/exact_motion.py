@@ -27,19 +27,23 @@ class Signal:
     """Function of time ``Re sum c_k e^{s_k t} + sum p_k t^k / k!``."""
 
     def __init__(self, terms: Sequence[tuple[Any, Any]], polynomial: Sequence[Any]) -> None:
+        """Store the exponential terms and the polynomial, also in double precision."""
         self.terms, self.polynomial = terms, polynomial
         self._coarse = [(complex(c), complex(s)) for c, s in terms], [float(p) for p in polynomial]
 
     def __sub__(self, other: Signal) -> Signal:
+        """Return the difference of two signals."""
         return self + -1 * other
 
     def __add__(self, other: Signal) -> Signal:
+        """Return the sum of two signals."""
         return Signal(
             self.terms + other.terms,
             [a + b for a, b in zip(self.polynomial, other.polynomial, strict=True)],
         )
 
     def __rmul__(self, factor: Any) -> Signal:
+        """Return the signal times a number."""
         return Signal(
             [(factor * c, s) for c, s in self.terms], [factor * p for p in self.polynomial]
         )

@@ -12,6 +12,7 @@ class WebInstance:
     """An oscillator in the WebAssembly module, with its memory."""
 
     def __init__(self, kernel: WebKernel) -> None:
+        """Instantiate the WebAssembly module and find its memory."""
         import wasmtime
 
         self.slots, self.store = kernel.slots, wasmtime.Store()

@@ -152,6 +152,7 @@ class EventLoop:
         table: list[list[float]] = []
 
         def advance(time: float, target: float) -> float:
+            """Step the FMU to a time; record and handle all events on the way."""
             while time < target:
                 event, time = step(time, target - time)
                 if event:
@@ -160,6 +161,7 @@ class EventLoop:
             return time
 
         def read(index: int) -> None:
+            """Store the FMU's outputs as one row of the samples."""
             if self.outputs:
                 rows[index] = self.channel.get()
             touching[index] = touch()

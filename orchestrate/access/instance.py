@@ -142,6 +142,7 @@ class Instance:
         return self.prepared("fmi3Reset"), initialize, step
 
     def __enter__(self) -> Any:
+        """Return the instance itself, for use in a `with` statement."""
         return self
 
     def __exit__(
@@ -150,6 +151,7 @@ class Instance:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        """Free the instance at the end of a `with` statement."""
         self.close()
 
     def close(self) -> None:
@@ -193,6 +195,7 @@ class Instance:
         messages = self._messages
 
         def run() -> None:
+            """Call the C function; raise an error if its status is not OK."""
             messages.clear()
             status = call()
             if status:
@@ -266,6 +269,7 @@ class Instance:
         """Wrap a prepared get call so that it raises if the FMU gives NaN or infinity."""
 
         def run() -> None:
+            """Call the get function; raise an error if a value is not finite."""
             call()
             if not math.isfinite(values.sum()) and not np.isfinite(values).all():
                 names = [variable.name for variable, length in variables for _ in range(length)]

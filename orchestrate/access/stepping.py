@@ -31,6 +31,7 @@ class SteppingInstance(Instance):
         do_step = self.prepared("fmi3DoStep", self._time, self._length, c_bool(True), *results)
 
         def step(time: float, length: float) -> tuple[bool, float]:
+            """Step by a length; return whether an event happened, and the time."""
             self._time.value, self._length.value = time, length
             do_step()
             return event.value, last.value
@@ -44,6 +45,7 @@ class SteppingInstance(Instance):
         update = self.prepared("fmi3UpdateDiscreteStates", *results)
 
         def handle() -> None:
+            """Handle an event: enter event mode, update, step again."""
             enter()
             update()
             leave()
@@ -55,6 +57,7 @@ class SteppingInstance(Instance):
         call, values, _ = self._transfer("Get", "Boolean", [(self.variable(name), 1)], [0])
 
         def read() -> bool:
+            """Read the present value of the Boolean variable."""
             call()
             return bool(values[0])
 

@@ -187,6 +187,7 @@ def with_option_names(message: str, chosen: argparse.Namespace) -> str:
     """
 
     def option(keyword: re.Match[str]) -> str:
+        """Return the option's spelling of a matched keyword, if it is one."""
         name = keyword["name"]
         return f"--{name.replace('_', '-')}" if name in vars(chosen) else keyword[0]
 

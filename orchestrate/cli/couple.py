@@ -92,13 +92,13 @@ def add_master_options(parser: argparse.ArgumentParser) -> None:
 
 def make_jobs(arguments: argparse.Namespace, structure: Structure, drive: Drive) -> list[CoupleJob]:
     """Return the jobs for the runs asked for, a ``CoupleJob`` per structure, bonded first."""
-    from ..weak_drive.couple import couple_job, scheme_of
+    from ..weak_drive.couple import couple_job, scheme_from_arguments
 
     control = make_controller(arguments, structure, drive)
     schedule = make_schedule(arguments, structure, drive, control)
     step, hold = times_in_seconds(arguments, structure, "step", "hold").values()
     settings = (arguments.algorithm, arguments.tolerance, control is not None)
-    scheme = scheme_of(structure, step, *settings)
+    scheme = scheme_from_arguments(structure, step, *settings)
     base_name = result_name(arguments, structure, drive, (schedule, scheme, control, hold))
     return [
         replace(
@@ -228,7 +228,7 @@ def draw_results(
     Omega = np.linspace(0.3, 3.0, 20001)
     volts = averaged.no_load_speed(structure, drive, Omega) * drive.volts(structure)
     amplitude = averaged.amplitude(structure, drive, Omega) * drive.length
-    points, stable = averaged.stability(structure, drive)
+    points, stable = averaged.branch_stability(structure, drive)
     part = np.searchsorted([point.Omega for point in points], Omega)
     theory = xr.Dataset(
         {

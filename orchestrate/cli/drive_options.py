@@ -205,7 +205,7 @@ def make_schedule(
     arguments: argparse.Namespace, structure: Structure, drive: Drive, control: Controller | None
 ) -> Schedule:
     """Return the voltage over time (a ``Schedule``) that the options describe."""
-    from ..weak_drive.couple import schedule_of
+    from ..weak_drive.couple import schedule_from_arguments
     from ..weak_drive.schedule import Course
 
     rate, omega = ramp_rate(arguments, structure, drive), structure.omega
@@ -218,10 +218,10 @@ def make_schedule(
     if len(ends) == 1:
         if arguments.duration is None:
             raise InputError(f"one voltage, {ends[0]:g} V: expected --duration with it, in s")
-        return schedule_of(structure, drive, ends[0], duration=arguments.duration)
+        return schedule_from_arguments(structure, drive, ends[0], duration=arguments.duration)
     if arguments.duration is not None:
         raise InputError("--duration: expected one voltage with it, not FIRST:LAST")
-    return schedule_of(
+    return schedule_from_arguments(
         structure,
         drive,
         (ends[0], ends[1]),

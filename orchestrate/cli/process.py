@@ -58,6 +58,7 @@ class SafeStream:
                 self.error = error
 
     def __getattr__(self, name: str) -> Any:
+        """Return all other attributes of the wrapped stream."""
         return getattr(self._stream, name)
 
     def detach(self) -> None:

@@ -91,7 +91,8 @@ def run_motor_spectra(arguments: argparse.Namespace) -> None:
         speed = text_of(data, part.speed, "rad/s", ".5g")
         print_line_ratio(data, f"{kind} at {speed}", part.acceleration)
     words = str(data.attrs["title"])
-    title = f"{Path(arguments.drive).stem}: {words[0].lower()}{words[1:]}, mass 1 in space"
+    question = f"{words[0].lower()}{words[1:]}, absolute acceleration of mass 1"
+    title = f"{Path(arguments.drive).stem}: {question}"
     files.write(data, lambda: figure.draw(data, title=title))
 
 

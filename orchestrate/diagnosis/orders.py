@@ -73,6 +73,7 @@ class OrderWindows:
     samples: int
 
     def __len__(self) -> int:
+        """Return the number of windows."""
         return len(self.parts)
 
     def select(self, windows: NDArray[np.intp], count: int) -> OrderWindows:

@@ -42,11 +42,13 @@ class InstancePair:
     path: Path
 
     def __enter__(self) -> tuple[Instance, EventInstance | None]:
+        """Open the FMU twice: without events, and with events where it has them."""
         self._plain = Instance(self.path)
         self._eventful = EventInstance(self.path) if describe(self.path).is_fmi3 else None
         return self._plain, self._eventful
 
     def __exit__(self, *error: object) -> None:
+        """Close both instances."""
         self._plain.close()
         if self._eventful is not None:
             self._eventful.close()

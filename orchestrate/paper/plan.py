@@ -20,7 +20,12 @@ from ..response.sweep import SweepJob
 from ..running.job import Job
 from ..structures import Drive, Excitation, Structure
 from ..weak_drive import averaged
-from ..weak_drive.couple import CoupleJob, couple_job, schedule_of, scheme_of
+from ..weak_drive.couple import (
+    CoupleJob,
+    couple_job,
+    schedule_from_arguments,
+    scheme_from_arguments,
+)
 from .cases import CASES, MAP_ETAS, MAPS, ORBITS, RIG, map_values
 from .chattering import ChatteringJob
 from .contact_limits import ContactLimitJob
@@ -186,10 +191,12 @@ def ramp_jobs(resolution: Resolution) -> list[CoupleJob]:
     volts = drive.volts(structure)
     ends = tuple(share * averaged.folds(structure, drive)[0].eta0 * volts for share in (0.55, 1.02))
     rate = resolution.ramp_rate * volts * structure.omega
-    schedule = schedule_of(structure, drive, (ends[0], ends[1]), rate=rate, back=False)
+    schedule = schedule_from_arguments(structure, drive, (ends[0], ends[1]), rate=rate, back=False)
     kinds = {"bonded": structure.as_bonded(), "delaminated": structure.as_delaminated()}
     return [
-        replace(couple_job(one, drive, schedule, scheme_of(one, None)), name=f"ramp_{kind}")
+        replace(
+            couple_job(one, drive, schedule, scheme_from_arguments(one, None)), name=f"ramp_{kind}"
+        )
         for kind, one in kinds.items()
     ]
 

@@ -204,6 +204,7 @@ def initialize_worker(parent: int) -> None:
         return
 
     def watch() -> None:
+        """End this worker when its parent process has ended."""
         while os.getppid() == parent:
             time.sleep(0.5)
         os._exit(1)

@@ -348,6 +348,7 @@ def write_netcdf(dataset: xr.Dataset, path: Path) -> Path:
 
     def write(path_to_write: Path) -> None:
         # xarray's to_netcdf imports Dask's scheduler to find a lock that nobody needs here
+        """Write the dataset to a netCDF file."""
         with open_file(path_to_write, mode="w", lock=False) as file:
             dataset.dump_to_store(file, encoding=encoding)
 

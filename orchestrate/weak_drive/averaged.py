@@ -1,4 +1,4 @@
-"""Averaged theory of the weak drive, bonded structure: motor against mean torque of vibration.
+"""Compute speed branch, folds and stability of the bonded weak drive by averaged theory.
 
 At a speed Omega the box answers the unbalance as a linear system does, y = Omega^2 H(i Omega)
 S/M_t; the vibration's mean torque is T_v(Omega) = -epsilon Omega^4 Im H(i Omega) / 2, and the motor
@@ -29,8 +29,8 @@ from ..structures.structure import Structure
 FOLD, TORUS = bifurcations.FOLD.label, bifurcations.TORUS.label
 
 
-class Place(NamedTuple):
-    """Point of the branch of stationary motions: a fold, or a Neimark-Sacker point.
+class BifurcationPoint(NamedTuple):
+    """Store a bifurcation point of the branch: voltage, speed, and fold or Neimark-Sacker.
 
     Attributes
     ----------
@@ -45,8 +45,10 @@ class Place(NamedTuple):
     kind: str
 
 
-def mechanics(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomial, Polynomial]:
-    """Return polynomials in s: masses' springs and dampers, their inertia, and the box alone."""
+def mechanical_polynomials(
+    structure: Structure, drive: Drive
+) -> tuple[Polynomial, Polynomial, Polynomial]:
+    """Return the polynomials in s of masses' springs and dampers, masses' inertia, and box."""
     beta, mu = drive.beta(structure), structure.mu
     damping = 2.0 * beta * (structure.D1 + mu * structure.D2)
     pull = Polynomial([beta * (1.0 + structure.kappa), damping])
@@ -56,8 +58,10 @@ def mechanics(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomia
     return pull, masses, box
 
 
-def transfer(structure: Structure, drive: Drive, Omega: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """Return two transfer functions: force on the box to its position, that to the bonded masses'.
+def transfer_functions(
+    structure: Structure, drive: Drive, Omega: ArrayLike
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the transfer functions from box force to box position and from box to masses.
 
     Parameters
     ----------
@@ -71,44 +75,46 @@ def transfer(structure: Structure, drive: Drive, Omega: ArrayLike) -> tuple[np.n
     H, ratio : ndarray of complex
     """
     s = 1j * np.asarray(Omega, dtype=float)
-    pull, masses, box = (part(s) for part in mechanics(structure, drive))
+    pull, masses, box = (part(s) for part in mechanical_polynomials(structure, drive))
     ratio = -masses / (masses + pull)
     return 1.0 / (box - pull * ratio), ratio
 
 
 def no_load_speed(structure: Structure, drive: Drive, Omega: ArrayLike) -> np.ndarray:
-    """Return the voltage eta0 that holds a speed, eta0 = Omega + T_v/b."""
+    """Return the voltage, as no-load speed over omega, that holds each given speed."""
     Omega = np.asarray(Omega, dtype=float)
-    H, _ = transfer(structure, drive, Omega)
+    H, _ = transfer_functions(structure, drive, Omega)
     torque = drive.epsilon * Omega**4 * H.imag / (2.0 * drive.b(structure))
     return np.asarray(Omega - torque)
 
 
 def amplitude(structure: Structure, drive: Drive, Omega: ArrayLike) -> np.ndarray:
-    """Return the amplitude of the masses relative to the box, in S/M_t."""
-    H, ratio = transfer(structure, drive, Omega)
+    """Return the masses' amplitude relative to the box at each speed, in units of S/M_t."""
+    H, ratio = transfer_functions(structure, drive, Omega)
     return np.asarray(np.abs(np.asarray(Omega) ** 2 * H * ratio))
 
 
 def resonance(structure: Structure, drive: Drive) -> float:
-    """Return the speed over omega at which bonded masses resonate in the box, the faster one."""
-    return float(np.abs(free_roots(structure, drive)).max())
+    """Return the speed over omega at which the bonded masses resonate in the box."""
+    return float(np.abs(free_vibration_roots(structure, drive)).max())
 
 
-def half_width(structure: Structure, drive: Drive) -> float:
-    """Return half the resonance's width at half power over omega: its decay rate."""
-    roots = free_roots(structure, drive)
+def resonance_half_width(structure: Structure, drive: Drive) -> float:
+    """Return the half width of the bonded resonance at half power, over omega."""
+    roots = free_vibration_roots(structure, drive)
     return float(-roots[np.argmax(np.abs(roots))].real)
 
 
-def free_roots(structure: Structure, drive: Drive) -> np.ndarray:
-    """Return the roots of free vibrations of bonded masses and box, over omega."""
-    pull, masses, box = mechanics(structure, drive)
+def free_vibration_roots(structure: Structure, drive: Drive) -> np.ndarray:
+    """Return the complex eigenvalues of free vibration of bonded masses and box, over omega."""
+    pull, masses, box = mechanical_polynomials(structure, drive)
     return np.asarray((box * (pull + masses) + pull * masses).roots())
 
 
-def folds(structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.0) -> list[Place]:
-    """Return where the speed jumps: zeros of d eta0 / d Omega.
+def folds(
+    structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.0
+) -> list[BifurcationPoint]:
+    """Find the folds of the averaged branch, where the speed jumps (Sommerfeld effect).
 
     Parameters
     ----------
@@ -123,15 +129,18 @@ def folds(structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.
         By speed: a jump up, where eta0 is largest, then a jump down, and so on; empty without
         folds.
     """
-    numerator, denominator = slope(structure, drive)
+    numerator, denominator = slope_polynomials(structure, drive)
     roots = numerator.roots()
     real = np.sort(roots.real[np.abs(roots.imag) < 1e-6 * np.abs(roots)])
     speeds = [polish_root(numerator, root) for root in real if low <= root <= high]
-    return [Place(float(no_load_speed(structure, drive, Omega)), Omega, FOLD) for Omega in speeds]
+    return [
+        BifurcationPoint(float(no_load_speed(structure, drive, Omega)), Omega, FOLD)
+        for Omega in speeds
+    ]
 
 
 def dividing_speed(structure: Structure, drive: Drive) -> float:
-    """Return the speed over omega between stationary motions below and beyond the resonance.
+    """Return the speed over omega that divides motions below and beyond the resonance.
 
     Half way between the speeds of the outer folds, where all motions are unstable; the resonance's
     speed where there are none.
@@ -142,20 +151,24 @@ def dividing_speed(structure: Structure, drive: Drive) -> float:
     return 0.5 * (ends[0].Omega + ends[-1].Omega)
 
 
-def slope(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomial]:
-    """Return the derivative d eta0 / d Omega as numerator and denominator, polynomials in Omega."""
-    pull, masses, box = (on_the_axis(part) for part in mechanics(structure, drive))
+def slope_polynomials(structure: Structure, drive: Drive) -> tuple[Polynomial, Polynomial]:
+    """Return numerator and denominator of the slope d eta0 / d Omega as polynomials in Omega."""
+    pull, masses, box = (
+        substitute_i_omega(part) for part in mechanical_polynomials(structure, drive)
+    )
     above, below = pull + masses, box * (pull + masses) + pull * masses
-    torque = imaginary(above * conjugate(below)) * Polynomial([0.0, 0.0, 0.0, 0.0, 1.0])
-    size = imaginary(1j * below * conjugate(below))  # |below|^2
+    torque = imaginary_part(above * conjugate_polynomial(below)) * Polynomial(
+        [0.0, 0.0, 0.0, 0.0, 1.0]
+    )
+    size = imaginary_part(1j * below * conjugate_polynomial(below))  # |below|^2
     factor = drive.epsilon / (2.0 * drive.b(structure))
     return size**2 - factor * (torque.deriv() * size - torque * size.deriv()), size**2
 
 
-def least_slope(
+def smallest_slope(
     structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.0, count: int = 10_001
 ) -> float:
-    """Return the least slope d eta0 / d Omega of the branch: negative between folds.
+    """Return the smallest slope d eta0 / d Omega in a range of speeds; negative with folds.
 
     Parameters
     ----------
@@ -166,13 +179,13 @@ def least_slope(
     count : int
         Speeds that are looked at.
     """
-    numerator, denominator = slope(structure, drive)
+    numerator, denominator = slope_polynomials(structure, drive)
     speeds = np.linspace(low, high, count)
     return float((numerator(speeds) / denominator(speeds)).min())
 
 
-def growth(structure: Structure, drive: Drive, Omega: float) -> np.ndarray:
-    """Return growth rates of slow disturbances: the roots s, without the 0 of a shifted angle.
+def growth_rates(structure: Structure, drive: Drive, Omega: float) -> np.ndarray:
+    """Return the growth rates of small slow disturbances of a stationary motion.
 
     Parameters
     ----------
@@ -185,7 +198,7 @@ def growth(structure: Structure, drive: Drive, Omega: float) -> np.ndarray:
     ndarray of complex
         Over omega; the one that grows fastest first.
     """
-    pull, masses, box = mechanics(structure, drive)
+    pull, masses, box = mechanical_polynomials(structure, drive)
     above = (pull + masses) * Polynomial([0.0, 0.0, 0.0, 0.0, 1.0])
     below = box * (pull + masses) + pull * masses
     at, side = 1j * Omega, Polynomial([1j * Omega, 1.0])
@@ -201,10 +214,10 @@ def growth(structure: Structure, drive: Drive, Omega: float) -> np.ndarray:
     return np.asarray(roots[np.argsort(-roots.real)])
 
 
-def torus_points(
+def neimark_sacker_points(
     structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.0, count: int = 401
-) -> list[Place]:
-    """Return the Neimark-Sacker points: where a pair of :func:`growth` passes the imaginary axis.
+) -> list[BifurcationPoint]:
+    """Find the Neimark-Sacker points, where a slow oscillation of the speed starts to grow.
 
     Parameters
     ----------
@@ -217,26 +230,30 @@ def torus_points(
     """
     from scipy.optimize import brentq
 
-    def test(Omega: float) -> float:
-        """Return the product of all sums of two roots: 0 where a pair is imaginary (Hurwitz)."""
-        roots = growth(structure, drive, Omega)
+    def hurwitz_product(Omega: float) -> float:
+        """Return the product of all sums of two growth rates; it is 0 at a bifurcation."""
+        roots = growth_rates(structure, drive, Omega)
         sums = np.add.outer(roots, roots)[np.triu_indices(len(roots), 1)]
         return float(np.prod(-sums / np.abs(sums).max()).real)
 
     speeds = np.linspace(low, high, count)
-    signs = np.sign([test(Omega) for Omega in speeds])
+    signs = np.sign([hurwitz_product(Omega) for Omega in speeds])
     points = []
     for i in np.flatnonzero(signs[1:] != signs[:-1]):
-        Omega = float(brentq(test, speeds[i], speeds[i + 1], xtol=1e-12))
-        roots = growth(structure, drive, Omega)
+        Omega = float(brentq(hurwitz_product, speeds[i], speeds[i + 1], xtol=1e-12))
+        roots = growth_rates(structure, drive, Omega)
         pairs = roots[np.abs(roots.imag) > 1e-9]
         if np.abs(pairs.real).min() < 1e-6:  # no two real ones of opposite signs
-            points.append(Place(float(no_load_speed(structure, drive, Omega)), Omega, TORUS))
+            points.append(
+                BifurcationPoint(float(no_load_speed(structure, drive, Omega)), Omega, TORUS)
+            )
     return points
 
 
-def losses(structure: Structure, drive: Drive) -> tuple[Place | None, Place | None]:
-    """Return where slow ramps up, and down, lose their stable motion; None for never.
+def stability_limits(
+    structure: Structure, drive: Drive
+) -> tuple[BifurcationPoint | None, BifurcationPoint | None]:
+    """Return the point where a slow voltage ramp loses stability, upward and downward.
 
     Returns
     -------
@@ -244,7 +261,7 @@ def losses(structure: Structure, drive: Drive) -> tuple[Place | None, Place | No
         The end of the stable branch that comes from below, and of the one from beyond; None where
         all motions are stable.
     """
-    points, stable = stability(structure, drive)
+    points, stable = branch_stability(structure, drive)
     if not points:
         return None, None
     ends = [point for point in points if point.kind != TORUS]
@@ -254,8 +271,10 @@ def losses(structure: Structure, drive: Drive) -> tuple[Place | None, Place | No
     return (points[below[-1]] if below else None, points[beyond[0] - 1] if beyond else None)
 
 
-def stability(structure: Structure, drive: Drive) -> tuple[list[Place], list[bool]]:
-    """Return folds and Neimark-Sacker points by speed, and flags of stability around them.
+def branch_stability(
+    structure: Structure, drive: Drive
+) -> tuple[list[BifurcationPoint], list[bool]]:
+    """Return all folds and Neimark-Sacker points by speed, and which motions are stable.
 
     Returns
     -------
@@ -263,33 +282,33 @@ def stability(structure: Structure, drive: Drive) -> tuple[list[Place], list[boo
     stable : list of bool
         Of the motions below the first point, between each and the next, and beyond the last one.
     """
-    at = resonance(structure, drive)
-    torus = torus_points(structure, drive, 0.8 * at, 1.5 * at, count=151)
+    speed = resonance(structure, drive)
+    torus = neimark_sacker_points(structure, drive, 0.8 * speed, 1.5 * speed, count=151)
     points = sorted([*folds(structure, drive), *torus], key=lambda point: point.Omega)
     speeds = [point.Omega for point in points]
     between = [0.5 * (low + high) for low, high in pairwise(speeds)]
-    middles = [0.99 * speeds[0], *between, 1.01 * speeds[-1]] if points else [at]
-    return points, [bool(growth(structure, drive, Omega)[0].real < 0.0) for Omega in middles]
+    middles = [0.99 * speeds[0], *between, 1.01 * speeds[-1]] if points else [speed]
+    return points, [bool(growth_rates(structure, drive, Omega)[0].real < 0.0) for Omega in middles]
 
 
-def on_the_axis(polynomial: Polynomial) -> Polynomial:
-    """Return a polynomial in s as one in Omega, with s = i Omega."""
+def substitute_i_omega(polynomial: Polynomial) -> Polynomial:
+    """Convert a polynomial in s into one in Omega by setting s = i Omega."""
     powers = 1j ** np.arange(len(polynomial.coef))
     return Polynomial(np.asarray(polynomial.coef, dtype=complex) * powers)
 
 
-def conjugate(polynomial: Polynomial) -> Polynomial:
-    """Return the conjugate of a polynomial for real arguments."""
+def conjugate_polynomial(polynomial: Polynomial) -> Polynomial:
+    """Return the polynomial with complex conjugate coefficients."""
     return Polynomial(polynomial.coef.conj())
 
 
-def imaginary(polynomial: Polynomial) -> Polynomial:
-    """Return the imaginary part of a polynomial for real arguments."""
+def imaginary_part(polynomial: Polynomial) -> Polynomial:
+    """Return the polynomial made of the imaginary parts of the coefficients."""
     return Polynomial(polynomial.coef.imag)
 
 
 def polish_root(polynomial: Polynomial, root: float) -> float:
-    """Improve a root by Newton's method, as long as the polynomial's value becomes smaller."""
+    """Improve a root of a polynomial by at most three Newton steps."""
     derivative = polynomial.deriv()
     value, slope = polynomial(root), derivative(root)
     for _ in range(3):

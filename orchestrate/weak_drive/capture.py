@@ -1,4 +1,4 @@
-"""Capture: whether a motor switched on from rest passes the resonance, or hangs at it.
+"""Find whether a motor switched on from rest passes the resonance or is captured by it.
 
 The voltage is switched on at once. Where it is low the speed settles below the resonance: the motor
 is captured, though at the same voltage it would stay beyond, once there. The border between is
@@ -30,7 +30,7 @@ from ..structures.ranges import DRIVE
 from ..structures.structure import Structure
 from . import averaged
 from .controllers import Controller
-from .couple import couple_job, require_motor, scheme_of
+from .couple import couple_job, require_motor, scheme_from_arguments
 from .master import Scheme
 from .run import Run, begin_run
 from .schedule import Constant, check
@@ -54,7 +54,7 @@ THEORY = 2e-4  # over K omega: the averaged theory's own error of a fold, with r
 
 
 class System(NamedTuple):
-    """Structure and drive."""
+    """Store a structure together with its drive."""
 
     structure: Structure
     drive: Drive
@@ -62,7 +62,7 @@ class System(NamedTuple):
 
 @dataclass(frozen=True)
 class CaptureJob(Job):
-    """Job of starts from rest, one value of the parameter per item.
+    """Run starts from rest at several voltages for each value of a parameter.
 
     Attributes
     ----------
@@ -89,42 +89,42 @@ class CaptureJob(Job):
     item: ClassVar[str] = "value"
 
     def count(self) -> int:
-        """Return the number of values of the parameter."""
+        """Return the number of parameter values; at least one."""
         return max(1, len(self.values))
 
     def items(self, inputs: Inputs) -> Sequence[System]:
-        """Return structure and drive of each value."""
+        """Return one pair of structure and drive for each parameter value."""
         system = System(self.structure, self.drive)
-        return [with_value(system, self.over, value) for value in self.values] or [system]
+        return [replace_parameter(system, self.over, value) for value in self.values] or [system]
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[System], previous: Any) -> Table:
-        """Compute the outcomes at all voltages, and the threshold, for some values."""
+        """Simulate starts at all voltages and bisect for the threshold voltage."""
         rows, borders = [], []
         for system in items:
-            start = partial(self.start, fmus, system)
+            start = partial(self.run_from_rest, fmus, system)
             outcomes = [start(voltage) for voltage in self.voltages]
             rows.append(outcomes)
             low, high = threshold_voltage(self.voltages, outcomes, start, self.tolerance)
             borders.append([*low, *high])
         return {"outcomes": np.array(rows, dtype=float), "borders": np.array(borders)}
 
-    def start(self, fmus: Mapping[str, Path], system: System, voltage: float) -> Outcome:
-        """Run a start from rest until the speed settles."""
+    def run_from_rest(self, fmus: Mapping[str, Path], system: System, voltage: float) -> Outcome:
+        """Simulate one start from rest at a voltage until the speed has settled."""
         test = settling_test(*system, self.stay)
         if voltage <= system.drive.motor_constant * test.threshold:
             return Outcome(NO_LOAD)
-        schedule = Constant(voltage, self.limit(system))
+        schedule = Constant(voltage, self.time_limit(system))
         job = couple_job(*system, schedule, self.scheme, 0.0, self.control)
         with begin_run(job, fmus) as run:
-            return run_until_settled(run, range(job.steps()), test.outcome)
+            return run_until_settled(run, range(job.steps()), test.judge_record)
 
-    def limit(self, system: System) -> float:
-        """Return the time after which a start that has not settled is undecided, s."""
+    def time_limit(self, system: System) -> float:
+        """Return the longest simulated time of a start, s; after it it is undecided."""
         distance = self.tolerance / system.drive.volts(system.structure)
         return self.time or usual_limit(*system, distance)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return passed, captured or undecided over voltage and parameter, and the threshold."""
+        """Build the dataset of outcomes over voltage and of the threshold voltages."""
         import xarray as xr
 
         kept = (slice(None),) if self.over else (0,)
@@ -135,7 +135,7 @@ class CaptureJob(Job):
         text = "time from which the speed stays beyond the resonance; NaN where it does not"
         how = "how the outcome was decided"
         edge = "voltage from which a motor switched on from rest passes the resonance"
-        folds = np.array([self.fold(system) for system in self.items(inputs)])[kept]
+        folds = np.array([self.highest_fold(system) for system in self.items(inputs)])[kept]
         known = "voltage above which no motion below the resonance exists, by the averaged theory"
         volts = np.array([drive.volts(structure) for structure, drive in self.items(inputs)])
         above = low - folds > THEORY * volts[kept]
@@ -155,13 +155,13 @@ class CaptureJob(Job):
         tried = variable("voltage", np.array(self.voltages), "V", "voltage switched on from rest")
         coordinates = {"voltage": tried}
         if self.over:
-            coordinates[self.over] = axis(self.over, self.values)
+            coordinates[self.over] = parameter_coordinate(self.over, self.values)
         state = "bonded" if self.structure.bonded else "delaminated"
         title = f"Capture at the resonance from rest, {state} structure"
         return xr.Dataset(variables, coordinates, {"title": title})
 
-    def fold(self, system: System) -> float:
-        """Return the averaged theory's highest fold, V; NaN where it has none, or does not hold."""
+    def highest_fold(self, system: System) -> float:
+        """Return the voltage of the highest fold by averaged theory, V; NaN if unknown."""
         structure, drive = system
         if not structure.bonded or self.control is not None:
             return math.nan
@@ -172,9 +172,9 @@ class CaptureJob(Job):
 def run_until_settled(
     run: Run, steps: range, outcome: Callable[[np.ndarray, np.ndarray], Outcome]
 ) -> Outcome:
-    """Run until ``outcome`` of times and speeds of the revolutions is decided, or to the end.
+    """Simulate a run until its recorded speed decides the outcome, or to its end.
 
-    It is asked each time the run has become a fifth longer.
+    The function ``outcome`` judges times and speeds each time the run is a fifth longer.
     """
     times, speeds = np.zeros(0), np.zeros(0)
     first = 0
@@ -189,8 +189,8 @@ def run_until_settled(
     return Outcome(UNDECIDED)
 
 
-class End(NamedTuple):
-    """One end of the threshold's interval: voltage, V, and the speed reached there, rad/s."""
+class ThresholdEnd(NamedTuple):
+    """Store one end of the bracket of the threshold: its voltage, V, and final speed, rad/s."""
 
     voltage: float = math.nan
     speed: float = math.nan
@@ -201,23 +201,24 @@ def threshold_voltage(
     outcomes: Sequence[Outcome],
     start: Callable[[float], Outcome],
     tolerance: float,
-) -> tuple[End, End]:
-    """Return two ends by bisection: the highest voltage captured, and the lowest passing above it.
+) -> tuple[ThresholdEnd, ThresholdEnd]:
+    """Bracket by bisection the voltage from which a start passes the resonance.
 
-    Bisection brings them together to ``tolerance``. An undecided start is neither: the interval
-    that is left then is wider than that, and both its sides are brought close to it.
+    The highest voltage that is captured and the lowest above it that passes are brought together to
+    ``tolerance``. An undecided start is neither: the bracket is wider then, and both its ends are
+    brought close to the undecided voltages.
 
     Returns
     -------
     low, high : End
         NaN where the highest voltage does not pass, or none captures.
     """
-    captured = [i for i, found in enumerate(outcomes) if found.captured]
+    captured = [i for i, outcome in enumerate(outcomes) if outcome.captured]
     if not captured or not outcomes[-1].passed:
-        return End(), End()
+        return ThresholdEnd(), ThresholdEnd()
     last = captured[-1]
-    first = 1 + max(i for i, found in enumerate(outcomes) if not found.passed)
-    low, high = (End(voltages[i], outcomes[i].speed) for i in (last, first))
+    first = 1 + max(i for i, outcome in enumerate(outcomes) if not outcome.passed)
+    low, high = (ThresholdEnd(voltages[i], outcomes[i].speed) for i in (last, first))
     doubtful = (voltages[last + 1], voltages[first - 1]) if first - last > 1 else None
     while True:
         begin, end = doubtful or (high.voltage, low.voltage)
@@ -227,18 +228,18 @@ def threshold_voltage(
             middle = 0.5 * (end + high.voltage)
         else:
             return low, high
-        found = start(middle)
-        if found.captured:
-            low = End(middle, found.speed)
+        outcome = start(middle)
+        if outcome.captured:
+            low = ThresholdEnd(middle, outcome.speed)
             doubtful = None if middle > begin else doubtful
-        elif found.passed and middle > end:
-            high = End(middle, found.speed)
+        elif outcome.passed and middle > end:
+            high = ThresholdEnd(middle, outcome.speed)
         else:  # undecided, or passes below an undecided one
             doubtful = (min(middle, begin), max(middle, end)) if doubtful else (middle, middle)
 
 
-def with_value(system: System, over: str, value: float) -> System:
-    """Return a system with another value of one parameter, of its drive or its structure.
+def replace_parameter(system: System, over: str, value: float) -> System:
+    """Replace one parameter of the drive or of the structure, and return both.
 
     Raises
     ------
@@ -250,16 +251,16 @@ def with_value(system: System, over: str, value: float) -> System:
     return system._replace(structure=system.structure.replace(**{over: value}))
 
 
-def axis(over: str, values: ArrayLike) -> Variable:
-    """Return the coordinate along a parameter, for a dataset."""
+def parameter_coordinate(over: str, values: ArrayLike) -> Variable:
+    """Build the dataset's coordinate for the varied parameter, with its unit."""
     if over in DRIVE:
         numbers = np.asarray(values, dtype=float)
         return variable(over, numbers, DRIVE[over].unit, DRIVE[over].description)
     return parameter_variable(over, over, values)
 
 
-def voltages_of(voltage: tuple[float, float], count: int) -> tuple[float, ...]:
-    """Return ``count`` voltages at equal distances between two ends, V."""
+def voltage_grid(voltage: tuple[float, float], count: int) -> tuple[float, ...]:
+    """Return equally spaced voltages between the two given ends, V."""
     try:
         low, high = (float(value) for value in voltage)
     except (TypeError, ValueError):
@@ -271,8 +272,10 @@ def voltages_of(voltage: tuple[float, float], count: int) -> tuple[float, ...]:
     return tuple(np.linspace(low, high, checked_integer("count", count, 2)).tolist())
 
 
-def values_of(over: str | None, values: ArrayLike | None, system: System) -> tuple[float, ...]:
-    """Check the parameter's values, each with the system, and return them."""
+def check_parameter_values(
+    over: str | None, values: ArrayLike | None, system: System
+) -> tuple[float, ...]:
+    """Check the values of the varied parameter and return them as a tuple of numbers."""
     if (over is None) != (values is None):
         raise InputError(f"over = {over!r} and values = {values!r}: expected both, or none of them")
     if over is None:
@@ -284,7 +287,7 @@ def values_of(over: str | None, values: ArrayLike | None, system: System) -> tup
     if not numbers or len(set(numbers)) != len(numbers):
         raise InputError(f"values = {values!r}: expected one number or more, each once")
     for value in numbers:
-        with_value(system, over, value)
+        replace_parameter(system, over, value)
     return numbers
 
 
@@ -303,7 +306,7 @@ def capture(
     step: float | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Find whether a motor switched on from rest passes the resonance, and the voltage it takes.
+    """Find the voltage from which a motor switched on from rest passes the resonance.
 
     Parameters
     ----------
@@ -375,18 +378,18 @@ def capture(
     """
     require_motor(drive)
     system = System(structure, drive)
-    parameter_values = values_of(over, values, system)
-    voltages = voltages_of(voltage, count)
+    parameter_values = check_parameter_values(over, values, system)
+    voltages = voltage_grid(voltage, count)
     check("tolerance", tolerance, "V", low=0.0, exclusive=True)
     if time is not None:
         check("time", time, "s", low=0.0, exclusive=True)
     stay = checked_integer("stay", stay, 1)
-    scheme = scheme_of(structure, step, sampled=control is not None)
+    scheme = scheme_from_arguments(structure, step, sampled=control is not None)
     job = CaptureJob(
         "capture",
         *(structure, drive, over or "", parameter_values, voltages),
         *(float(tolerance), float(time or 0.0), stay, scheme, control),
     )
     for each in job.items({}):  # refused now, not amid the work
-        couple_job(*each, Constant(voltages[-1], job.limit(each)), scheme, 0.0, control)
+        couple_job(*each, Constant(voltages[-1], job.time_limit(each)), scheme, 0.0, control)
     return answer(job, running, finder(running))

@@ -1,8 +1,8 @@
-"""Communication steps of the master in compiled code: the same calls of the FMUs, the same bits.
+"""Run the master's communication steps in compiled C code, with bit-identical results.
 
 ``compiled.c`` calls the FMUs' functions itself, past Python: where two FMI 3.0 instances are native
-and the library can be had, :func:`master_of` makes a master that steps so. Structures are those of
-the C source.
+and the library can be had, :func:`create_master` makes a master that steps so. Structures are those
+of the C source.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ PLACES = tuple(Revolution.__dataclass_fields__)
 
 
 class FmuSide(ctypes.Structure):
-    """Instance as the library calls it."""
+    """Describe one FMU instance to the C library: handles, functions and buffers."""
 
     _fields_ = [
         *((name, c_void_p) for name in ("instance", "set", "get", "step", "save", "restore")),
@@ -45,7 +45,7 @@ class FmuSide(ctypes.Structure):
 
 
 class Pair(ctypes.Structure):
-    """Both instances, the structure, and the scheme."""
+    """Describe both FMU instances, the structure and the step settings to the C library."""
 
     _fields_ = [
         ("oscillator", FmuSide),
@@ -60,8 +60,8 @@ class Pair(ctypes.Structure):
 
 
 @functools.cache
-def step_function() -> Any:
-    """Load the library's function, once per process; return None where there is no library."""
+def load_step_function() -> Any:
+    """Load the C function that runs communication steps, once; None if unavailable."""
     run = loaded_function(SOURCE)
     if run is None:
         return None
@@ -69,23 +69,23 @@ def step_function() -> Any:
     return run
 
 
-def master_of(
+def create_master(
     oscillator: Instance,
     shaker: Instance,
     structure: Structure,
     scheme: Scheme,
     start_time: float = 0.0,
 ) -> Master:
-    """Return the fastest master that there is for two instances; see :class:`.master.Master`."""
+    """Create the master for two FMU instances, a compiled one where that is possible."""
     native = all(
         channel.is_fmi3 and not channel.description.needs_tool for channel in (oscillator, shaker)
     )
-    kind = CompiledMaster if native and step_function() else Master
+    kind = CompiledMaster if native and load_step_function() else Master
     return kind(oscillator, shaker, structure, scheme, start_time)
 
 
 class CompiledMaster(Master):
-    """Master whose steps are compiled."""
+    """Couple two native FMUs as `Master` does, with steps run in compiled C code."""
 
     def __init__(
         self,
@@ -95,14 +95,15 @@ class CompiledMaster(Master):
         scheme: Scheme,
         start_time: float = 0.0,
     ) -> None:
+        """Prepare the buffers that the C library reads and writes."""
         super().__init__(oscillator, shaker, structure, scheme, start_time)
-        self._run = step_function()
-        self._pair = pair_of(self.oscillator, self.shaker, structure, scheme)
+        self._run = load_step_function()
+        self._pair = fill_pair(self.oscillator, self.shaker, structure, scheme)
         self._memory = array("d", self.get_state())
         self._seen = array("d", bytes(8 * len(PLACES)))
 
     def step(self, voltage: float, h: float | None = None) -> None:
-        """Do one communication interval, as :meth:`.master.Master.step`."""
+        """Run one communication interval at a constant voltage, V."""
         self.run(array("d", (voltage,)), 0, h)
 
     def run(
@@ -112,7 +113,7 @@ class CompiledMaster(Master):
         h: float | None = None,
         kept: np.ndarray | None = None,
     ) -> int:
-        """Do intervals as :meth:`.master.Master.run`; return how many. No array is copied."""
+        """Run communication intervals until a revolution ends; return the next index."""
         buffer = voltages if isinstance(voltages, array) else array("d", voltages)
         if kept is not None:
             rows = len(buffer), len(self._memory)
@@ -123,8 +124,8 @@ class CompiledMaster(Master):
         self.oscillator.begin()
         self.shaker.begin()
         done = self._run(
-            *(byref(self._pair), address(self._memory)),
-            *(address(self._seen) if revolution else None, address(buffer)),
+            *(byref(self._pair), buffer_address(self._memory)),
+            *(buffer_address(self._seen) if revolution else None, buffer_address(buffer)),
             *(first, len(buffer), h or self.scheme.h),
             None if kept is None else kept.ctypes.data,
         )
@@ -137,7 +138,7 @@ class CompiledMaster(Master):
         return int(done)
 
     def _failure(self) -> FmuError:
-        """Return the error of the instance that failed."""
+        """Build the error for the FMU instance whose step failed."""
         pair = self._pair
         for channel, side in ((self.oscillator, pair.oscillator), (self.shaker, pair.shaker)):
             if side.status:
@@ -145,19 +146,19 @@ class CompiledMaster(Master):
         raise AssertionError("a step failed, and none of both sides")
 
     def set_state(self, numbers: Sequence[float]) -> None:
-        """Return to a state, as :meth:`.master.Master.set_state`."""
+        """Restore the master's state, also in the C library's buffer."""
         super().set_state(numbers)
         self._memory[:] = array("d", numbers)
 
 
-def address(numbers: array[float]) -> int:
-    """Return the address of an array of numbers."""
+def buffer_address(numbers: array[float]) -> int:
+    """Return the memory address of an array's first number."""
     return numbers.buffer_info()[0]
 
 
-def pair_of(oscillator: Channel, shaker: Channel, structure: Structure, scheme: Scheme) -> Pair:
-    """Return both instances as the library takes them."""
-    pair = Pair(side_of(oscillator), side_of(shaker))
+def fill_pair(oscillator: Channel, shaker: Channel, structure: Structure, scheme: Scheme) -> Pair:
+    """Fill the C structure with both FMU instances, the structure and the step settings."""
+    pair = Pair(fill_fmu_side(oscillator), fill_fmu_side(shaker))
     for name in ("m1", "m2", "k1", "k2", "d1", "d2", "preload"):
         setattr(pair, name, getattr(structure, name))
     pair.rest_1, pair.rest_2 = structure.at_rest
@@ -171,8 +172,8 @@ def pair_of(oscillator: Channel, shaker: Channel, structure: Structure, scheme: 
     return pair
 
 
-def side_of(channel: Channel) -> FmuSide:
-    """Return one instance; its channel has to live as long."""
+def fill_fmu_side(channel: Channel) -> FmuSide:
+    """Fill the C structure of one FMU instance; keep its channel alive while it is used."""
     pointers = channel.pointers()
     counts = len(pointers.inputs), len(pointers.outputs)
     return FmuSide(

@@ -1,4 +1,4 @@
-"""Controllers: the motor's voltage from its measured speed, within what the source gives.
+"""Control the motor's voltage by its measured speed, within the available voltage.
 
 The schedule says how much voltage there is. A controller takes a part of it, once a communication
 step: it sees the speed at the step's beginning and holds its voltage over the step, as a digital
@@ -19,7 +19,7 @@ ControllerState = tuple[float, ...]
 
 
 class Measurement(NamedTuple):
-    """Measurements that a controller gets at the beginning of a communication step.
+    """Store what a controller measures at the beginning of a communication step.
 
     Attributes
     ----------
@@ -41,34 +41,34 @@ class Measurement(NamedTuple):
 
 @dataclass(frozen=True)
 class Controller(ABC):
-    """Law for the voltage; subclasses define it."""
+    """Define the interface of a control law for the motor's voltage."""
 
     @abstractmethod
     def begin(self, speed: float) -> ControllerState:
-        """Return the controller's initial state, the motor turning with ``speed``, rad/s."""
+        """Return the controller's initial state for a motor at a given speed, rad/s."""
 
     @abstractmethod
     def update(
         self, measured: Measurement, state: ControllerState
     ) -> tuple[float, ControllerState]:
-        """Return the voltage over a step, V, and the controller's state at its end."""
+        """Compute the voltage over one step, V, and the controller's next state."""
 
     def act(self, measured: Measurement, state: ControllerState) -> tuple[float, ControllerState]:
-        """Call :meth:`update`; the old name, deprecated."""
+        """Call `update` under its old, deprecated name."""
         text = "Controller.act is called update now; the old name goes with the next release"
         warnings.warn(text, DeprecationWarning, stacklevel=2)
         return self.update(measured, state)
 
 
-def within(voltage: float, available: float) -> float:
-    """Limit a voltage to between 0 and the one that is available, which may be negative."""
+def limit_voltage(voltage: float, available: float) -> float:
+    """Limit a voltage to the range from 0 to the available voltage, which may be negative."""
     low, high = min(0.0, available), max(0.0, available)
     return min(max(voltage, low), high)
 
 
 @dataclass(frozen=True, kw_only=True)
 class SpeedControl(Controller):
-    """Proportional-integral control of the speed.
+    """Control the speed by a proportional-integral law with a limited voltage.
 
     The voltage is ``gain`` times the deviation w_r - w of the speed and its integral over
     ``reset_time``, between 0 and what the source gives; while that limits it, the integral stands
@@ -103,6 +103,7 @@ class SpeedControl(Controller):
     rise: float = math.inf
 
     def __post_init__(self) -> None:
+        """Check the settings of the controller."""
         check("speed", self.speed, "rad/s")
         check("gain", self.gain, "V.s/rad", low=0.0, exclusive=True)
         for name, unit in (("reset_time", "s"), ("rise", "rad/s2")):
@@ -110,18 +111,18 @@ class SpeedControl(Controller):
                 check(name, getattr(self, name), unit, low=0.0, exclusive=True)
 
     def begin(self, speed: float) -> ControllerState:
-        """Return the controller's state at the start: the first speed wanted, and no integral."""
+        """Return the initial state: the first set speed and a zero integral."""
         return (self.speed if self.rise == math.inf else speed), 0.0
 
     def update(
         self, measured: Measurement, state: ControllerState
     ) -> tuple[float, ControllerState]:
-        """Return proportional and integral part as one limited voltage, V, and the next state."""
+        """Compute the limited proportional-integral voltage, V, and the next state."""
         setpoint, integral = state
         deviation = setpoint - measured.speed
         grown = integral + deviation * measured.h / self.reset_time
         demand = self.gain * (deviation + grown)
-        voltage = within(demand, measured.available)
+        voltage = limit_voltage(demand, measured.available)
         if (
             voltage == demand or (demand - voltage) * deviation < 0.0
         ):  # not limited, or leaving that
@@ -132,7 +133,7 @@ class SpeedControl(Controller):
 
 @dataclass(frozen=True, kw_only=True)
 class SpeedGradient(Controller):
-    """Passage through a resonance with less voltage: the rotor is swung until it gets across.
+    """Swing the rotor so that it passes the resonance with less voltage.
 
     The source is fully on while the rotor turns faster than a running mean of its own speed, else
     only ``low`` of it: always in the sense in which the energy of its slow swinging about that mean
@@ -171,18 +172,19 @@ class SpeedGradient(Controller):
     low: float = 0.0
 
     def __post_init__(self) -> None:
+        """Check the settings of the controller."""
         check("filter_time", self.filter_time, "s", low=0.0, exclusive=True)
         check("passed", self.passed, "rad/s", low=0.0, exclusive=True)
         check("low", self.low, "of the voltage", low=0.0, high=1.0)
 
     def begin(self, speed: float) -> ControllerState:
-        """Return the running mean of the speed."""
+        """Return the initial state: the running mean starts at the present speed."""
         return (speed,)
 
     def update(
         self, measured: Measurement, state: ControllerState
     ) -> tuple[float, ControllerState]:
-        """Return the voltage, V, full while the rotor beats its running mean; and the state."""
+        """Apply full voltage while the speed exceeds its running mean, else a low part."""
         (mean,) = state
         mean -= (measured.speed - mean) * math.expm1(-measured.h / self.filter_time)
         direction = math.copysign(1.0, measured.available)

@@ -1,4 +1,4 @@
-"""The coupled system under a voltage that comes and goes: each revolution of the motor is one row.
+"""Run structure and motor FMUs under a varying voltage and report where the speed jumps.
 
 The steps of a run follow each other. It is cut into chunks; each hands over the states of both FMUs
 and of the master, so an interrupted run goes on with the same bits.
@@ -24,7 +24,6 @@ from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged, own_resonance
 from .controllers import Controller
-from .further_jumps import find_further
 from .held import (
     FOLLOWS,
     MEANINGS,
@@ -35,23 +34,29 @@ from .held import (
     Verdict,
     with_final_chunk,
 )
-from .jump_verdicts import check_against_theory, how_decided, is_doubtful, reason, theories
-from .jumps import JUMP, Passing, SweepLeg, find_passing, stays_beyond, why_none
+from .jump_verdicts import (
+    averaged_predictions,
+    check_against_theory,
+    describe_decision,
+    explain_no_jump,
+)
+from .jumps import JUMP, Passing, time_beyond_threshold
 from .losses import (
     MOST,
     SLOTS,
     THROUGH,
     Loss,
-    as_rows,
-    from_rows,
-    further_columns,
+    drop_known_losses,
+    empty_verdict_rows,
+    further_jump_variables,
     gather_losses,
-    jump_and_further,
-    no_rows,
-    outcomes,
-    without_known,
+    loss_verdicts,
+    pick_jump,
+    verdicts_from_rows,
+    verdicts_to_rows,
 )
 from .master import Scheme
+from .ramp_record import UPWARD, RampRecord
 from .revolutions import COLUMNS
 from .run import CoupledRun, Run, begin_run
 from .schedule import Constant, Ramp, Schedule, check
@@ -63,39 +68,32 @@ if TYPE_CHECKING:
 MAX_STEPS = 1e9  # more is a typing error: it would run for weeks
 TOLERANCE = 1e-8  # of the step control: errors of the displacements are about ten times as large
 LONGEST, FIXED = 0.4, 0.1  # steps with the control and without, in 1/omega
-LAST_REVOLUTIONS = 20  # of a ramp: their mean speed is where it ends
-LATE = 3.0  # of the rotor's time 1/b: how much later a ramp may show what it loses
-UPWARD = (True, False)  # ways: whether the voltage rises
 HOLD, HOLD_OF_ROTOR = 4000.0, 200.0  # usual longest hold: in 1/omega, and in the rotor's time 1/b
 
 
 @dataclass(frozen=True)
 class CoupleJob(CoupledRun):
-    """Run of the coupled system as a job, a chunk of steps after the other."""
+    """Run the coupled FMUs in chunks of steps; test doubtful jumps by holding voltages."""
 
     chunk_size: ClassVar[int] = 4_000
     sequential: ClassVar[bool] = True
     has_final_chunk: ClassVar[bool] = True
     item: ClassVar[str] = "step"
 
-    def steps(self) -> int:
-        """Return the number of communication steps."""
-        return math.ceil(self.schedule.duration / self.scheme.h - 1e-9)
-
     def count(self) -> int:
-        """Return the number of steps, and one for the verdicts on the jumps."""
+        """Return the number of items: all communication steps and one held-voltage test."""
         return self.steps() + 1
 
     def items(self, inputs: Inputs) -> Sequence[int]:
-        """Return the steps, and one more for the verdicts."""
+        """Return the item indices: all communication steps, then the held-voltage test."""
         return range(self.count())
 
     def chunks(self) -> list[Chunk]:
-        """Return chunks of steps; the verdicts are a chunk of their own."""
+        """Split the items into chunks; the held-voltage test is its own last chunk."""
         return with_final_chunk(super().chunks())
 
     def run_here(self, fmus: Mapping[str, Path]) -> Table:
-        """Compute the whole run in this process."""
+        """Run all chunks one after the other in this process and join their tables."""
         chunks: list[Table] = []
         for chunk in self.chunks():
             previous = chunks[-1] if chunks else None
@@ -105,7 +103,7 @@ class CoupleJob(CoupledRun):
         return concatenate_tables(chunks)
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
-        """Compute a chunk of steps, or the verdicts at the end."""
+        """Compute one chunk of communication steps, or the held-voltage test at the end."""
         return self.work_on(fmus, items, previous, self.chunk_size, lambda run: run.revolve(items))
 
     def work_on(
@@ -116,7 +114,7 @@ class CoupleJob(CoupledRun):
         every: int,
         revolve: Callable[[Run], Table],
     ) -> Table:
-        """Compute a chunk of steps, with all that the next one needs; or the verdicts at the end.
+        """Compute one chunk with a given stepping function and return its final state too.
 
         Parameters
         ----------
@@ -130,18 +128,18 @@ class CoupleJob(CoupledRun):
         if items[0] == self.steps():
             assert previous is not None
             nothing = {name: values[:0] for name, values in previous.items()}
-            return {**nothing, **self.verdicts(fmus, previous, every)}
+            return {**nothing, **self.run_held_voltage_tests(fmus, previous, every)}
         with begin_run(self, fmus) as run:
             if previous is not None:
                 run.set_state(previous)
-            return {**revolve(run), **run.get_state(), **no_verdicts()}
+            return {**revolve(run), **run.get_state(), **empty_verdicts()}
 
     def progress_note(self, first: int) -> str:
-        """Return the note that the progress bar shows during the held-voltage test."""
+        """Return the progress bar's note for the chunk of the held-voltage test."""
         return "voltages held where a jump is in doubt" if first == self.steps() else ""
 
-    def verdicts(self, fmus: Mapping[str, Path], table: Table, every: int) -> Table:
-        """Run the held-voltage test where the record does not decide; return what is stored.
+    def run_held_voltage_tests(self, fmus: Mapping[str, Path], table: Table, every: int) -> Table:
+        """Hold voltages where the ramp's record leaves a jump in doubt; return verdicts.
 
         Parameters
         ----------
@@ -150,33 +148,35 @@ class CoupleJob(CoupledRun):
             Revolutions, and the states after ``every`` steps each.
         every : int
         """
-        doubts = [self.doubt(table, up) for up in UPWARD]
-        places = [self.further_places(table, up) for up in UPWARD]
-        verdicts, further = [Verdict(NOT_ASKED)] * len(doubts), [no_rows()] * len(doubts)
+        record = RampRecord(self, table)
+        doubts = [record.doubtful_passing(up) for up in UPWARD]
+        places = [record.find_further_passings(up) for up in UPWARD]
+        verdicts, further = [Verdict(NOT_ASKED)] * len(doubts), [empty_verdict_rows()] * len(doubts)
         if not any(doubts) and not any(places):
-            return stored_verdicts(verdicts, further)
+            return pack_verdicts(verdicts, further)
         structure, drive = self.structure, self.drive
         threshold = own_resonance.dividing_speed(structure, drive)
         resonance = own_resonance.dividing_speeds(structure, drive)
         with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
 
-            def begin(schedule: Schedule) -> Run:
+            def start_run(schedule: Schedule) -> Run:
+                """Reset both FMU instances and start a run with another voltage schedule."""
                 for instance in (oscillator, shaker):
                     instance.reset()
                 return Run(replace(self, schedule=schedule), oscillator, shaker)
 
             units = (self.scheme.h, structure.omega, drive.volts(structure))
-            test = HeldVoltageTest(begin, self.schedule, *units, self.hold)
+            test = HeldVoltageTest(start_run, self.schedule, *units, self.hold)
             test.add_checkpoints(table, every, self.steps())
             for i, doubt in enumerate(doubts):
                 course = HeldCourse(Verdict(NOT_ASKED))
                 if doubt is not None:
                     course = test.classify(*doubt, threshold, UPWARD[i], resonance)
                 verdicts[i] = course.verdict
-                further[i] = self.further_verdicts(test, table, course, places[i], UPWARD[i])
-        return stored_verdicts(verdicts, further)
+                further[i] = self.run_further_tests(test, table, course, places[i], UPWARD[i])
+        return pack_verdicts(verdicts, further)
 
-    def further_verdicts(
+    def run_further_tests(
         self,
         test: HeldVoltageTest,
         table: Table,
@@ -184,9 +184,10 @@ class CoupleJob(CoupledRun):
         places: Sequence[Passing],
         up: bool,
     ) -> np.ndarray:
-        """Hold voltages at further places of the record, less those that are clear or held."""
-        found = [(THROUGH, verdict) for verdict in course.further]
-        known, volts = outcomes(course), self.drive.volts(self.structure)
+        """Hold voltages where the record suggests further jumps; return verdicts."""
+        record = RampRecord(self, table)
+        results = [(THROUGH, verdict) for verdict in course.further]
+        known, volts = loss_verdicts(course), self.drive.volts(self.structure)
         sign = 1.0 if up else -1.0
         crossed = sorted(known, key=lambda verdict: sign * verdict.low)[:-1]  # before the passing
         Omega = np.abs(table["speed"]) / self.structure.omega
@@ -196,80 +197,19 @@ class CoupleJob(CoupledRun):
                 continue
             if crossed and sign * (table["voltage"][passing.after] - crossed[0].low) > 0.0:
                 crossed = crossed[1:]
-                found.append((place, Verdict(NOT_ASKED)))  # the course has met what is seen here
+                results.append((place, Verdict(NOT_ASKED)))  # the course has met what is seen here
                 continue
             middle = float(Omega[ends].mean())
             held = test.for_further_jumps().classify(
-                *self.by_steps(table, self.earlier(table, passing, up), up), middle, up
+                *record.to_steps(record.begin_earlier(passing, up), up), middle, up
             )
-            told = without_known(outcomes(held), known, volts)
-            known += told
-            found += [(place, verdict) for verdict in told or [Verdict(FOLLOWS)]]
-        return as_rows(found)
-
-    def earlier(self, table: Table, passing: Passing, up: bool) -> Passing:
-        """Return a place that begins before: a ramp shows late that a motion is lost."""
-        time, rows = table["time"], self.sweep_leg(table, up)[1]
-        late = LATE / (self.drive.b(self.structure) * self.structure.omega)
-        before = max(int(np.searchsorted(time, time[passing.before] - late)) - 1, int(rows[0]))
-        return passing._replace(before=min(before, passing.before))
-
-    def further_places(self, table: Table, up: bool) -> list[Passing]:
-        """Return where else a motion may be lost in a direction, by rows of the table."""
-        leg, rows = self.sweep_leg(table, up)
-        if self.control or not rows.size:
-            return []
-        divide = own_resonance.dividing_speed(self.structure, self.drive)
-        main, b = self.passing(table, up), self.drive.b(self.structure)
-        places = []
-        for part in np.split(np.arange(len(rows)), np.flatnonzero(np.diff(rows) > 1) + 1):
-            first = int(rows[part[0]])
-            span = None if main is None else (main.before - first, main.after - first)
-            one_ramp = SweepLeg(*(values[part] for values in leg))
-            places += [
-                Passing(row + first, before + first, after + first, look, half + first)
-                for row, before, after, look, half in find_further(one_ramp, b, up, divide, span)
-            ]
-        return places
-
-    def sweep_leg(self, table: Table, up: bool) -> tuple[SweepLeg, np.ndarray]:
-        """Return the revolutions on which the voltage goes up or down, and their row indices."""
-        eta0 = np.abs(table["voltage"]) / self.drive.volts(self.structure)
-        Omega = np.abs(table["speed"]) / self.structure.omega
-        trend = self.schedule.trend(table["time"])
-        rows = np.flatnonzero(trend > 0 if up else trend < 0)
-        return SweepLeg(table["time"][rows] * self.structure.omega, eta0[rows], Omega[rows]), rows
-
-    def passing(self, table: Table, up: bool) -> Passing | None:
-        """Return how the speed passes the resonance, by rows of the table; None if it does not."""
-        leg, rows = self.sweep_leg(table, up)
-        divide = own_resonance.dividing_speed(self.structure, self.drive)
-        rows_in_leg = find_passing(leg, self.drive.b(self.structure), up, divide)
-        if rows_in_leg is None:
-            return None
-        row, before, after = (int(rows[index]) for index in rows_in_leg[:3])
-        half = float(np.interp(rows_in_leg.half, np.arange(len(rows)), rows))
-        return Passing(row, before, after, rows_in_leg.look, half)
-
-    def doubt(self, table: Table, up: bool) -> tuple[Passing, tuple[int, int]] | None:
-        """Return a doubtful passing, and first and last step of its sweep; None if it is clear."""
-        passing = None if self.control else self.passing(table, up)
-        theory = theories(self.structure, self.drive)[UPWARD.index(up)]
-        if passing is None or not is_doubtful(passing, self.structure.bonded, theory):
-            return None
-        return self.by_steps(table, passing, up)
-
-    def by_steps(self, table: Table, passing: Passing, up: bool) -> tuple[Passing, tuple[int, int]]:
-        """Return a passing by steps of the run, and first and last step of its sweep."""
-        rows = self.sweep_leg(table, up)[1]
-        times = table["time"][[*passing[:3], rows[0], rows[-1]]]
-        row, before, after, first, last = (
-            min(math.ceil(time / self.scheme.h), self.steps() - 1) for time in times
-        )
-        return Passing(row, before, after, passing.look, float(row)), (first, last)
+            new_verdicts = drop_known_losses(loss_verdicts(held), known, volts)
+            known += new_verdicts
+            results += [(place, verdict) for verdict in new_verdicts or [Verdict(FOLLOWS)]]
+        return verdicts_to_rows(results)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return all revolutions and the jumps up and down as a dataset with units.
+        """Build the dataset of all revolutions, of the jumps and of their verdicts.
 
         Raises
         ------
@@ -299,12 +239,12 @@ class CoupleJob(CoupledRun):
             ),
             "Omega": ("revolution", Omega, {"units": "1", "long_name": "mean speed over omega"}),
         }
-        divide = own_resonance.dividing_speed(self.structure, self.drive)
+        threshold = own_resonance.dividing_speed(self.structure, self.drive)
         text = "time from which the mean speed stays beyond the resonance; NaN where it does not"
-        passed = stays_beyond(table["time"], np.abs(Omega), divide)
+        passed = time_beyond_threshold(table["time"], np.abs(Omega), threshold)
         variables["passage_time"] = ((), passed, {"units": "s", "long_name": text})
         dataset = xr.Dataset(
-            {**variables, **self.jumps(table)}, coordinates, self.attributes(table)
+            {**variables, **self.all_jump_variables(table)}, coordinates, self.attributes(table)
         )
         names = {"long_name": "direction in which the speed jumps"}
         places = {"units": "1", "long_name": "place of a further jump, in the ramp's order"}
@@ -313,61 +253,72 @@ class CoupleJob(CoupledRun):
             order=("order", np.arange(1, SLOTS + 1), places),
         )
 
-    def jumps(self, table: Table) -> dict[str, Variable]:
-        """Return the jumps up and down, or why there is none; if bonded, with the theory's."""
+    def all_jump_variables(self, table: Table) -> dict[str, Variable]:
+        """Build the variables of the jump in each direction, or the reason for none."""
         held = [Verdict(int(row[0]), *row[1:]) for row in table["verdicts"][-1]]
-        theory = theories(self.structure, self.drive)
-        found = [self.losses(table, i, held[i]) for i in range(len(UPWARD))]
-        told = [
-            jump_and_further(*pair, 1.0 if up else -1.0)
-            for pair, up in zip(found, UPWARD, strict=True)
+        theory = averaged_predictions(self.structure, self.drive)
+        losses = [self.collect_losses(table, i, held[i]) for i in range(len(UPWARD))]
+        jump_and_further = [
+            pick_jump(*pair, 1.0 if up else -1.0) for pair, up in zip(losses, UPWARD, strict=True)
         ]
-        jumps = [first.passing if first and first.is_sure else None for first, _ in told]
-        final = [first.verdict if first else held[i] for i, (first, _) in enumerate(told)]
-        columns = jump_columns(table, jumps)
-        columns |= self.theory(np.array(columns["jumps"][1], dtype=float))
+        jumps = [
+            first.passing if first and first.is_sure else None for first, _ in jump_and_further
+        ]
+        final = [
+            first.verdict if first else held[i] for i, (first, _) in enumerate(jump_and_further)
+        ]
+        columns = jump_variables(table, jumps)
+        columns |= self.theory_variables(np.array(columns["jumps"][1], dtype=float))
         reasons = []
-        for i, (first, _) in enumerate(told):
+        for i, (first, _) in enumerate(jump_and_further):
             if first is None:
-                reasons.append(self.why_none(table, UPWARD[i]))
+                reasons.append(RampRecord(self, table).explain_no_passing(UPWARD[i]))
             elif jumps[i] is None:
-                ends = self.ends_within(table, UPWARD[i]) if held[i].outcome == UNDECIDED else ""
+                ends = (
+                    RampRecord(self, table).explain_short_sweep(UPWARD[i])
+                    if held[i].outcome == UNDECIDED
+                    else ""
+                )
                 reasons.append(
-                    ends or reason(first.passing, held[i], final[i], theory[i], self.hold)
+                    ends or explain_no_jump(first.passing, held[i], final[i], theory[i], self.hold)
                 )
             else:
                 reasons.append("")
         decided = [
-            how_decided(first and first.passing, final[i]) for i, (first, _) in enumerate(told)
+            describe_decision(first and first.passing, final[i])
+            for i, (first, _) in enumerate(jump_and_further)
         ]
         columns["no_jump"] = ("jump", reasons, {"long_name": "why there is no jump"})
         columns["decided"] = ("jump", decided, {"long_name": "how jump or none was told"})
-        columns |= further_columns(table, [further for _, further in told])
-        return columns | held_columns(final)
+        columns |= further_jump_variables(table, [further for _, further in jump_and_further])
+        return columns | held_voltage_variables(final)
 
-    def losses(self, table: Table, i: int, primary: Verdict) -> tuple[Loss | None, list[Loss]]:
-        """Return the passing of the resonance in a direction, and all other losses there."""
+    def collect_losses(
+        self, table: Table, i: int, primary: Verdict
+    ) -> tuple[Loss | None, list[Loss]]:
+        """Collect all losses of stability in a direction; that at the resonance first."""
         if self.control:
             return None, []
         up, volts = UPWARD[i], self.drive.volts(self.structure)
-        further = from_rows(table["further_verdicts"][-1, i])
+        further = verdicts_from_rows(table["further_verdicts"][-1, i])
         if self.structure.bonded:
-            theory = theories(self.structure, self.drive)[i]
+            theory = averaged_predictions(self.structure, self.drive)[i]
             primary = check_against_theory(primary, theory, volts)
             further = [
                 (place, check_against_theory(verdict, theory, volts)) for place, verdict in further
             ]
-        rows, places = self.sweep_leg(table, up)[1], self.further_places(table, up)
-        return gather_losses(table, rows, self.passing(table, up), primary, places, further)
+        record = RampRecord(self, table)
+        rows, places = record.sweep_leg(up)[1], record.find_further_passings(up)
+        return gather_losses(table, rows, record.resonance_passing(up), primary, places, further)
 
-    def theory(self, jumps: np.ndarray) -> dict[str, Variable]:
-        """Return where and by what the averaged theory loses the bonded structure's motion."""
+    def theory_variables(self, jumps: np.ndarray) -> dict[str, Variable]:
+        """Build the variables that compare bonded jumps with the averaged theory."""
         structure, volts = self.structure, self.drive.volts(self.structure)
         text = "how late the jump comes on the ramp, by the averaged theory (bonded only)"
         late = {"units": "V", "long_name": text}
         if not structure.bonded:
             return {"jump_lag": ("jump", [math.nan, math.nan], late)}
-        points = averaged.losses(structure, self.drive)
+        points = averaged.stability_limits(structure, self.drive)
         ends = [volts * point.eta0 if point else math.nan for point in points]
         kinds = [point.kind if point else "" for point in points]
         text = "voltage at which the motion is lost, by the averaged theory"
@@ -377,30 +328,11 @@ class CoupleJob(CoupledRun):
             "jump_lag": ("jump", (jumps - ends).tolist(), late),
         }
 
-    def why_none(self, table: Table, up: bool) -> str:
-        """Return why the speed does not pass the resonance for good in a direction."""
-        if self.control:
-            return "a controller sets the voltage"
-        resonance = own_resonance.resonance(self.structure, self.drive)
-        return why_none(self.sweep_leg(table, up)[0], up, resonance)
-
-    def ends_within(self, table: Table, up: bool) -> str:
-        """Return why a direction is undecided: the sweep ends short of a resonance; else empty."""
-        leg, rows = self.sweep_leg(table, up)
-        low, high = own_resonance.dividing_speeds(self.structure, self.drive)
-        end = float(leg.Omega[-LAST_REVOLUTIONS:].mean())
-        if low == high or (end > high if up else end < low):
-            return ""
-        volts, beyond = float(table["voltage"][rows[-1]]), high if up else low
-        return (
-            f"undecided: the voltage goes to {volts:.5g} V only, which does not take the speed "
-            "past both resonances, the bonded structure's and the delaminated one's own; expected "
-            f"one that takes it {'above' if up else 'below'} "
-            f"{beyond * self.structure.omega:.5g} rad/s"
-        )
-
     def attributes(self, table: Table) -> dict[str, str | float]:
-        """Return the title, and what the coupling has lost of the motor's work."""
+        """Return the dataset's title and the relative energy errors of the coupling.
+
+        ``missing_over_motor_work`` is the energy defect of the master over the motor's work.
+        """
         state = "bonded" if self.structure.bonded else "delaminated"
         motor = float(table["motor"][-1])
         return {
@@ -410,18 +342,18 @@ class CoupleJob(CoupledRun):
         }
 
 
-def no_verdicts() -> Table:
-    """Return empty arrays: chunks of steps have no held-voltage results."""
+def empty_verdicts() -> Table:
+    """Return empty verdict arrays, for chunks that consist of communication steps."""
     return {
         name: values[:0]
-        for name, values in stored_verdicts(
-            [Verdict(NOT_ASKED)] * len(UPWARD), [no_rows()] * len(UPWARD)
+        for name, values in pack_verdicts(
+            [Verdict(NOT_ASKED)] * len(UPWARD), [empty_verdict_rows()] * len(UPWARD)
         ).items()
     }
 
 
-def stored_verdicts(verdicts: Sequence[Verdict], further: Sequence[np.ndarray]) -> Table:
-    """Return the verdicts on the passings, and those on further places, as they are stored."""
+def pack_verdicts(verdicts: Sequence[Verdict], further: Sequence[np.ndarray]) -> Table:
+    """Pack the verdicts at the resonance and the further ones into arrays to store."""
     return {
         "verdicts": np.array(verdicts, dtype=float)[np.newaxis],
         "further_verdicts": np.array(further)[np.newaxis],
@@ -429,12 +361,12 @@ def stored_verdicts(verdicts: Sequence[Verdict], further: Sequence[np.ndarray]) 
 
 
 def concatenate_tables(tables: Sequence[Table]) -> Table:
-    """Concatenate the tables of chunks."""
+    """Join the tables of successive chunks."""
     return {name: np.concatenate([part[name] for part in tables]) for name in tables[0]}
 
 
-def held_columns(verdicts: Sequence[Verdict]) -> dict[str, Variable]:
-    """Return the results of the held-voltage test, and between which voltages."""
+def held_voltage_variables(verdicts: Sequence[Verdict]) -> dict[str, Variable]:
+    """Build the variables of the held-voltage verdicts and of the voltage brackets."""
     codes = [int(verdict.outcome) for verdict in verdicts]
     middles = [0.5 * (verdict.low + verdict.high) for verdict in verdicts]
     errors = [0.5 * abs(verdict.high - verdict.low) for verdict in verdicts]
@@ -447,10 +379,11 @@ def held_columns(verdicts: Sequence[Verdict]) -> dict[str, Variable]:
     }
 
 
-def jump_columns(table: Table, jumps: Sequence[Passing | None]) -> dict[str, Variable]:
-    """Return voltage, speed, amplitude and rate at jumps; NaN where there is none."""
+def jump_variables(table: Table, jumps: Sequence[Passing | None]) -> dict[str, Variable]:
+    """Build the variables of voltage, time, speed and amplitude at each jump."""
 
-    def at(name: str, row_name: str) -> list[float]:
+    def interpolated(name: str, row_name: str) -> list[float]:
+        """Interpolate one column of the table at each jump; NaN without a jump."""
         values = table[name]
         return [
             math.nan
@@ -460,6 +393,7 @@ def jump_columns(table: Table, jumps: Sequence[Passing | None]) -> dict[str, Var
         ]
 
     def rate(jump: Passing | None) -> float:
+        """Return the mean rate of the voltage across a jump, V/s."""
         if jump is None:
             return math.nan
         ends = [jump.before, jump.after]
@@ -475,7 +409,7 @@ def jump_columns(table: Table, jumps: Sequence[Passing | None]) -> dict[str, Var
         "jump_amplitude_after": ("amplitude", "after", "m", "amplitude after the jump"),
     }
     columns: dict[str, Variable] = {
-        key: ("jump", at(name, row_name), {"units": unit, "long_name": text})
+        key: ("jump", interpolated(name, row_name), {"units": unit, "long_name": text})
         for key, (name, row_name, unit, text) in wanted.items()
     }
     text = "change of the voltage per time during the jump"
@@ -484,12 +418,12 @@ def jump_columns(table: Table, jumps: Sequence[Passing | None]) -> dict[str, Var
 
 
 def require_motor(drive: Drive) -> None:
-    """Check that a voltage turns the motor."""
+    """Raise an error if the drive has no motor constant."""
     if not drive.motor_constant > 0.0:
         raise InputError(f"motor_constant = {drive.motor_constant} N.m/A: expected a number > 0")
 
 
-def schedule_of(
+def schedule_from_arguments(
     structure: Structure,
     drive: Drive,
     voltage: float | tuple[float, float] | Schedule,
@@ -500,7 +434,7 @@ def schedule_of(
     back: bool = True,
     spin_up: float | None = None,
 ) -> Schedule:
-    """Return a schedule from the arguments of :func:`couple`."""
+    """Build the voltage schedule from the arguments of :func:`couple`."""
     if isinstance(voltage, Schedule):
         return voltage
     try:
@@ -527,14 +461,14 @@ def schedule_of(
     return replace(ramp, spin_up=float(spin_up), low=low) if spin_up else ramp
 
 
-def scheme_of(
+def scheme_from_arguments(
     structure: Structure,
     step: float | None,
     algorithm: str = "rollback",
     tolerance: float | None = None,
     sampled: bool = False,
 ) -> Scheme:
-    """Return a scheme from arguments of :func:`couple`; ``sampled``: each step is a sample."""
+    """Choose algorithm, communication step and tolerance from :func:`couple` arguments."""
     omega = structure.omega
     if tolerance is None:
         controlled = step is None and Scheme(algorithm).goes_back
@@ -556,7 +490,7 @@ def couple_job(
     control: Controller | None = None,
     hold: float | None = None,
 ) -> CoupleJob:
-    """Return the job of a run with this schedule.
+    """Check the arguments of a coupled run and build its job.
 
     Raises
     ------
@@ -725,7 +659,7 @@ def couple(
     if spin_up is None and speed_start is not None:
         spin_up = 0.0
     settings = (duration, rate, settle, increment, back, spin_up)
-    schedule = schedule_of(structure, drive, voltage, *settings)
-    scheme = scheme_of(structure, step, algorithm, tolerance, control is not None)
+    schedule = schedule_from_arguments(structure, drive, voltage, *settings)
+    scheme = scheme_from_arguments(structure, step, algorithm, tolerance, control is not None)
     job = couple_job(structure, drive, schedule, scheme, speed_start, control, hold)
     return answer(job, running, finder(running))

@@ -1,4 +1,4 @@
-"""Many coupled runs at once: sets, rates, bonded and delaminated, shared out by the one runner.
+"""Run many coupled systems side by side: several systems, ramp rates, bonded or not.
 
 Each run is a job of its own: with a folder as store it is a file of its own there, goes on where it
 was interrupted, and is not computed again by a later call with more sets or rates.
@@ -20,7 +20,13 @@ from ..running.runner import gather
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged, own_resonance
-from .couple import CoupleJob, couple_job, require_motor, schedule_of, scheme_of
+from .couple import (
+    CoupleJob,
+    couple_job,
+    require_motor,
+    schedule_from_arguments,
+    scheme_from_arguments,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -33,8 +39,8 @@ BELOW, BEYOND, PAST = 0.97, 1.05, 0.05  # speeds over the resonance; voltage pas
 System = tuple[Structure, Drive]
 
 
-def ends_of(structure: Structure, drive: Drive) -> tuple[float, float]:
-    """Return voltages over K omega, by the averaged theory: below all resonances, and past all."""
+def voltage_range(structure: Structure, drive: Drive) -> tuple[float, float]:
+    """Return the two ends of the voltage ramp, over K omega, from below to past resonance."""
     low, high = own_resonance.resonances(structure, drive)
     first, last = (
         float(averaged.no_load_speed(structure, drive, speed))
@@ -44,7 +50,7 @@ def ends_of(structure: Structure, drive: Drive) -> tuple[float, float]:
     return first, max([last, *(fold.eta0 + PAST for fold in folds)])
 
 
-def job_of(
+def couple_job_from_numbers(
     name: str,
     system: System,
     kind: str,
@@ -53,16 +59,16 @@ def job_of(
     back: bool,
     step: float | None,
 ) -> CoupleJob:
-    """Return the coupled run of one system, kind and rate, from non-dimensional numbers."""
+    """Build the job of one coupled run from non-dimensional voltages and rate."""
     structure, drive = system
     structure = structure.as_bonded() if kind == "bonded" else structure.as_delaminated()
     require_motor(drive)
     volts, omega = drive.volts(structure), structure.omega
-    first, last = ends_of(structure.as_bonded(), drive) if eta0 is None else eta0
-    schedule = schedule_of(
+    first, last = voltage_range(structure.as_bonded(), drive) if eta0 is None else eta0
+    schedule = schedule_from_arguments(
         structure, drive, (first * volts, last * volts), rate=rate * volts * omega, back=back
     )
-    scheme = scheme_of(structure, None if step is None else step / omega)
+    scheme = scheme_from_arguments(structure, None if step is None else step / omega)
     job = couple_job(structure, drive, schedule, scheme)
     return replace(job, name=f"couple_{name}_{kind}_{rate:g}")
 
@@ -77,7 +83,7 @@ def couple_all(
     step: float | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Couple many structures with their motors, at many rates, side by side.
+    """Couple many structures with their motors, at many ramp rates, side by side.
 
     Parameters
     ----------
@@ -129,14 +135,19 @@ def couple_all(
         if not (math.isfinite(rate) and rate > 0.0):
             raise InputError(f"rate = {rate}: expected a number > 0, of eta0 in a time 1/omega")
     runs = list(product(systems, kinds, dict.fromkeys(rates)))
-    jobs = [job_of(name, systems[name], kind, rate, eta0, back, step) for name, kind, rate in runs]
+    jobs = [
+        couple_job_from_numbers(name, systems[name], kind, rate, eta0, back, step)
+        for name, kind, rate in runs
+    ]
     if not jobs:
         raise InputError("kinds, rates: expected one of each, or more")
-    found = [
+    datasets = [
         run.assign_coords(eta0=run.eta0.reset_coords(drop=True), Omega=run.Omega)
         for run in gather(jobs, running, finder(running))
     ]
-    result = xr.concat(found, "run", join="outer", combine_attrs="drop_conflicts", data_vars="all")
+    result = xr.concat(
+        datasets, "run", join="outer", combine_attrs="drop_conflicts", data_vars="all"
+    )
     texts = ("name of the set", "structure", "change of the no-load speed over omega per 1/omega")
     units = (None, None, "1")
     for position, name in enumerate(("system", "structure", "rate")):

@@ -1,4 +1,4 @@
-"""Branches of the coupled system: its stationary motions round all folds, stable and unstable.
+"""Trace the branches of stationary motions of the weak drive, round folds, with stability.
 
 Each point is a periodic motion of structure and motor together, the fluctuation of the speed
 included, with the voltage that holds it and its Floquet multipliers. Where the voltage is largest
@@ -69,7 +69,7 @@ Leg = BranchSegment[Motion]
 
 @dataclass(frozen=True)
 class DriveBranchJob(Job):
-    """Branches of both structures; attributes are as in :func:`orchestrate.drive_branch`."""
+    """Trace the branches of the bonded and the delaminated structure."""
 
     structure: Structure
     drive: Drive
@@ -84,42 +84,46 @@ class DriveBranchJob(Job):
     item: ClassVar[str] = "branch"
 
     def count(self) -> int:
-        """Return two: bonded and delaminated."""
+        """Return the number of structures: bonded and delaminated."""
         return len(STRUCTURES)
 
     def items(self, inputs: Inputs) -> Sequence[Structure]:
-        """Return both structures."""
+        """Return the structure as bonded and as delaminated."""
         return self.structure.as_bonded(), self.structure.as_delaminated()
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Structure], previous: Table | None
     ) -> Table:
-        """Trace the branches of some structures: each a row of legs, NaN beyond a leg's end."""
+        """Trace all legs of each structure and return them as arrays padded with NaN."""
         rows = []
         for structure in items:
             with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
-                rows.append(self.legs((oscillator, shaker), structure))
-        at = [[[each.point for each in leg.bifurcations] for leg in legs] for legs in rows]
+                rows.append(self.trace_legs((oscillator, shaker), structure))
+        bifurcations = [
+            [[each.point for each in leg.bifurcations] for leg in legs] for legs in rows
+        ]
         return {
-            "points": np.array([[self.numbers(leg.points) for leg in legs] for legs in rows]),
-            "events": np.array([[self.numbers(motions) for motions in legs] for legs in at]),
-            "kinds": np.array([[self.codes(leg) for leg in legs] for legs in rows]),
+            "points": np.array([[self.motion_table(leg.points) for leg in legs] for legs in rows]),
+            "events": np.array(
+                [[self.motion_table(motions) for motions in legs] for legs in bifurcations]
+            ),
+            "kinds": np.array([[self.bifurcation_codes(leg) for leg in legs] for legs in rows]),
             "ends": np.array([[ENDS.index(leg.end) for leg in legs] for legs in rows]),
         }
 
     @property
     def settings(self) -> ContinuationSettings:
-        """Settings of the tracer, which does not count the start as a point."""
+        """Return the continuation settings: longest step and number of points."""
         return ContinuationSettings(self.longest, self.most - 1)
 
     def max_turns(self, structure: Structure) -> int:
-        """Return the largest period that is followed, in revolutions."""
+        """Return the longest period that is traced, in revolutions."""
         return 1 if structure.bonded else self.period
 
-    def legs(self, fmus: tuple[Instance, Instance], structure: Structure) -> list[Leg]:
-        """Trace the branch from the lowest speed; from the highest too where that one ends before.
+    def trace_legs(self, fmus: tuple[Instance, Instance], structure: Structure) -> list[Leg]:
+        """Trace the branch from the lowest speed, and from the highest if needed.
 
-        Then those of twice the period, off the first doublings of both.
+        Then legs of twice the period are traced from the first period doublings of both.
         """
         omega, drive = structure.omega, self.drive
         low, high = (speed / omega for speed in self.speeds)
@@ -127,32 +131,34 @@ class DriveBranchJob(Job):
         length = float(sizes.max()) * drive.length
         turns = self.max_turns(structure)
         shooter = Shooter(fmus, structure, drive, turns, self.steps, length)
-        below = self.leg(shooter, (low, high), up=True)
-        passed = below.end == LIMIT and below.points[-1].place[1] > 0.5 * (low + high)
-        above = Leg(end=NOT_BEGUN) if passed else self.leg(shooter, (low, high), up=False)
+        below = self.trace_leg(shooter, (low, high), up=True)
+        passed = below.end == LIMIT and below.points[-1].coordinates[1] > 0.5 * (low + high)
+        above = Leg(end=NOT_BEGUN) if passed else self.trace_leg(shooter, (low, high), up=False)
         legs = [below, above]
         for leg in (below, above):
             for flip in leg.bifurcations:
-                if len(legs) < len(LEGS) and self.is_to_double(flip, legs, turns):
-                    legs.append(self.doubled_leg(shooter, flip.point, (low, high)))
+                if len(legs) < len(LEGS) and self.needs_doubled_leg(flip, legs, turns):
+                    legs.append(self.trace_doubled_leg(shooter, flip.point, (low, high)))
         return [*legs, *(Leg(end=NOT_BEGUN) for _ in LEGS[len(legs) :])]
 
-    def is_to_double(self, flip: Bifurcation[Motion], legs: Sequence[Leg], turns: int) -> bool:
-        """Return whether a branch of twice the period begins here that is not traced yet."""
+    def needs_doubled_leg(self, flip: Bifurcation[Motion], legs: Sequence[Leg], turns: int) -> bool:
+        """Return whether a period doubling starts a leg that is not traced yet."""
         if flip.kind != FLIP or 2 * flip.point.period.revolutions > turns:
             return False
-        ends = [leg.points[-1].place for leg in legs if leg.end == HALVED]
-        return not any(np.abs(flip.point.place - end).max() < 2.0 * self.longest for end in ends)
+        ends = [leg.points[-1].coordinates for leg in legs if leg.end == HALVED]
+        return not any(
+            np.abs(flip.point.coordinates - end).max() < 2.0 * self.longest for end in ends
+        )
 
-    def doubled_leg(self, shooter: Shooter, flip: Motion, speeds: tuple[float, float]) -> Leg:
-        """Trace the branch of twice the period off a period doubling."""
+    def trace_doubled_leg(self, shooter: Shooter, flip: Motion, speeds: tuple[float, float]) -> Leg:
+        """Trace the leg of twice the period from a period doubling."""
         try:
             return trace_branch(shooter, double_period(shooter, flip), speeds, self.settings)
         except NoConvergenceError:
             return Leg(end=NO_START)
 
-    def leg(self, shooter: Shooter, speeds: tuple[float, float], up: bool) -> Leg:
-        """Trace the branch from one of two speeds over omega, at which a simulation is held.
+    def trace_leg(self, shooter: Shooter, speeds: tuple[float, float], up: bool) -> Leg:
+        """Trace one leg from the lowest or the highest speed, begun by simulation.
 
         It is traced with the shortest period after which its first motion repeats.
         """
@@ -174,26 +180,26 @@ class DriveBranchJob(Job):
             return Leg(end=NO_START)
         return trace_branch(shooter, start, speeds, self.settings)
 
-    def numbers(self, motions: Sequence[Motion]) -> np.ndarray:
-        """Return the columns of motions, padded with NaN, shape (most, numbers)."""
+    def motion_table(self, motions: Sequence[Motion]) -> np.ndarray:
+        """Convert motions to a table of speed, voltage, amplitude and multipliers."""
         table = np.full((self.most, len(COLUMNS) + MULTIPLIERS), np.nan, dtype=complex)
         volts, omega = self.drive.volts(self.structure), self.structure.omega
         for row, motion in zip(table, motions, strict=False):
-            voltage, speed = motion.place
+            voltage, speed = motion.coordinates
             turns = motion.period.revolutions
             sizes = motion.period.amplitude, motion.period.impacts / turns, turns
             row[:] = [speed * omega, voltage * volts, *sizes, *motion.multipliers[:MULTIPLIERS]]
         return table
 
-    def codes(self, leg: Leg) -> np.ndarray:
-        """Return the kinds of a leg's bifurcations as numbers, padded with -1."""
+    def bifurcation_codes(self, leg: Leg) -> np.ndarray:
+        """Return the kinds of a leg's bifurcations as integers, padded with -1."""
         numbers = np.full(self.most, -1)
         codes = [BIFURCATIONS.index(each.kind) for each in leg.bifurcations][: self.most]
         numbers[: len(codes)] = codes
         return numbers
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return both branches, and their bifurcations."""
+        """Build the dataset of both branches and of their bifurcations."""
         import xarray as xr
 
         points = table["points"]
@@ -202,17 +208,25 @@ class DriveBranchJob(Job):
         variables = motion_variables(along, points)
         largest = np.nan_to_num(np.abs(points[..., len(COLUMNS)]), nan=np.inf)
         text = "whether the motion is stable"
-        variables["stable"] = (along, largest < 1.0 - ON_CIRCLE, labels("1", text))
+        variables["stable"] = (along, largest < 1.0 - ON_CIRCLE, variable_attributes("1", text))
         ends = np.array(ENDS)[table["ends"]]
-        variables["end"] = (along[:2], ends, labels("1", "why the branch ends"))
+        variables["end"] = (along[:2], ends, variable_attributes("1", "why the branch ends"))
         kinds = table["kinds"]
         located = kinds >= 0
-        at = motion_variables(("bifurcation",), table["events"][located])
+        located_motions = motion_variables(("bifurcation",), table["events"][located])
         structures = np.array(STRUCTURES)[np.argwhere(located)[:, 0]]
         names = np.array([KINDS[kind] for kind in BIFURCATIONS])[kinds[located]]
-        at["structure"] = (("bifurcation",), structures, labels("1", "structure"))
-        at["kind"] = (("bifurcation",), names, labels("1", "kind of bifurcation"))
-        variables |= {f"bifurcation_{name}": values for name, values in at.items()}
+        located_motions["structure"] = (
+            ("bifurcation",),
+            structures,
+            variable_attributes("1", "structure"),
+        )
+        located_motions["kind"] = (
+            ("bifurcation",),
+            names,
+            variable_attributes("1", "kind of bifurcation"),
+        )
+        variables |= {f"bifurcation_{name}": values for name, values in located_motions.items()}
         coordinates = {
             "structure": ("structure", list(STRUCTURES), {"long_name": "structure"}),
             "leg": ("leg", list(LEGS), {"long_name": "where the branch was begun"}),
@@ -220,15 +234,15 @@ class DriveBranchJob(Job):
         return xr.Dataset(variables, coordinates, {"title": "Branches of the weak drive"})
 
 
-def labels(unit: str, text: str) -> dict[str, str]:
-    """Return the attributes of a variable."""
+def variable_attributes(unit: str, text: str) -> dict[str, str]:
+    """Return the unit and the long name of a variable as its attributes."""
     return {"units": unit, "long_name": text}
 
 
 def motion_variables(dims: tuple[str, ...], numbers: np.ndarray) -> dict[str, Variable]:
-    """Return columns of motions as variables of a dataset."""
+    """Convert a table of motions to the variables of a dataset."""
     variables: dict[str, Variable] = {
-        name: (dims, numbers[..., i].real, labels(unit, text))
+        name: (dims, numbers[..., i].real, variable_attributes(unit, text))
         for i, (name, (unit, text)) in enumerate(COLUMNS.items())
     }
     largest = numbers[..., len(COLUMNS) :]
@@ -237,7 +251,7 @@ def motion_variables(dims: tuple[str, ...], numbers: np.ndarray) -> dict[str, Va
         ("real", "real", largest.real),
         ("imag", "imaginary", largest.imag),
     ):
-        attributes = labels("1", f"{text}, {name} part")
+        attributes = variable_attributes("1", f"{text}, {name} part")
         variables[f"multiplier_{part}"] = ((*dims, "multiplier"), values, attributes)
     return variables
 
@@ -254,7 +268,7 @@ def drive_branch(
     settle: float | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Trace stationary motions of structure and motor together, stable and unstable, round folds.
+    """Trace stationary motions of structure and motor, stable and unstable, round folds.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
-"""Figure 3: spectra of accelerations where a motor of limited power hangs at the resonance.
+"""Compute acceleration spectra while a motor of limited power hangs at the resonance.
 
-The voltage is taken slowly to a value below the jump and held. Then the displacement in space is
+The voltage is taken slowly to a value below the jump and held. Then the absolute displacement is
 sampled over whole revolutions, and its spectrum multiplied by the square of the frequency: an
 impact is a kink of the displacement, and so is not missed between samples.
 """
@@ -26,8 +26,8 @@ from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged, own_resonance
-from .couple import couple_job, scheme_of
-from .master import parts_of
+from .couple import couple_job, scheme_from_arguments
+from .master import split_state
 from .run import Run, begin_run
 from .schedule import Ramp, check
 
@@ -43,7 +43,7 @@ SHARES = (0.6, 0.45, 0.3, 0.15)  # of the way from the jump down to the jump up:
 
 @dataclass(frozen=True)
 class DriveSpectraJob(Job):
-    """Job of the spectra of both structures; fields as in :func:`orchestrate.drive_spectra`.
+    """Compute the spectra of the bonded and the delaminated structure.
 
     Attributes
     ----------
@@ -63,23 +63,23 @@ class DriveSpectraJob(Job):
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
 
     def count(self) -> int:
-        """Return two: bonded and delaminated."""
+        """Return the number of structures: bonded and delaminated."""
         return len(KINDS)
 
     def items(self, inputs: Inputs) -> Sequence[Structure]:
-        """Return both structures."""
+        """Return the structure as bonded and as delaminated."""
         return self.structure.as_bonded(), self.structure.as_delaminated()
 
     def orders(self) -> np.ndarray:
-        """Return the lines as multiples of the motor's speed."""
+        """Return the spectral lines as multiples of the motor's speed."""
         orders = np.arange(self.revolutions * self.points // 2 + 1) / self.revolutions
         return np.asarray(orders[orders <= self.highest])
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[Structure], previous: Table | None
     ) -> Table:
-        """Compute spectra of both masses and the motor's speed."""
-        records = [self.record(fmus, structure) for structure in items]
+        """Compute both masses' acceleration spectra and the mean motor speed."""
+        records = [self.record_displacements(fmus, structure) for structure in items]
         lines = len(self.orders())
         spectra, speeds = [], []
         for displacement, speed in records:
@@ -88,9 +88,11 @@ class DriveSpectraJob(Job):
             speeds.append(speed)
         return {"acceleration": np.array(spectra), "speed": np.array(speeds)}
 
-    def record(self, fmus: Mapping[str, Path], structure: Structure) -> tuple[np.ndarray, float]:
-        """Return both masses' displacements in space, (2, samples), m, and mean speed, rad/s."""
-        scheme = scheme_of(structure, self.step, "rollback", 0.0)
+    def record_displacements(
+        self, fmus: Mapping[str, Path], structure: Structure
+    ) -> tuple[np.ndarray, float]:
+        """Hold the voltage; return displacements (2, samples), m, and speed, rad/s."""
+        scheme = scheme_from_arguments(structure, self.step, "rollback", 0.0)
         job = couple_job(structure, self.drive, self.approach, scheme)
         steps = range(math.ceil((self.approach.duration + self.hold) / self.step))
         with begin_run(job, fmus) as run:
@@ -101,10 +103,10 @@ class DriveSpectraJob(Job):
                     "raise the voltage or the duration"
                 )
             speed = TURN * (len(ends) - 1) / (ends[-1] - ends[0])
-            return self.sample(run, TURN / speed / self.points), float(speed)
+            return self.sample_displacements(run, TURN / speed / self.points), float(speed)
 
-    def sample(self, run: Run, interval: float) -> np.ndarray:
-        """Return both masses' displacements in space at equal times, from those at rest, m.
+    def sample_displacements(self, run: Run, interval: float) -> np.ndarray:
+        """Sample both masses' absolute displacements at equal times, m.
 
         A preload's own displacements would leak into the lowest lines.
         """
@@ -112,19 +114,19 @@ class DriveSpectraJob(Job):
         kept = np.empty((count, len(run.master.get_state())))
         run.master.revolution = None
         run.master.run([self.approach.last] * count, h=interval, kept=kept)
-        _, motion, shaking, _ = parts_of(kept.T)
+        _, motion, shaking, _ = split_state(kept.T)
         rest_1, rest_2 = run.job.structure.at_rest
         box = shaking.box_position
         return np.array([motion.x1 - rest_1 + box, motion.x2 - rest_2 + box])
 
-    def hangs(self, fmus: Mapping[str, Path]) -> bool:
-        """Return whether the delaminated structure, the first to jump, is still at resonance."""
+    def hangs_at_resonance(self, fmus: Mapping[str, Path]) -> bool:
+        """Return whether the delaminated structure still hangs at the resonance."""
         short, structure = replace(self, revolutions=8, points=4), self.structure.as_delaminated()
-        divide = own_resonance.dividing_speed(structure, self.drive) * structure.omega
-        return short.record(fmus, structure)[1] < divide
+        threshold = own_resonance.dividing_speed(structure, self.drive) * structure.omega
+        return short.record_displacements(fmus, structure)[1] < threshold
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return amplitudes over the lines."""
+        """Build the dataset of acceleration amplitudes over spectral lines."""
         import xarray as xr
 
         orders, speeds = self.orders(), table["speed"]
@@ -132,7 +134,7 @@ class DriveSpectraJob(Job):
             "acceleration": (
                 ("kind", "mass", "order"),
                 table["acceleration"],
-                {"units": "m/s2", "long_name": "amplitude of the acceleration in space"},
+                {"units": "m/s2", "long_name": "amplitude of the absolute acceleration"},
             ),
             "speed": ("kind", speeds, {"units": "rad/s", "long_name": "mean speed of the motor"}),
         }
@@ -187,7 +189,7 @@ def drive_spectra(
     highest: float = 12.0,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Compute spectra of the masses' accelerations in space, shaken by a motor of limited power.
+    """Compute spectra of both masses' absolute accelerations under a weak motor.
 
     Parameters
     ----------
@@ -246,7 +248,7 @@ def drive_spectra(
     points = checked_integer("points", points, 4)
     if not 0.0 < highest <= points / 2:
         raise InputError(f"highest = {highest}: expected 0 < highest <= points/2 = {points / 2:g}")
-    step = scheme_of(structure, step, "rollback", 0.0).h
+    step = scheme_from_arguments(structure, step, "rollback", 0.0).h
     record = (revolutions, points, float(highest))
     tried = (
         [voltage_at_resonance(structure, drive, share) for share in SHARES]
@@ -263,5 +265,5 @@ def drive_spectra(
     find_fmu = finder(running)
     if voltage is None:
         fmus = {model: find_fmu(model).path for model in DriveSpectraJob.models}
-        jobs = [next((job for job in jobs if job.hangs(fmus)), jobs[-1])]
+        jobs = [next((job for job in jobs if job.hangs_at_resonance(fmus)), jobs[-1])]
     return answer(jobs[0], running, find_fmu)

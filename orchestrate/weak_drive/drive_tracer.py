@@ -1,4 +1,4 @@
-"""Branches of stationary motions of structure and motor: what the tracer needs to know of them.
+"""Trace one branch of stationary motions of structure and motor by arclength continuation.
 
 A fold is where the voltage turns back along the branch; elsewhere a multiplier leaves the unit
 circle at -1, or a pair of them does. Where an impact or a flight grazes, the branch ends: see
@@ -56,7 +56,7 @@ ITERATIONS = 12  # of Newton's method from a guess that is not of the branch its
 
 
 class Motion(NamedTuple):
-    """A stationary motion on a branch.
+    """Store one stationary motion of a branch: root, Jacobian, multipliers and period.
 
     Attributes
     ----------
@@ -80,33 +80,33 @@ class Motion(NamedTuple):
     together: bool
 
     @property
-    def place(self) -> Floats:
-        """Position on the branch: voltage over K omega and speed over omega."""
+    def coordinates(self) -> Floats:
+        """Return the motion's voltage over K omega and its speed over omega."""
         return self.root.unknowns[-2:]
 
 
 class ShooterStepper(ArclengthStepper[Shooter]):
-    """Arclength stepper that starts every attempt with the Jacobian of the current motion."""
+    """Step along a branch by arclength, each attempt from the current motion's Jacobian."""
 
     jacobian: Floats
 
-    def put_to(self, motion: Motion) -> None:
-        """Move the stepper to a motion."""
+    def move_to(self, motion: Motion) -> None:
+        """Make a motion the current one, with its Jacobian."""
         self.root, self.jacobian = motion.root, motion.matrix
 
     def root_after(self, length: float) -> Root:
-        """Return the root as :meth:`.ArclengthStepper.root_after` does."""
+        """Solve for the motion at a distance along the branch from the current one."""
         self.curve.restart(self.root.unknowns, self.jacobian)
         return super().root_after(length)
 
     def solve_at(self, unknown: int, value: float) -> Root:
-        """Return the root as :meth:`.ArclengthStepper.solve_at` does."""
+        """Solve for the nearby motion with a given value of one unknown."""
         self.curve.restart(self.root.unknowns, self.jacobian)
         return super().solve_at(unknown, value)
 
 
 class DriveTracer(BranchTracer[Shooter, Motion]):
-    """Traces a branch of stationary motions until it leaves a range of speeds, or is lost.
+    """Trace a branch of stationary motions within a range of speeds; locate bifurcations.
 
     Parameters
     ----------
@@ -127,6 +127,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         speeds: tuple[float, float],
         settings: ContinuationSettings,
     ) -> None:
+        """Create the arclength stepper that starts from the first motion."""
         self.shooter, self.speeds = shooter, speeds
         longest = settings.max_step
         stepper = ShooterStepper(
@@ -140,30 +141,30 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         super().__init__(stepper, settings.max_points)
 
     def point(self, root: Root) -> Motion:
-        """Return the motion of a root that has just been solved for."""
+        """Compute the motion, with its multipliers, of a root just solved for."""
         return motion_at(self.shooter, root, self.stepper.root.tangent)
 
     def limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
-        """Return the index of the speed among the unknowns, and its limits in a list."""
+        """Return the index of the speed among the unknowns, and the range of speeds."""
         return self.shooter.size + 1, [self.speeds]
 
     def go_on_from(self, point: Motion) -> Motion:
-        """Move the stepper to a motion whose period begins far from impacts."""
+        """Continue from a motion whose period is begun far from impacts."""
         motion = start_far_from_impacts(self.shooter, point)
-        self.stepper.put_to(motion)
+        self.stepper.move_to(motion)
         self.shot = self.shooter.shoot(motion.root.unknowns)
         self.half_period_change = half_period_change(self.shooter, motion.root)
         return motion
 
     def accepts(self, root: Root) -> bool:
-        """Return whether a motion has the impacts of the one before.
+        """Return whether a new motion has as many impacts as the one before.
 
-        With others it lies beyond a grazing.
+        With another number of impacts it lies beyond a grazing.
         """
-        return self.shooter.shoot(root.unknowns).like(self.shot)
+        return self.shooter.shoot(root.unknowns).is_connected_to(self.shot)
 
     def test(self, point: Motion, kind: BifurcationKind) -> float:
-        """Evaluate a test function: change of the voltage, or a product of multipliers."""
+        """Evaluate the test function of a bifurcation, which is zero there."""
         values = point.multipliers
         if kind == FOLD:
             return float(point.root.tangent[-2])
@@ -172,24 +173,24 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         return float(np.prod([1.0 - a * b for a, b in combinations(values, 2)]).real)
 
     def confirms(self, kind: BifurcationKind, point: Motion, part: float) -> bool:
-        """Return whether a torus is one: its pair is complex, not two real ones of product 1."""
+        """Return whether a Neimark-Sacker point has a complex pair on the unit circle."""
         pairs = point.multipliers[np.abs(point.multipliers.imag) > COMPLEX]
         return kind != TORUS or bool((np.abs(np.abs(pairs) - 1.0) < ON_CIRCLE).any())
 
     def location_tolerances(self, length: float) -> dict[str, float]:
-        """Return the tolerances of a bifurcation's location, as parts of the step."""
+        """Return how exactly a bifurcation is located, given the step length."""
         return {"xtol": ACCURACY * length}
 
     def end_before(self, step: BranchStep[Motion]) -> tuple[str, Iterable[Motion]]:
-        """Return a reason where a motion of half the period is passed, else ``""``; no points.
+        """Return why the leg ends if it has reached half the period; else empty text.
 
-        Beyond it come the same motions again, half a period later.
+        Beyond that point the same motions come again, half a period later.
         """
         change = half_period_change(self.shooter, step.after.root)
         return (HALVED if self.half_period_change @ change < 0.0 else ""), ()
 
     def end_without_root(self, segment: BranchSegment[Motion]) -> None:
-        """Set why a segment ends where Newton's method fails; drop motions crowded there.
+        """Set why a leg ends where Newton's method fails, such as at a grazing.
 
         Steps are short there: one motion stands for all that are too near to be seen in a plot.
         """
@@ -211,12 +212,12 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
 def trace_branch(
     shooter: Shooter, start: Motion, speeds: tuple[float, float], settings: ContinuationSettings
 ) -> BranchSegment[Motion]:
-    """Trace the branch from a motion until it leaves a range of speeds, over omega, or is lost."""
+    """Trace a branch from a motion until it leaves the speed range or Newton's method fails."""
     return DriveTracer(shooter, start, speeds, settings).trace(start)
 
 
 def motion_at(shooter: Shooter, root: Root, direction: Floats) -> Motion:
-    """Make a motion of a root just solved for, its tangent along a direction."""
+    """Compute multipliers and period of a root just solved for; return them as a motion."""
     along = root if root.tangent @ direction > 0.0 else root.reversed()
     values = shooter.multipliers()
     period = shooter.observe_period(root.unknowns)
@@ -224,7 +225,7 @@ def motion_at(shooter: Shooter, root: Root, direction: Floats) -> Motion:
 
 
 def motion_near(shooter: Shooter, guess: Floats, up: bool) -> Motion:
-    """Return the motion of a given speed near a guess, to go on up or down the speeds.
+    """Solve for the motion of a given speed, starting from a guess.
 
     Raises
     ------
@@ -238,7 +239,7 @@ def motion_near(shooter: Shooter, guess: Floats, up: bool) -> Motion:
 
 
 def double_period(shooter: Shooter, flip: Motion) -> Motion:
-    """Return a motion of twice the period near a period doubling, to go away from it.
+    """Solve for a motion of twice the period near a period doubling.
 
     Raises
     ------
@@ -259,7 +260,7 @@ def double_period(shooter: Shooter, flip: Motion) -> Motion:
 
 
 def start_far_from_impacts(shooter: Shooter, motion: Motion) -> Motion:
-    """Return a motion begun where the gap is wide, or the masses are pressed hard.
+    """Move the start of a motion's period to where the gap is widest.
 
     A motion that begins with an impact has no derivative.
     """
@@ -278,12 +279,12 @@ def start_far_from_impacts(shooter: Shooter, motion: Motion) -> Motion:
 
 
 def half_period_change(shooter: Shooter, root: Root) -> Floats:
-    """Return the change of the state in half of an even number of revolutions; 0 if it is odd."""
+    """Return how the state changes over half the period; 0 for an odd one."""
     if shooter.turns % 2:
         return np.zeros(1)
     return shooter.change_in(root.unknowns, shooter.turns // 2)
 
 
 def distance_between(first: Motion, second: Motion) -> float:
-    """Return the distance of two motions in (voltage over K omega, speed over omega)."""
-    return float(np.linalg.norm(first.place - second.place))
+    """Return the distance of two motions in voltage and speed, both non-dimensional."""
+    return float(np.linalg.norm(first.coordinates - second.coordinates))

@@ -1,4 +1,4 @@
-"""The energy balance: where the motor's work has gone, and what the coupling has lost of it.
+"""Balance the energies of a coupled run: motor work, losses and the coupling's energy defect.
 
 The shaker's FMU keeps its own account. What the structure has lost, in dampers and impacts, follows
 from the work that the box's acceleration did on it, as it was told it, less the energy it has
@@ -16,11 +16,11 @@ from typing import NamedTuple
 
 from ..structures.structure import Structure
 from .exchange import Cubic, OscillatorOutputs, ShakerOutputs
-from .polynomials import coefficients, end_value, product, quartic
+from .polynomials import end_value, integrate_product, matched_quartic, normalized_coefficients
 
 
 class Energies(NamedTuple):
-    """Energies since the start, J: the motor's work and where it has gone.
+    """Store the energies since the start, J: the motor's work and where it has gone.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class Energies(NamedTuple):
 
 
 class EnergyBalance:
-    """Energy accounts of a run.
+    """Sum up the energies of a coupled run, step by step.
 
     Parameters
     ----------
@@ -68,6 +68,7 @@ class EnergyBalance:
     def __init__(
         self, structure: Structure, motion: OscillatorOutputs, shaking: ShakerOutputs
     ) -> None:
+        """Record the energies at the start, from both FMUs' outputs."""
         self._masses = structure.m1, structure.m2
         self._stiffnesses = structure.k1, structure.k2
         self._rest, self._preload = structure.at_rest, structure.preload
@@ -75,7 +76,7 @@ class EnergyBalance:
         self.start = self._accounts(motion, shaking)
 
     def relative_energy(self, motion: OscillatorOutputs) -> float:
-        """Return the energy of the structure, seen from the box: 0 at rest.
+        """Return the structure's energy by its motion relative to the box, J.
 
         A preload F adds F times the gap to the springs' energy by the displacements from rest; so
         little is lost of a motion that is small beside it.
@@ -86,8 +87,8 @@ class EnergyBalance:
         own = 0.5 * (m1 * v1 * v1 + m2 * v2 * v2 + k1 * x1 * x1 + k2 * x2 * x2)
         return own + self._preload * motion.x_rel
 
-    def energy(self, motion: OscillatorOutputs, velocity: float) -> float:
-        """Return the energy of the structure in space, the box moving with ``velocity``."""
+    def absolute_energy(self, motion: OscillatorOutputs, velocity: float) -> float:
+        """Return the structure's energy by its absolute motion, for a box velocity, J."""
         m1, m2 = self._masses
         momentum = m1 * motion.v1 + m2 * motion.v2
         return self.relative_energy(motion) + velocity * (momentum + 0.5 * (m1 + m2) * velocity)
@@ -100,7 +101,7 @@ class EnergyBalance:
         defect: float,
         h: float,
     ) -> None:
-        """Add a step.
+        """Add the energy lost in the structure over one step, and the step's defect.
 
         Parameters
         ----------
@@ -113,8 +114,8 @@ class EnergyBalance:
         h : float
             Length of the step, s.
         """
-        work = h * product(
-            self._momentum(before, after, acceleration, h), coefficients(acceleration, h)
+        work = h * integrate_product(
+            self._momentum(before, after, acceleration, h), normalized_coefficients(acceleration, h)
         )
         self.lost += self.relative_energy(before) - self.relative_energy(after) - work
         self.defect += defect
@@ -123,37 +124,37 @@ class EnergyBalance:
     def _momentum(
         self, before: OscillatorOutputs, after: OscillatorOutputs, acceleration: Cubic, h: float
     ) -> tuple[float, ...]:
-        """Return coefficients in t/h of the masses' momentum over a step, relative to the box."""
+        """Return the masses' relative momentum over a step as a quartic in t/h."""
         m1, m2 = self._masses
         mass = m1 + m2
         ends = (m1 * before.v1 + m2 * before.v2, m1 * after.v1 + m2 * after.v2)
         first = -h * (before.box_force + mass * acceleration[0])
         last = -h * (after.box_force + mass * end_value(acceleration, h))
         mean = (m1 * (after.x1 - before.x1) + m2 * (after.x2 - before.x2)) / h
-        return quartic(ends, (first, last), mean)
+        return matched_quartic(ends, (first, last), mean)
 
     def _accounts(self, motion: OscillatorOutputs, shaking: ShakerOutputs) -> tuple[float, ...]:
-        """Return energies since the start: motor, damper of the box, impacts, stored, dampers."""
+        """Return motor work, box damping, impact loss, stored energy, mass damping."""
         return (
             shaking.motor_energy,
             shaking.box_damper_energy,
             motion.impact_energy,
-            shaking.stored_energy + self.energy(motion, shaking.box_velocity),
+            shaking.stored_energy + self.absolute_energy(motion, shaking.box_velocity),
             self.lost - motion.impact_energy,
         )
 
     def energies(self, motion: OscillatorOutputs, shaking: ShakerOutputs) -> Energies:
-        """Return the balance at a communication point, since it was opened."""
+        """Return all energies since the start, given both FMUs' present outputs."""
         now = self._accounts(motion, shaking)
         motor, *others = (value - start for value, start in zip(now, self.start, strict=True))
         accounts = (motor, *others, motor - sum(others), self.defect, self.defect_sizes)
         return Energies._make(accounts)
 
     def get_state(self) -> list[float]:
-        """Return the accounts as a list of floats."""
+        """Return the sums as a list of floats, to be restored later."""
         return [self.lost, self.defect, self.defect_sizes, *self.start]
 
     def set_state(self, numbers: Sequence[float]) -> None:
-        """Return to a state that :meth:`get_state` gave."""
+        """Restore the sums that :meth:`get_state` returned."""
         self.lost, self.defect, self.defect_sizes = numbers[:3]
         self.start = tuple(numbers[3:])

@@ -1,4 +1,4 @@
-"""Exchange of the master with the two FMUs: names and positions follow from one declaration."""
+"""Declare the input and output variables that the master exchanges with the two FMUs."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Cubic = tuple[
 
 
 class OscillatorInputs(NamedTuple):
-    """Inputs of the structure: the box's acceleration over a step, as a cubic."""
+    """Store the inputs of the structure FMU: a step's box acceleration as a cubic."""
 
     box_acceleration: float = 0.0
     box_jerk: float = 0.0
@@ -19,8 +19,9 @@ class OscillatorInputs(NamedTuple):
 
 
 class OscillatorOutputs(NamedTuple):
-    """Outputs of the structure at a communication point, SI: displacements from the unloaded
-    springs, and the gap, which is 0 in contact.
+    """Store the outputs of the structure FMU at a communication point, SI units.
+
+    Displacements count from the unloaded springs; the gap ``x_rel`` is 0 in contact.
     """
 
     x1: float
@@ -36,7 +37,7 @@ class OscillatorOutputs(NamedTuple):
 
 
 class ShakerInputs(NamedTuple):
-    """Inputs of the shaker: the force on the box over a step, as a cubic, and the voltage."""
+    """Store the inputs of the motor FMU: force on the box as a cubic, and voltage."""
 
     box_force: float = 0.0
     box_force_1: float = 0.0
@@ -46,7 +47,7 @@ class ShakerInputs(NamedTuple):
 
 
 class ShakerOutputs(NamedTuple):
-    """Outputs of the shaker at a communication point, SI."""
+    """Store the outputs of the motor FMU at a communication point, SI units."""
 
     box_position: float
     box_velocity: float
@@ -61,7 +62,7 @@ class ShakerOutputs(NamedTuple):
 
 
 class Step(NamedTuple):
-    """A step that both sides have done: what the structure was told, and both ends of it."""
+    """Store a finished communication step: acceleration used, and both FMUs' outputs."""
 
     acceleration: Cubic
     motion: OscillatorOutputs

@@ -1,5 +1,4 @@
-"""Largest displacements of mass and box within a communication step, with an impact in it or
-without.
+"""Find the extreme displacements of mass 1 and box within each communication step.
 
 Between impacts the first mass follows m x'' + d x' + k x = -m y'' with the cubic y'' that it was
 told: its Taylor series is known from a state at either end of the step. Before an impact the series
@@ -22,14 +21,14 @@ Series = tuple[float, ...]
 
 
 class Range(NamedTuple):
-    """Lowest and highest position over a step, m."""
+    """Store the lowest and the highest position over a step, m."""
 
     low: float
     high: float
 
 
 def taylor_value(series: Series, time: float, order: int = 0) -> float:
-    """Return the value, or a derivative, of a Taylor series at a time from its centre."""
+    """Evaluate a Taylor series, or one of its derivatives, at a time from its centre."""
     total = 0.0
     for power in range(len(series) - 1 - order, -1, -1):
         total = series[power + order] + total * time / (power + 1)
@@ -39,7 +38,7 @@ def taylor_value(series: Series, time: float, order: int = 0) -> float:
 def taylor_coefficients(
     structure: Structure, motion: OscillatorOutputs, acceleration: Cubic
 ) -> Series:
-    """Return x1's derivatives at a state, from the box's acceleration and its derivatives."""
+    """Return the derivatives of x1 at a state, given the box's acceleration."""
     mass, stiffness, damping = structure.m1, structure.k1, structure.d1
     balance = 0.0  # where the springs' forces are
     if motion.x_rel == 0.0 and motion.v1 == motion.v2:  # in contact
@@ -54,17 +53,17 @@ def taylor_coefficients(
 
 
 def position_in_balance(structure: Structure) -> float:
-    """Return the x1 at which springs balance in contact, m: 0 without a clearance."""
+    """Return the x1 at which the springs balance in contact, m."""
     return structure.gap_offset * structure.k2 / (structure.k1 + structure.k2)
 
 
 def end_derivatives(cubic: Cubic, h: float) -> Cubic:
-    """Return a cubic's value and derivatives at the step's end."""
+    """Return the value and the derivatives of a cubic at the end of a step."""
     return end_value(cubic, h), end_slope(cubic, h), cubic[2] + h * cubic[3], cubic[3]
 
 
 def extrema(series: Series, first: float, last: float) -> list[float]:
-    """Return positions at both ends of a stretch, and at the turning points between them."""
+    """Return the positions at the ends of a time span and at a turning point between."""
     begin, end = taylor_value(series, first, 1), taylor_value(series, last, 1)
     positions = [taylor_value(series, first), taylor_value(series, last)]
     if begin * end < 0.0:
@@ -84,7 +83,7 @@ def range_of_mass(
     begin: float,
     h: float,
 ) -> Range:
-    """Return the least and largest x1 in a step, from Taylor series at both ends.
+    """Return the lowest and the highest x1 within a step, also with an impact.
 
     Parameters
     ----------
@@ -112,7 +111,7 @@ def range_of_mass(
 def range_of_box(
     before: ShakerOutputs, after: ShakerOutputs, acceleration: Cubic, h: float
 ) -> Range:
-    """Return the range of the box, with its acceleration as it was passed to the structure."""
+    """Return the lowest and the highest box position within a step."""
     positions = [before.box_position, after.box_position]
     if before.box_velocity * after.box_velocity < 0.0:
         positions += extrema((before.box_position, before.box_velocity, *acceleration), 0.0, h)
@@ -121,7 +120,7 @@ def range_of_box(
 
 @dataclass
 class Revolution:
-    """Observed extremes of a revolution under way.
+    """Record the extreme positions during one revolution of the motor.
 
     Attributes
     ----------
@@ -153,7 +152,7 @@ class Revolution:
         time: float = 0.0,
         impacts: float = 0.0,
     ) -> Revolution:
-        """Make the record of a revolution that begins with these outputs."""
+        """Start the record of a revolution from both FMUs' present outputs."""
         x, y = motion.x1, shaking.box_position
         return cls(turn, time, impacts, x, x, y, y)
 
@@ -165,7 +164,7 @@ class Revolution:
         begin: float,
         h: float,
     ) -> None:
-        """Add a step, from outputs at a time on, s, and its length, s."""
+        """Add the extreme positions and the box acceleration of one step."""
         motion, shaking = before
         x = range_of_mass(structure, (motion, done.motion), done.acceleration, begin, h)
         self.x1_high, self.x1_low = max(self.x1_high, x.high), min(self.x1_low, x.low)
@@ -173,6 +172,6 @@ class Revolution:
         self.box_high, self.box_low = max(self.box_high, y.high), min(self.box_low, y.low)
         self.acceleration = max(self.acceleration, abs(done.shaking.box_acceleration))
 
-    def complete(self, turns: float) -> bool:
-        """Return whether the motor, after so many turns, has made one more, forward or backward."""
+    def is_complete(self, turns: float) -> bool:
+        """Return whether the motor has made one more full turn, in either direction."""
         return turns >= self.turn + 1.0 or turns <= self.turn - 1.0

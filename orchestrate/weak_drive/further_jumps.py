@@ -1,4 +1,4 @@
-"""Further jumps of a ramp: places of its record where another motion may be lost.
+"""Search a ramp's record for speed jumps besides the passing of the resonance.
 
 Beside the passing of the resonance the speed may jump once more, by less. On a stable branch below
 the resonance the torque that the vibration takes grows with the speed. It is the slip less what
@@ -12,6 +12,7 @@ Non-dimensional, as :mod:`.jumps`.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -22,12 +23,12 @@ from .jumps import (
     Criterion,
     Passing,
     SweepLeg,
-    extent,
+    classify_stretch,
     fast_rows,
     lag_difference,
-    look_of,
     mean_width,
     running_mean,
+    true_stretch_around,
 )
 
 SMALLEST = 8e-3  # change of the speed over omega from which on there is a further jump
@@ -36,10 +37,10 @@ LASTING = 10  # widths of the mean before and after, over which an irregular mot
 APART = 4  # widths of the mean between two places; for fewer no scatter is known
 
 
-def find_further(
+def find_further_jumps(
     leg: SweepLeg, b: float, up: bool, threshold: float, main: tuple[int, int] | None = None
 ) -> list[Passing]:
-    """Find where a motion may be lost beside the passing of the resonance, in the ramp's order.
+    """Find where the ramp may lose a motion besides the passing of the resonance.
 
     Parameters
     ----------
@@ -62,67 +63,77 @@ def find_further(
     means = SweepLeg(*(running_mean(values, width) for values in leg))
     fast = fast_rows(means, width, sign, limits)
     torque, first = sign * vibration_torque(means, b, width), 3 * width // 2
-    found: list[Passing] = []
+    passings: list[Passing] = []
 
-    def spans() -> list[tuple[int, int]]:
-        return [(other.before, other.after) for other in found] + ([main] if main else [])
-
-    def is_elsewhere(before: int, after: int) -> bool:
-        return all(after < low or before > high for low, high in spans())
-
-    for high, low in falls(torque, LEAST):
+    for high, low in find_falls(torque, LEAST):
         before, after = high + first, low + first
-        ended = [end - first for _, end in spans() if end <= before]
-        looks = {look_of(leg, means, b, sign, part, limits) for part in stretches(fast, high, low)}
+        ended = [end - first for _, end in taken_spans(passings, main) if end <= before]
+        looks = {
+            classify_stretch(leg, means, b, sign, part, limits)
+            for part in true_stretches(fast, high, low)
+        }
         is_natural = leg.Omega[before] > threshold and not looks - {SMOOTH}
-        if not high or is_natural or not is_elsewhere(before, after):
+        if not high or is_natural or not lies_outside(before, after, taken_spans(passings, main)):
             continue
         earlier = torque[max(0, high - limits.around * width, *ended) : high]
         later = torque[low : low + limits.around * width]
         known = earlier if ended or len(earlier) >= APART * width else later
-        noise, fall = limits.clearness * scatter_of(known, width), torque[high] - torque[low]
+        noise, fall = (
+            limits.clearness * scatter_about_trend(known, width),
+            torque[high] - torque[low],
+        )
         reach = LASTING * width
         lasts = noise <= LEAST or earlier[-reach:].mean() - later[:reach].mean() > 0.5 * fall
         if fall > max(LEAST, noise) and lasts:
             rows = np.flatnonzero(torque[high : low + 1] < 0.5 * (torque[high] + torque[low]))
             half = float(before + rows[0])
             look = JUMP if looks == {JUMP} and fall > SMALLEST else DOUBTFUL
-            found.append(Passing(math.ceil(half), before, after, look, half))
-    for before, after in stretches(fast, 0, len(fast)):
+            passings.append(Passing(math.ceil(half), before, after, look, half))
+    for before, after in true_stretches(fast, 0, len(fast)):
         last = min(after + 2 * width, len(leg.time) - 1)
         excess = sign * (leg.Omega[last] - leg.Omega[before]) - np.ptp(leg.eta0[before : last + 1])
-        is_jump = look_of(leg, means, b, sign, (before, after), limits) == JUMP
-        if is_jump and excess > LEAST and is_elsewhere(before, last):
+        is_jump = classify_stretch(leg, means, b, sign, (before, after), limits) == JUMP
+        if is_jump and excess > LEAST and lies_outside(before, last, taken_spans(passings, main)):
             half, look = 0.5 * (before + after), JUMP if excess > SMALLEST else DOUBTFUL
-            found.append(Passing(math.ceil(half), before, last, look, half))
-    return sorted(found)
+            passings.append(Passing(math.ceil(half), before, last, look, half))
+    return sorted(passings)
+
+
+def taken_spans(found: Sequence[Passing], main: tuple[int, int] | None) -> list[tuple[int, int]]:
+    """Return the row ranges that already belong to a jump or to the passing of the resonance."""
+    return [(other.before, other.after) for other in found] + ([main] if main else [])
+
+
+def lies_outside(before: int, after: int, spans: Sequence[tuple[int, int]]) -> bool:
+    """Return whether a range of rows overlaps none of some others."""
+    return all(after < low or before > high for low, high in spans)
 
 
 def vibration_torque(means: SweepLeg, b: float, width: int) -> np.ndarray:
-    """Return the torque that the vibration takes, as a speed over omega; of 2 widths less rows."""
+    """Compute the mean torque taken by the vibration, as a speed over omega."""
     middle = slice(width, len(means.time) - width)
     acceleration = lag_difference(means.Omega, 2 * width) / lag_difference(means.time, 2 * width)
     return np.asarray((means.eta0 - means.Omega)[middle] - acceleration / b)
 
 
-def falls(values: np.ndarray, least: float) -> list[tuple[int, int]]:
-    """Return from where to where values fall by a least amount, between rises by it."""
-    found, high, low, falling = [], 0, 0, False
+def find_falls(values: np.ndarray, least: float) -> list[tuple[int, int]]:
+    """Find the spans from a maximum to the next minimum that fall by at least `least`."""
+    spans, high, low, falling = [], 0, 0, False
     for i, value in enumerate(values.tolist()):
         if falling:
             low = i if value < values[low] else low
             if value >= values[low] + least:
-                found.append((high, low))
+                spans.append((high, low))
                 high, falling = i, False
         elif value > values[high]:
             high = i
         elif value <= values[high] - least:
             low, falling = i, True
-    return [*found, (high, low)] if falling else found
+    return [*spans, (high, low)] if falling else spans
 
 
-def scatter_of(values: np.ndarray, width: int) -> float:
-    """Return the standard deviation of values about a smooth course; infinite for too few."""
+def scatter_about_trend(values: np.ndarray, width: int) -> float:
+    """Estimate the standard deviation of values about a smooth trend."""
     if len(values) < APART * width:
         return math.inf
     third = values
@@ -131,7 +142,7 @@ def scatter_of(values: np.ndarray, width: int) -> float:
     return float(np.sqrt(np.mean(third**2) / 20.0))
 
 
-def stretches(runs: np.ndarray, first: int, last: int) -> list[tuple[int, int]]:
-    """Return first and last index of each stretch of true values that begins in a range."""
+def true_stretches(runs: np.ndarray, first: int, last: int) -> list[tuple[int, int]]:
+    """Return first and last index of each run of true values that begins in a range."""
     begins = np.flatnonzero(runs & ~np.concatenate([[False], runs[:-1]]))
-    return [extent(runs, int(i)) for i in begins if first <= i <= last]
+    return [true_stretch_around(runs, int(i)) for i in begins if first <= i <= last]

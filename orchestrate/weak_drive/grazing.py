@@ -1,4 +1,4 @@
-"""How near a stationary motion is to grazing: the masses touch, with no closing speed.
+"""Measure how close a stationary motion is to grazing, a contact without closing speed.
 
 There the motion has an impact more or less, and with it a term that grows as the root of the
 distance: multipliers run away, and Newton's method ends.
@@ -24,7 +24,7 @@ BACK = 3  # motions over which the slope of a margin is taken
 
 
 class Margins(NamedTuple):
-    """Distances to grazing of a motion's gaps and impacts, over the unit of length.
+    """Store how far a motion's gaps and impacts are from grazing, non-dimensional.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class Margins(NamedTuple):
 
 
 def grazing_margins(shooter: Shooter, unknowns: Floats, angle: float) -> Margins:
-    """Return how near a motion's gaps and impacts are to grazing; infinite where it has none.
+    """Simulate one period and return its smallest gap and smallest closing speed.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def grazing_margins(shooter: Shooter, unknowns: Floats, angle: float) -> Margins
 def turning_gap(
     structure: Structure, before: OscillatorOutputs, after: OscillatorOutputs, h: float
 ) -> float:
-    """Return the smallest gap in a step without an impact, at whose ends it shrinks and grows, m.
+    """Return the smallest gap within a step without an impact, m.
 
     It is that of the quintic through gap, velocity and acceleration at both ends; the box's
     acceleration is the same for both masses.
@@ -75,10 +75,10 @@ def turning_gap(
     from scipy.interpolate import BPoly, PPoly
 
     ends = []
-    for at in (before, after):
-        first = (structure.k1 * at.x1 + structure.d1 * at.v1) / structure.m1
-        second = (structure.k2 * at.x2 + structure.d2 * at.v2) / structure.m2
-        ends.append([at.x_rel, at.v2 - at.v1, first - second])
+    for outputs in (before, after):
+        first = (structure.k1 * outputs.x1 + structure.d1 * outputs.v1) / structure.m1
+        second = (structure.k2 * outputs.x2 + structure.d2 * outputs.v2) / structure.m2
+        ends.append([outputs.x_rel, outputs.v2 - outputs.v1, first - second])
     gap = PPoly.from_bernstein_basis(BPoly.from_derivatives([0.0, h], ends))
     return float(gap(gap.derivative().roots(extrapolate=False)).min())
 
@@ -86,7 +86,7 @@ def turning_gap(
 def next_grazing(
     shooter: Shooter, motions: Sequence[tuple[Floats, float]]
 ) -> tuple[BifurcationKind | None, float]:
-    """Extrapolate what grazes next along a branch; return its kind, None without, and the distance.
+    """Extrapolate which grazing comes next along a branch, and how far away it is.
 
     A margin is taken to fall as it did over the last motions. The very last ones may be beyond.
 

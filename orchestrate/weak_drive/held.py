@@ -1,4 +1,4 @@
-"""Held-voltage test: bracket the voltage at which a motion is lost near the resonance.
+"""Bracket the voltage at which a speed jump happens, by holding voltages until speeds settle.
 
 Where the record of a ramp does not tell a jump from a steep branch, a state of the run is restored
 and its voltage is held until the speed has settled. From there the voltage goes on in short steps,
@@ -49,7 +49,7 @@ MEANINGS = {
 
 
 class Verdict(NamedTuple):
-    """Result of the held-voltage test in one direction.
+    """Store a result of the held-voltage test: the outcome and the bracket of voltages.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class Verdict(NamedTuple):
 
 
 class HeldCourse(NamedTuple):
-    """What a course of held voltages tells.
+    """Store the verdicts on the largest and on all other speed changes of a held course.
 
     Attributes
     ----------
@@ -81,8 +81,8 @@ class HeldCourse(NamedTuple):
     further: tuple[Verdict, ...] = ()
 
 
-class Settled(NamedTuple):
-    """The end of a motion at a held voltage.
+class HeldPoint(NamedTuple):
+    """Store where the speed settled at a held voltage, and the state reached.
 
     Attributes
     ----------
@@ -110,7 +110,7 @@ class Settled(NamedTuple):
 
 @dataclass(frozen=True)
 class HoldSettings:
-    """Settings of the held-voltage test.
+    """Set steps, tolerances and limits of the held-voltage test.
 
     Attributes
     ----------
@@ -173,7 +173,7 @@ class HoldSettings:
 
 
 class HeldVoltageTest:
-    """Test of a past run, from whose states the voltage is held.
+    """Test whether a past ramp lost a motion, by restoring states and holding voltages.
 
     Parameters
     ----------
@@ -200,13 +200,14 @@ class HeldVoltageTest:
         longest: float,
         settings: HoldSettings | None = None,
     ) -> None:
+        """Store the ramp's schedule, its units and the settings of the test."""
         self.begin, self.schedule, self.step = begin, schedule, step
         self.omega, self.volts, self.longest = omega, volts, longest
         self.settings = settings or HoldSettings()
         self.checkpoints: dict[int, Table] = {}
 
     def for_further_jumps(self) -> HeldVoltageTest:
-        """Return this test, its checkpoints shared, for jumps beside the passing's."""
+        """Return a copy of this test with the settings for further jumps."""
         test, settings = copy(self), self.settings
         test.settings = replace(
             settings, two_motions=settings.further_motions, smallest_jump=settings.further_jump
@@ -214,13 +215,13 @@ class HeldVoltageTest:
         return test
 
     def add_checkpoints(self, table: Table, every: int, steps: int) -> None:
-        """Store the states of a table, one after each ``every`` steps."""
+        """Store the ramp's saved states by their communication step."""
         for i in range(len(table["master_memory"])):
             state = {name: table[name][[i]] for name in MEMORY}
             self.checkpoints[min((i + 1) * every, steps)] = state
 
-    def state(self, step: int) -> Table | None:
-        """Return the state before a step; None for the start."""
+    def state_before(self, step: int) -> Table | None:
+        """Return the ramp's state before a step, recomputed from a checkpoint."""
         if step not in self.checkpoints and step:
             last = max((known for known in self.checkpoints if known < step), default=0)
             run = self.begin(self.schedule)
@@ -233,20 +234,20 @@ class HeldVoltageTest:
                 run.master.close()
         return self.checkpoints.get(step)
 
-    def hold_step(self, step: int) -> Settled:
-        """Hold the run's voltage of a step from its state there on."""
-        return self.hold(self.state(step), self.voltage(step))
+    def hold_step(self, step: int) -> HeldPoint:
+        """Hold the voltage that the ramp has at a step, from its state there."""
+        return self.hold_voltage(self.state_before(step), self.ramp_voltage(step))
 
-    def voltage(self, step: int) -> float:
-        """Return the run's voltage at a step, V."""
+    def ramp_voltage(self, step: int) -> float:
+        """Return the voltage of the ramp at a communication step, V."""
         return self.schedule.voltage((step + 0.5) * self.step)
 
-    def step_from(self, point: Settled, voltage: float) -> Settled:
-        """Change the voltage in one step, and hold it."""
-        return self.hold(point.state, voltage)._replace(origin=point.voltage)
+    def step_from(self, point: HeldPoint, voltage: float) -> HeldPoint:
+        """Change the voltage in one step from a held point, and hold it there."""
+        return self.hold_voltage(point.state, voltage)._replace(origin=point.voltage)
 
-    def hold(self, state: Table | None, voltage: float) -> Settled:
-        """Hold a voltage from a state on until the speed has settled, or the time is over."""
+    def hold_voltage(self, state: Table | None, voltage: float) -> HeldPoint:
+        """Simulate a constant voltage from a state until the speed settles."""
         count = math.ceil(self.longest / self.step)
         piece = max(1, round(150.0 / self.omega / self.step))
         run, speeds = self.begin(Constant(voltage, count * self.step)), np.zeros(0)
@@ -262,7 +263,7 @@ class HeldVoltageTest:
                 if math.isfinite(speed):
                     break
             begin = float(speeds[:FIRST].mean()) if speeds.size else math.nan
-            return Settled(voltage, speed, error, begin, run.get_state(), math.nan)
+            return HeldPoint(voltage, speed, error, begin, run.get_state(), math.nan)
         finally:
             run.master.close()
 
@@ -274,7 +275,7 @@ class HeldVoltageTest:
         up: bool,
         resonance: tuple[float, float] | None = None,
     ) -> HeldCourse:
-        """Classify whether motions are lost on the way past a speed.
+        """Decide whether a passage of a speed threshold loses the motion, and where.
 
         Parameters
         ----------
@@ -292,58 +293,61 @@ class HeldVoltageTest:
         sign = 1.0 if up else -1.0
         near, far = (resonance or (threshold, threshold))[:: 1 if up else -1]
 
-        def beyond(point: Settled, threshold: float = threshold) -> bool:
+        def is_beyond(point: HeldPoint, threshold: float = threshold) -> bool:
+            """Return whether a held speed has passed a threshold in the voltage's direction."""
             return sign * (point.speed - threshold) > 0.0
 
         step, back = steps.before, max(1, steps.row - steps.before)
         low = self.hold_step(step)
-        while math.isnan(low.speed) or beyond(low, near) or self.falls_back(low, sign):
+        while math.isnan(low.speed) or is_beyond(low, near) or self.has_left_motion(low, sign):
             if step <= ends[0]:
                 if math.isnan(low.speed):
                     return HeldCourse(Verdict(UNDECIDED))
-                if beyond(low):
+                if is_beyond(low):
                     return HeldCourse(Verdict(LEFT_BEFORE))
                 break
             step, back = max(ends[0], step - back), 2 * back
             low = self.hold_step(step)
-        target = self.target(steps.after, ends[1], sign)
-        points = self.stairs(low, target)
-        if not beyond(points[-1], far):
-            points += self.further(points[-1], target, ends[1], sign, far)
-        if not beyond(points[-1]):
+        target = self.target_voltage(steps.after, ends[1], sign)
+        points = self.climb_stairs(low, target)
+        if not is_beyond(points[-1], far):
+            points += self.extend_past(points[-1], target, ends[1], sign, far)
+        if not is_beyond(points[-1]):
             return HeldCourse(Verdict(UNDECIDED, points[-1].voltage, target))
-        verdict, *others = self.changes(list(points), sign)
-        if verdict.outcome == FOLLOWS and not (beyond(points[-1], far) and self.comes_back(points)):
+        verdict, *others = self.bracket_changes(list(points), sign)
+        if verdict.outcome == FOLLOWS and not (
+            is_beyond(points[-1], far) and self.returns_same_way(points)
+        ):
             verdict = Verdict(UNDECIDED, low.voltage, points[-1].voltage)
         return HeldCourse(verdict, tuple(others))
 
-    def changes(self, points: list[Settled], sign: float) -> list[Verdict]:
-        """Bracket the largest change, and then all others that may be losses.
+    def bracket_changes(self, points: list[HeldPoint], sign: float) -> list[Verdict]:
+        """Bracket the largest speed change and all others that may be jumps.
 
         Others count where the speed changes from one voltage to the next by more than the voltage
         does, and by as much as tells two motions apart: a branch is steeper only beside a fold.
         """
-        verdicts = [self.between(points, sign)]
+        verdicts = [self.bracket_largest_change(points, sign)]
         places = [i for i, point in enumerate(points) if point.voltage == verdicts[0].low]
         if verdicts[0].outcome != LOST or not places:
             return verdicts
         test = self.for_further_jumps()
         for part in (points[: places[0] + 1], points[places[0] + 1 :]):
             if any(test.may_be_a_loss(low, high, sign) for low, high in pairwise(part)):
-                found = test.changes(part, sign)
-                verdicts += [verdict for verdict in found if verdict.outcome != FOLLOWS]
+                others = test.bracket_changes(part, sign)
+                verdicts += [verdict for verdict in others if verdict.outcome != FOLLOWS]
         return verdicts
 
-    def may_be_a_loss(self, low: Settled, high: Settled, sign: float) -> bool:
-        """Return whether the speed changes more than the voltage, by two motions' difference."""
+    def may_be_a_loss(self, low: HeldPoint, high: HeldPoint, sign: float) -> bool:
+        """Return whether the speed changes too much for one stable branch."""
         allowed = abs(high.voltage - low.voltage) / self.volts + self.smallest_change(low, high)
         return sign * (high.speed - low.speed) > allowed
 
-    def further(
-        self, point: Settled, voltage: float, last: int, sign: float, speed: float
-    ) -> list[Settled]:
-        """Go on in steps until a speed is well past, as far as the run went; return points."""
-        end, points = self.voltage(last), [point]
+    def extend_past(
+        self, point: HeldPoint, voltage: float, last: int, sign: float, speed: float
+    ) -> list[HeldPoint]:
+        """Step the voltage further until the speed is well past a threshold."""
+        end, points = self.ramp_voltage(last), [point]
         step, missing = sign * self.settings.stair * self.volts, sign * (speed - point.speed)
         left = self.settings.max_stairs + math.ceil(max(missing, 0.0) / self.settings.stair)
         while left and sign * (end - voltage) > 0.0:
@@ -355,14 +359,14 @@ class HeldVoltageTest:
                 left = min(left, round(self.settings.past / self.settings.stair))
         return points[1:]
 
-    def target(self, after: int, last: int, sign: float) -> float:
-        """Return the voltage to go to, V: well past the passing, within the run's range."""
-        past = self.voltage(after) + sign * self.settings.past * self.volts
-        end = self.voltage(last)
+    def target_voltage(self, after: int, last: int, sign: float) -> float:
+        """Return the voltage where the held steps are to end, well past the jump, V."""
+        past = self.ramp_voltage(after) + sign * self.settings.past * self.volts
+        end = self.ramp_voltage(last)
         return min(past, end) if sign > 0.0 else max(past, end)
 
-    def comes_back(self, points: list[Settled]) -> bool:
-        """Go the same steps back; return whether the speeds are the same, as far as they settle."""
+    def returns_same_way(self, points: list[HeldPoint]) -> bool:
+        """Step the voltages back; return whether the same speeds settle again."""
         last = points[-1]
         for point in reversed(points[:-1]):
             back = self.step_from(last, point.voltage)
@@ -371,8 +375,8 @@ class HeldVoltageTest:
             last = back if math.isfinite(back.speed) else last
         return True
 
-    def stairs(self, low: Settled, target: float) -> list[Settled]:
-        """Go to a voltage in steps; return the first point and those that settled."""
+    def climb_stairs(self, low: HeldPoint, target: float) -> list[HeldPoint]:
+        """Step the voltage to a target; return the points at which it settled."""
         span = abs(target - low.voltage) / self.volts
         count = max(1, min(math.ceil(span / self.settings.stair), self.settings.max_stairs))
         points = [low]
@@ -382,13 +386,13 @@ class HeldVoltageTest:
                 points.append(point)
         return points
 
-    def falls_back(self, low: Settled, sign: float) -> bool:
-        """Return whether a held speed falls behind the ramp's: then it went to another motion."""
+    def has_left_motion(self, low: HeldPoint, sign: float) -> bool:
+        """Return whether the held speed left the motion that the ramp was on."""
         allowed = 2.0 * self.settings.distinct + 3.0 * low.error
         return sign * (low.speed - low.begin) < -allowed
 
-    def between(self, points: list[Settled], sign: float) -> Verdict:
-        """Bracket the largest rise (``sign`` -1: fall) of the settled speed, and say what it is."""
+    def bracket_largest_change(self, points: list[HeldPoint], sign: float) -> Verdict:
+        """Halve voltage steps until the largest speed change is bracketed, and judge it."""
         ended = math.nan
         for _ in range(self.settings.max_holds):
             i, low, high = largest_change(points, sign)
@@ -400,8 +404,8 @@ class HeldVoltageTest:
                 if self.differ(again, high):
                     points[i + 1] = again  # a longer step of the voltage had thrown it across
                     continue
-                what = self.there_and_back(low, high)
-                if what == LOST and self.replaced(points, i):
+                what = self.classify_return(low, high)
+                if what == LOST and self.replace_if_lost(points, i):
                     ended = low.voltage if math.isnan(ended) else ended
                     if abs(low.voltage - ended) <= self.settings.by_chance * self.volts:
                         continue  # it was lost before, as close as a bracket can tell
@@ -409,37 +413,43 @@ class HeldVoltageTest:
                 if what != FOLLOWS or self.is_within(low, high, self.settings.finest):
                     return Verdict(LOST if what == LOST else UNDECIDED, low.voltage, high.voltage)
             middle = next(
-                (point for point in self.inside(low, high) if point.speed == point.speed), None
+                (point for point in self.hold_between(low, high) if point.speed == point.speed),
+                None,
             )
             if middle is None:
-                lost = self.there_and_back(low, high) == LOST
-                lasts = lost and not self.replaced(points, i)
+                lost = self.classify_return(low, high) == LOST
+                lasts = lost and not self.replace_if_lost(points, i)
                 return Verdict(LOST if lasts else UNDECIDED, low.voltage, high.voltage)
             points.insert(i + 1, middle)
         return Verdict(UNDECIDED, low.voltage, high.voltage)
 
-    def smallest_change(self, low: Settled, high: Settled) -> float:
-        """Return the change of the speed over omega below which two neighbours show no jump."""
+    def smallest_change(self, low: HeldPoint, high: HeldPoint) -> float:
+        """Return the smallest speed change that may be a jump, over omega."""
         settings = self.settings
-        return min(settings.smallest_jump + noise(low, high), settings.largest_scatter)
+        return min(
+            settings.smallest_jump + speed_difference_error(low, high), settings.largest_scatter
+        )
 
-    def inside(self, low: Settled, high: Settled) -> Iterator[Settled]:
-        """Hold voltages between two points and yield the results: the middle first."""
+    def hold_between(self, low: HeldPoint, high: HeldPoint) -> Iterator[HeldPoint]:
+        """Hold voltages between two points and yield each result, the middle first."""
         for part in (0.5, 0.25, 0.75):
             yield self.step_from(low, low.voltage + part * (high.voltage - low.voltage))
 
-    def there_and_back(self, low: Settled, high: Settled) -> int:
-        """Go back to the lower voltage: a motion was lost where the speed does not come back."""
+    def classify_return(self, low: HeldPoint, high: HeldPoint) -> int:
+        """Step back to the lower voltage; return LOST if its speed is another."""
         back = self.step_from(high, low.voltage)
-        if abs(back.speed - low.speed) > self.settings.two_motions + noise(back, low):
-            return LOST if self.later(back) is back else UNDECIDED
+        if abs(back.speed - low.speed) > self.settings.two_motions + speed_difference_error(
+            back, low
+        ):
+            return LOST if self.hold_again(back) is back else UNDECIDED
         comes_back = math.isfinite(back.speed) and not self.differ(back, low)
         return FOLLOWS if comes_back else UNDECIDED
 
-    def later(self, point: Settled) -> Settled:
-        """Hold an irregular motion's voltage again and return what comes; others unchanged.
+    def hold_again(self, point: HeldPoint) -> HeldPoint:
+        """Hold an irregular motion again; return its new point if the speed differs.
 
-        An irregular one may have been lost before its voltage ended; others have settled.
+        An irregular motion may be lost while its voltage is still held; other points are returned
+        unchanged.
         """
         later, left = point, self.settings.again if point.error > 0.0 else 0
         for _ in range(left):
@@ -448,8 +458,8 @@ class HeldVoltageTest:
                 return later
         return point
 
-    def replaced(self, points: list[Settled], i: int) -> bool:
-        """Replace a point by the motion that a slow course is in there; return whether it is other.
+    def replace_if_lost(self, points: list[HeldPoint], i: int) -> bool:
+        """Replace a point by what a slower course reaches; return if it differs.
 
         The point's motion may end meanwhile, if it is irregular. And an irregular motion before may
         have fallen into it by chance, where it exists in a narrow range of voltages: where it ends
@@ -464,46 +474,50 @@ class HeldVoltageTest:
             for point in points[first + 1 : i + 1]:
                 path.append(self.step_from(path[-1], point.voltage))
             if self.differ(path[-1], points[i]):
-                points[first + 1 : i + 1] = [one for one in path[1:] if math.isfinite(one.speed)]
+                points[first + 1 : i + 1] = [
+                    settled for settled in path[1:] if math.isfinite(settled.speed)
+                ]
                 return True
-        later = self.later(points[i])
+        later = self.hold_again(points[i])
         is_other, points[i] = later is not points[i], later
         return is_other
 
-    def is_irregular(self, point: Settled) -> bool:
-        """Return whether a point's speed scatters by more than a settled one may."""
+    def is_irregular(self, point: HeldPoint) -> bool:
+        """Return whether the speed of a point scatters, as in chaotic motion."""
         return point.error > self.settings.tolerance
 
-    def is_within(self, low: Settled, high: Settled, width: float) -> bool:
-        """Return whether two voltages are closer than a width, over K omega."""
+    def is_within(self, low: HeldPoint, high: HeldPoint, width: float) -> bool:
+        """Return whether two points' voltages are closer than a width over K omega."""
         return abs(high.voltage - low.voltage) <= width * self.volts
 
-    def differ(self, point: Settled, other: Settled) -> bool:
-        """Return whether both points have settled, at different speeds."""
-        return abs(point.speed - other.speed) > self.settings.distinct + noise(point, other)
+    def differ(self, point: HeldPoint, other: HeldPoint) -> bool:
+        """Return whether two points have settled at clearly different speeds."""
+        return abs(point.speed - other.speed) > self.settings.distinct + speed_difference_error(
+            point, other
+        )
 
 
-def noise(point: Settled, other: Settled) -> float:
-    """Return three standard errors of the difference of two speeds."""
+def speed_difference_error(point: HeldPoint, other: HeldPoint) -> float:
+    """Return three standard errors of the difference between two settled speeds."""
     return 3.0 * math.hypot(point.error, other.error)
 
 
-def largest_change(points: list[Settled], sign: float) -> tuple[int, Settled, Settled]:
-    """Find neighbours between which the speed rises (-1: falls) most; return index and both."""
+def largest_change(points: list[HeldPoint], sign: float) -> tuple[int, HeldPoint, HeldPoint]:
+    """Find the neighbouring points with the largest speed change; return index and both."""
     pairs = list(pairwise(points))
     i = int(np.argmax([sign * (high.speed - low.speed) for low, high in pairs]))
     return i, *pairs[i]
 
 
 def block_means(speeds: np.ndarray, settings: HoldSettings) -> np.ndarray:
-    """Return mean speeds of blocks of revolutions; the first block, a transient, is left out."""
+    """Return the mean speeds of blocks of revolutions, without the first block."""
     count = len(speeds) // settings.block
     blocks = speeds[: count * settings.block].reshape(count, settings.block)
     return np.asarray(blocks.mean(axis=1)[1:])
 
 
 def settled_speed(means: np.ndarray, settings: HoldSettings) -> tuple[float, float]:
-    """Return the speed that block means settle at, and its error; NaN where they do not settle.
+    """Extrapolate the limit of block means (Aitken); return it with its error, or NaN.
 
     Means that approach a limit as an exponential say it before they are there (Aitken's process):
     three such limits in turn must agree. By a fold the approach is slower than any exponential, and
@@ -536,7 +550,7 @@ def settled_speed(means: np.ndarray, settings: HoldSettings) -> tuple[float, flo
 
 
 def with_final_chunk(chunks: list[Chunk]) -> list[Chunk]:
-    """Return chunks with the final item, the held-voltage test, as a chunk of its own."""
+    """Split the last item, the held-voltage test, into a chunk of its own."""
     last = chunks[-1]
     if last.stop - last.start == 1:
         return chunks

@@ -1,4 +1,4 @@
-"""Verdict on each direction: jump, none or undecided, and why; checked against the averaged theory.
+"""Decide for each voltage direction whether the speed jumps, and explain the decision.
 
 For a bonded structure the averaged theory knows where the motion is lost. A verdict that it
 contradicts by more than its own error is not given: the direction is undecided.
@@ -26,8 +26,8 @@ LEFT_BEFORE_TEXT = "left its branch before the ramp: it does so at the first vol
 SMOOTH_TEXT = "no jump: the speed follows the voltage through the resonance"
 
 
-class Theory(NamedTuple):
-    """Prediction of the averaged theory for the bonded structure, in one direction of the voltage.
+class AveragedPrediction(NamedTuple):
+    """Store where averaged theory predicts that the bonded structure loses stability.
 
     Attributes
     ----------
@@ -46,22 +46,26 @@ class Theory(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def theories(structure: Structure, drive: Drive) -> tuple[Theory, Theory]:
-    """Return the averaged theory's predictions for both directions, up and down."""
+def averaged_predictions(
+    structure: Structure, drive: Drive
+) -> tuple[AveragedPrediction, AveragedPrediction]:
+    """Return the averaged theory's predictions for rising and for falling voltage."""
     folds = averaged.folds(structure, drive)
     narrow = bool(folds) and abs(folds[0].eta0 - folds[-1].eta0) < NARROW
-    slope = averaged.least_slope(structure, drive)
+    slope = averaged.smallest_slope(structure, drive)
     up, down = (
-        Theory(tuple(candidate.eta0 for candidate in (point, *fold) if candidate), narrow, slope)
+        AveragedPrediction(
+            tuple(candidate.eta0 for candidate in (point, *fold) if candidate), narrow, slope
+        )
         for point, fold in zip(
-            averaged.losses(structure, drive), (folds[:1], folds[-1:]), strict=True
+            averaged.stability_limits(structure, drive), (folds[:1], folds[-1:]), strict=True
         )
     )
     return up, down
 
 
-def is_doubtful(passing: Passing, bonded: bool, theory: Theory) -> bool:
-    """Return whether the held-voltage test is needed: no clear record, or theory objects."""
+def is_doubtful(passing: Passing, bonded: bool, theory: AveragedPrediction) -> bool:
+    """Return whether a passage has to be checked by holding voltages."""
     if passing.look == JUMP:
         return bonded and not theory.losses
     if passing.look == SMOOTH:
@@ -69,8 +73,8 @@ def is_doubtful(passing: Passing, bonded: bool, theory: Theory) -> bool:
     return passing.look == DOUBTFUL
 
 
-def check_against_theory(verdict: Verdict, theory: Theory, volts: float) -> Verdict:
-    """Return the verdict on a bonded structure; undecided where the averaged theory objects."""
+def check_against_theory(verdict: Verdict, theory: AveragedPrediction, volts: float) -> Verdict:
+    """Change a bonded structure's verdict to undecided if averaged theory objects."""
     if theory.narrow or verdict.outcome not in (LOST, FOLLOWS):
         return verdict
     if verdict.outcome == FOLLOWS:
@@ -83,8 +87,10 @@ def check_against_theory(verdict: Verdict, theory: Theory, volts: float) -> Verd
     return verdict._replace(outcome=UNDECIDED)
 
 
-def reason(passing: Passing, held: Verdict, final: Verdict, theory: Theory, hold: float) -> str:
-    """Format why no jump is reported, though the speed passes the resonance.
+def explain_no_jump(
+    passing: Passing, held: Verdict, final: Verdict, theory: AveragedPrediction, hold: float
+) -> str:
+    """Explain in words why a passage of the resonance is not reported as a jump.
 
     Parameters
     ----------
@@ -96,15 +102,15 @@ def reason(passing: Passing, held: Verdict, final: Verdict, theory: Theory, hold
         Time for which voltages were held at most, s.
     """
     if final.outcome == UNDECIDED:
-        return undecided(held, theory, hold)
+        return explain_undecided(held, theory, hold)
     if passing.look == UNFINISHED:
         return "the ramp ends while the speed passes the resonance"
     texts = {FOLLOWS: FOLLOWS_TEXT, LEFT_BEFORE: LEFT_BEFORE_TEXT}
     return texts.get(int(final.outcome), SMOOTH_TEXT)
 
 
-def undecided(held: Verdict, theory: Theory, hold: float) -> str:
-    """Format why nothing is reported, and what helps."""
+def explain_undecided(held: Verdict, theory: AveragedPrediction, hold: float) -> str:
+    """Explain in words why a direction is undecided, and what would help."""
     if held.outcome == UNDECIDED:
         known = math.isfinite(held.low) and math.isfinite(held.high)
         between = f" between {held.low:.5g} and {held.high:.5g} V" if known else ""
@@ -119,8 +125,8 @@ def undecided(held: Verdict, theory: Theory, hold: float) -> str:
     return f"undecided: held voltages {ours}, the averaged theory {theirs}; see drive_branch"
 
 
-def how_decided(passing: Passing | None, final: Verdict) -> str:
-    """Format how jump or none was decided; empty where the speed does not pass the resonance."""
+def describe_decision(passing: Passing | None, final: Verdict) -> str:
+    """Say whether the ramp's record or held voltages decided; empty without a passage."""
     if passing is None:
         return ""
     if final.outcome == UNDECIDED:
@@ -129,7 +135,7 @@ def how_decided(passing: Passing | None, final: Verdict) -> str:
 
 
 def is_jump(passing: Passing | None, final: Verdict) -> bool:
-    """Return whether the speed jumps."""
+    """Return whether record and verdict together show a jump of the speed."""
     if passing is None:
         return False
     return final.outcome == LOST or (final.outcome == NOT_ASKED and passing.look == JUMP)

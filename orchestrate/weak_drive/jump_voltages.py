@@ -1,4 +1,4 @@
-"""Jump voltages with an error: ramps at several rates, bonded and delaminated, extrapolated to 0.
+"""Extrapolate the jump voltages of ramps at several rates to rate 0, with an error.
 
 A ramp's jump comes late, about as rate^(2/3): so it is where a fold is passed at a finite rate. The
 time that the speed then takes on its way makes a term that grows as the rate itself. Both are
@@ -23,7 +23,7 @@ from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
-from .couple import couple_job, require_motor, schedule_of, scheme_of
+from .couple import couple_job, require_motor, schedule_from_arguments, scheme_from_arguments
 from .master import Scheme
 from .schedule import Ramp, Schedule
 
@@ -69,17 +69,17 @@ def extrapolate(rates: np.ndarray, voltages: np.ndarray) -> tuple[float, float]:
     count = int(known.sum())
     if count < 2:
         return float("nan"), float("nan")
-    line, _ = at_zero(rates[known], voltages[known], (EXPONENT,))
+    line, _ = fit_rate_powers(rates[known], voltages[known], (EXPONENT,))
     if count == 2:
         return line, float("nan")
-    value, scatter = at_zero(rates[known], voltages[known], (EXPONENT, 1.0))
+    value, scatter = fit_rate_powers(rates[known], voltages[known], (EXPONENT, 1.0))
     return value, float(np.hypot(scatter, 0.5 * (value - line)))
 
 
-def at_zero(
+def fit_rate_powers(
     rates: np.ndarray, voltages: np.ndarray, exponents: tuple[float, ...]
 ) -> tuple[float, float]:
-    """Fit powers of the rate to voltages; return the constant and its error by the scatter."""
+    """Fit jump voltages by powers of the rate; return the value at rate 0 and its error."""
     design = np.stack([np.ones(len(rates)), *(rates**power for power in exponents)], axis=1)
     design /= design.max(axis=0)
     solution = np.linalg.lstsq(design, voltages, rcond=None)[0]
@@ -93,7 +93,7 @@ def at_zero(
 
 @dataclass(frozen=True)
 class JumpVoltagesJob(Job):
-    """Ramps at several rates, both structures; one item is one ramp.
+    """Run ramps at several rates for the bonded and the delaminated structure.
 
     Attributes
     ----------
@@ -117,14 +117,14 @@ class JumpVoltagesJob(Job):
         return len(KINDS) * len(self.schedules)
 
     def items(self, inputs: Inputs) -> Sequence[tuple[Structure, Ramp]]:
-        """Return structure and ramp of each, slowest first."""
+        """Return the structure and the schedule of each ramp, the slowest first."""
         both = (self.structure.as_bonded(), self.structure.as_delaminated())
         return [(structure, schedule) for schedule in self.schedules for structure in both]
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[tuple[Structure, Ramp]], previous: Any
     ) -> Table:
-        """Compute the jumps of some ramps."""
+        """Run some ramps; return their jump voltages and the speeds before."""
         rows = []
         for structure, schedule in items:
             job = couple_job(structure, self.drive, schedule, self.scheme)
@@ -133,7 +133,7 @@ class JumpVoltagesJob(Job):
         return {"jumps": np.array(rows).reshape(-1, 2, len(DIRECTIONS))}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return voltages over the rates, and at rate 0."""
+        """Build the dataset of jump voltages over the rate and at rate 0."""
         import xarray as xr
 
         rates = np.array([schedule.rate for schedule in self.schedules])
@@ -148,7 +148,7 @@ class JumpVoltagesJob(Job):
                 for kind in range(len(KINDS))
             ]
         )
-        ends[..., 1] = np.hypot(ends[..., 1], self.missed(ends[0, :, 0]))
+        ends[..., 1] = np.hypot(ends[..., 1], self.distance_from_folds(ends[0, :, 0]))
         every, each = ("rate", "structure", "jump"), ("structure", "jump")
         late = "voltage at which the speed jumps on the ramp"
         before = "mean speed where it leaves its branch"
@@ -169,8 +169,8 @@ class JumpVoltagesJob(Job):
         }
         return xr.Dataset(variables, coordinates, {"title": "Jump voltages of the weak drive"})
 
-    def missed(self, bonded: np.ndarray) -> np.ndarray:
-        """Return the distance of bonded jumps at rate 0 from the theory's folds, up and down, V.
+    def distance_from_folds(self, bonded: np.ndarray) -> np.ndarray:
+        """Return how far bonded jumps at rate 0 lie from the averaged folds, V.
 
         0 where there is no jump, or the averaged theory has no folds.
         """
@@ -193,7 +193,7 @@ def jump_voltages(
     step: float | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
-    """Find the voltages of the speed's jumps, bonded against delaminated, extrapolated to rate 0.
+    """Find the voltages of the speed's jumps, bonded and delaminated, at ramp rate 0.
 
     Parameters
     ----------
@@ -248,16 +248,18 @@ def jump_voltages(
     if len(set(volt_rates)) < 2:
         raise InputError(f"rates = {rates}: expected two different ones or more, in V/s")
     schedules = tuple(
-        ramp(schedule_of(structure, drive, voltage, None, rate, settle, 0.0, back))
+        require_ramp(
+            schedule_from_arguments(structure, drive, voltage, None, rate, settle, 0.0, back)
+        )
         for rate in sorted(volt_rates)
     )
-    scheme = scheme_of(structure, step)
+    scheme = scheme_from_arguments(structure, step)
     job = JumpVoltagesJob("jump_voltages", structure, drive, schedules, scheme)
     return answer(job, running, finder(running))
 
 
-def ramp(schedule: Schedule) -> Ramp:
-    """Return the schedule as a ramp; raise if it is none."""
+def require_ramp(schedule: Schedule) -> Ramp:
+    """Return the schedule if it is a ramp; raise an error otherwise."""
     if not isinstance(schedule, Ramp):
         raise InputError("voltage: expected (first, last) in V, the ends of ramps")
     return schedule

@@ -1,4 +1,4 @@
-"""Jumps of the speed as the voltage comes and goes.
+"""Find speed jumps in a ramp's record, where the motor passes the resonance (Sommerfeld).
 
 A slow ramp takes the motor along a branch of stationary motions. Where the branch ends the speed
 leaves it and passes the resonance: it changes many times as much as the voltage does meanwhile, and
@@ -22,7 +22,7 @@ JUMP, DOUBTFUL, SMOOTH, UNFINISHED = "jump", "doubtful", "smooth", "unfinished"
 
 
 class SweepLeg(NamedTuple):
-    """Revolutions on which the voltage goes in one direction, each shape (n,).
+    """Store time, voltage and speed of the revolutions with a rising or a falling voltage.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class SweepLeg(NamedTuple):
 
 
 class Passing(NamedTuple):
-    """How the speed passes the resonance, as row indices of the run.
+    """Store where in a ramp's record the speed passes the resonance, and how clearly.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class Passing(NamedTuple):
 
 
 class Criterion(NamedTuple):
-    """Settings for what counts as a jump by the record alone.
+    """Set the thresholds by which a ramp's record counts as a jump.
 
     Attributes
     ----------
@@ -114,16 +114,16 @@ def find_passing(
     near = np.flatnonzero(fast[max(0, cross - 2 * width) : cross + 2 * width + 1])
     if near.size:
         cross = max(0, cross - 2 * width) + int(near[np.argmin(np.abs(near - 2 * width))])
-    before, after = extent(fast, cross) if fast[cross] else (cross, cross + width)
+    before, after = true_stretch_around(fast, cross) if fast[cross] else (cross, cross + width)
     last = min(after + 2 * width, len(leg.time) - 1)
     half = half_slip_row(np.abs(leg.eta0 - leg.Omega), before, up)
     half = float(cross + width) if half is None else half
-    look = look_of(leg, means, b, sign, (before, after), limits) if fast[cross] else SMOOTH
+    look = classify_stretch(leg, means, b, sign, (before, after), limits) if fast[cross] else SMOOTH
     return Passing(math.ceil(half), before, last, look, half)
 
 
 def mean_width(leg: SweepLeg, b: float) -> int:
-    """Return of how many revolutions means are taken; 0 where the record is too short."""
+    """Return the width of the running mean in revolutions; 0 for too short a record."""
     if len(leg.time) < 2:
         return 0
     width = max(4, math.ceil(0.5 / (b * float(np.median(np.diff(leg.time))))))
@@ -131,12 +131,12 @@ def mean_width(leg: SweepLeg, b: float) -> int:
 
 
 def fast_rows(means: SweepLeg, width: int, sign: float, limits: Criterion) -> np.ndarray:
-    """Return where the mean speed changes faster than the voltage, by far."""
+    """Mark the rows where the mean speed changes much faster than the voltage."""
     rise = sign * lag_difference(means.Omega, width)
     return np.asarray(rise > limits.growth * np.abs(lag_difference(means.eta0, width)))
 
 
-def look_of(
+def classify_stretch(
     leg: SweepLeg,
     means: SweepLeg,
     b: float,
@@ -144,7 +144,7 @@ def look_of(
     stretch: tuple[int, int],
     limits: Criterion,
 ) -> str:
-    """Return what the record tells of a stretch on which the speed changes fast.
+    """Classify a fast change of the speed: jump, smooth, doubtful or unfinished.
 
     Parameters
     ----------
@@ -182,17 +182,17 @@ def look_of(
 
 
 def running_mean(values: np.ndarray, width: int) -> np.ndarray:
-    """Return means of ``width`` values each, so that motions over some revolutions look steady."""
+    """Return the means over `width` successive values."""
     return np.convolve(values, np.full(width, 1.0 / width), "valid")
 
 
 def lag_difference(values: np.ndarray, width: int) -> np.ndarray:
-    """Return differences of values ``width`` rows apart."""
+    """Return the differences of values that lie `width` rows apart."""
     return np.asarray(values[width:] - values[:-width])
 
 
-def extent(runs: np.ndarray, top: int) -> tuple[int, int]:
-    """Return first and last index of the stretch of true values that contains ``top``."""
+def true_stretch_around(runs: np.ndarray, top: int) -> tuple[int, int]:
+    """Return first and last index of the run of true values that contains an index."""
     breaks = np.flatnonzero(~runs)
     before, after = breaks[breaks < top], breaks[breaks > top]
     return (
@@ -202,7 +202,7 @@ def extent(runs: np.ndarray, top: int) -> tuple[int, int]:
 
 
 def half_slip_row(slip: np.ndarray, before: int, up: bool) -> float | None:
-    """Return the row, with decimals, where the slip crosses half of its largest; None without."""
+    """Return the fractional row where the slip crosses half its maximum; None if it never does."""
     level = slip[before:]
     highest, half = int(np.argmax(level)), 0.5 * float(level.max())
     first = highest + 1 if up else 0
@@ -216,16 +216,16 @@ def half_slip_row(slip: np.ndarray, before: int, up: bool) -> float | None:
     return before + row - float(min(max(ahead, 0.0), 1.0))
 
 
-def stays_beyond(time: np.ndarray, Omega: np.ndarray, threshold: float) -> float:
-    """Return the time from which a speed stays above a threshold; NaN where it ends below."""
+def time_beyond_threshold(time: np.ndarray, Omega: np.ndarray, threshold: float) -> float:
+    """Return the time from which the speed stays above a threshold; NaN if it does not."""
     below = np.flatnonzero(Omega <= threshold)
     if not len(Omega) or Omega[-1] <= threshold:
         return math.nan
     return float(time[below[-1] + 1]) if below.size else float(time[0])
 
 
-def why_none(leg: SweepLeg, up: bool, resonance: float) -> str:
-    """Return why the speed does not pass the resonance for good.
+def explain_not_passed(leg: SweepLeg, up: bool, resonance: float) -> str:
+    """Explain in words why the speed does not pass the resonance for good.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""All losses of a ramp in one direction, in its order: which is the jump, and which are further.
+"""Collect all losses of stability on one ramp, and pick the jump and the further jumps.
 
 The held course through the resonance may cross more than one loss, and the record may show more
 than the passing of the resonance. Each is told by the same rules. The first sure one is the jump.
@@ -15,7 +15,7 @@ import numpy as np
 from ..response.labels import Variable
 from ..running.job import Table
 from .held import LOST, NOT_ASKED, UNDECIDED, HeldCourse, Verdict
-from .jump_verdicts import how_decided, is_jump
+from .jump_verdicts import describe_decision, is_jump
 from .jumps import DOUBTFUL, JUMP, Passing
 
 SLOTS = 6  # further jumps of a direction that a dataset tells
@@ -26,7 +26,7 @@ SAME = 2e-4  # of K omega: brackets so close are of one loss
 
 
 class Loss(NamedTuple):
-    """A loss of stability on a ramp, or a place where there may be one.
+    """Store one loss of stability on a ramp, certain or suspected.
 
     Attributes
     ----------
@@ -44,35 +44,36 @@ class Loss(NamedTuple):
 
     @property
     def is_sure(self) -> bool:
-        """Whether the speed jumps."""
+        """Return whether the speed certainly jumps."""
         return is_jump(self.passing, self.verdict)
 
 
-def no_rows() -> np.ndarray:
-    """Return the stored form of no further verdicts; shape (``ROWS``, 4)."""
+def empty_verdict_rows() -> np.ndarray:
+    """Return the stored array that holds no verdicts, filled with NaN."""
     return np.full((ROWS, 4), math.nan)
 
 
-def as_rows(verdicts: Sequence[tuple[int, Verdict]]) -> np.ndarray:
-    """Return verdicts with the places that they are about as an array to store."""
-    rows = no_rows()
+def verdicts_to_rows(verdicts: Sequence[tuple[int, Verdict]]) -> np.ndarray:
+    """Convert verdicts, each with the index of its suspected jump, to an array."""
+    rows = empty_verdict_rows()
     for i, (place, verdict) in enumerate(verdicts[:ROWS]):
         rows[i] = (place, *verdict)
     return rows
 
 
-def from_rows(rows: np.ndarray) -> list[tuple[int, Verdict]]:
-    """Return the verdicts that :func:`as_rows` stored."""
+def verdicts_from_rows(rows: np.ndarray) -> list[tuple[int, Verdict]]:
+    """Convert the array of :func:`verdicts_to_rows` back to indices and verdicts."""
     known = rows[np.isfinite(rows[:, 0])]
     return [(int(row[0]), Verdict(int(row[1]), *row[2:])) for row in known.tolist()]
 
 
-def without_known(
+def drop_known_losses(
     verdicts: Sequence[Verdict], known: Sequence[Verdict], volts: float
 ) -> list[Verdict]:
-    """Return verdicts less those on losses that are known already, from another course."""
+    """Drop the verdicts whose brackets overlap losses that are already known."""
 
     def is_known(verdict: Verdict) -> bool:
+        """Return whether a verdict's bracket overlaps a known loss."""
         low, high = sorted((verdict.low, verdict.high))
         ends = [sorted((other.low, other.high)) for other in known]
         return any(
@@ -82,8 +83,8 @@ def without_known(
     return [verdict for verdict in verdicts if not is_known(verdict)]
 
 
-def outcomes(course: HeldCourse) -> list[Verdict]:
-    """Return the verdicts of a course on losses, sure and undecided ones."""
+def loss_verdicts(course: HeldCourse) -> list[Verdict]:
+    """Return those verdicts of a held course that are losses or undecided."""
     return [
         verdict
         for verdict in (course.verdict, *course.further)
@@ -91,8 +92,8 @@ def outcomes(course: HeldCourse) -> list[Verdict]:
     ]
 
 
-def reached(table: Table, rows: np.ndarray, voltage: float) -> Passing:
-    """Return where a ramp reaches a voltage, for a loss that its record does not show."""
+def ramp_position(table: Table, rows: np.ndarray, voltage: float) -> Passing:
+    """Return where on a ramp a given voltage is reached, as a doubtful passing."""
     voltages = table["voltage"][rows]
     sign = math.copysign(1.0, voltages[-1] - voltages[0])
     half = float(np.interp(sign * voltage, sign * voltages, rows))
@@ -108,7 +109,7 @@ def gather_losses(
     places: Sequence[Passing],
     further: Sequence[tuple[int, Verdict]],
 ) -> tuple[Loss | None, list[Loss]]:
-    """Return the passing of the resonance with its verdict, and all other losses.
+    """Combine record and verdicts: return the loss at the resonance, and all others.
 
     Parameters
     ----------
@@ -132,24 +133,24 @@ def gather_losses(
     ]
     main, others = None, []
     if passing is not None:
-        *before, last = in_order(table, rows, [*covered, passing], [primary, *through])
+        *before, last = losses_in_ramp_order(table, rows, [*covered, passing], [primary, *through])
         main, others = last, before
     for place, look in enumerate(places):
-        found = [verdict for other, verdict in further if other == place]
+        about_place = [verdict for other, verdict in further if other == place]
         untold = Verdict(NOT_ASKED if look.look == JUMP else UNDECIDED)
-        told = [verdict for verdict in found if verdict.outcome in (LOST, UNDECIDED)]
-        if told or not found:
-            others += in_order(table, rows, [look], told or [untold])
+        losses_here = [verdict for verdict in about_place if verdict.outcome in (LOST, UNDECIDED)]
+        if losses_here or not about_place:
+            others += losses_in_ramp_order(table, rows, [look], losses_here or [untold])
     return main, others
 
 
-def in_order(
+def losses_in_ramp_order(
     table: Table, rows: np.ndarray, passings: Sequence[Passing], verdicts: Sequence[Verdict]
 ) -> list[Loss]:
-    """Return losses in the ramp's order, each with the place where the record shows it.
+    """Assign verdicts to places in the record, both in the order of the ramp.
 
-    The last one is shown last. Earlier ones that the record does not show are where the ramp
-    reaches their voltages.
+    The last verdict belongs to the last place. Earlier losses that the record does not show are put
+    where the ramp reaches their voltages.
     """
     voltages = table["voltage"]
     sign = math.copysign(1.0, voltages[rows[-1]] - voltages[rows[0]])
@@ -158,29 +159,29 @@ def in_order(
     for i, verdict in enumerate(reversed(ordered)):
         middle = 0.5 * (verdict.low + verdict.high)
         shown = i < len(passings)
-        passing = passings[-1 - i] if shown else reached(table, rows, middle)
+        passing = passings[-1 - i] if shown else ramp_position(table, rows, middle)
         seen = float(np.interp(passing.half, np.arange(len(voltages)), voltages))
         losses.append(Loss(passing, verdict, middle if math.isfinite(middle) else seen))
     return losses[::-1]
 
 
-def jump_and_further(
+def pick_jump(
     main: Loss | None, others: Sequence[Loss], sign: float
 ) -> tuple[Loss | None, list[Loss]]:
-    """Return the first sure loss on the way, else the passing itself; and all further ones."""
+    """Pick the first certain loss as the jump, else the main one; return it and the rest."""
     known = [*([main] if main else []), *others]
     sure = [loss for loss in known if loss.is_sure]
     first = min(sure, key=lambda loss: sign * loss.voltage, default=main)
-    told = [
+    further = [
         loss
         for loss in known
         if loss is not first and (loss.is_sure or loss.verdict.outcome == UNDECIDED)
     ]
-    return first, sorted(told, key=lambda loss: sign * loss.voltage)
+    return first, sorted(further, key=lambda loss: sign * loss.voltage)
 
 
-def further_columns(table: Table, further: Sequence[Sequence[Loss]]) -> dict[str, Variable]:
-    """Return further jumps of both directions, sure and undecided ones, in the ramp's order."""
+def further_jump_variables(table: Table, further: Sequence[Sequence[Loss]]) -> dict[str, Variable]:
+    """Build the dataset's variables of the further jumps in both directions."""
     shape = len(further), SLOTS
     names = ("further_jumps", "further_time", "further_held", "further_error")
     numbers = {name: np.full(shape, math.nan) for name in names}
@@ -189,7 +190,7 @@ def further_columns(table: Table, further: Sequence[Sequence[Loss]]) -> dict[str
     for i, losses in enumerate(further):
         for j, loss in enumerate(losses[:SLOTS]):
             passing, (_, low, high) = loss.passing, loss.verdict
-            decided[i, j] = how_decided(passing, loss.verdict)
+            decided[i, j] = describe_decision(passing, loss.verdict)
             if loss.is_sure:
                 for name, column in (("further_jumps", "voltage"), ("further_time", "time")):
                     numbers[name][i, j] = np.interp(passing.half, rows, table[column])

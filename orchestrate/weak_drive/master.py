@@ -1,4 +1,4 @@
-"""Co-simulation master of structure and motor FMU; halves steps whose coupling error is too large.
+"""Step the two coupled FMUs (co-simulation master) and choose the communication step.
 
 The structure's ``box_force`` depends on its states only, the box's acceleration on the force: there
 is no algebraic loop, but what each side assumes of the other over a step decides everything.
@@ -34,7 +34,7 @@ from .exchange import (
     Step,
 )
 from .extremes import Revolution
-from .polynomials import end_slope, matched_cubic, parabola, work
+from .polynomials import end_slope, integrate_work, matched_cubic, parabola_through_points
 
 MASTER_STATE = (
     *("time", "voltage", "slope", "force_before", "h_before"),
@@ -48,10 +48,10 @@ STATE_INDEX = {  # of what is remembered
 }
 
 
-def parts_of(
+def split_state(
     numbers: Any,
 ) -> tuple[Any, OscillatorOutputs, ShakerOutputs, Any]:
-    """Split a state; return the master's own part, both FMUs' outputs, and the energy balance's."""
+    """Split a saved state into master, structure, motor and energy balance."""
     motion, shaking = (
         STATE_INDEX[OscillatorOutputs._fields[0]],
         STATE_INDEX[ShakerOutputs._fields[0]],
@@ -62,7 +62,7 @@ def parts_of(
 
 
 class Algorithm(NamedTuple):
-    """Algorithm of a communication step.
+    """Describe a coupling algorithm: passes per step and order of extrapolation.
 
     Attributes
     ----------
@@ -95,7 +95,7 @@ ALGORITHMS = {
 
 @dataclass(frozen=True)
 class Scheme:
-    """Settings of a communication step.
+    """Set the coupling algorithm, the communication step and its error control.
 
     Attributes
     ----------
@@ -130,6 +130,7 @@ class Scheme:
     beginning: tuple[int, ...] = (1, 1, 2, 4, 8)
 
     def __post_init__(self) -> None:
+        """Check algorithm, step length and tolerance."""
         if self.algorithm not in ALGORITHMS:
             raise InputError(f"algorithm {self.algorithm}: expected one of {', '.join(ALGORITHMS)}")
         if not (math.isfinite(self.h) and self.h > 0.0):
@@ -146,17 +147,17 @@ class Scheme:
 
     @property
     def passes(self) -> int:
-        """Number of times that a step is done."""
+        """Return how often each communication step is computed; 0 for Jacobi."""
         return ALGORITHMS[self.algorithm].passes
 
     @property
     def goes_back(self) -> bool:
-        """Whether FMU states are saved and restored."""
+        """Return whether the algorithm rolls the FMUs back to repeat a step."""
         return self.passes > 1
 
 
 class Master:
-    """Co-simulation master of two initialised instances.
+    """Step two initialised FMU instances together and exchange force and acceleration.
 
     :class:`.compiled.CompiledMaster` does the same with the same bits, faster.
 
@@ -194,12 +195,13 @@ class Master:
         scheme: Scheme,
         start_time: float = 0.0,
     ) -> None:
+        """Connect both instances and read their initial outputs."""
         self.oscillator = Channel(oscillator, OscillatorInputs._fields, OscillatorOutputs._fields)
         self.shaker = Channel(shaker, ShakerInputs._fields, ShakerOutputs._fields)
         self.scheme, self._algorithm = scheme, ALGORITHMS[scheme.algorithm]
         self.structure, self.time, self.voltage = structure, start_time, math.nan
         self.level = 0
-        self.motion, self.shaking = self._motion(), self._shaking()
+        self.motion, self.shaking = self._read_structure(), self._read_motor()
         self.revolution: Revolution | None = None
         self.slope = 0.0  # of the force, at the present communication point
         self.force_before = self.h_before = 0.0
@@ -208,7 +210,7 @@ class Master:
         self._do = self._gauss_seidel_step if scheme.passes else self._jacobi_step
 
     def step(self, voltage: float, h: float | None = None) -> None:
-        """Do one communication interval at a constant voltage, V; of length ``h``, s, if given."""
+        """Run one communication interval at a constant voltage, V."""
         h = h or self.scheme.h
         begin = self.time
         if self.scheme.tolerance:
@@ -217,7 +219,7 @@ class Master:
             known = self.h_before or self.scheme.goes_back
             beginning = (1,) if known else self.scheme.beginning
             for part in beginning:
-                self._step(voltage, h * part / sum(beginning))
+                self._try_step(voltage, h * part / sum(beginning))
         self.time = begin + h
 
     def run(
@@ -227,7 +229,7 @@ class Master:
         h: float | None = None,
         kept: np.ndarray | None = None,
     ) -> int:
-        """Do intervals one after the other until a revolution is complete.
+        """Run communication intervals until a revolution ends; return the next index.
 
         Parameters
         ----------
@@ -249,12 +251,12 @@ class Master:
             self.step(voltages[i], h)
             if kept is not None:
                 kept[i] = self.get_state()
-            if self.revolution and self.revolution.complete(self.shaking.angle / TURN):
+            if self.revolution and self.revolution.is_complete(self.shaking.angle / TURN):
                 return i + 1
         return len(voltages)
 
     def _substeps_by_defect(self, voltage: float, h: float) -> None:
-        """Do an interval in halved steps until the energy defect of each is small enough.
+        """Choose communication substeps so that each energy defect is small.
 
         A step is halved where its defect is too large. After one with a defect that twice the
         length would still do with, the next is twice as long, where that ends on its own grid: so
@@ -264,7 +266,9 @@ class Master:
         done = 0
         while done < max_parts:
             size, last_impact = max_parts >> self.level, self.motion.impact_time
-            defect = self._step(voltage, h / (1 << self.level), self.level < self.scheme.halvings)
+            defect = self._try_step(
+                voltage, h / (1 << self.level), self.level < self.scheme.halvings
+            )
             if defect > self.scheme.tolerance and self.level < self.scheme.halvings:
                 self.level += 1
                 continue
@@ -276,37 +280,37 @@ class Master:
                 self._restart_extrapolation()
 
     def _restart_extrapolation(self) -> None:
-        """Restart the extrapolation after an impact: the force has a corner there, or jumps."""
+        """Restart the extrapolation after an impact, where the force may jump."""
         self.slope = self.h_before = 0.0
         self.shaking = self._outputs_with_force(self.motion)
 
-    def _step(self, voltage: float, h: float, may_refuse: bool = False) -> float:
-        """Do a step unless its defect forbids; return the defect over the work exchanged."""
+    def _try_step(self, voltage: float, h: float, may_refuse: bool = False) -> float:
+        """Try one communication step; return its relative energy defect."""
         if voltage != self.voltage:  # the acceleration belongs to the inputs as set now
             self.voltage = voltage
             self.shaking = self._outputs_with_force(self.motion)
         done = self._do(h)
-        force = self.force_of(done.motion, h)
+        force = self.fit_force(done.motion, h)
         taken = done.shaking.box_force_work - self.shaking.box_force_work
-        defect = taken - work(force, self.shaking.box_velocity, done.acceleration, h)
-        size = self._over_exchanged(done, taken, defect)
+        defect = taken - integrate_work(force, self.shaking.box_velocity, done.acceleration, h)
+        size = self._relative_defect(done, taken, defect)
         if may_refuse and size > self.scheme.tolerance:
             self.oscillator.restore()
             self.shaker.restore()
             return size
         self.slope = end_slope(force, h)
         self.balance.add(self.motion, done.motion, done.acceleration, defect, h)
-        self._advance(done, h)
+        self._accept_step(done, h)
         return size
 
-    def _over_exchanged(self, done: Step, taken: float, defect: float) -> float:
-        """Return a defect over the work that motor, box and masses exchange in the step."""
+    def _relative_defect(self, done: Step, taken: float, defect: float) -> float:
+        """Return a step's energy defect relative to the work exchanged in it."""
         work = done.shaking.motor_energy - self.shaking.motor_energy
         exchanged = abs(taken) + abs(work)
         return abs(defect) / exchanged if exchanged else 0.0
 
-    def _advance(self, done: Step, h: float) -> None:
-        """Take the step's end as the present point, and account for its energies."""
+    def _accept_step(self, done: Step, h: float) -> None:
+        """Accept a finished step: move time, outputs and extrapolation to its end."""
         if self.revolution:
             ends = self.motion, self.shaking
             self.revolution.add(self.structure, ends, done, self.time, h)
@@ -317,44 +321,46 @@ class Master:
         self.time += h
         self.motion, self.shaking = done.motion, self._outputs_with_force(done.motion)
 
-    def _motion(self) -> OscillatorOutputs:
+    def _read_structure(self) -> OscillatorOutputs:
+        """Read the outputs of the structure FMU."""
         return tuple.__new__(OscillatorOutputs, self.oscillator.get())  # as _make, in half its time
 
-    def _shaking(self) -> ShakerOutputs:
+    def _read_motor(self) -> ShakerOutputs:
+        """Read the outputs of the motor FMU."""
         return tuple.__new__(ShakerOutputs, self.shaker.get())
 
     def _outputs_with_force(self, motion: OscillatorOutputs) -> ShakerOutputs:
-        """Return the shaker's outputs with the force at the present point, and its slope."""
+        """Set force and voltage of the present point; return the motor's outputs."""
         self.shaker.put(motion.box_force, self.slope, 0.0, 0.0, self.voltage)
-        return self._shaking()
+        return self._read_motor()
 
     # -- what each side assumes of the other --
 
-    def force_of(self, motion: OscillatorOutputs, h: float) -> Cubic:
-        """Return the force over a step to ``motion``: with its ends, mean and moment."""
+    def fit_force(self, motion: OscillatorOutputs, h: float) -> Cubic:
+        """Fit the force over a step by a cubic with exact mean and first moment."""
         mean, moment = motion.box_impulse / h, motion.box_impulse_moment / (h * h)
         return matched_cubic(self.motion.box_force, motion.box_force, mean, moment, h)
 
     def _force_for_shaker(self, motion: OscillatorOutputs, h: float) -> Cubic:
-        """Return the force over that step as it is passed to the shaker."""
+        """Return the force over a step as the cubic that the motor FMU gets."""
         if self.scheme.matched:
-            return self.force_of(motion, h)
-        return parabola(
+            return self.fit_force(motion, h)
+        return parabola_through_points(
             self.force_before, self.motion.box_force, motion.box_force, self.h_before, h
         )
 
     def _acceleration_for_structure(self, after: ShakerOutputs, h: float) -> Cubic:
-        """Return the acceleration over a step of the shaker, as the structure takes it."""
+        """Fit the box acceleration over a step for the structure FMU."""
         now = self.shaking
         first, last = now.box_acceleration, after.box_acceleration
         if not self.scheme.matched:
-            return parabola(self.acceleration_before, first, last, self.h_before, h)
+            return parabola_through_points(self.acceleration_before, first, last, self.h_before, h)
         mean = (after.box_velocity - now.box_velocity) / h
         moment = mean - ((after.box_position - now.box_position) / h - now.box_velocity) / h
         return matched_cubic(first, last, mean, moment, h)
 
     def _extrapolated_acceleration(self) -> Cubic:
-        """Extrapolate the acceleration from this point and the one before."""
+        """Extrapolate the box acceleration over the coming step."""
         value, jerk, h = self.shaking.box_acceleration, self.shaking.box_jerk, self.h_before
         terms = self._algorithm.terms
         if terms == 1:
@@ -368,7 +374,7 @@ class Master:
         return value, jerk, 2.0 * (bend + twist * h), 6.0 * twist
 
     def _extrapolated_force(self) -> Cubic:
-        """Extrapolate the force where both instances go at once: held constant, or a line."""
+        """Extrapolate the force over the coming step, for the Jacobi algorithms."""
         force, h = self.motion.box_force, self.h_before
         line = self._algorithm.terms > 1 and h
         return force, (force - self.force_before) / h if line else 0.0, 0.0, 0.0
@@ -376,16 +382,16 @@ class Master:
     # -- the schemes --
 
     def _jacobi_step(self, h: float) -> Step:
-        """Step each with what is known of the other before the step (Jacobi)."""
+        """Step both FMUs at once, each with extrapolated inputs (Jacobi)."""
         acceleration = self._extrapolated_acceleration()
         self.oscillator.put(*acceleration)
         self.oscillator.step(self.time, h)
         self.shaker.put(*self._extrapolated_force(), self.voltage)
         self.shaker.step(self.time, h)
-        return Step(acceleration, self._motion(), self._shaking())
+        return Step(acceleration, self._read_structure(), self._read_motor())
 
     def _gauss_seidel_step(self, h: float) -> Step:
-        """Step structure, then shaker; once, twice, or until the force does not change."""
+        """Step the structure, then the motor; roll back and repeat if asked."""
         passes = self._algorithm.passes
         if self.scheme.goes_back:
             self.oscillator.save()
@@ -397,26 +403,26 @@ class Master:
             if i:
                 self.oscillator.restore()
                 self.shaker.restore()
-            motion, force = self._pass(acceleration, h)
+            motion, force = self._step_both(acceleration, h)
             if i + 1 == passes or (last and self._converged(motion, last)):
                 break
             last = motion
             self.shaker.put(motion.box_force, end_slope(force, h), 0.0, 0.0, self.voltage)
-            acceleration = self._acceleration_for_structure(self._shaking(), h)
-        return Step(acceleration, motion, self._shaking())
+            acceleration = self._acceleration_for_structure(self._read_motor(), h)
+        return Step(acceleration, motion, self._read_motor())
 
-    def _pass(self, acceleration: Cubic, h: float) -> tuple[OscillatorOutputs, Cubic]:
-        """Step structure and shaker once; return the structure's end and the shaker's force."""
+    def _step_both(self, acceleration: Cubic, h: float) -> tuple[OscillatorOutputs, Cubic]:
+        """Step the structure and then the motor once; return motion and force."""
         self.oscillator.put(*acceleration)
         self.oscillator.step(self.time, h)
-        motion = self._motion()
+        motion = self._read_structure()
         force = self._force_for_shaker(motion, h)
         self.shaker.put(*force, self.voltage)
         self.shaker.step(self.time, h)
         return motion, force
 
     def _converged(self, motion: OscillatorOutputs, last: OscillatorOutputs) -> bool:
-        """Return whether an iteration has changed nothing but roundings."""
+        """Return whether two iterations of a step agree up to rounding."""
         now, then = (
             (state.box_force, state.box_impulse, state.box_impulse_moment)
             for state in (motion, last)
@@ -427,19 +433,19 @@ class Master:
     # -- to go on elsewhere --
 
     def get_state(self) -> list[float]:
-        """Return the master's own state: with those of both FMUs, all that a run goes on from."""
+        """Return the master's own state as a list of floats, to be restored later."""
         own_state = [float(getattr(self, name)) for name in MASTER_STATE]
         return [*own_state, *self.motion, *self.shaking, *self.balance.get_state()]
 
     def set_state(self, numbers: Sequence[float]) -> None:
-        """Return to a state that :meth:`get_state` gave."""
-        own_state, self.motion, self.shaking, balance = parts_of(numbers)
+        """Restore the state that :meth:`get_state` returned."""
+        own_state, self.motion, self.shaking, balance = split_state(numbers)
         for name, value in zip(MASTER_STATE, own_state, strict=True):
             setattr(self, name, value)
         self.level = int(self.level)
         self.balance.set_state(balance)
 
     def close(self) -> None:
-        """Free the states saved in the FMUs."""
+        """Free the FMU states saved for rollback."""
         self.oscillator.close()
         self.shaker.close()

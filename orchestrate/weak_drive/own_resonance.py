@@ -1,4 +1,4 @@
-"""Resonance of the delaminated structure in the box: its elastic mode with one impact a revolution.
+"""Compute the delaminated structure's resonance and the speed that divides its motions.
 
 Without dampers and with e = 1 the halves and the box move freely from one impact to the next, even
 in time about the middle of the flight. With the frequencies w and modes of the free system, scaled
@@ -33,7 +33,7 @@ SAMPLES = 400  # of a flight, whose gap is positive
 
 @lru_cache(maxsize=64)
 def elastic_resonance(structure: Structure, drive: Drive) -> float:
-    """Return the speed over omega of the mode; the bonded resonance where there is none.
+    """Compute the undamped resonance speed with one elastic impact a revolution.
 
     Parameters
     ----------
@@ -46,6 +46,7 @@ def elastic_resonance(structure: Structure, drive: Drive) -> float:
     w, n = free_modes(structure, drive)
 
     def gap_at_impact(Omega: float) -> float:
+        """Return the gap at the impact for a speed; 0 at a resonance."""
         return float((n**2 / (w * np.tan(w * np.pi / Omega))).sum())
 
     poles = (w[:, np.newaxis] / np.arange(1, 1 + int(w[-1] / w[-2]))).ravel()
@@ -55,13 +56,13 @@ def elastic_resonance(structure: Structure, drive: Drive) -> float:
         ends = low * (1.0 + CLOSE), high * (1.0 - CLOSE)
         if gap_at_impact(ends[0]) < 0.0 < gap_at_impact(ends[1]):
             root = float(brentq(gap_at_impact, *ends, xtol=1e-12))
-            if keeps_open(w, n, root):
+            if gap_stays_open(w, n, root):
                 roots.append(root)
     return min(roots, key=lambda root: abs(root - bonded), default=bonded)
 
 
 def free_modes(structure: Structure, drive: Drive) -> tuple[np.ndarray, np.ndarray]:
-    """Return frequencies over omega without contact, ascending; and each mode's change of gap."""
+    """Compute the natural frequencies without contact, and each mode's change of gap."""
     from scipy.linalg import eigh
 
     beta, mu = drive.beta(structure), structure.mu
@@ -73,52 +74,52 @@ def free_modes(structure: Structure, drive: Drive) -> tuple[np.ndarray, np.ndarr
     return np.sqrt(np.maximum(squares, SLOWEST**2)), modes[1] - modes[0]
 
 
-def keeps_open(w: np.ndarray, n: np.ndarray, Omega: float) -> bool:
-    """Return whether the gap of a mode has one sign throughout its flight."""
+def gap_stays_open(w: np.ndarray, n: np.ndarray, Omega: float) -> bool:
+    """Return whether the gap stays open between two impacts of a mode."""
     angles = np.pi / Omega * np.linspace(-1.0, 1.0, SAMPLES + 1)[1:-1]
     gaps = np.cos(np.outer(angles, w)) @ (n**2 / (w * np.sin(w * np.pi / Omega)))
     return bool((gaps > 0.0).all() or (gaps < 0.0).all())
 
 
 def resonance(structure: Structure, drive: Drive) -> float:
-    """Return the speed over omega of the structure's resonance.
+    """Return the resonance speed of the structure as given, over omega.
 
     That of the bonded structure also serves the delaminated one, unless its own lies clearly apart:
     by more than half the distance of the bonded folds, and half the width of its resonance.
     """
-    return averaged.resonance(structure, drive) + clear_shift(structure, drive)
+    return averaged.resonance(structure, drive) + resolved_resonance_shift(structure, drive)
 
 
 def resonances(structure: Structure, drive: Drive) -> tuple[float, float]:
-    """Return the least and the largest resonance, bonded and delaminated, as speeds over omega."""
+    """Return the lower and the higher of the bonded and delaminated resonance speeds."""
     both = (structure.as_bonded(), structure.as_delaminated())
     low, high = sorted(resonance(kind, drive) for kind in both)
     return low, high
 
 
 def dividing_speed(structure: Structure, drive: Drive) -> float:
-    """Return the speed over omega between motions below and beyond a structure's own resonance."""
-    return averaged.dividing_speed(structure, drive) + clear_shift(structure, drive)
+    """Return the speed over omega that divides motions below and beyond resonance."""
+    return averaged.dividing_speed(structure, drive) + resolved_resonance_shift(structure, drive)
 
 
 def dividing_speeds(structure: Structure, drive: Drive) -> tuple[float, float]:
-    """Return the least and the largest speed over omega that may divide motions below and above."""
+    """Return the lowest and the highest speed over omega that may divide motions."""
     bonded = averaged.dividing_speed(structure, drive)
-    low, high = sorted((bonded, bonded + shift(structure, drive)))
+    low, high = sorted((bonded, bonded + resonance_shift(structure, drive)))
     return low, high
 
 
-def shift(structure: Structure, drive: Drive) -> float:
-    """Return the structure's resonance minus the bonded one's, over omega."""
+def resonance_shift(structure: Structure, drive: Drive) -> float:
+    """Return the structure's resonance speed minus the bonded one, over omega."""
     if structure.bonded:
         return 0.0
     return elastic_resonance(structure, drive) - averaged.resonance(structure, drive)
 
 
-def clear_shift(structure: Structure, drive: Drive) -> float:
-    """Return :func:`shift` if it exceeds the widths of fold range and resonance, else 0."""
-    distance = shift(structure, drive)
+def resolved_resonance_shift(structure: Structure, drive: Drive) -> float:
+    """Return the resonance shift if it exceeds fold range and resonance width, else 0."""
+    distance = resonance_shift(structure, drive)
     folds = averaged.folds(structure, drive) if distance else []
     half = 0.5 * (folds[-1].Omega - folds[0].Omega) if folds else 0.0
-    clear = abs(distance) > max(half, averaged.half_width(structure, drive))
+    clear = abs(distance) > max(half, averaged.resonance_half_width(structure, drive))
     return distance if clear else 0.0

@@ -1,4 +1,4 @@
-"""The passage through the resonance at full resolution: every communication step of a run is kept.
+"""Record the passage through the resonance at every communication step, with spectra.
 
 Of a long run only what lies around the jumps may be kept. :func:`waterfall` makes spectra over the
 motor's revolutions of it.
@@ -26,9 +26,15 @@ from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from .controllers import Controller
-from .couple import CoupleJob, couple_job, require_motor, schedule_of, scheme_of
+from .couple import (
+    CoupleJob,
+    couple_job,
+    require_motor,
+    schedule_from_arguments,
+    scheme_from_arguments,
+)
 from .held import with_final_chunk
-from .master import STATE_INDEX, Master, parts_of
+from .master import STATE_INDEX, Master, split_state
 from .revolutions import COLUMNS
 from .run import Run
 from .schedule import Schedule, check
@@ -62,7 +68,7 @@ KEPT = "sampled "  # before the names of samples in a table that has revolutions
 
 @dataclass(frozen=True)
 class PassageJob(Job):
-    """Job of a run that keeps all its communication points.
+    """Run the coupled FMUs and keep the state after every communication step.
 
     Attributes
     ----------
@@ -81,37 +87,38 @@ class PassageJob(Job):
     item: ClassVar[str] = "step"
 
     def count(self) -> int:
-        """Return the number of steps, and one for the verdicts on the jumps."""
+        """Return the number of items: all communication steps and one held-voltage test."""
         return self.run.count()
 
     def items(self, inputs: Inputs) -> Sequence[int]:
-        """Return the steps, and one more for the verdicts."""
+        """Return the item indices: all communication steps, then the held-voltage test."""
         return range(self.count())
 
     def chunks(self) -> list[Chunk]:
-        """Return chunks of steps; the verdicts are a chunk of their own."""
+        """Split the items into chunks; the held-voltage test is its own last chunk."""
         return with_final_chunk(super().chunks())
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
-        """Compute some steps, with all that the next chunk needs; or the verdicts at the end."""
+        """Compute one chunk of steps with all samples, or the held-voltage test."""
 
-        def revolve(run: Run) -> Table:
+        def revolve_with_samples(run: Run) -> Table:
+            """Run the steps; return revolutions and the samples after every step."""
             kept = np.empty((len(items), len(run.master.get_state())))
             revolutions = run.revolve(items, kept)
-            columns = samples(run.master, kept)
+            columns = sample_columns(run.master, kept)
             names = (KEPT + name for name in SAMPLES)
             return {**revolutions, **dict(zip(names, columns, strict=True))}
 
-        return self.run.work_on(fmus, items, previous, self.chunk_size, revolve)
+        return self.run.work_on(fmus, items, previous, self.chunk_size, revolve_with_samples)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return samples over time, and the jumps."""
+        """Build the dataset of samples over time and of the jumps."""
         import xarray as xr
 
         of_run = {name: table[name] for name in (*COLUMNS, "verdicts", "further_verdicts")}
         revolutions = self.run.dataset(of_run, inputs)
         samples = {name: table[KEPT + name] for name in SAMPLES}
-        centres, what = self.centres(revolutions)
+        centres, what = self.sample_centres(revolutions)
         away = np.abs(samples["time"][:, np.newaxis] - centres).min(axis=1, initial=math.inf)
         span = math.inf if self.around is None else (1.0 + 1e-9) * self.around
         kept = np.flatnonzero(away <= span)
@@ -124,8 +131,8 @@ class PassageJob(Job):
         title = {"title": f"Passage through the resonance, {state} structure", "kept": what}
         return xr.Dataset(variables, time, {**revolutions.attrs, **title}).merge(of_jumps)
 
-    def centres(self, revolutions: xr.Dataset) -> tuple[np.ndarray, str]:
-        """Return the times around which samples are stored, s, and what happens at them."""
+    def sample_centres(self, revolutions: xr.Dataset) -> tuple[np.ndarray, str]:
+        """Return the times around which samples are kept, s, and a text on them."""
         jumps = revolutions.jump_time.values
         passed = float(revolutions.passage_time)
         if self.around is None:
@@ -137,9 +144,9 @@ class PassageJob(Job):
         return np.array([self.run.schedule.duration - self.around]), "the end, there is no jump"
 
 
-def samples(master: Master, kept: np.ndarray) -> tuple[Any, ...]:
-    """Return a tuple of arrays, the communication points of a master's states, as ``SAMPLES``."""
-    own_state, motion, shaking, balance = parts_of(kept.T)
+def sample_columns(master: Master, kept: np.ndarray) -> tuple[Any, ...]:
+    """Convert saved master states to columns of samples, in the order of ``SAMPLES``."""
+    own_state, motion, shaking, balance = split_state(kept.T)
     accounts = copy(master.balance)
     accounts.set_state(balance)
     energies = accounts.energies(motion, shaking)
@@ -218,8 +225,8 @@ def passage(
     if spin_up is None and speed_start is not None:
         spin_up = 0.0
     settings = (duration, rate, settle, 0.0, back, spin_up)
-    schedule = schedule_of(structure, drive, voltage, *settings)
-    scheme = scheme_of(structure, step, sampled=True)
+    schedule = schedule_from_arguments(structure, drive, voltage, *settings)
+    scheme = scheme_from_arguments(structure, step, sampled=True)
     run = couple_job(structure, drive, schedule, scheme, speed_start, control, hold)
     name = run.name.replace("couple", "passage")
     return answer(PassageJob(name, run, around), running, finder(running))
@@ -228,7 +235,7 @@ def passage(
 def waterfall(
     found: xr.Dataset, *, mass: int = 1, revolutions: int = 16, highest: float = 6.0
 ) -> xr.Dataset:
-    """Compute spectra of a mass's acceleration in space, one revolution of the motor after another.
+    """Compute spectra of a mass's absolute acceleration, revolution after revolution.
 
     Parameters
     ----------
@@ -271,20 +278,20 @@ def waterfall(
 
     check_spectra(found, mass, revolutions, highest)
     points = max(16, math.ceil(4.0 * highest))
-    at, moved = over_angle(found, mass, points)
+    times, moved = resample_over_angle(found, mass, points)
     length, hop = revolutions * points, max(1, revolutions // 4) * points
-    begins = np.arange(0, len(at) - length + 1, hop)
+    begins = np.arange(0, len(times) - length + 1, hop)
     if not begins.size:
-        turns = len(at) // points
+        turns = len(times) // points
         raise InputError(f"revolutions = {revolutions}: expected at most the {turns} there are")
-    lines = hann_lines(moved[begins[:, np.newaxis] + np.arange(length)])
+    lines = hann_spectrum(moved[begins[:, np.newaxis] + np.arange(length)])
     order = np.arange(lines.shape[1]) / revolutions
     shown = order <= highest
     ends = begins + length - 1
-    speed = TURN * (length - 1) / points / (at[ends] - at[begins])
-    middle = at[begins + length // 2]
+    speed = TURN * (length - 1) / points / (times[ends] - times[begins])
+    middle = times[begins + length // 2]
     volts = np.interp(middle, found.time, found.voltage)
-    text = f"amplitude of the acceleration of mass {mass} in space"
+    text = f"amplitude of the absolute acceleration of mass {mass}"
     amplitude = lines[:, shown] * np.outer(speed, order[shown]) ** 2
     variables = {
         "acceleration": variable(("time", "order"), amplitude, "m/s2", text),
@@ -298,8 +305,8 @@ def waterfall(
     return xr.Dataset(variables, coordinates, {"title": "Spectra over the motor's revolutions"})
 
 
-def over_angle(data: xr.Dataset, mass: int, points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Interpolate displacements in space at equal angles; return times and displacements.
+def resample_over_angle(data: xr.Dataset, mass: int, points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Interpolate a mass's absolute displacement at equal steps of the motor's angle.
 
     Where the motor turns back for a moment, samples are left out until it has come as far again.
     """
@@ -308,21 +315,21 @@ def over_angle(data: xr.Dataset, mass: int, points: int) -> tuple[np.ndarray, np
     angle, time = np.abs(data.angle.values - data.angle.values[0]), data.time.values
     forward = np.concatenate([[True], np.diff(np.maximum.accumulate(angle)) > 0.0])
     last = math.floor(angle[forward][-1] * points / TURN)
-    at = np.interp(np.arange(last) * TURN / points, angle[forward], time[forward])
+    times = np.interp(np.arange(last) * TURN / points, angle[forward], time[forward])
     position = (data[f"x{mass}"] + data.box_position).values
     velocity = (data[f"v{mass}"] + data.box_velocity).values
-    return at, CubicHermiteSpline(time, position, velocity)(at)
+    return times, CubicHermiteSpline(time, position, velocity)(times)
 
 
-def hann_lines(pieces: np.ndarray) -> np.ndarray:
-    """Return amplitudes of the lines of each piece, with a Hann window."""
+def hann_spectrum(pieces: np.ndarray) -> np.ndarray:
+    """Return the amplitude spectrum of each piece of a signal, with a Hann window."""
     window = np.hanning(pieces.shape[1] + 1)[:-1]
     centred = (pieces - pieces.mean(axis=1, keepdims=True)) * window
     return np.asarray(np.abs(np.fft.rfft(centred, axis=1)) * 2.0 / window.sum())
 
 
 def check_spectra(data: Any, mass: int, revolutions: int, highest: float) -> None:
-    """Check that spectra over revolutions can be made."""
+    """Raise an error unless spectra over revolutions can be computed."""
     if mass not in (1, 2):
         raise InputError(f"mass = {mass!r}: expected 1 or 2")
     checked_integer("revolutions", revolutions, 1)

@@ -1,4 +1,4 @@
-"""Polynomials over one communication step: fitted to what two models exchange, and integrated.
+"""Fit and integrate the polynomials that the FMUs exchange over a communication step.
 
 A cubic is kept as the FMUs take it: value and three time derivatives at the step's beginning.
 """
@@ -13,7 +13,7 @@ POWERS = [[i + k + 1.0 for k in range(5)] for i in range(5)]  # of s in the inte
 
 
 def matched_cubic(first: float, last: float, mean: float, moment: float, h: float) -> Cubic:
-    """Return the cubic with given ends, mean and first moment.
+    """Return the cubic with given end values, mean and first moment over a step.
 
     Parameters
     ----------
@@ -36,8 +36,10 @@ def matched_cubic(first: float, last: float, mean: float, moment: float, h: floa
     return first, b / h, 2.0 * c / (h * h), 6.0 * d / (h * h * h)
 
 
-def parabola(before: float, first: float, last: float, h_before: float, h: float) -> Cubic:
-    """Return the quadratic through three communication points; a line where ``h_before`` is 0."""
+def parabola_through_points(
+    before: float, first: float, last: float, h_before: float, h: float
+) -> Cubic:
+    """Return the parabola through three communication points; a line without the first."""
     rise = (last - first) / h
     if h_before == 0.0:
         return first, rise, 0.0, 0.0
@@ -46,32 +48,32 @@ def parabola(before: float, first: float, last: float, h_before: float, h: float
 
 
 def end_value(cubic: Cubic, h: float) -> float:
-    """Return the value of a cubic at the step's end."""
+    """Return the value of a cubic at the end of a step."""
     f0, f1, f2, f3 = cubic
     return f0 + h * (f1 + 0.5 * h * (f2 + h * f3 / 3.0))
 
 
 def end_slope(cubic: Cubic, h: float) -> float:
-    """Return the first derivative of a cubic at the step's end."""
+    """Return the first derivative of a cubic at the end of a step."""
     _, f1, f2, f3 = cubic
     return f1 + h * (f2 + 0.5 * h * f3)
 
 
-def coefficients(cubic: Cubic, h: float) -> Cubic:
-    """Return the coefficients of a cubic in s = t/h."""
+def normalized_coefficients(cubic: Cubic, h: float) -> Cubic:
+    """Convert a cubic's time derivatives to coefficients in s = t/h."""
     f0, f1, f2, f3 = cubic
     return f0, f1 * h, f2 * h * h / 2.0, f3 * h * h * h / 6.0
 
 
-def work(force: Cubic, velocity: float, acceleration: Cubic, h: float) -> float:
-    """Return the integral of a cubic force times a velocity (start and cubic derivative)."""
+def integrate_work(force: Cubic, velocity: float, acceleration: Cubic, h: float) -> float:
+    """Integrate a cubic force times a velocity over a step; return the work, J."""
     a0, a1, a2, a3 = acceleration
     speeds = (velocity, a0 * h, a1 * h * h / 2.0, a2 * h * h * h / 6.0, a3 * h * h * h * h / 24.0)
-    return h * product(coefficients(force, h), speeds)
+    return h * integrate_product(normalized_coefficients(force, h), speeds)
 
 
-def product(f: Sequence[float], g: Sequence[float]) -> float:
-    """Return the integral over [0, 1] of the product of two polynomials (coefficients in s)."""
+def integrate_product(f: Sequence[float], g: Sequence[float]) -> float:
+    """Integrate the product of two polynomials in s from 0 to 1."""
     total = 0.0
     for a, powers in zip(f, POWERS):  # noqa: B905 the table is as long as needed
         for b, power in zip(g, powers):  # noqa: B905
@@ -79,10 +81,10 @@ def product(f: Sequence[float], g: Sequence[float]) -> float:
     return total
 
 
-def quartic(
+def matched_quartic(
     ends: tuple[float, float], slopes: tuple[float, float], mean: float
 ) -> tuple[float, ...]:
-    """Return the coefficients in s of the quartic with given ends, slopes (by s) and mean."""
+    """Return the quartic in s with given end values, end slopes and mean."""
     p0, p1 = ends
     d0, d1 = slopes
     rise = p1 - p0

@@ -1,4 +1,4 @@
-"""What a slow ramp of the voltage meets on the branches of stationary motions.
+"""Follow a slow voltage ramp along traced branches: folds met, jumps and slow losses.
 
 Branches turn back at folds, and have more of them than a ramp takes. It follows the stable motion
 that it begins with, to the first fold; there the speed jumps to another motion at that voltage, and
@@ -25,7 +25,7 @@ MOST_EVENTS = 12
 
 @dataclass
 class Path:
-    """Path of a slow ramp in one direction.
+    """Store what a slow ramp meets in one direction: jumps, landings, slow losses, end.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class Path:
 
 
 class Motions(NamedTuple):
-    """Motions of a leg from where the ramp meets it, in its direction: each shape (n,)."""
+    """Store the motions of one leg, in the order in which a ramp meets them."""
 
     voltage: np.ndarray
     speed: np.ndarray
@@ -56,7 +56,7 @@ class Motions(NamedTuple):
     end: str
 
     def from_index(self, first: int, forward: bool) -> Motions:
-        """Return the motions from an index on, forward or backward."""
+        """Return the motions from an index on, in forward or reverse order."""
         rows = slice(first, None) if forward else slice(first, None, -1)
         end = self.end if forward else LIMIT
         columns = (self.voltage, self.speed, self.stable, self.revolutions)
@@ -65,7 +65,7 @@ class Motions(NamedTuple):
 
 
 class Branches:
-    """The legs of one structure, and their bifurcations.
+    """Store the legs and the bifurcations of one structure, and follow ramps on them.
 
     Parameters
     ----------
@@ -75,31 +75,32 @@ class Branches:
     """
 
     def __init__(self, data: xr.Dataset, structure: str) -> None:
+        """Read legs and bifurcations of one structure from the dataset."""
         branch = data.sel(structure=structure)
         self.legs: dict[str, Motions] = {}
         for leg in map(str, branch.leg.values):
-            at = branch.sel(leg=leg).dropna("point", subset=["voltage"])
-            if at.sizes["point"]:
+            motions = branch.sel(leg=leg).dropna("point", subset=["voltage"])
+            if motions.sizes["point"]:
                 self.legs[leg] = Motions(
-                    at.voltage.values,
-                    at.speed.values,
-                    at.stable.values.astype(bool),
-                    at.revolutions.values,
-                    at.end.item(),
+                    motions.voltage.values,
+                    motions.speed.values,
+                    motions.stable.values.astype(bool),
+                    motions.revolutions.values,
+                    motions.end.item(),
                 )
         self.own = np.flatnonzero(data.bifurcation_structure.values == structure)
         self.kinds = data.bifurcation_kind.values
         self.places = np.stack([data.bifurcation_voltage.values, data.bifurcation_speed.values], 1)
         self.revolutions = data.bifurcation_revolutions.values
-        self.spans = np.array([self.span("voltage"), self.span("speed")])
+        self.spans = np.array([self.value_range("voltage"), self.value_range("speed")])
 
-    def span(self, name: str) -> float:
-        """Return the range of a quantity over all legs; 1 where there is none."""
+    def value_range(self, name: str) -> float:
+        """Return the range of a quantity over all legs; 1 if it is empty."""
         values = np.concatenate([getattr(leg, name) for leg in self.legs.values()] or [np.zeros(1)])
         return float(np.ptp(values)) or 1.0
 
-    def nearest(self, motions: Motions, i: int, kind: str) -> int | None:
-        """Return the index of a bifurcation between a motion and the next one; None without."""
+    def nearest_bifurcation(self, motions: Motions, i: int, kind: str) -> int | None:
+        """Find the bifurcation of a kind between a motion and the next; None without one."""
         ends = np.stack([motions.voltage[i : i + 2], motions.speed[i : i + 2]], 1) / self.spans
         of_kind = [
             k
@@ -112,22 +113,22 @@ class Branches:
         step = float(np.linalg.norm(ends[1] - ends[0]))
         return int(of_kind[int(away.argmin())]) if away.min() <= max(step, 1e-3) else None
 
-    def path(self, up: bool) -> Path:
-        """Return what a slow ramp meets, up from the lowest speed or down from the highest."""
+    def follow_ramp(self, up: bool) -> Path:
+        """Follow a slow ramp up or down the voltage; return its path."""
         path, sign = Path(), 1.0 if up else -1.0
         motions = self.first_leg(up, sign)
         if motions is None:
             path.end = "its branch begins with no stable motion"
             return path
         for _ in range(MOST_EVENTS):
-            motions = self.follow(motions, path, sign)
+            motions = self.follow_to_loss(motions, path, sign)
             if motions is None:
                 return path
         path.end = "more than it is worth to follow"
         return path
 
     def first_leg(self, up: bool, sign: float) -> Motions | None:
-        """Return the leg that a ramp begins on, from its first stable motion; None without one."""
+        """Return the leg on which a ramp starts, from its first stable motion."""
         leg, below = self.legs.get(FIRST_LEG[up]), self.legs.get(FIRST_LEG[True])
         if leg is None and not up and below is not None and below.end == LIMIT:
             leg = below.from_index(len(below.speed) - 1, forward=False)
@@ -137,35 +138,35 @@ class Branches:
         turned = (sign * np.diff(leg.voltage[: begin + 1]) < 0.0).any()
         return None if turned else leg.from_index(begin, forward=True)
 
-    def follow(self, motions: Motions, path: Path, sign: float) -> Motions | None:
-        """Follow motions to where the ramp leaves them; return the next ones, None at the end."""
+    def follow_to_loss(self, motions: Motions, path: Path, sign: float) -> Motions | None:
+        """Follow a ramp until its motion is lost; return the motions it goes on with."""
         lost = False  # slowly, at a Neimark-Sacker point: a ramp does not see it
         for i in range(len(motions.speed) - 1):
             turned = sign * (motions.voltage[i + 1] - motions.voltage[i]) < 0.0
             if not turned and (lost or motions.stable[i + 1]):
                 continue
             fold, torus, flip = (
-                self.nearest(motions, i, KINDS[kind]) for kind in (FOLD, TORUS, FLIP)
+                self.nearest_bifurcation(motions, i, KINDS[kind]) for kind in (FOLD, TORUS, FLIP)
             )
             if torus is not None and not lost:
                 path.slow_losses.append(torus)
                 lost = True
             if fold is not None or turned:
-                return self.jump(fold, path, sign)
+                return self.jump_at_fold(fold, path, sign)
             if not lost:
                 return self.leg_after_period_doubling(flip, motions, i, path, sign)
         if motions.end != LIMIT:
             path.end = f"its motion ends at {motions.voltage[-1]:.5f} V: {motions.end}"
         return None
 
-    def jump(self, fold: int | None, path: Path, sign: float) -> Motions | None:
-        """Return the motions that a ramp jumps to at a fold; None if the path ends there."""
+    def jump_at_fold(self, fold: int | None, path: Path, sign: float) -> Motions | None:
+        """Record a jump at a fold; return the motions on which the ramp lands."""
         if fold is None:
             path.end = "its motion turns back at a fold that was not located"
             return None
         path.jumps.append(fold)
         voltage, speed = self.places[fold]
-        landings = self.stable_at(voltage, speed, sign)
+        landings = self.stable_motions_at(voltage, speed, sign)
         speeds = np.array([self.landing_speed(*landing, voltage) for landing in landings])
         if not landings or np.ptp(speeds) > SAME * self.spans[1]:
             count = "several stable motions" if landings else "no stable motion"
@@ -176,8 +177,10 @@ class Branches:
         forward = sign * (motions.voltage[i + 1] - motions.voltage[i]) > 0.0
         return motions.from_index(i + 1 if forward else i, forward)
 
-    def stable_at(self, voltage: float, speed: float, sign: float) -> list[tuple[Motions, int]]:
-        """Return legs with a stable motion at a voltage beyond a speed, and the index before."""
+    def stable_motions_at(
+        self, voltage: float, speed: float, sign: float
+    ) -> list[tuple[Motions, int]]:
+        """Find all stable motions at a voltage that lie beyond a speed."""
         legs = []
         for motions in self.legs.values():
             for i in range(len(motions.speed) - 1):
@@ -189,7 +192,7 @@ class Branches:
 
     @staticmethod
     def landing_speed(motions: Motions, i: int, voltage: float) -> float:
-        """Interpolate the speed at a voltage between two motions, rad/s."""
+        """Interpolate the speed of a leg at a voltage, rad/s."""
         low, high = motions.voltage[i : i + 2]
         part = (voltage - low) / (high - low) if high != low else 0.0
         return float(motions.speed[i] + part * (motions.speed[i + 1] - motions.speed[i]))
@@ -197,7 +200,7 @@ class Branches:
     def leg_after_period_doubling(
         self, flip: int | None, motions: Motions, i: int, path: Path, sign: float
     ) -> Motions | None:
-        """Return the leg of twice the period; None without one, with the reason in ``path``."""
+        """Return the stable leg of twice the period; None without one."""
         voltage = float(motions.voltage[i])
         if flip is not None:
             voltage = float(self.places[flip][0])
@@ -215,7 +218,7 @@ class Branches:
 
 
 def ramp_paths(data: xr.Dataset, structure: str) -> dict[str, Path]:
-    """Return what slow ramps meet, ``"up"`` and ``"down"``.
+    """Return what slow ramps up and down the voltage meet on traced branches.
 
     Parameters
     ----------
@@ -229,4 +232,4 @@ def ramp_paths(data: xr.Dataset, structure: str) -> dict[str, Path]:
     dict of Path
     """
     branches = Branches(data, structure)
-    return {"up": branches.path(True), "down": branches.path(False)}
+    return {"up": branches.follow_ramp(True), "down": branches.follow_ramp(False)}

@@ -1,4 +1,4 @@
-"""A run as one row a revolution of the motor: mean speed, amplitudes, impacts, energies."""
+"""Convert a coupled run to rows, one per revolution of the motor."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ COLUMNS = {
 
 
 class Revolutions:
-    """Converts a run into rows, one per revolution.
+    """Collect a run's steps into rows, one per revolution of the motor.
 
     Parameters
     ----------
@@ -47,11 +47,12 @@ class Revolutions:
     """
 
     def __init__(self, master: Master, impact_count: Callable[[], float]) -> None:
+        """Start the record of the first revolution."""
         self._master, self._impact_count = master, impact_count
         self._now = master.revolution = Revolution.begin(master.motion, master.shaking)
 
     def add(self) -> tuple[float, ...] | None:
-        """Add the state after a step; return the row of a revolution that it completes, else None.
+        """Return the row of a revolution if the last step completed one, else None.
 
         Returns
         -------
@@ -60,7 +61,7 @@ class Revolutions:
         """
         master, now = self._master, self._now
         turns = master.shaking.angle / TURN
-        if not now.complete(turns):
+        if not now.is_complete(turns):
             return None
         turn = math.floor(turns) if turns > now.turn else math.ceil(turns)
         time = master.time - (master.shaking.angle - turn * TURN) / master.shaking.speed
@@ -71,16 +72,16 @@ class Revolutions:
         return row
 
     def _row(self, time: float, speed: float, impacts: float) -> tuple[float, ...]:
-        """Return the row of a revolution that ends at ``time``."""
+        """Build the row of a revolution from its end time, speed and impacts."""
         master, now = self._master, self._now
         ranges = 0.5 * (now.x1_high - now.x1_low), 0.5 * (now.box_high - now.box_low)
         energies = master.balance.energies(master.motion, master.shaking)
         return (time, master.voltage, speed, *ranges, impacts, now.acceleration, *energies)
 
     def get_state(self) -> list[float]:
-        """Return the revolution under way as a list of floats."""
+        """Return the unfinished revolution as a list of floats, to be restored later."""
         return list(astuple(self._now))
 
     def set_state(self, numbers: Sequence[float]) -> None:
-        """Return to a state that :meth:`get_state` gave."""
+        """Restore the state that :meth:`get_state` returned."""
         self._now = self._master.revolution = Revolution(*numbers)

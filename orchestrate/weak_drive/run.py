@@ -1,7 +1,8 @@
-"""A run of the coupled system under way, step by step; each revolution of the motor is one row."""
+"""Run both FMUs step by step from a schedule; save and restore their states."""
 
 from __future__ import annotations
 
+import math
 from array import array
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -16,7 +17,7 @@ from ..access.models import OSCILLATOR, SHAKER
 from ..running.job import Job, Table
 from ..structures.drive import Drive
 from ..structures.structure import Structure
-from .compiled import master_of
+from .compiled import create_master
 from .controllers import Controller, Measurement
 from .master import Scheme
 from .revolutions import COLUMNS, Revolutions
@@ -24,14 +25,14 @@ from .schedule import Schedule
 
 
 def oscillator_start(structure: Structure) -> dict[str, float | bool]:
-    """Return the structure's start values in the coupled system: no harmonic box motion."""
+    """Return the structure FMU's start values, its own box excitation turned off."""
     off = {"box_amplitude": 0.0, "box_frequency": 0.0, "x_rel_max_on": False}
     return {**structure.parameters(), **off}
 
 
 @dataclass(frozen=True)
 class CoupledRun(Job):
-    """Base of jobs that run the coupled system: what decides its steps.
+    """Define what determines a coupled run: system, schedule, scheme and control.
 
     Attributes
     ----------
@@ -57,9 +58,13 @@ class CoupledRun(Job):
 
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
 
+    def steps(self) -> int:
+        """Return the number of communication steps of the run."""
+        return math.ceil(self.schedule.duration / self.scheme.h - 1e-9)
+
 
 class Run:
-    """Run under way: both instances, their master, and the present revolution.
+    """Step both FMU instances of a coupled run and collect its revolutions.
 
     Parameters
     ----------
@@ -69,11 +74,12 @@ class Run:
     """
 
     def __init__(self, job: CoupledRun, oscillator: Instance, shaker: Instance) -> None:
+        """Initialise both FMU instances and create their master."""
         self.job, self.oscillator, self.shaker = job, oscillator, shaker
         oscillator.initialize(**oscillator_start(job.structure))
         voltage = job.schedule.voltage(0.0)
         shaker.initialize(**job.drive.parameters(), speed_start=job.speed_start, voltage=voltage)
-        self.master = master_of(oscillator, shaker, job.structure, job.scheme)
+        self.master = create_master(oscillator, shaker, job.structure, job.scheme)
         self.revolutions = Revolutions(self.master, self.impact_count)
         self.control_memory = job.control.begin(job.speed_start) if job.control else ()
 
@@ -81,8 +87,8 @@ class Run:
         """Return the number of impacts so far."""
         return float(self.oscillator.get("impact_count")[0])
 
-    def voltage(self, i: int) -> float:
-        """Return a step's voltage: the schedule's mean, or the controller's part of it."""
+    def step_voltage(self, i: int) -> float:
+        """Return the motor's voltage in a step, from the schedule or the controller, V."""
         h, control = self.job.scheme.h, self.job.control
         available = self.job.schedule.voltage((i + 0.5) * h)
         if control is None:
@@ -92,7 +98,7 @@ class Run:
         return voltage
 
     def revolve(self, steps: Sequence[int], kept: np.ndarray | None = None) -> Table:
-        """Do some steps; return the columns of their complete revolutions.
+        """Run some communication steps; return the table of completed revolutions.
 
         Parameters
         ----------
@@ -101,7 +107,7 @@ class Run:
             Takes the master's memory after each step, a row each.
         """
         rows, begin = [], 0
-        for voltages in self.at_once(steps):
+        for voltages in self.voltage_batches(steps):
             piece = None if kept is None else kept[begin : begin + len(voltages)]
             done = 0
             while done < len(voltages):
@@ -113,15 +119,15 @@ class Run:
         table = np.array(rows, dtype=float).reshape(-1, len(COLUMNS))
         return dict(zip(COLUMNS, table.T.copy(), strict=True))
 
-    def at_once(self, steps: Sequence[int]) -> Iterator[array[float]]:
-        """Yield the voltages of steps done in one call: of all, or of one with a controller."""
+    def voltage_batches(self, steps: Sequence[int]) -> Iterator[array[float]]:
+        """Yield batches of voltages: all steps at once, or single steps under control."""
         if self.job.control is None:
-            yield array("d", map(self.voltage, steps))
+            yield array("d", map(self.step_voltage, steps))
         else:
-            yield from (array("d", (self.voltage(i),)) for i in steps)
+            yield from (array("d", (self.step_voltage(i),)) for i in steps)
 
     def get_state(self) -> Table:
-        """Return the complete state of a run as one row."""
+        """Return the complete state of the run as a table of one row."""
         states = {
             "oscillator_state": np.frombuffer(self.oscillator.save_state(), dtype=np.uint8),
             "shaker_state": np.frombuffer(self.shaker.save_state(), dtype=np.uint8),
@@ -132,7 +138,7 @@ class Run:
         return {name: state[np.newaxis] for name, state in states.items()}
 
     def set_state(self, table: Table) -> None:
-        """Return to a state that :meth:`get_state` gave."""
+        """Restore the state in the last row of a table."""
         self.oscillator.restore_state(table["oscillator_state"][-1].tobytes())
         self.shaker.restore_state(table["shaker_state"][-1].tobytes())
         self.master.set_state(table["master_memory"][-1].tolist())
@@ -142,7 +148,7 @@ class Run:
 
 @contextmanager
 def begin_run(job: CoupledRun, fmus: Mapping[str, Path]) -> Iterator[Run]:
-    """Begin a run on new instances of both FMUs; free them at the end."""
+    """Create both FMU instances, start a run on them and free them at the end."""
     with (
         Instance(fmus[OSCILLATOR], "oscillator") as oscillator,
         Instance(fmus[SHAKER], "shaker") as shaker,

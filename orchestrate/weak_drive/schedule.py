@@ -1,4 +1,4 @@
-"""The voltage of the motor over time."""
+"""Define how the motor's voltage changes over time: constant, ramp or given course."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def check(
     high: float = math.inf,
     exclusive: bool = False,
 ) -> None:
-    """Raise unless a number is finite and within a range; ``exclusive``: above its lower end."""
+    """Raise an error unless a number is finite and within its allowed range."""
     number = isinstance(value, numbers.Real) and not isinstance(value, bool)
     if not (number and math.isfinite(value) and low <= value <= high) or (
         exclusive and value == low
@@ -39,12 +39,12 @@ def check(
 
 @dataclass(frozen=True)
 class Schedule(ABC):
-    """Voltage over time; subclasses define it."""
+    """Define the interface of a voltage schedule over time."""
 
     @property
     @abstractmethod
     def duration(self) -> float:
-        """Time of the whole run, s."""
+        """Return the duration of the whole run, s."""
 
     @abstractmethod
     def voltage(self, time: float) -> float:
@@ -52,12 +52,12 @@ class Schedule(ABC):
 
     @abstractmethod
     def trend(self, times: np.ndarray) -> np.ndarray:
-        """Return the voltage's direction at times: 1 where it rises, -1 falls, 0 holds."""
+        """Return at each time 1 if the voltage rises, -1 if it falls, 0 if constant."""
 
 
 @dataclass(frozen=True)
 class Constant(Schedule):
-    """Constant voltage.
+    """Keep the voltage constant for a duration.
 
     Attributes
     ----------
@@ -71,26 +71,27 @@ class Constant(Schedule):
     time: float
 
     def __post_init__(self) -> None:
+        """Check voltage and duration."""
         check("voltage", self.value, "V")
         check("duration", self.time, "s", low=0.0)
 
     @property
     def duration(self) -> float:
-        """Time of the whole run, s."""
+        """Return the duration of the whole run, s."""
         return self.time
 
     def voltage(self, time: float) -> float:
-        """Return the voltage at a time, V."""
+        """Return the constant voltage, V."""
         return self.value
 
     def trend(self, times: np.ndarray) -> np.ndarray:
-        """Return zeros: the voltage holds."""
+        """Return zeros, because the voltage is constant."""
         return np.zeros(np.shape(times), dtype=int)
 
 
 @dataclass(frozen=True)
 class Ramp(Schedule):
-    """Spin up, settle at the first voltage, go to the last one, and back.
+    """Ramp the voltage from the first to the last one, and back.
 
     Attributes
     ----------
@@ -130,6 +131,7 @@ class Ramp(Schedule):
     low: float = 0.0
 
     def __post_init__(self) -> None:
+        """Check voltages, rate and times."""
         check("voltage", self.first, "V")
         check("voltage", self.last, "V")
         check("spin_up", self.spin_up, "s", low=0.0)
@@ -146,22 +148,22 @@ class Ramp(Schedule):
 
     @property
     def begin(self) -> float:
-        """Time at which the first voltage is left, s."""
+        """Return the time at which the ramp leaves the first voltage, s."""
         return self.spin_up + self.settle
 
     @property
     def rise(self) -> float:
-        """Time the voltage takes from one end to the other, s."""
+        """Return the time from one end of the ramp to the other, s."""
         return abs(self.last - self.first) / self.rate
 
     @property
     def turn(self) -> float:
-        """Time at which the last voltage is reached, s."""
+        """Return the time at which the ramp reaches the last voltage, s."""
         return self.begin + self.rise
 
     @property
     def duration(self) -> float:
-        """Time of the whole run, s."""
+        """Return the duration of the whole run, s."""
         return self.begin + self.rise * (2 if self.back else 1)
 
     def voltage(self, time: float) -> float:
@@ -180,14 +182,14 @@ class Ramp(Schedule):
         return self.first + math.copysign(change, self.last - self.first)
 
     def trend(self, times: np.ndarray) -> np.ndarray:
-        """Return the direction on the way there, and the opposite one on the way back."""
+        """Return at each time 1 if the voltage rises, -1 if it falls, 0 if constant."""
         times, there = np.asarray(times), 1 if self.last > self.first else -1
         return np.where(times > self.turn, -there, np.where(times > self.begin, there, 0))
 
 
 @dataclass(frozen=True)
 class Course(Schedule):
-    """Voltages at given times, straight lines between them: ramps with holds, steps, any course.
+    """Interpolate the voltage linearly between given times: ramps, holds and steps.
 
     Attributes
     ----------
@@ -211,6 +213,7 @@ class Course(Schedule):
     voltages: tuple[float, ...]
 
     def __post_init__(self) -> None:
+        """Check that times and voltages fit together."""
         for name in ("times", "voltages"):
             object.__setattr__(self, name, tuple(float(value) for value in getattr(self, name)))
         if len(self.times) != len(self.voltages) or len(self.times) < 2:
@@ -225,7 +228,7 @@ class Course(Schedule):
 
     @classmethod
     def from_csv(cls, path: str | PathLike[str]) -> Course:
-        """Read a file with time in s and voltage in V, separated by a comma, one row each.
+        """Read the course from a CSV file with columns time, s, and voltage, V.
 
         Rows that begin with ``#``, and one with names, are passed over.
         """
@@ -253,11 +256,11 @@ class Course(Schedule):
 
     @property
     def duration(self) -> float:
-        """Time of the whole run, s."""
+        """Return the duration of the whole run, s."""
         return self.times[-1]
 
     def voltage(self, time: float) -> float:
-        """Return the voltage at a time, V; just after a step at the time of it."""
+        """Return the voltage at a time, V; at a jump, the voltage after it."""
         last = bisect_right(self.times, time)
         if last == len(self.times):
             return self.voltages[-1]
@@ -266,6 +269,6 @@ class Course(Schedule):
         return low + (high - low) * (time - begin) / (end - begin)
 
     def trend(self, times: np.ndarray) -> np.ndarray:
-        """Return the direction of the line that each time is on."""
+        """Return at each time 1 if the voltage rises, -1 if it falls, 0 if constant."""
         places = np.clip(np.searchsorted(self.times, times) - 1, 0, len(self.times) - 2)
         return np.sign(np.diff(self.voltages))[places].astype(int)

@@ -1,5 +1,4 @@
-"""Settling test: whether a motor at a constant voltage has settled, and on which side of the
-resonance.
+"""Decide whether a motor at constant voltage has settled below or beyond the resonance.
 
 A speed that is beyond the resonance may swing back, and one that hardly changes may be creeping
 past a fold: neither the place nor the rate alone decides. The speed has settled where it converges
@@ -39,7 +38,7 @@ PATIENCE = 600.0  # slowest time constants in the default limit
 
 
 class Outcome(NamedTuple):
-    """Where the speed has settled.
+    """Store whether and where the speed has settled, and how that was decided.
 
     Attributes
     ----------
@@ -60,12 +59,12 @@ class Outcome(NamedTuple):
 
     @property
     def captured(self) -> bool:
-        """Whether the speed has settled below the resonance."""
+        """Return whether the speed has settled below the resonance."""
         return self.decision not in (UNDECIDED, NEITHER) and not self.passed
 
 
-class Settled(NamedTuple):
-    """Last stretch of a speed that has settled.
+class SettledEnd(NamedTuple):
+    """Store the settled end of a speed record and how much it may still change.
 
     Attributes
     ----------
@@ -84,7 +83,7 @@ class Settled(NamedTuple):
 
 @dataclass(frozen=True)
 class SettlingTest:
-    """Settings of the test for a settled speed.
+    """Set the thresholds and times of the test for a settled speed.
 
     Attributes
     ----------
@@ -106,8 +105,8 @@ class SettlingTest:
     motor: float
     stay: int
 
-    def outcome(self, time: np.ndarray, speed: np.ndarray) -> Outcome:
-        """Return whether a record of the speed is captured, passes, or stays undecided.
+    def judge_record(self, time: np.ndarray, speed: np.ndarray) -> Outcome:
+        """Decide from the speed's record: captured, passed or undecided.
 
         Parameters
         ----------
@@ -118,7 +117,7 @@ class SettlingTest:
             return Outcome(UNDECIDED)
         means = running_mean(np.abs(speed) / self.omega, MEAN)
         turn = float(np.median(np.diff(time[-MEAN:])))
-        settled = self.converged(means, turn) or self.bounded(means, turn)
+        settled = self.find_convergence(means, turn) or self.find_bounds(means, turn)
         if settled is None:
             return Outcome(UNDECIDED)
         last = float(means[-1]) * self.omega
@@ -133,8 +132,8 @@ class SettlingTest:
         near = np.abs(speed[since : since + MEAN]) > self.threshold
         return Outcome(settled.decision, True, float(time[since + last_crossing(near)]), last)
 
-    def converged(self, means: np.ndarray, turn: float) -> Settled | None:
-        """Return the end of a speed that converges exponentially; None if it does not.
+    def find_convergence(self, means: np.ndarray, turn: float) -> SettledEnd | None:
+        """Return the end of an exponentially converging record; else None.
 
         The ranges of four stretches that follow each other shrink by ``QUOTIENT`` or more each
         time, or are noise. No approach to a fold, and no passage by one, does: there
@@ -150,11 +149,11 @@ class SettlingTest:
                 after < max(NOISE, QUOTIENT * before) for before, after in pairwise(ranges)
             )
             if shrink and ranges[-1] < CLOSE:
-                return Settled(CONVERGED, means[-width:], float(ranges[-1]) + NOISE)
+                return SettledEnd(CONVERGED, means[-width:], float(ranges[-1]) + NOISE)
         return None
 
-    def bounded(self, means: np.ndarray, turn: float) -> Settled | None:
-        """Return the end of a speed that stayed within bounds without drift; None otherwise.
+    def find_bounds(self, means: np.ndarray, turn: float) -> SettledEnd | None:
+        """Return the end of a record that stays in constant bounds; else None.
 
         The last quarter of the record is compared with the one before: its extremes, its mean and
         its range. An irregular or a swinging motion is told so. None where it has not.
@@ -168,34 +167,34 @@ class SettlingTest:
         drift = abs(late.mean() - early.mean())
         if grown > 0.2 * size or drift > 0.1 * size or np.ptp(late) < 0.5 * size:
             return None
-        return Settled(BOUNDED, means[-2 * quarter :], 0.2 * size)
+        return SettledEnd(BOUNDED, means[-2 * quarter :], 0.2 * size)
 
 
 def last_crossing(beyond: np.ndarray) -> int:
-    """Return the first index of the last stretch of equal values."""
+    """Return the index from which a Boolean array keeps its last value."""
     changes = np.flatnonzero(beyond[1:] != beyond[:-1])
     return int(changes[-1]) + 1 if changes.size else 0
 
 
 def settling_test(structure: Structure, drive: Drive, stay: int) -> SettlingTest:
-    """Return the test for a system."""
+    """Create the settling test of a structure and its drive."""
     omega = structure.omega
     return SettlingTest(
         threshold=own_resonance.dividing_speed(structure, drive) * omega,
         omega=omega,
-        slow=slowest_time(structure, drive),
-        motor=motor_time(structure, drive),
+        slow=longest_time_constant(structure, drive),
+        motor=motor_time_constant(structure, drive),
         stay=stay,
     )
 
 
-def motor_time(structure: Structure, drive: Drive) -> float:
-    """Return the time in which the motor without a load settles, 1/b, or ``LONGEST_MEMORY``, s."""
+def motor_time_constant(structure: Structure, drive: Drive) -> float:
+    """Return the time constant 1/b of the motor without load, s; it is limited."""
     return min(1.0 / drive.b(structure), LONGEST_MEMORY) / structure.omega
 
 
-def slowest_time(structure: Structure, drive: Drive) -> float:
-    """Return the longest of the system's time constants, s; at most ``LONGEST_MEMORY``.
+def longest_time_constant(structure: Structure, drive: Drive) -> float:
+    """Return the longest time constant of motor and dampers, s; each is limited.
 
     The motor's is 1/b, those of vibrations are 1/D of each damper.
     """
@@ -206,7 +205,7 @@ def slowest_time(structure: Structure, drive: Drive) -> float:
 
 
 def time_past_the_fold(structure: Structure, drive: Drive, distance: float) -> float:
-    """Return the time that the speed takes to creep past the fold up, s, by the averaged theory.
+    """Estimate how long the speed creeps past the upper fold, s.
 
     Near the fold the speed obeys x' = r (distance + q x^2 / 2): it takes pi/(r sqrt(q distance/2)).
 
@@ -230,7 +229,7 @@ def time_past_the_fold(structure: Structure, drive: Drive, distance: float) -> f
     voltages = averaged.no_load_speed(structure, drive, speeds)
     slope = float(voltages[2] - voltages[0]) / small
     bend = 2.0 * (top.eta0 - float(voltages[1])) / small**2
-    growth = float(averaged.growth(structure, drive, float(speeds[1]))[0].real)
+    growth = float(averaged.growth_rates(structure, drive, float(speeds[1]))[0].real)
     rate = -growth / slope
     if not (rate > 0.0 and bend > 0.0):  # the motion is lost before its fold
         return 0.0
@@ -238,7 +237,7 @@ def time_past_the_fold(structure: Structure, drive: Drive, distance: float) -> f
 
 
 def usual_limit(structure: Structure, drive: Drive, distance: float) -> float:
-    """Return the time after which a motor that has not settled is undecided, s.
+    """Return the default time after which an unsettled start is undecided, s.
 
     Parameters
     ----------
@@ -248,4 +247,4 @@ def usual_limit(structure: Structure, drive: Drive, distance: float) -> float:
         Of voltages from the fold's that are to be decided, over K omega.
     """
     creeping = time_past_the_fold(structure.as_bonded(), drive, distance)
-    return PATIENCE * slowest_time(structure, drive) + 10.0 * creeping
+    return PATIENCE * longest_time_constant(structure, drive) + 10.0 * creeping

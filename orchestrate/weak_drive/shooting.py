@@ -1,4 +1,4 @@
-"""Stationary motions of structure and motor together: periodic after some revolutions, by shooting.
+"""Solve for stationary (periodic) motions of structure and motor by a shooting method.
 
 Both FMUs are started from a state, stepped together over one period, and compared with where they
 began. The motor's angle at the start is fixed, voltage and mean speed are two more unknowns: so the
@@ -20,7 +20,7 @@ from ..dynamics.continuation import NoConvergenceError, fix_sign
 from ..errors import FmuError
 from ..structures.drive import Drive
 from ..structures.structure import Structure
-from .compiled import master_of
+from .compiled import create_master
 from .extremes import Revolution
 from .master import STATE_INDEX, Master, Scheme
 from .run import oscillator_start
@@ -37,7 +37,7 @@ HEAVY = 1e6  # times its inertia, a rotor that keeps its speed
 
 
 class Period(NamedTuple):
-    """Observations of a motion over one period.
+    """Store what a simulation of one period shows: amplitude, impacts, best start.
 
     Attributes
     ----------
@@ -66,7 +66,7 @@ class Period(NamedTuple):
 
 
 class Shot(NamedTuple):
-    """State of both FMUs after a period.
+    """Store the state of both FMUs after one period, and the number of impacts.
 
     Attributes
     ----------
@@ -82,8 +82,8 @@ class Shot(NamedTuple):
     impacts: int
     contact: bool
 
-    def like(self, other: Shot) -> bool:
-        """Return whether the motion is smoothly connected to another: no grazing between them.
+    def is_connected_to(self, other: Shot) -> bool:
+        """Return whether two motions have the same impacts, with no grazing between.
 
         In a chattering that ends in contact the last impacts come and go with next to no speed.
         """
@@ -91,7 +91,7 @@ class Shot(NamedTuple):
 
 
 class Shooter:
-    """Both FMUs as equations whose roots are periodic motions.
+    """Define the equations of a periodic motion of both FMUs, and their Jacobian.
 
     Unknowns are the state where the angle has its value at the start, displacements from rest and
     each quantity over its unit, then the voltage over K omega and the mean speed over omega. The
@@ -142,6 +142,7 @@ class Shooter:
         steps: int,
         length: float,
     ) -> None:
+        """Store both FMU instances and the units of the unknowns."""
         self.fmus, self.structure, self.drive = fmus, structure, drive
         self.turns, self.count, self.angle = revolutions, revolutions * steps, 0.0
         self.used = False
@@ -149,7 +150,7 @@ class Shooter:
         self.begin_together(structure.bonded)
 
     def begin_together(self, together: bool) -> None:
-        """Set whether periods begin with the masses in contact."""
+        """Set whether a period begins with the masses in contact."""
         self.together = together
         structure, drive, length = self.structure, self.drive, self.length
         omega = structure.omega
@@ -166,12 +167,12 @@ class Shooter:
         self._last: tuple[Floats, Floats] | None = None
 
     def repeat_after(self, revolutions: int) -> None:
-        """Set the number of revolutions in a period."""
+        """Set after how many revolutions the motion is to repeat."""
         self.turns, self.count = revolutions, self.count // self.turns * revolutions
         self.matrix, self._last = np.empty((0, 0)), None
 
     def change_in(self, unknowns: Floats, revolutions: int) -> Floats:
-        """Return the change of the state after a part of the period's revolutions."""
+        """Return how the state changes over a given number of revolutions."""
         turns, matrix, last = self.turns, self.matrix, self._last
         self.repeat_after(revolutions)
         try:
@@ -183,7 +184,7 @@ class Shooter:
     # -- both FMUs over a period --
 
     def start_master(self, state: Floats, voltage: float, h: float) -> Master:
-        """Start both FMUs from a state."""
+        """Initialise both FMUs in a state and return their master."""
         oscillator, shaker = self.fmus
         if self.used:
             oscillator.reset()
@@ -199,16 +200,16 @@ class Shooter:
         oscillator.initialize(**oscillator_start(self.structure), **structure_starts)
         more = {"angle_start": self.angle, "voltage": voltage}
         shaker.initialize(**self.drive.parameters(), **starts, **more)
-        return master_of(oscillator, shaker, self.structure, Scheme("rollback", h))
+        return create_master(oscillator, shaker, self.structure, Scheme("rollback", h))
 
     def begin_period(self, unknowns: Floats) -> tuple[Master, float]:
-        """Start both FMUs at the begin of a period; return the master, and the voltage, V."""
+        """Initialise both FMUs at a period's start; return master and voltage, V."""
         voltage = float(unknowns[-2]) * self.volts
         period = self.turns * TURN / (float(unknowns[-1]) * self.structure.omega)
         return self.start_master(unknowns[:-2], voltage, period / self.count), voltage
 
-    def state(self, master: Master) -> Floats:
-        """Return the state of both, each quantity over its unit, displacements from rest."""
+    def scaled_state(self, master: Master) -> Floats:
+        """Return the present state of both FMUs, scaled by its units."""
         values = {**master.motion._asdict(), **master.shaking._asdict()}
         for name, at_rest in zip(("x1", "x2"), self.structure.at_rest, strict=True):
             values[name] -= at_rest
@@ -217,14 +218,10 @@ class Shooter:
         return np.array([values[name] for name in self.names]) / self.units
 
     def settle(self, voltage: float, speed: float, time: float) -> Floats:
-        """Return the state after a time at a speed, begun with the masses apart unless bonded.
+        """Simulate for a time at a nearly fixed speed (heavy rotor); return the state.
 
-        A preload presses them together.
-
-        A preload brings them together. The speed is held by a heavy rotor: so motions are found
-        that a motor would not stay on.
-
-        The speed is held by a heavy rotor: so motions are found that a motor would not stay on.
+        A delaminated structure begins with the masses apart; a preload presses them together. A
+        heavy rotor holds the speed: so motions are found that a motor would not stay on.
         """
         self.begin_together(self.structure.bonded)
         longest = time + (self.turns + 1) * TURN / speed
@@ -248,15 +245,16 @@ class Shooter:
             self.drive = own_drive
         self.angle = master.shaking.angle % TURN
         self.begin_together(self._touching(master) or self.structure.bonded)
-        found = self.state(master)
+        state_at_end = self.scaled_state(master)
         master.close()
-        return found
+        return state_at_end
 
     def _touching(self, master: Master) -> bool:
+        """Return whether the masses of a delaminated structure are in contact."""
         return not self.structure.bonded and master.motion.x_rel == 0.0
 
     def shoot(self, unknowns: Floats) -> Shot:
-        """Run both FMUs over a period; return the state at its end and what happened in it.
+        """Simulate one period from given unknowns; return the final state and impacts.
 
         Raises
         ------
@@ -271,7 +269,7 @@ class Shooter:
         except FmuError as error:
             raise NoConvergenceError(str(error)) from None
         turned = master.shaking.angle - self.angle - self.turns * TURN
-        end = np.append(self.state(master), turned)
+        end = np.append(self.scaled_state(master), turned)
         apart = self.together and master.motion.x_rel > 0.0
         master.close()
         if apart:
@@ -280,7 +278,7 @@ class Shooter:
         return Shot(end, int(self.fmus[0].get("impact_count")[0]), contact)
 
     def observe_period(self, unknowns: Floats) -> Period:
-        """Run a motion over a period and return its observations."""
+        """Simulate one period; return its amplitude, impacts and best start."""
         master, voltage = self.begin_period(unknowns)
         ends = master.motion, master.shaking
         revolution = master.revolution = Revolution.begin(*ends, turn=math.nan)  # never complete
@@ -293,7 +291,7 @@ class Shooter:
         return Period(amplitude, impacts, self.turns, *self.best_start(kept[:-1]))
 
     def best_start(self, kept: Floats) -> tuple[int, float, bool, bool]:
-        """Return a period's best start: index, share of the gap, contact there, sticking in it.
+        """Find the point of a period that is farthest from impacts, to begin there.
 
         Parameters
         ----------
@@ -312,7 +310,7 @@ class Shooter:
         return clear, share, together, sticks
 
     def contact_forces(self, kept: Floats) -> Floats:
-        """Return the contact force at communication points, N; 0 by the ends of contact phases."""
+        """Compute the contact force at each communication point, N."""
         s = self.structure
         x1, v1, x2, v2, gap = (
             kept[:, STATE_INDEX[name]] for name in ("x1", "v1", "x2", "v2", "x_rel")
@@ -324,19 +322,19 @@ class Shooter:
         return np.where(inside, np.maximum(force, 0.0), 0.0)
 
     def begin_later(self, unknowns: Floats, steps: int, together: bool) -> Floats:
-        """Begin periods some steps later; return the same motion's unknowns there."""
+        """Shift the period's start by some steps; return the unknowns there."""
         master, voltage = self.begin_period(unknowns)
         master.run([voltage] * steps)
         self.angle = master.shaking.angle % TURN
         self.begin_together(together)
-        shifted = np.append(self.state(master), unknowns[-2:])
+        shifted = np.append(self.scaled_state(master), unknowns[-2:])
         master.close()
         return shifted
 
     # -- the equations --
 
     def residual(self, unknowns: Floats) -> Floats:
-        """Return the change in a period: of the state, and of the angle beyond full turns."""
+        """Return how state and angle miss periodicity after one period."""
         if self._last is not None and np.array_equal(self._last[0], unknowns):
             return self._last[1]
         end_state = self.shoot(unknowns).end
@@ -344,7 +342,7 @@ class Shooter:
         return end_state
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
-        """Return the residual's derivative: by differences, or updated by a secant (Broyden).
+        """Return the Jacobian by differences, or updated by Broyden's secant rule.
 
         Raises
         ------
@@ -364,11 +362,11 @@ class Shooter:
         return self.matrix
 
     def restart(self, root: Floats, matrix: Floats) -> None:
-        """Restart from a root with its Jacobian; what was tried since is dropped."""
+        """Reset the Jacobian to that of a known root."""
         self.matrix, self._last = matrix, (root, np.zeros(self.size + 1))
 
     def renew_jacobian(self, unknowns: Floats) -> Floats:
-        """Compute the Jacobian anew by differences, at a root or near one.
+        """Compute the Jacobian by finite differences.
 
         Raises
         ------
@@ -386,7 +384,7 @@ class Shooter:
         return self.matrix
 
     def derivative(self, unknowns: Floats, which: int, base: Shot) -> Floats:
-        """Compute the derivative of a period's end by one unknown.
+        """Compute the derivative of the final state by one unknown.
 
         Raises
         ------
@@ -397,16 +395,16 @@ class Shooter:
         known: dict[float, Shot] = {0.0: base}
 
         def end_state_shifted_by(change: float) -> Floats | None:
-            """Return the period's end state with this unknown shifted; None across a grazing."""
+            """Return the final state with one unknown shifted; None past a grazing."""
             if change not in known:
                 moved = unknowns.copy()
                 moved[which] += change
                 known[change] = self.shoot(moved)
-            return known[change].end if known[change].like(base) else None
+            return known[change].end if known[change].is_connected_to(base) else None
 
         for change in CHANGES:
-            for difference in (central, one_sided):
-                for size in (change,) if difference is central else (change, -change):
+            for difference in (central_difference, one_sided_difference):
+                for size in (change,) if difference is central_difference else (change, -change):
                     fine = difference(end_state_shifted_by, size)
                     coarse = difference(end_state_shifted_by, 2.0 * size)
                     if fine is None or coarse is None:
@@ -416,7 +414,7 @@ class Shooter:
         raise NoConvergenceError("a grazing is too near for a derivative")
 
     def multipliers(self) -> np.ndarray:
-        """Return Floquet multipliers: of the map from the angle at the start to itself.
+        """Return the Floquet multipliers of the last motion, the largest first.
 
         The angle's own, 1 for every motion, is not among them.
         """
@@ -424,14 +422,14 @@ class Shooter:
         return np.asarray(values[np.argsort(-np.abs(values))])
 
     def map_derivative(self) -> Floats:
-        """Return the derivative of the map from the angle at the start to itself."""
+        """Return the derivative of the return map at a fixed motor angle."""
         count = self.size
         flow = self.matrix[:, :count] + np.eye(count + 1, count)
         drift = self.matrix[:, -1]  # a longer period is a slower mean speed
         return np.asarray(flow[:count] - np.outer(drift[:count], flow[count]) / drift[count])
 
     def flip_direction(self) -> Floats:
-        """Return the unit eigenvector of the multiplier -1."""
+        """Return the unit eigenvector of the multiplier -1 (period doubling)."""
         values, vectors = np.linalg.eig(self.map_derivative())
         direction = vectors[:, np.argmin(np.abs(values + 1.0))].real
         return fix_sign(np.asarray(direction / np.linalg.norm(direction)))
@@ -440,14 +438,14 @@ class Shooter:
 Ends = Callable[[float], "Floats | None"]  # of a period, by a change of an unknown
 
 
-def central(end: Ends, change: float) -> Floats | None:
+def central_difference(end: Ends, change: float) -> Floats | None:
     """Compute a derivative by central differences; None across a grazing."""
     after, before = end(change), end(-change)
     return None if after is None or before is None else (after - before) / (2.0 * change)
 
 
-def one_sided(end: Ends, change: float) -> Floats | None:
-    """Compute a derivative by one-sided differences of order two; None across a grazing."""
+def one_sided_difference(end: Ends, change: float) -> Floats | None:
+    """Compute a derivative by one-sided second-order differences; None across a grazing."""
     here, near, far = end(0.0), end(change), end(2.0 * change)
     if here is None or near is None or far is None:
         return None

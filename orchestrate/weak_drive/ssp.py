@@ -1,4 +1,4 @@
-"""The coupled system as an SSP 1.0 package for other tools: two FMUs, connections, parameters.
+"""Write the coupled system as an SSP 1.0 package, for simulation in other tools.
 
 What all tools read alike was found by trying: parameter bindings of the components, none of the
 system; connections between components only; no connector for the voltage, which some tools would
@@ -45,13 +45,13 @@ SET = "initialValues"  # some tools apply sets by their name: the same for both 
 Values = Mapping[str, float | bool]
 
 
-def tag(prefix: str, name: str) -> str:
-    """Return an XML name with its namespace."""
+def qualified_tag(prefix: str, name: str) -> str:
+    """Return an XML tag with its namespace."""
     return f"{{{NAMESPACES[prefix]}}}{name}"
 
 
-def document(root: ET.Element) -> bytes:
-    """Serialize an XML document."""
+def xml_bytes(root: ET.Element) -> bytes:
+    """Convert an XML element to the bytes of an XML file."""
     for prefix, address in NAMESPACES.items():
         ET.register_namespace(prefix, address)
     ET.indent(root)
@@ -59,53 +59,63 @@ def document(root: ET.Element) -> bytes:
     return text + b"\n"
 
 
-def ssv(component: str) -> str:
-    """Return the path of a component's parameter file in the package."""
+def parameter_file_path(component: str) -> str:
+    """Return the path of a component's parameter file inside the package."""
     return f"resources/{component}.ssv"
 
 
-def units_of(fmus: Mapping[str, Description], name: str) -> list[str]:
-    """Return units of a component's connectors: of its inputs, then of its outputs."""
+def connector_units(fmus: Mapping[str, Description], name: str) -> list[str]:
+    """Return the units of a component's inputs and outputs, from its FMU."""
     ports = (*INPUTS[name], *OUTPUTS[name])
     return [str(fmus[name].variable(port).unit) for port in ports]
 
 
 def add_units(root: ET.Element, fmus: Mapping[str, Description]) -> None:
-    """Add the connectors' units in SI, each once."""
-    parent = ET.SubElement(root, tag("ssd", "Units"))
-    used = {unit: fmus[name].units[unit] for name in MODELS for unit in units_of(fmus, name)}
+    """Add the definitions of all used units to the XML document."""
+    parent = ET.SubElement(root, qualified_tag("ssd", "Units"))
+    used = {unit: fmus[name].units[unit] for name in MODELS for unit in connector_units(fmus, name)}
     for unit, powers in sorted(used.items()):
-        element = ET.SubElement(parent, tag("ssc", "Unit"), name=unit)
-        ET.SubElement(element, tag("ssc", "BaseUnit"), {k: str(v) for k, v in powers.items()})
+        element = ET.SubElement(parent, qualified_tag("ssc", "Unit"), name=unit)
+        ET.SubElement(
+            element, qualified_tag("ssc", "BaseUnit"), {k: str(v) for k, v in powers.items()}
+        )
 
 
 def add_component(elements: ET.Element, name: str, units: Sequence[str]) -> None:
-    """Add a component with its connectors, in their units, and its parameters."""
+    """Add one FMU with its connectors and parameter file to the XML document."""
     source, kind = f"resources/{MODELS[name]}.fmu", "application/x-fmu-sharedlibrary"
     component = ET.SubElement(
-        elements, tag("ssd", "Component"), name=name, type=kind, source=source
+        elements, qualified_tag("ssd", "Component"), name=name, type=kind, source=source
     )
-    connectors = ET.SubElement(component, tag("ssd", "Connectors"))
+    connectors = ET.SubElement(component, qualified_tag("ssd", "Connectors"))
     ports = [("input", port) for port in INPUTS[name]] + [
         ("output", port) for port in OUTPUTS[name]
     ]
     for (kind, port), unit in zip(ports, units, strict=True):
-        connector = ET.SubElement(connectors, tag("ssd", "Connector"), name=port, kind=kind)
-        ET.SubElement(connector, tag("ssc", "Real"), unit=unit)
-    bindings = ET.SubElement(component, tag("ssd", "ParameterBindings"))
-    ET.SubElement(bindings, tag("ssd", "ParameterBinding"), source=ssv(name))
+        connector = ET.SubElement(
+            connectors, qualified_tag("ssd", "Connector"), name=port, kind=kind
+        )
+        ET.SubElement(connector, qualified_tag("ssc", "Real"), unit=unit)
+    bindings = ET.SubElement(component, qualified_tag("ssd", "ParameterBindings"))
+    ET.SubElement(
+        bindings, qualified_tag("ssd", "ParameterBinding"), source=parameter_file_path(name)
+    )
 
 
 def system_description(
     description: str, stop_time: float, fmus: Mapping[str, Description]
 ) -> bytes:
-    """Return ``SystemStructure.ssd``."""
-    root = ET.Element(tag("ssd", "SystemStructureDescription"), name="WeakDrive", version="1.0")
-    system = ET.SubElement(root, tag("ssd", "System"), name="WeakDrive", description=description)
-    elements = ET.SubElement(system, tag("ssd", "Elements"))
+    """Build the XML file that describes both FMUs and their connections."""
+    root = ET.Element(
+        qualified_tag("ssd", "SystemStructureDescription"), name="WeakDrive", version="1.0"
+    )
+    system = ET.SubElement(
+        root, qualified_tag("ssd", "System"), name="WeakDrive", description=description
+    )
+    elements = ET.SubElement(system, qualified_tag("ssd", "Elements"))
     for name in MODELS:
-        add_component(elements, name, units_of(fmus, name))
-    links = ET.SubElement(system, tag("ssd", "Connections"))
+        add_component(elements, name, connector_units(fmus, name))
+    links = ET.SubElement(system, qualified_tag("ssd", "Connections"))
     for start, end, port in CONNECTIONS:
         places = {
             "startElement": start,
@@ -113,29 +123,31 @@ def system_description(
             "endElement": end,
             "endConnector": port,
         }
-        ET.SubElement(links, tag("ssd", "Connection"), places)
+        ET.SubElement(links, qualified_tag("ssd", "Connection"), places)
     add_units(root, fmus)
-    ET.SubElement(root, tag("ssd", "DefaultExperiment"), startTime="0.0", stopTime=repr(stop_time))
-    return document(root)
+    ET.SubElement(
+        root, qualified_tag("ssd", "DefaultExperiment"), startTime="0.0", stopTime=repr(stop_time)
+    )
+    return xml_bytes(root)
 
 
 def parameter_values(values: Values) -> bytes:
-    """Return a component's parameter file; false parameters keep their defaults."""
-    root = ET.Element(tag("ssv", "ParameterSet"), version="1.0", name=SET)
-    group = ET.SubElement(root, tag("ssv", "Parameters"))
+    """Build the XML file of a component's parameters; false ones are left out."""
+    root = ET.Element(qualified_tag("ssv", "ParameterSet"), version="1.0", name=SET)
+    group = ET.SubElement(root, qualified_tag("ssv", "Parameters"))
     for variable, value in values.items():
         if value is False:
             continue
-        parameter = ET.SubElement(group, tag("ssv", "Parameter"), name=variable)
+        parameter = ET.SubElement(group, qualified_tag("ssv", "Parameter"), name=variable)
         if value is True:
-            ET.SubElement(parameter, tag("ssv", "Boolean"), value="true")
+            ET.SubElement(parameter, qualified_tag("ssv", "Boolean"), value="true")
         else:
-            ET.SubElement(parameter, tag("ssv", "Real"), value=repr(float(value)))
-    return document(root)
+            ET.SubElement(parameter, qualified_tag("ssv", "Real"), value=repr(float(value)))
+    return xml_bytes(root)
 
 
 def write_archive(path: Path, files: Mapping[str, bytes]) -> None:
-    """Write a zip file that has the same bytes whenever it is written."""
+    """Write files into a zip archive, reproducible to the byte."""
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in files.items():
             archive.writestr(zipfile.ZipInfo(name), content, zipfile.ZIP_DEFLATED)
@@ -151,7 +163,7 @@ def write_ssp(
     stop_time: float | None = None,
     fmus: Sequence[str | PathLike[str]] | None = None,
 ) -> Path:
-    """Write the coupled system as an SSP package, for this structure and drive.
+    """Write the coupled system of a structure and a drive as an SSP package.
 
     Parameters
     ----------
@@ -203,17 +215,19 @@ def write_ssp(
         "shaker": {**drive.parameters(), "speed_start": speed, "voltage": voltage},
     }
     text = f"Motor and box with a {state} structure, at {voltage:g} V"
-    paths = [Path(fmu) for fmu in fmus or exported()]
+    paths = [Path(fmu) for fmu in fmus or exported_fmus()]
     known = {name: describe(fmu) for name, fmu in zip(MODELS, paths, strict=True)}
     files = {"SystemStructure.ssd": system_description(text, float(stop), known)}
-    files |= {ssv(name): parameter_values(values) for name, values in starts.items()}
+    files |= {
+        parameter_file_path(name): parameter_values(values) for name, values in starts.items()
+    }
     for model, fmu in zip(MODELS.values(), paths, strict=True):
         files[f"resources/{model}.fmu"] = fmu.read_bytes()
     return write_whole(path, lambda temporary: write_archive(temporary, files))
 
 
-def exported() -> list[Path]:
-    """Return the FMUs of FMI 2.0."""
+def exported_fmus() -> list[Path]:
+    """Return the paths of the two exported FMUs of FMI 2.0."""
     from ..access.exported import find
 
     return [find(model, form="fmi2").path for model in MODELS.values()]

@@ -102,7 +102,7 @@ class ModalSystem:
     participation : ndarray
         ``-participation * a`` is the modal force of the base's acceleration a.
     output_rows : ndarray
-        (outputs, modes): acceleration in space is ``a + output_rows @ q''``.
+        (outputs, modes): absolute acceleration is ``a + output_rows @ q''``.
     contacts : Contacts, optional
     springs : CubicSprings, optional
     frictions : Frictions, optional
@@ -129,7 +129,7 @@ class Motion:
     Attributes
     ----------
     acceleration : ndarray
-        (outputs, steps + 1), m/s2 in space, at the ends of all steps.
+        (outputs, steps + 1), absolute acceleration, m/s2, at the ends of all steps.
     position, velocity : ndarray
         Of the modes, at the end.
     largest_gap, largest_force : ndarray

@@ -40,6 +40,7 @@ class DrawnStructure:
     etas: tuple[float, float]
 
     def __str__(self) -> str:
+        """Format the structure and its first frequency ratio."""
         return f"{self.structure!r}, eta = {self.etas[0]!r}"
 
 
@@ -65,6 +66,7 @@ class ReportedMotion:
     """
 
     def __init__(self, fmu: Path, structure: Structure, eta: float, reported: xr.Dataset) -> None:
+        """Read the reported motion and compute its stroboscopic states."""
         self.fmu, self.structure, self.eta, self.reported = fmu, structure, eta, reported
         self.excitation = Excitation.nondimensional(eta, structure)
         self.periods = int(reported.multiplicity)

@@ -70,6 +70,7 @@ class ChildCommand:
         prepare: Callable[[], object] | None = None,
         environment: Mapping[str, str] | None = None,
     ) -> None:
+        """Start the command in a child process."""
         folder.mkdir(parents=True, exist_ok=True)
         self.begun = time.monotonic()
         self.files = [folder / f"{os.getpid()}-{time.monotonic_ns()}.{end}" for end in "oe"]

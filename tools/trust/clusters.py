@@ -46,6 +46,7 @@ class DaskNodes:
     """
 
     def __init__(self, folder: Path) -> None:
+        """Create the folder and start scheduler and workers."""
         folder.mkdir(parents=True, exist_ok=True)
         self.folder, self.pids = folder, []  # type: Path, list[int]
         self.start()

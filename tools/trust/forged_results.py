@@ -124,6 +124,7 @@ class BrowserWindow:
     """Headless Chromium with a server that no page may request anything from."""
 
     def __init__(self, driver: Any, address: str, asked: list[str]) -> None:
+        """Store the browser's driver and the record of requests."""
         self.driver, self.address, self.asked = driver, address, asked
 
     def check_page(self, page: Path, fragment: str = "") -> str:

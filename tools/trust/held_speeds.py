@@ -1,4 +1,4 @@
-"""Where a motion goes when its voltage is held: a course of ramps and long holds.
+"""Simulate a course of ramps and long voltage holds, and read the speed of each hold.
 
 It is none of the ways in which `couple` decides: one run through all voltages, nothing restored,
 and the speed is read at the end of each hold.
@@ -21,7 +21,7 @@ SETTLED = 1e-3  # of omega: mean speeds of the last two quarters of a hold
 
 
 class System(NamedTuple):
-    """A structure and its drive."""
+    """Store a structure and its drive."""
 
     structure: Structure
     drive: Drive
@@ -40,7 +40,7 @@ def held_speeds(
     part: float = 1.0,
     rate: float = RATE,
 ) -> np.ndarray:
-    """Compute mean speeds at the ends of consecutive holds.
+    """Compute the settled mean speed at each of a series of held voltages.
 
     Parameters
     ----------
@@ -73,11 +73,11 @@ def held_speeds(
     )
     run = couple(structure, drive, voltage=schedule, hold=1.0 / omega, progress=False)
     time, speed = run.time.values * omega, np.abs(run.Omega.values)
-    return np.array([settled(time, speed, end, hold) for end in ends])
+    return np.array([settled_speed(time, speed, end, hold) for end in ends])
 
 
-def settled(time: np.ndarray, speed: np.ndarray, end: float, hold: float) -> float:
-    """Return the mean speed over the last quarter of a hold; NaN if it still changes."""
+def settled_speed(time: np.ndarray, speed: np.ndarray, end: float, hold: float) -> float:
+    """Return the mean speed at the end of a hold; NaN if it still changes."""
     before, last = (
         speed[(time > end - quarters * hold / 4.0) & (time <= end - (quarters - 1) * hold / 4.0)]
         for quarters in (2, 1)

@@ -1,4 +1,4 @@
-"""Verdicts on jumps: random drives, bonded and delaminated, at four rates, against known folds."""
+"""Check the jump verdicts of `couple` on random drives against traced branches."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ SLOPES = (-0.6, 0.3)  # least slopes d eta0 / d Omega of drives that nearly have
 
 
 class Truth(NamedTuple):
-    """Where a slow ramp loses its motion, from the branches.
+    """Store where a slow ramp must lose its motion, by the traced branches.
 
     Attributes
     ----------
@@ -56,12 +56,12 @@ class Truth(NamedTuple):
 
     @property
     def places(self) -> tuple[tuple[float, float], ...]:
-        """Ranges of the voltage in each of which a motion is lost."""
+        """Return the voltage ranges in each of which a motion is lost, over K omega."""
         return ((self.low, self.high), *((fold, fold) for fold in self.further))
 
 
 class Answer(NamedTuple):
-    """Answer of ``couple`` for one direction; voltages over K omega.
+    """Store what `couple` reports for one direction, with voltages over K omega.
 
     Attributes
     ----------
@@ -82,7 +82,7 @@ class Answer(NamedTuple):
     further: tuple[Answer, ...] = ()
 
 
-def draw(rng: np.random.Generator) -> System:
+def draw_system(rng: np.random.Generator) -> System:
     """Draw a random structure with a random drive."""
     damping = rng.uniform(0.006, 0.03)
     b = float(np.exp(rng.uniform(np.log(0.01), np.log(0.5))))
@@ -95,64 +95,67 @@ def draw(rng: np.random.Generator) -> System:
     return System(structure, Drive.nondimensional(**numbers, structure=structure))
 
 
-def with_folds(rng: np.random.Generator) -> System:
-    """Draw systems until the averaged theory has folds that are not too close."""
+def draw_with_folds(rng: np.random.Generator) -> System:
+    """Draw random systems until one has clearly separated averaged folds."""
     while True:
-        system = draw(rng)
+        system = draw_system(rng)
         folds = averaged.folds(*system)
         if folds and folds[0].eta0 - folds[-1].eta0 > NARROW:
             return system
 
 
-def with_slope(system: System, slope: float) -> System:
-    """Return the system with the unbalance that makes the least slope d eta0/d Omega ``slope``."""
+def scale_to_slope(system: System, slope: float) -> System:
+    """Scale the unbalance so that the branch has a given smallest slope."""
     structure, drive = system
-    share = (1.0 - slope) / (1.0 - averaged.least_slope(*system))
+    share = (1.0 - slope) / (1.0 - averaged.smallest_slope(*system))
     numbers = {
         name: getattr(drive, name)(structure) for name in ("beta", "b", "Omega_b", "D_b")
     } | {"epsilon": drive.epsilon * share}
     return System(structure, Drive.nondimensional(**numbers, structure=structure))
 
 
-def ends_of(system: System) -> tuple[float, float]:
-    """Return lowest and highest voltage of ramps over K omega: past both jumps, past a lag."""
+def ramp_ends(system: System) -> tuple[float, float]:
+    """Return the two ends of the voltage ramp, over K omega, past both jumps."""
     folds = averaged.folds(*system)
-    at = averaged.resonance(*system)
-    places = [fold.eta0 for fold in folds] or [float(averaged.no_load_speed(*system, at))]
+    resonance = averaged.resonance(*system)
+    places = [fold.eta0 for fold in folds] or [float(averaged.no_load_speed(*system, resonance))]
     return min(places) - 0.15, max(places) + 0.15
 
 
-def answers(system: System, rate: float) -> tuple[Answer, ...]:
-    """Run ``couple`` at a rate; return its answer up, then that down."""
+def run_couple(system: System, rate: float) -> tuple[Answer, ...]:
+    """Run `couple` at one rate; return its answers upward and downward."""
     structure, drive = system
     volts = drive.volts(structure)
-    first, last = (end * volts for end in ends_of(system))
+    first, last = (end * volts for end in ramp_ends(system))
     rate *= volts * structure.omega
     run = couple(structure, drive, voltage=(first, last), rate=rate, progress=False)
     return tuple(
-        answer_of(at, volts)._replace(further=further_of(at, volts))
-        for at in (run.sel(jump=way) for way in WAYS)
+        read_answer(direction, volts)._replace(further=read_further_answers(direction, volts))
+        for direction in (run.sel(jump=way) for way in WAYS)
     )
 
 
-def further_of(at: xr.Dataset, volts: float) -> tuple[Answer, ...]:
-    """Return the answers on further jumps in one direction from the dataset."""
-    found = []
+def read_further_answers(at: xr.Dataset, volts: float) -> tuple[Answer, ...]:
+    """Read the answers on further jumps in one direction from a dataset."""
+    answers = []
     for place in at.order.values:
-        one = at.sel(order=place)
-        how = str(one.further_decided.item())
+        jump_data = at.sel(order=place)
+        how = str(jump_data.further_decided.item())
         if how == "by the record":
-            jump = float(one.further_jumps) / volts
-            found.append(Answer("lost", jump, jump, False))
+            jump = float(jump_data.further_jumps) / volts
+            answers.append(Answer("lost", jump, jump, False))
         elif how:
-            middle, half = float(one.further_held) / volts, float(one.further_error) / volts
+            middle, half = (
+                float(jump_data.further_held) / volts,
+                float(jump_data.further_error) / volts,
+            )
             said = "undecided" if how == "undecided" else "lost"
-            found.append(Answer(said, middle - half, middle + half, True))
-    return tuple(found)
+            answers.append(Answer(said, middle - half, middle + half, True))
+    return tuple(answers)
 
 
-def answer_of(at: xr.Dataset, volts: float) -> Answer:
-    """Return the answer in one direction from the dataset."""
+def read_answer(at: xr.Dataset, volts: float) -> Answer:
+    """Read the answer on the jump in one direction from a dataset."""
     code, held, error = (float(at[name]) for name in ("held_verdict", "held_jumps", "held_error"))
     jump = float(at.jumps) / volts
     if code == LOST:
@@ -166,19 +169,19 @@ def answer_of(at: xr.Dataset, volts: float) -> Answer:
     return Answer("none", np.nan, np.nan, code == FOLLOWS)
 
 
-def truths(system: System) -> dict[tuple[str, str], Truth]:
-    """Return where both structures lose their motion, up and down, from their branches."""
+def trace_truths(system: System) -> dict[tuple[str, str], Truth]:
+    """Trace both structures' branches; return where each direction loses its motion."""
     structure, drive = system
     folds, omega = averaged.folds(*system), structure.omega
-    at = averaged.resonance(*system)
-    speeds = [fold.Omega for fold in folds] or [at]
+    resonance = averaged.resonance(*system)
+    speeds = [fold.Omega for fold in folds] or [resonance]
     speed = ((min(speeds) - 0.1) * omega, (max(speeds) + 0.1) * omega)
     if len(folds) > 1 and abs(folds[0].eta0 - folds[-1].eta0) < NARROW:
         return dict.fromkeys(((kind, way) for kind in KINDS for way in WAYS), Truth(UNKNOWN))
     branch = drive_branch(structure, drive, speed=speed, longest=0.03, progress=False)
     units = drive.volts(structure), omega
     known = {
-        (kind, way): truth(branch.sel(structure=kind), kind, way, units)
+        (kind, way): first_loss_on_leg(branch.sel(structure=kind), kind, way, units)
         for kind in KINDS
         for way in WAYS
     }
@@ -190,7 +193,7 @@ def truths(system: System) -> dict[tuple[str, str], Truth]:
 
 
 def fold_that_is_met(system: System, branch: xr.Dataset, way: str) -> Truth:
-    """Return the delaminated fold at which a slow course of held voltages jumps.
+    """Find by held voltages at which delaminated fold a slow ramp jumps.
 
     Branches have more folds than a ramp meets; and where it meets one it may go on with another
     motion of nearly the same speed. So voltages are held closely before and past each fold, in one
@@ -199,12 +202,12 @@ def fold_that_is_met(system: System, branch: xr.Dataset, way: str) -> Truth:
     another. Unknown without any; where there are more, all count.
     """
     sign = 1.0 if way == "up" else -1.0
-    folds = sorted(folds_of(system, branch, way), reverse=way == "down")
+    folds = sorted(delaminated_folds(system, branch, way), reverse=way == "down")
     if not folds:
         return Truth(UNKNOWN)
     course = [voltage + side * sign * BESIDE for voltage, _ in folds for side in (-1.0, 1.0)]
-    course = ordered(course, way)
-    speeds = dict(zip(course, held_speeds(system, first_of(system, way), course), strict=True))
+    course = sort_in_direction(course, way)
+    speeds = dict(zip(course, held_speeds(system, course_start(system, way), course), strict=True))
     met = []
     for voltage, speed in folds:
         before, past = (speeds[voltage + side * sign * BESIDE] for side in (-1.0, 1.0))
@@ -216,8 +219,8 @@ def fold_that_is_met(system: System, branch: xr.Dataset, way: str) -> Truth:
     return Truth(FOLD, largest, largest, tuple(others))
 
 
-def folds_of(system: System, branch: xr.Dataset, way: str) -> list[tuple[float, float]]:
-    """Return voltages over K omega and speeds over omega of folds that end motions one way."""
+def delaminated_folds(system: System, branch: xr.Dataset, way: str) -> list[tuple[float, float]]:
+    """Return voltage and speed of the delaminated folds that end motions in one direction."""
     structure, drive = system
     units = drive.volts(structure), structure.omega
     legs = branch.sel(structure="delaminated")
@@ -234,36 +237,36 @@ def folds_of(system: System, branch: xr.Dataset, way: str) -> list[tuple[float, 
                 for name, unit in zip(names, units, strict=True)
             ]
         )
-        leg, at = np.unravel_index(
+        leg, point = np.unravel_index(
             np.argmin(np.abs(points - fold[:, np.newaxis, np.newaxis]).max(axis=0)),
             points.shape[1:],
         )
-        around = points[0, leg, max(0, at - 1) : at + 2]
+        around = points[0, leg, max(0, point - 1) : point + 2]
         is_highest = fold[0] >= np.median(around[np.isfinite(around)])
         if is_highest == (way == "up"):
             folds.append((float(fold[0]), float(fold[1])))
     return folds
 
 
-def first_of(system: System, way: str) -> float:
-    """Return the start of a course in a direction, over K omega."""
-    return ends_of(system)[WAYS.index(way)]
+def course_start(system: System, way: str) -> float:
+    """Return the voltage at which a course in one direction starts, over K omega."""
+    return ramp_ends(system)[WAYS.index(way)]
 
 
-def ordered(voltages: Sequence[float], way: str) -> list[float]:
-    """Return the voltages in the order of a course's direction."""
+def sort_in_direction(voltages: Sequence[float], way: str) -> list[float]:
+    """Sort voltages in the order of a direction."""
     return sorted(voltages, reverse=way == "down")
 
 
-def refuted(system: System, answer: Answer, way: str) -> str:
-    """Hold voltages by themselves; return what they say against an answer, or empty."""
+def contradiction(system: System, answer: Answer, way: str) -> str:
+    """Test an answer by separate held voltages; return the contradiction or empty text."""
     if answer.said == "lost" and answer.held:
-        return refuted_bracket(system, answer, way)
-    return refuted_by_grid(system, answer, way) if answer.said in ("lost", "none") else ""
+        return bracket_contradiction(system, answer, way)
+    return grid_contradiction(system, answer, way) if answer.said in ("lost", "none") else ""
 
 
-def refuted_bracket(system: System, answer: Answer, way: str) -> str:
-    """Hold voltages before and past the bracket, and go back to its beginning.
+def bracket_contradiction(system: System, answer: Answer, way: str) -> str:
+    """Test a bracket by held voltages, at two rates; return any contradiction.
 
     A motion with a narrow basin is thrown out of it by the ramp between two holds, long before it
     ends: what speaks against an answer has to do so on a slow way too.
@@ -276,16 +279,16 @@ def refuted_bracket(system: System, answer: Answer, way: str) -> str:
 
 
 def bracket_problem(system: System, answer: Answer, way: str, rate: float) -> str:
-    """Return what held voltages say against a bracket, with a rate between the holds, or empty.
+    """Hold voltages around a bracket at one rate; return any contradiction.
 
     An irregular motion may be lost before: so the first one is further away, and the speed past a
     jump differs the more from the one there.
     """
     sign = 1.0 if way == "up" else -1.0
-    stays, lost = ordered((answer.low, answer.high), way)
+    stays, lost = sort_in_direction((answer.low, answer.high), way)
     far, past = stays - sign * EARLY, lost + sign * 0.5 * TOLERANCE
     before, there, beyond, back = held_speeds(
-        system, first_of(system, way), (far, stays, past, stays), rate=rate
+        system, course_start(system, way), (far, stays, past, stays), rate=rate
     )
     if abs(beyond - before) < SAME:
         return f"lost at {stays:.5f}, but past it, held, the speed is that of {far:.5f}"
@@ -294,32 +297,32 @@ def bracket_problem(system: System, answer: Answer, way: str, rate: float) -> st
     return ""
 
 
-def refuted_by_grid(system: System, answer: Answer, way: str) -> str:
-    """Hold voltages through the resonance and back: two speeds at one of them, or none.
+def grid_contradiction(system: System, answer: Answer, way: str) -> str:
+    """Hold a grid of voltages there and back; return any contradiction.
 
     A jump through the resonance leaves the speed behind the voltage until it jumps: on the way
     there the speed has passed less far than on the way back. Two motions the other way round are
     lost against the way of the voltage: they exchange beside the resonance, and no verdict is about
     them.
     """
-    low, high = ends_of(system)
+    low, high = ramp_ends(system)
     sign = 1.0 if way == "up" else -1.0
     ends = (low + 0.15 - AROUND[0], high - 0.15 + AROUND[1])
-    voltages = ordered(np.arange(*ends, GRID).tolist(), way)
+    voltages = sort_in_direction(np.arange(*ends, GRID).tolist(), way)
     there_and_back = [*voltages, *voltages[::-1]]
-    speeds = held_speeds(system, first_of(system, way), there_and_back, SHORT)
+    speeds = held_speeds(system, course_start(system, way), there_and_back, SHORT)
     behind = sign * (speeds[::-1][: len(voltages)] - speeds[: len(voltages)])
     if answer.said == "lost":
         unlike = (behind >= SAME) | np.isnan(behind)
         return "" if unlike.any() else "lost, but held speeds come back everywhere"
     if not (behind > CHANGE).any():
         return ""
-    at = voltages[int(np.nanargmax(behind))]
-    return f"none, but two motions last at {at:.5f}: speeds {np.nanmax(behind):.4f} apart"
+    voltage = voltages[int(np.nanargmax(behind))]
+    return f"none, but two motions last at {voltage:.5f}: speeds {np.nanmax(behind):.4f} apart"
 
 
-def truth(branch: xr.Dataset, kind: str, way: str, units: tuple[float, float]) -> Truth:
-    """Return the first loss of stability along a branch, from below or from above.
+def first_loss_on_leg(branch: xr.Dataset, kind: str, way: str, units: tuple[float, float]) -> Truth:
+    """Read from one traced branch where its motion is first lost in a direction.
 
     Unknown where that is no fold: of the delaminated structure, whose impacts may become irregular
     there without any change of the speed.
@@ -359,50 +362,52 @@ def truth(branch: xr.Dataset, kind: str, way: str, units: tuple[float, float]) -
     return Truth(UNKNOWN)
 
 
-def complaint(answer: Answer, known: Truth, way: str) -> str:
-    """Return what is wrong with an answer; empty where nothing is, or nothing is known."""
+def error_in_answer(answer: Answer, known: Truth, way: str) -> str:
+    """Compare an answer with the truth; return the error or empty text."""
     if known.kind == UNKNOWN or answer.said == "not passed":
         return ""
-    told = [one for one in (answer, *answer.further) if one.said == "lost"]
+    sure = [each for each in (answer, *answer.further) if each.said == "lost"]
     if known.kind == NONE:
-        return f"lost at {told[0].low:.5f}, but no motion is lost" if told else ""
-    if answer.said == "none" and not told:
+        return f"lost at {sure[0].low:.5f}, but no motion is lost" if sure else ""
+    if answer.said == "none" and not sure:
         return f"none, but a motion is lost at {known.low:.5f}"
     if answer.said == "undecided":
         return ""
     for place in known.places:
-        if not any(agrees(one, place, way) for one in (*told, *answer.further)):
-            return f"lost at {told[0].low:.5f} to {told[0].high:.5f}, in truth at {place[0]:.5f}"
+        if not any(matches_range(each, place, way) for each in (*sure, *answer.further)):
+            return f"lost at {sure[0].low:.5f} to {sure[0].high:.5f}, in truth at {place[0]:.5f}"
     return ""
 
 
-def agrees(answer: Answer, place: tuple[float, float], way: str) -> bool:
-    """Return whether an answer is about a loss of a motion in a range of the voltage."""
+def matches_range(answer: Answer, place: tuple[float, float], way: str) -> bool:
+    """Return whether an answer's bracket matches a range where a motion is lost."""
     early, late = (EARLY, np.inf) if not answer.held else (TOLERANCE, TOLERANCE)
     before, after = (early, late) if way == "up" else (late, early)
     return place[0] - before <= answer.high and answer.low <= place[1] + after
 
 
-def unknown_ones(answer: Answer, known: Truth, way: str) -> list[Answer]:
-    """Return the sure answers on losses that the branches do not know."""
-    sure = [one for one in (answer, *answer.further) if one.said == "lost"]
+def answers_without_truth(answer: Answer, known: Truth, way: str) -> list[Answer]:
+    """Return the certain answers that the traced branches neither confirm nor deny."""
+    sure = [each for each in (answer, *answer.further) if each.said == "lost"]
     if known.kind == UNKNOWN:
         return sure or [answer]
     if known.kind == NONE or not answer.further:
         return []
-    return [one for one in sure if not any(agrees(one, place, way) for place in known.places)]
+    return [
+        each for each in sure if not any(matches_range(each, place, way) for place in known.places)
+    ]
 
 
-def judged(
+def check_answers(
     system: System, kind: str, known: dict[str, Truth], rates: Sequence[float] = RATES
 ) -> Iterator[tuple[str, str]]:
-    """Yield each answer's name for the counts, and what is wrong with it."""
+    """Check the answers on one structure at all rates; yield each with any error."""
     said: dict[str, set[str]] = {way: set() for way in WAYS}
     for rate in rates:
-        for way, answer in zip(WAYS, answers(system, rate), strict=True):
+        for way, answer in zip(WAYS, run_couple(system, rate), strict=True):
             new = answer.said not in said[way]
-            for one in unknown_ones(answer, known[way], way) if new else ():
-                problem = refuted(system, one, way)
+            for each in answers_without_truth(answer, known[way], way) if new else ():
+                problem = contradiction(system, each, way)
                 yield (
                     "held by themselves",
                     f"{kind}, {way}, rate {rate:g}: {problem}" * bool(problem),
@@ -411,17 +416,17 @@ def judged(
             by = "by held voltages" if answer.held else "by the record"
             decided = answer.said in ("lost", "none")
             name = f"{answer.said} {by}" if decided else answer.said
-            wrong = complaint(answer, known[way], way)
+            wrong = error_in_answer(answer, known[way], way)
             yield name, f"{kind}, {way}, rate {rate:g}: {wrong}" if wrong else ""
-            for one in answer.further:
-                yield f"further jump {one.said}", ""
+            for each in answer.further:
+                yield f"further jump {each.said}", ""
     for way in WAYS:
         if {"lost", "none"} <= said[way]:
             yield "", f"{kind}, {way}: lost at some rates, none at others"
 
 
 class Verdicts(Campaign):
-    """Campaign: verdicts on random drives at four rates, with folds and near their edge."""
+    """Run the campaign that checks jump verdicts on random drives at four rates."""
 
     name, title = "verdicts", "Jump, none, or undecided"
     asks = (
@@ -441,12 +446,12 @@ class Verdicts(Campaign):
     unit, target, batch, package = "drives", 40, 1, True
 
     def run(self, fmu: Path, seed: int, count: int) -> BatchOutcome:
-        """Check the verdicts on ``count`` drives."""
+        """Check the verdicts on `count` random drives; return the counts and errors."""
         rng, counts, notes = np.random.default_rng(seed), Counter[str](), []
         wrong = 0
         for number in range(count):
-            folded = with_folds(rng)
-            edge = with_slope(folded, float(rng.uniform(*SLOPES)))
+            folded = draw_with_folds(rng)
+            edge = scale_to_slope(folded, float(rng.uniform(*SLOPES)))
             before = len(notes)
             both = (("with folds", folded, RATES), ("near the edge", edge, FEW_RATES))
             for name, system, rates in both:
@@ -461,10 +466,10 @@ class Verdicts(Campaign):
         return BatchOutcome(count, wrong, counts=+counts, notes=tuple(notes))
 
     def judge(self, system: System, rates: Sequence[float]) -> Iterator[tuple[str, str]]:
-        """Judge both structures of a drive; yield each answer's name, and what is wrong with it."""
-        known = truths(system)
+        """Check both structures of one drive; yield each answer with any error."""
+        known = trace_truths(system)
         for kind in KINDS:
             of_kind = {way: known[kind, way] for way in WAYS}
             for way in WAYS:
                 yield f"truth {of_kind[way].kind}", ""
-            yield from judged(system.of_kind(kind), kind, of_kind, rates)
+            yield from check_answers(system.of_kind(kind), kind, of_kind, rates)

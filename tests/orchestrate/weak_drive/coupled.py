@@ -8,7 +8,7 @@ import numpy as np
 
 from orchestrate import Drive, Structure
 from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
-from orchestrate.weak_drive.compiled import master_of
+from orchestrate.weak_drive.compiled import create_master
 from orchestrate.weak_drive.master import Scheme
 from orchestrate.weak_drive.run import oscillator_start
 
@@ -78,7 +78,7 @@ def starts_of(system, state):
 
 
 @contextlib.contextmanager
-def master(system, scheme, state, form="fmi3", kind=master_of):
+def master(system, scheme, state, form="fmi3", kind=create_master):
     """A master from a state as :mod:`.monolithic` has it."""
     oscillator, shaker = (find(model, form).path for model in (OSCILLATOR, SHAKER))
     starts, shaker_starts = starts_of(system, state)

@@ -9,7 +9,7 @@ from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.access.events import EventInstance
 from orchestrate.weak_drive.exchange import Step
 from orchestrate.weak_drive.master import ALGORITHMS, Master, Scheme
-from orchestrate.weak_drive.polynomials import end_slope, end_value, work
+from orchestrate.weak_drive.polynomials import end_slope, end_value, integrate_work
 
 from .coupled import QUICK, oscillator_start, settled, starts_of, state_of
 from .monolithic import Monolith
@@ -26,9 +26,9 @@ class Counting(Master):
 
     passes = 0
 
-    def _pass(self, *arguments):
+    def _step_both(self, *arguments):
         self.passes += 1
-        return super()._pass(*arguments)
+        return super()._step_both(*arguments)
 
 
 class ImpactPoints(Counting):
@@ -63,17 +63,17 @@ class ImpactPoints(Counting):
             self.voltage = voltage
             self.shaking = self._outputs_with_force(self.motion)
         done, h, event = self.both(h)
-        force = self.force_of(done.motion, h)
+        force = self.fit_force(done.motion, h)
         taken = done.shaking.box_force_work - self.shaking.box_force_work
-        defect = taken - work(force, self.shaking.box_velocity, done.acceleration, h)
-        size = self._over_exchanged(done, taken, defect)
+        defect = taken - integrate_work(force, self.shaking.box_velocity, done.acceleration, h)
+        size = self._relative_defect(done, taken, defect)
         if may_refuse and size > self.scheme.tolerance:
             self.oscillator.restore()
             self.shaker.restore()
             return size, 0.0
         self.slope = end_slope(force, h)
         self.balance.add(self.motion, done.motion, done.acceleration, defect, h)
-        self._advance(done, h)
+        self._accept_step(done, h)
         if event:
             self.handle()
             self._restart_extrapolation()
@@ -98,8 +98,8 @@ class ImpactPoints(Counting):
                 break
             last = motion
             self.shaker.put(motion.box_force, end_slope(force, length), 0.0, 0.0, self.voltage)
-            acceleration = self._acceleration_for_structure(self._shaking(), length)
-        return Step(acceleration, motion, self._shaking()), length, event
+            acceleration = self._acceleration_for_structure(self._read_motor(), length)
+        return Step(acceleration, motion, self._read_motor()), length, event
 
     def flight(self, told, h):
         """The structure to an impact that ends the step, past all others."""
@@ -109,7 +109,7 @@ class ImpactPoints(Counting):
             now = (end_value(told, at), end_slope(told, at), f2 + at * f3, f3)
             self.oscillator.put(*now)
             event, last = self.advance(self.time + at, h - at)
-            motion, reached = self._motion(), last - self.time
+            motion, reached = self._read_structure(), last - self.time
             impulse += motion.box_impulse
             moment += motion.box_impulse_moment + at * motion.box_impulse
             inside = event and self.least <= reached <= h - self.least

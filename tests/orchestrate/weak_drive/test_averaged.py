@@ -39,12 +39,12 @@ def test_a_strong_motor_has_no_folds():
 def test_stability_is_that_of_slow_disturbances(name):
     """Between the points it does not change; at a fold and at a Neimark-Sacker point it does."""
     structure, drive = Structure.from_file(name), Drive.from_file(name)
-    points, stable = averaged.stability(structure, drive)
+    points, stable = averaged.branch_stability(structure, drive)
     assert stable[0] and stable[-1] and not all(stable)
     speeds = [point.Omega for point in points]
     assert speeds == sorted(speeds) and {"fold"} <= {point.kind for point in points}
     for Omega in np.linspace(0.9 * speeds[0], 1.1 * speeds[-1], 25):
-        grows = averaged.growth(structure, drive, float(Omega))[0].real > 0.0
+        grows = averaged.growth_rates(structure, drive, float(Omega))[0].real > 0.0
         assert stable[int(np.searchsorted(speeds, Omega))] != grows
 
 

@@ -10,10 +10,11 @@ from orchestrate import couple
 from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.dynamics.bifurcations import FOLD
 from orchestrate.weak_drive import averaged
-from orchestrate.weak_drive.couple import Run, couple_job, scheme_of
+from orchestrate.weak_drive.couple import Run, couple_job, scheme_from_arguments
 from orchestrate.weak_drive.drive_tracer import motion_near
 from orchestrate.weak_drive.held import LOST, HeldVoltageTest
 from orchestrate.weak_drive.jumps import Passing
+from orchestrate.weak_drive.ramp_record import RampRecord
 from orchestrate.weak_drive.schedule import Ramp
 from orchestrate.weak_drive.shooting import Shooter
 
@@ -35,10 +36,11 @@ def leg_of(system, range_, most=40):
 
 def held_verdict(system, ramp):
     """What held voltages say of a ramp up."""
-    job = couple_job(*system, ramp, scheme_of(system.structure, None), 0.0)
+    job = couple_job(*system, ramp, scheme_from_arguments(system.structure, None), 0.0)
     fmus = {model: find(model).path for model in (OSCILLATOR, SHAKER)}
     table = job.work(fmus, range(job.steps()), None)
-    passing, (_, rows) = job.passing(table, up=True), job.sweep_leg(table, up=True)
+    record = RampRecord(job, table)
+    passing, (_, rows) = record.resonance_passing(up=True), record.sweep_leg(up=True)
     times = table["time"][[*passing[:3], rows[0], rows[-1]]]
     row, before, after, *ends = (math.ceil(time / job.scheme.h) for time in times)
     with Instance(fmus[OSCILLATOR]) as one, Instance(fmus[SHAKER]) as other:
@@ -78,7 +80,7 @@ def whole_state(system, motion, length):
 def assert_repeats(system, motion, length):
     """The motion is one of the whole system, with as many impacts."""
     start, turns = whole_state(system, motion, length), motion.period.revolutions
-    voltage, speed = motion.place
+    voltage, speed = motion.coordinates
     times = np.linspace(0.0, turns * 2.0 * np.pi / speed, 200)
     exact = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-14}
     rows, impacts = Monolith(*system, voltage, exact).solve(start, times)
@@ -89,7 +91,7 @@ def assert_repeats(system, motion, length):
 
 def assert_held(system, motion):
     """A motor whose voltage is held settles at that speed and amplitude."""
-    voltage, speed = motion.place
+    voltage, speed = motion.coordinates
     asked = {"speed_start": 0.0, "duration": 900.0, "jobs": 1, "progress": False}
     run = couple(*system, voltage=float(voltage), **asked).isel(revolution=slice(-10, None))
     assert run.speed.mean() == pytest.approx(speed, abs=1e-4)
@@ -116,7 +118,7 @@ def test_a_pressed_structure_moves_as_the_bonded_one_until_it_parts(pressed):
     kappa, mu = PRESSED.structure.kappa, PRESSED.structure.mu  # f of (18) is 0 at this amplitude
     opening = 3.0 * kappa / mu * (1.0 + mu) / (1.0 + kappa) / (kappa / mu - 1.0)
     assert sizes[shut].max() < opening < sizes[~shut].min()
-    places = np.array([motion.place for motion in motions])
+    places = np.array([motion.coordinates for motion in motions])
     theory = averaged.no_load_speed(*PRESSED.as_bonded(), places[:, 1])
     assert places[shut, 0] == pytest.approx(theory[shut], abs=2e-4)
     assert theory[-1] - places[-1, 0] > 8e-4
@@ -146,7 +148,7 @@ def test_held_voltages_find_the_fold_of_the_branch():
     (fold,) = legs[0].bifurcations
     verdict = held_verdict(OPEN, Ramp(1.52, 1.62, 4e-4, settle=600.0, back=False)).verdict
     assert fold.kind == FOLD and verdict.outcome == LOST
-    assert verdict.low - 2e-5 < fold.point.place[0] < verdict.high + 2e-5
+    assert verdict.low - 2e-5 < fold.point.coordinates[0] < verdict.high + 2e-5
     assert verdict.high - verdict.low < 2e-4
 
 
@@ -163,7 +165,7 @@ def test_halves_that_never_touch_are_two_oscillators():
         box = box + pull * inertia / (pull + inertia)
     torque = 0.5 * drive.epsilon * speeds**4 * (1.0 / box).imag
     expected = speeds - torque / drive.b(structure)
-    assert [motion.place[0] for motion in motions] == pytest.approx(expected, abs=2e-4)
+    assert [motion.coordinates[0] for motion in motions] == pytest.approx(expected, abs=2e-4)
     assert not any(motion.period.impacts for motion in motions)
 
 

@@ -10,7 +10,7 @@ from fmu_src.export.errors import CannotExport
 from orchestrate.access import c_library as libraries
 from orchestrate.errors import FmuError
 from orchestrate.weak_drive import compiled
-from orchestrate.weak_drive.compiled import SOURCE, CompiledMaster, Pair, master_of
+from orchestrate.weak_drive.compiled import SOURCE, CompiledMaster, Pair, create_master
 from orchestrate.weak_drive.extremes import Revolution
 from orchestrate.weak_drive.master import ALGORITHMS, Master, Scheme
 
@@ -88,12 +88,12 @@ def test_fmus_of_other_forms_step_in_python():
 def test_a_library_that_cannot_be_loaded_is_no_failure(tmp_path, monkeypatch):
     (tmp_path / "compiled.so").write_bytes(b"nothing")
     monkeypatch.setattr(libraries, "library", lambda source: tmp_path / "compiled.so")
-    assert compiled.step_function.__wrapped__() is None
+    assert compiled.load_step_function.__wrapped__() is None
 
 
 def test_without_a_library_python_does_it(monkeypatch):
-    monkeypatch.setattr(compiled, "step_function", lambda: None)
-    with master(QUICK, Scheme(), rest(), kind=master_of) as m:
+    monkeypatch.setattr(compiled, "load_step_function", lambda: None)
+    with master(QUICK, Scheme(), rest(), kind=create_master) as m:
         assert type(m) is Master
 
 

@@ -60,7 +60,7 @@ def upper():
 
 def test_neimark_sacker_point(upper):
     """The upper branch of `beam` is lost before its fold; by the averaged theory's growth rates."""
-    (expected,) = averaged.torus_points(*BEAM.as_bonded())
+    (expected,) = averaged.neimark_sacker_points(*BEAM.as_bonded())
     assert expected.Omega > averaged.folds(*BEAM.as_bonded())[-1].Omega
     omega, volts = BEAM.structure.omega, BEAM.drive.volts(BEAM.structure)
     found = upper.isel(bifurcation=upper.bifurcation_structure.values == "bonded")

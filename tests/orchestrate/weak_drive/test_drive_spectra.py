@@ -68,7 +68,7 @@ def test_lines(quick):
 
 def test_the_line_is_that_of_the_averaged_theory(quick):
     speed = float(quick.speed.sel(kind="bonded"))
-    H, ratio = averaged.transfer(*QUICK, speed)
+    H, ratio = averaged.transfer_functions(*QUICK, speed)
     expected = abs(H * (1.0 + ratio)) * speed**4 * QUICK.drive.length
     assert line(quick, "bonded", 1.0) == pytest.approx(expected, rel=0.01)
 

@@ -4,20 +4,20 @@ import numpy as np
 import pytest
 
 from orchestrate import couple
-from orchestrate.weak_drive.further_jumps import falls, find_further
+from orchestrate.weak_drive.further_jumps import find_falls, find_further_jumps
 from orchestrate.weak_drive.held import LOST, UNDECIDED, HeldVoltageTest, HoldSettings, Verdict
 from orchestrate.weak_drive.jumps import DOUBTFUL, JUMP, Passing, SweepLeg, find_passing
 from orchestrate.weak_drive.losses import (
     SLOTS,
     THROUGH,
-    as_rows,
-    from_rows,
-    further_columns,
+    further_jump_variables,
     gather_losses,
-    jump_and_further,
+    pick_jump,
+    verdicts_from_rows,
+    verdicts_to_rows,
 )
 from orchestrate.weak_drive.schedule import Ramp
-from tools.trust.verdicts import RATES, WAYS, answers, ends_of, with_folds
+from tools.trust.verdicts import RATES, WAYS, draw_with_folds, ramp_ends, run_couple
 
 from .test_held import H, Rotor
 
@@ -39,7 +39,7 @@ def ramp(rate, first=0.03, scatter=0.0, sign=1.0):
 
 def places(leg, threshold=1.3):
     main = find_passing(leg, B, up=True, threshold=threshold)
-    return find_further(leg, B, True, threshold, (main.before, main.after))
+    return find_further_jumps(leg, B, True, threshold, (main.before, main.after))
 
 
 @pytest.mark.parametrize("rate", [2e-4, 1e-4, 2e-5])
@@ -63,7 +63,7 @@ def test_what_an_irregular_motion_does_by_itself_is_no_place():
 
 def test_falls_are_between_rises():
     values = np.array([0.0, 3.0, 1.0, 1.5, 0.0, 2.0, 1.9, 2.5, 1.0])
-    assert falls(values, 1.0) == [(1, 4), (7, 8)]
+    assert find_falls(values, 1.0) == [(1, 4), (7, 8)]
 
 
 class TwoFolds(Rotor):
@@ -114,9 +114,9 @@ LATE_LOSS, EARLY_LOSS = Verdict(LOST, 1.48, 1.4801), Verdict(LOST, 1.29, 1.2901)
 def told(primary, look=DOUBTFUL, further=()):
     """The jump and the further ones of a ramp with the place ``EARLY`` before its passing."""
     place = EARLY._replace(look=look)
-    stored = from_rows(as_rows(list(further)))
+    stored = verdicts_from_rows(verdicts_to_rows(list(further)))
     losses = gather_losses(TABLE, ROWS, MAIN, primary, [place], stored)
-    return jump_and_further(*losses, 1.0)
+    return pick_jump(*losses, 1.0)
 
 
 @pytest.mark.parametrize(
@@ -131,7 +131,7 @@ def test_the_first_sure_jump_is_the_jump(look, further):
     first, others = told(LATE_LOSS, look, further)
     assert first.passing.row == EARLY.row and first.is_sure
     assert [loss.passing for loss in others] == [MAIN]
-    columns = further_columns(TABLE, [others, []])
+    columns = further_jump_variables(TABLE, [others, []])
     assert columns["further_jumps"][1][0, 0] == pytest.approx(1.5)
     assert columns["further_held"][1][0, 0] == pytest.approx(1.48005)
     assert columns["further_decided"][1][0, 0] == "by held voltages"
@@ -141,7 +141,7 @@ def test_the_first_sure_jump_is_the_jump(look, further):
 
 def test_a_loss_that_the_record_does_not_show_is_where_the_ramp_reaches_it():
     losses = gather_losses(TABLE, ROWS, MAIN, LATE_LOSS, [], [(THROUGH, EARLY_LOSS)])
-    first, others = jump_and_further(*losses, 1.0)
+    first, others = pick_jump(*losses, 1.0)
     assert TABLE["voltage"][first.passing.row] == pytest.approx(1.29, abs=2e-3)
     assert [loss.passing for loss in others] == [MAIN]
 
@@ -151,7 +151,7 @@ def test_what_is_not_known_is_undecided_and_takes_nothing_from_the_sure_one(furt
     """At a place where nothing was held too: never silently nothing."""
     first, others = told(LATE_LOSS, DOUBTFUL, further)
     assert first.passing == MAIN
-    columns = further_columns(TABLE, [others, []])
+    columns = further_jump_variables(TABLE, [others, []])
     assert columns["further_decided"][1][0, 0] == "undecided"
     assert np.isnan(columns["further_jumps"][1][0, 0])
     middle, half = (columns[name][1][0, 0] for name in ("further_held", "further_error"))
@@ -165,9 +165,9 @@ def test_what_is_not_known_is_undecided_and_takes_nothing_from_the_sure_one(furt
 )
 def test_drives_of_the_campaign_that_jump_twice(seed, jumps, rate):
     """Of each the second one alone was told."""
-    structure, drive = with_folds(np.random.default_rng(seed)).of_kind("delaminated")
+    structure, drive = draw_with_folds(np.random.default_rng(seed)).of_kind("delaminated")
     volts = drive.volts(structure)
-    ends = tuple(end * volts for end in ends_of(with_folds(np.random.default_rng(seed))))
+    ends = tuple(end * volts for end in ramp_ends(draw_with_folds(np.random.default_rng(seed))))
     speed = rate * volts * structure.omega
     up = couple(structure, drive, voltage=ends, rate=speed, back=False, progress=False).sel(
         jump="up"
@@ -186,8 +186,8 @@ def test_drives_of_the_campaign_that_jump_twice(seed, jumps, rate):
 )
 def test_a_motion_fallen_into_by_chance_ends_at_no_jump(seed, way, jump, rate):
     """At one of these rates each was said to lose, elsewhere, a motion of a narrow range."""
-    system = with_folds(np.random.default_rng(seed)).of_kind("delaminated")
-    answer = answers(system, rate)[WAYS.index(way)]
+    system = draw_with_folds(np.random.default_rng(seed)).of_kind("delaminated")
+    answer = run_couple(system, rate)[WAYS.index(way)]
     assert answer.said == ("lost" if jump else "none")
     assert jump is None or answer.low <= jump + 1e-4 and answer.high >= jump - 1e-4
     assert all(other.said == "undecided" for other in answer.further)

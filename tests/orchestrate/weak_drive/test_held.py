@@ -10,9 +10,9 @@ from orchestrate.weak_drive.held import (
     LEFT_BEFORE,
     LOST,
     UNDECIDED,
+    HeldPoint,
     HeldVoltageTest,
     HoldSettings,
-    Settled,
     settled_speed,
 )
 from orchestrate.weak_drive.jumps import DOUBTFUL, Passing
@@ -136,11 +136,11 @@ class Scripted(HeldVoltageTest):
 
     def at(self, voltage, higher=0.0, begin=0.0):
         speed = 1.3 + 0.5 * (voltage - 1.5) + higher
-        return Settled(voltage, speed, 0.0, speed + begin, {}, np.nan)
+        return HeldPoint(voltage, speed, 0.0, speed + begin, {}, np.nan)
 
     def hold_step(self, step):
         self.held.append(step)
-        return self.at(self.voltage(step), begin=0.02 if step in self.falls else 0.0)
+        return self.at(self.ramp_voltage(step), begin=0.02 if step in self.falls else 0.0)
 
     def step_from(self, point, voltage):
         return self.at(voltage, self.back if voltage < point.voltage else 0.0)
@@ -161,7 +161,7 @@ def test_a_way_back_that_has_not_settled_is_undecided():
     low, high = scripted.at(1.5), scripted.at(1.5001, higher=0.01)
     for higher, what in ((0.0, FOLLOWS), (0.003, UNDECIDED), (0.01, LOST), (np.nan, UNDECIDED)):
         scripted.back = higher
-        assert scripted.there_and_back(low, high) == what
+        assert scripted.classify_return(low, high) == what
 
 
 @pytest.mark.parametrize(("early", "what"), [(0.0, LOST), (1e-4, LOST), (2e-3, UNDECIDED)])
@@ -177,8 +177,8 @@ def test_an_irregular_motion_that_ends_by_chance_is_undecided(early, what):
             )
 
     transient = Transient()
-    points = transient.stairs(transient.at(1.5)._replace(error=1e-3), 1.56)
-    verdict = transient.between(points, 1.0)
+    points = transient.climb_stairs(transient.at(1.5)._replace(error=1e-3), 1.56)
+    verdict = transient.bracket_largest_change(points, 1.0)
     assert verdict.outcome == what
     if what == LOST:
         assert verdict.low - 1e-9 <= 1.52 - early <= verdict.high + 1e-9
@@ -206,8 +206,8 @@ class Window(Scripted):
 @pytest.mark.parametrize(("always", "what"), [(True, LOST), (False, FOLLOWS)])
 def test_a_motion_that_was_fallen_into_by_chance_is_not_the_ramps(always, what):
     window = Window(always)
-    points = window.stairs(window.at(1.5)._replace(error=3e-4), 1.56)
-    verdict = window.between(points, 1.0)
+    points = window.climb_stairs(window.at(1.5)._replace(error=3e-4), 1.56)
+    verdict = window.bracket_largest_change(points, 1.0)
     assert verdict.outcome == what
     if always:
         assert verdict.low - 1e-9 <= 1.52 <= verdict.high + 1e-9
@@ -223,7 +223,7 @@ def test_a_motion_beyond_that_ends_by_chance_is_undecided():
 
     beyond = Beyond()
     low, high = beyond.at(1.5), beyond.at(1.5001, higher=0.02)
-    assert beyond.there_and_back(low, high) == UNDECIDED
+    assert beyond.classify_return(low, high) == UNDECIDED
 
 
 @pytest.mark.parametrize(("higher", "what"), [(0.0, FOLLOWS), (0.012, UNDECIDED)])

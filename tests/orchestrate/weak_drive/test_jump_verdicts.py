@@ -11,11 +11,11 @@ from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple import couple_job
 from orchestrate.weak_drive.held import FOLLOWS, LEFT_BEFORE, LOST, NOT_ASKED, UNDECIDED, Verdict
 from orchestrate.weak_drive.jump_verdicts import (
-    Theory,
+    AveragedPrediction,
+    averaged_predictions,
     check_against_theory,
+    explain_no_jump,
     is_doubtful,
-    reason,
-    theories,
 )
 from orchestrate.weak_drive.jumps import (
     DOUBTFUL,
@@ -29,13 +29,13 @@ from orchestrate.weak_drive.jumps import (
 )
 from orchestrate.weak_drive.master import Scheme
 from orchestrate.weak_drive.schedule import Ramp
-from tools.trust.verdicts import draw, with_slope
+from tools.trust.verdicts import draw_system, scale_to_slope
 
 from .coupled import BEAM, QUICK, System
 from .test_couple import run
 
 RNG = np.random.default_rng(5)
-DRAWN = [System(*draw(RNG)) for _ in range(3)]
+DRAWN = [System(*draw_system(RNG)) for _ in range(3)]
 CLOSE = DRAWN[2].as_bonded()  # its folds, by its branch, at 1.13468 and 1.13041
 DOWN = {"back": False, "settle": 100.0, "step": None}
 
@@ -74,7 +74,7 @@ def test_folds_that_are_close_both_ways(rate):
 
 def test_no_record_makes_a_jump_of_a_vertical_branch():
     """Its least slope is 0.02, there is no fold: a jump down at 1.5042 was told by the record."""
-    edge = System(*with_slope(DRAWN[1], 0.02)).as_bonded()
+    edge = System(*scale_to_slope(DRAWN[1], 0.02)).as_bonded()
     assert not averaged.folds(*edge)
     found = run(edge, (1.58, 1.45), 1e-4, **DOWN).sel(jump="down")
     assert np.isnan(found.jumps) and found.held_verdict == FOLLOWS
@@ -118,9 +118,9 @@ def test_a_verdict_is_the_same_from_other_checkpoints_and_at_full_resolution():
     assert float(found.held_jumps.sel(jump="down")) == middle
 
 
-PLACE = Theory((1.13, 1.13), False, -0.5)
-TORUS = Theory((1.16, 1.13), False, -0.5)
-NONE = Theory((), False, 0.1)
+PLACE = AveragedPrediction((1.13, 1.13), False, -0.5)
+TORUS = AveragedPrediction((1.16, 1.13), False, -0.5)
+NONE = AveragedPrediction((), False, 0.1)
 
 
 @pytest.mark.parametrize(
@@ -144,7 +144,7 @@ def test_a_verdict_that_the_averaged_theory_contradicts_is_not_given(verdict, th
     final = check_against_theory(verdict, theory, 2.0)
     assert final.outcome == what
     if what == UNDECIDED:
-        text = reason(Passing(1, 0, 2, DOUBTFUL, 1.0), verdict, final, theory, 5.0)
+        text = explain_no_jump(Passing(1, 0, 2, DOUBTFUL, 1.0), verdict, final, theory, 5.0)
         assert text.startswith("undecided: held voltages") and "averaged theory" in text
         assert math.isnan(verdict.low) or f"{0.5 * (verdict.low + verdict.high):.5g} V" in text
 
@@ -168,19 +168,19 @@ def test_when_voltages_are_held(look, bonded, theory, doubtful):
 
 
 def test_what_the_averaged_theory_knows():
-    up, down = theories(*BEAM)
+    up, down = averaged_predictions(*BEAM)
     assert len(up.losses) == len(down.losses) == 2 and not up.narrow
     assert up.losses[0] == up.losses[1] == pytest.approx(1.5418, abs=1e-4)
     assert down.losses == pytest.approx((1.3731, 1.3588), abs=1e-4)  # the first a Neimark-Sacker
     assert up.slope == down.slope < -1.0
     weak = QUICK.drive.replace(armature_resistance=QUICK.drive.armature_resistance / 20.0)
-    none = theories(QUICK.structure, weak)[0]
+    none = averaged_predictions(QUICK.structure, weak)[0]
     assert none.losses == () and 0.0 < none.slope < 1.0
 
 
 def test_the_least_slope_is_that_of_the_branch():
-    assert averaged.least_slope(*with_slope(DRAWN[1], 0.02)) == pytest.approx(0.02, abs=1e-9)
+    assert averaged.smallest_slope(*scale_to_slope(DRAWN[1], 0.02)) == pytest.approx(0.02, abs=1e-9)
     speeds = np.linspace(1.2, 1.6, 4001)
     slopes = np.gradient(averaged.no_load_speed(*QUICK, speeds), speeds)
-    assert averaged.least_slope(*QUICK) == pytest.approx(slopes.min(), rel=1e-3)
-    assert isinstance(with_slope(DRAWN[1], 0.02).drive, Drive)
+    assert averaged.smallest_slope(*QUICK) == pytest.approx(slopes.min(), rel=1e-3)
+    assert isinstance(scale_to_slope(DRAWN[1], 0.02).drive, Drive)

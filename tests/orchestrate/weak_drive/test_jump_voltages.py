@@ -9,8 +9,8 @@ from orchestrate.weak_drive.jump_voltages import (
     DIRECTIONS,
     KINDS,
     JumpVoltagesJob,
-    at_zero,
     extrapolate,
+    fit_rate_powers,
 )
 from orchestrate.weak_drive.master import Scheme
 from orchestrate.weak_drive.schedule import Ramp
@@ -39,7 +39,7 @@ def test_a_speed_that_passes_a_fold(rates):
             eta0 += h * rate
         late.append(eta0)
     value, error = extrapolate(np.array(rates), np.array(late))
-    line, _ = at_zero(np.array(rates), np.array(late), (2.0 / 3.0,))
+    line, _ = fit_rate_powers(np.array(rates), np.array(late), (2.0 / 3.0,))
     assert abs(value) < error < 1e-3
     assert abs(value) < 0.4 * abs(line)
 

@@ -69,7 +69,7 @@ def test_a_spin_up_that_ends_beyond_the_resonance():
 
 def test_what_the_averaged_theory_loses_first():
     """The upper branch of `beam` by a Neimark-Sacker point, that of `quick` by its fold."""
-    beam, quick = (averaged.losses(*one.as_bonded()) for one in (BEAM, QUICK))
+    beam, quick = (averaged.stability_limits(*one.as_bonded()) for one in (BEAM, QUICK))
     assert [place.kind for place in (*beam, *quick)] == ["fold", "Neimark-Sacker", "fold", "fold"]
     assert beam[1].eta0 == pytest.approx(1.3731, abs=1e-4)
     assert quick[1].eta0 == pytest.approx(1.43568, abs=1e-5)

@@ -112,9 +112,9 @@ class Recording(Master):
         super().__init__(*arguments)
         self.lengths = []
 
-    def _advance(self, done, h):
+    def _accept_step(self, done, h):
         self.lengths.append(h)
-        super()._advance(done, h)
+        super()._accept_step(done, h)
 
 
 def controlled(case, tolerance):

@@ -7,12 +7,12 @@ from scipy.linalg import expm
 from orchestrate import Structure
 from orchestrate.weak_drive import averaged, own_resonance
 from orchestrate.weak_drive.held import FOLLOWS, LOST
-from tools.trust.verdicts import with_folds
+from tools.trust.verdicts import draw_with_folds
 
 from .coupled import BEAM, QUICK, System
 from .test_couple import run
 
-APART = System(*with_folds(np.random.default_rng(86000376301191)))
+APART = System(*draw_with_folds(np.random.default_rng(86000376301191)))
 OWN_LOSSES = (1.4370, 1.4460)  # over K omega: where held voltages lose its motion, down and up
 
 
@@ -49,7 +49,7 @@ def test_the_elastic_mode_repeats_after_a_revolution(system):
 def test_it_is_mostly_that_of_the_bonded_structure():
     """And the speed that divides motions is then that of the averaged theory, to the bit."""
     for system in (QUICK, BEAM):
-        assert 0.0 < abs(own_resonance.shift(*system)) < 1e-3
+        assert 0.0 < abs(own_resonance.resonance_shift(*system)) < 1e-3
         assert own_resonance.dividing_speed(*system) == averaged.dividing_speed(*system)
         assert own_resonance.resonance(*system) == averaged.resonance(*system)
 
@@ -59,14 +59,14 @@ def test_where_it_lies_apart_it_divides_the_motions():
     folds = averaged.folds(*APART)
     assert own_resonance.elastic_resonance(*APART) > folds[-1].Omega
     moved = own_resonance.dividing_speed(*APART) - averaged.dividing_speed(*APART)
-    assert moved == own_resonance.shift(*APART) > 0.04
+    assert moved == own_resonance.resonance_shift(*APART) > 0.04
     bonded = APART.as_bonded()
     assert own_resonance.dividing_speed(*bonded) == averaged.dividing_speed(*bonded)
 
 
 def test_halves_that_swing_alike_never_part():
     alike = Structure.nondimensional(mu=1.3, kappa=1.3)
-    assert own_resonance.shift(alike, QUICK.drive) == 0.0
+    assert own_resonance.resonance_shift(alike, QUICK.drive) == 0.0
 
 
 def decided(found, way):

@@ -10,7 +10,7 @@ from orchestrate.weak_drive.settling import (
     NEITHER,
     UNDECIDED,
     SettlingTest,
-    slowest_time,
+    longest_time_constant,
     time_past_the_fold,
     usual_limit,
 )
@@ -26,7 +26,7 @@ def decided(speed, test=TEST):
     """The first outcome of a record that grows by a twentieth each time, and when it comes."""
     count = 100
     while count <= len(speed):
-        outcome = test.outcome(TIME[:count], speed[:count])
+        outcome = test.judge_record(TIME[:count], speed[:count])
         if outcome.decision != UNDECIDED:
             return outcome, float(TIME[count - 1])
         count += count // 20
@@ -131,11 +131,11 @@ def test_the_limit_scales_with_the_drive():
     usual, drive = usual_limit(*QUICK, 1e-4), QUICK.drive
     lighter = drive.replace(armature_resistance=10.0 * drive.armature_resistance)  # b = 0.002
     slower = QUICK._replace(drive=lighter)
-    assert slowest_time(*slower) == pytest.approx(500.0)
+    assert longest_time_constant(*slower) == pytest.approx(500.0)
     assert usual_limit(*slower, 1e-4) > 2.0 * usual
     assert usual_limit(*QUICK, 1e-6) > 1.5 * usual
     ratio = time_past_the_fold(*QUICK.as_bonded(), 1e-6) / time_past_the_fold(
         *QUICK.as_bonded(), 1e-4
     )
     assert ratio == pytest.approx(10.0)
-    assert slowest_time(*QUICK.with_structure(d1=0.0)) == 1000.0
+    assert longest_time_constant(*QUICK.with_structure(d1=0.0)) == 1000.0

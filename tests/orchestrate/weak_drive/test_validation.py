@@ -6,7 +6,7 @@ import pytest
 from orchestrate import couple
 from orchestrate.dynamics.bifurcations import FOLD
 from orchestrate.weak_drive import averaged
-from orchestrate.weak_drive.couple_all import ends_of
+from orchestrate.weak_drive.couple_all import voltage_range
 
 from .validation import (
     below_resonance,
@@ -61,7 +61,7 @@ def test_a_jump_is_where_a_fold_is(system):
     bonded = system.as_bonded()
     omega, volts = system.structure.omega, system.drive.volts(system.structure)
     speed, first = below_resonance(system)
-    last = volts * ends_of(*bonded)[1]
+    last = volts * voltage_range(*bonded)[1]
     start = {"speed_start": speed, "settle": 200.0 / omega, "back": False, "progress": False}
     found = couple(*bonded, voltage=(first, last), rate=1e-4 * volts * omega, **start)
     jumps, why = bool(np.isfinite(found.jumps[0])), str(found.no_jump.values[0])

@@ -14,7 +14,7 @@ from orchestrate import Drive, Structure, jump_voltages
 from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.dynamics.bifurcations import FLIP, FOLD, TORUS
 from orchestrate.weak_drive import averaged
-from orchestrate.weak_drive.couple import scheme_of
+from orchestrate.weak_drive.couple import scheme_from_arguments
 from orchestrate.weak_drive.drive_branch import DriveBranchJob
 from orchestrate.weak_drive.jumps import DOUBTFUL, JUMP, SweepLeg, find_passing
 
@@ -62,7 +62,7 @@ def below_resonance(system, share=0.985):
 
 def settled_state(system, voltage, speed, time=300.0):
     """A state after a time in 1/omega, in flight unless bonded, the angle in the first turn."""
-    with master(system, scheme_of(system.structure, None), rest(speed)) as m:
+    with master(system, scheme_from_arguments(system.structure, None), rest(speed)) as m:
         while m.time * system.structure.omega < time or (
             m.motion.x1 == m.motion.x2 and not system.structure.bonded
         ):
@@ -78,7 +78,7 @@ def trajectory_error(system, time=40.0):
     """Largest error of the displacements over the amplitude, and the impacts on the way."""
     speed, voltage = below_resonance(system)
     state = settled_state(system, voltage, speed)
-    scheme = scheme_of(system.structure, None)
+    scheme = scheme_from_arguments(system.structure, None)
     rows = [state]
     with master(system, scheme, state) as m:
         for _ in range(round(time / system.structure.omega / scheme.h)):
@@ -194,7 +194,7 @@ def branch_of(system, most=120, range_=(0.95, 1.15)):
         Instance(find(OSCILLATOR).path) as one,
         Instance(find(SHAKER).path) as other,
     ):
-        return job.legs((one, other), system.structure), length
+        return job.trace_legs((one, other), system.structure), length
 
 
 def bifurcations(system, range_=(0.95, 1.15)):
@@ -250,7 +250,7 @@ def coupled_jump(system, state, voltages, rate):
     """The same of the FMUs."""
     omega, volts = system.structure.omega, system.drive.volts(system.structure)
     first, last = voltages
-    scheme = scheme_of(system.structure, None)
+    scheme = scheme_from_arguments(system.structure, None)
     times, angles = [0.0], [state[6]]
     with master(system, scheme, state) as m:
         while m.time * omega * rate < last - first:
@@ -304,7 +304,7 @@ def report(system, jumps=True):
         known[name] = first_fold(found)
         exact = {}
         if name == "bonded":
-            exact = {FOLD: averaged.folds(*one), TORUS: averaged.torus_points(*one)}
+            exact = {FOLD: averaged.folds(*one), TORUS: averaged.neimark_sacker_points(*one)}
         for kind, speed, eta0, truth in found:
             near = [abs(place.eta0 - eta0) for place in exact.get(kind, [])]
             theory = f", averaged {min(near):.1e}" if near else ""

@@ -8,7 +8,16 @@ import xarray as xr
 
 from orchestrate.weak_drive import averaged
 from tools.trust import held_speeds, verdicts
-from tools.trust.verdicts import FOLD, NONE, TORUS, UNKNOWN, Answer, Truth, Verdicts, complaint
+from tools.trust.verdicts import (
+    FOLD,
+    NONE,
+    TORUS,
+    UNKNOWN,
+    Answer,
+    Truth,
+    Verdicts,
+    error_in_answer,
+)
 
 LOST = Answer("lost", 1.5, 1.5001, True)
 SEEN = Answer("lost", 1.52, 1.52, False)
@@ -19,11 +28,11 @@ OPEN = Answer("undecided", np.nan, np.nan, True)
 def test_drives_with_folds_and_near_their_edge():
     rng = np.random.default_rng(1)
     for _ in range(5):
-        system = verdicts.with_folds(rng)
-        assert averaged.folds(*system) and averaged.least_slope(*system) < 0.0
-        edge = verdicts.with_slope(system, 0.05)
+        system = verdicts.draw_with_folds(rng)
+        assert averaged.folds(*system) and averaged.smallest_slope(*system) < 0.0
+        edge = verdicts.scale_to_slope(system, 0.05)
         assert not averaged.folds(*edge)
-        assert averaged.least_slope(*edge) == pytest.approx(0.05, abs=1e-6)
+        assert averaged.smallest_slope(*edge) == pytest.approx(0.05, abs=1e-6)
         assert edge.drive.b(edge.structure) == pytest.approx(system.drive.b(system.structure))
 
 
@@ -45,7 +54,7 @@ def test_drives_with_folds_and_near_their_edge():
 )
 def test_what_is_wrong(answer, known, wrong):
     """On the way up: the jump of a ramp is late."""
-    assert bool(complaint(answer, known, "up")) is wrong
+    assert bool(error_in_answer(answer, known, "up")) is wrong
 
 
 def test_of_two_jumps_each_has_to_be_told():
@@ -53,27 +62,29 @@ def test_of_two_jumps_each_has_to_be_told():
     first = Answer("lost", 1.2276, 1.2277, True)
     both = first._replace(further=(LOST,))
     two = Truth(FOLD, 1.50005, 1.50005, (1.22765,))
-    assert not complaint(both, two, "up") and not verdicts.unknown_ones(both, two, "up")
-    assert "in truth at 1.22765" in complaint(LOST, two, "up")
-    assert "in truth at 1.50005" in complaint(first, two, "up")
+    assert not error_in_answer(both, two, "up") and not verdicts.answers_without_truth(
+        both, two, "up"
+    )
+    assert "in truth at 1.22765" in error_in_answer(LOST, two, "up")
+    assert "in truth at 1.50005" in error_in_answer(first, two, "up")
     open_one = first._replace(further=(Answer("undecided", 1.5, 1.5001, True),))
-    assert not complaint(open_one, two, "up")
-    assert verdicts.unknown_ones(both, Truth(FOLD, 1.22765, 1.22765), "up") == [LOST]
-    assert complaint(NOTHING._replace(further=(LOST,)), Truth(NONE), "up")
+    assert not error_in_answer(open_one, two, "up")
+    assert verdicts.answers_without_truth(both, Truth(FOLD, 1.22765, 1.22765), "up") == [LOST]
+    assert error_in_answer(NOTHING._replace(further=(LOST,)), Truth(NONE), "up")
 
 
 def test_the_jump_of_a_ramp_down_is_late_downward():
-    assert not complaint(SEEN, Truth(FOLD, 1.53, 1.53), "down")
-    assert complaint(SEEN, Truth(FOLD, 1.5, 1.5), "down")
+    assert not error_in_answer(SEEN, Truth(FOLD, 1.53, 1.53), "down")
+    assert error_in_answer(SEEN, Truth(FOLD, 1.5, 1.5), "down")
 
 
 def test_answers_that_change_with_the_rate_are_findings(monkeypatch):
     said = iter([(LOST, NOTHING), (OPEN, NOTHING), (NOTHING, NOTHING), (LOST, NOTHING)])
-    monkeypatch.setattr(verdicts, "answers", lambda *_: next(said))
-    monkeypatch.setattr(verdicts, "refuted", lambda *_: "")
-    system = verdicts.with_folds(np.random.default_rng(1))
+    monkeypatch.setattr(verdicts, "run_couple", lambda *_: next(said))
+    monkeypatch.setattr(verdicts, "contradiction", lambda *_: "")
+    system = verdicts.draw_with_folds(np.random.default_rng(1))
     found = list(
-        verdicts.judged(system, "delaminated", dict.fromkeys(verdicts.WAYS, Truth(UNKNOWN)))
+        verdicts.check_answers(system, "delaminated", dict.fromkeys(verdicts.WAYS, Truth(UNKNOWN)))
     )
     problems = [problem for _, problem in found if problem]
     assert problems == ["delaminated, up: lost at some rates, none at others"]
@@ -104,16 +115,21 @@ def branch(stable, end):
 
 
 def test_where_a_branch_loses_its_motion():
-    found = verdicts.truth(branch([True] * 20 + [False], "limit"), "bonded", "up", (1.0, 1.0))
+    found = verdicts.first_loss_on_leg(
+        branch([True] * 20 + [False], "limit"), "bonded", "up", (1.0, 1.0)
+    )
     assert found == Truth(FOLD, 1.2, 1.2)
     whole = branch([True] * 20, "limit")
-    assert verdicts.truth(whole, "bonded", "up", (1.0, 1.0)).kind == NONE
-    assert verdicts.truth(branch([True] * 20, "stuck"), "bonded", "up", (1.0, 1.0)).kind == UNKNOWN
+    assert verdicts.first_loss_on_leg(whole, "bonded", "up", (1.0, 1.0)).kind == NONE
+    assert (
+        verdicts.first_loss_on_leg(branch([True] * 20, "stuck"), "bonded", "up", (1.0, 1.0)).kind
+        == UNKNOWN
+    )
     other = whole.assign(stable=~whole.stable)
-    assert verdicts.truth(other, "bonded", "up", (1.0, 1.0)).kind == UNKNOWN
+    assert verdicts.first_loss_on_leg(other, "bonded", "up", (1.0, 1.0)).kind == UNKNOWN
 
 
-SYSTEM = verdicts.with_folds(np.random.default_rng(1)).of_kind("delaminated")
+SYSTEM = verdicts.draw_with_folds(np.random.default_rng(1)).of_kind("delaminated")
 FIRST_FOLD, LAST_FOLD = 1.30, 1.28
 
 
@@ -192,9 +208,9 @@ def test_a_motion_that_a_ramp_throws_away_is_held_again_on_a_slow_one(monkeypatc
     Motions(monkeypatch, down=1.2, thrown=0.02)
     right = verdicts.Answer("lost", FIRST_FOLD - 5e-5, FIRST_FOLD + 5e-5, True)
     assert verdicts.bracket_problem(SYSTEM, right, "up", held_speeds.RATE)
-    assert not verdicts.refuted_bracket(SYSTEM, right, "up")
+    assert not verdicts.bracket_contradiction(SYSTEM, right, "up")
     late = verdicts.Answer("lost", FIRST_FOLD + 3e-3, FIRST_FOLD + 3.1e-3, True)
-    assert verdicts.refuted_bracket(SYSTEM, late, "up")
+    assert verdicts.bracket_contradiction(SYSTEM, late, "up")
 
 
 @pytest.mark.parametrize(("way", "place"), [("up", FIRST_FOLD), ("down", LAST_FOLD)])
@@ -202,23 +218,25 @@ def test_a_motion_that_a_ramp_throws_away_is_held_again_on_a_slow_one(monkeypatc
 def test_a_bracket_is_refuted_where_nothing_is_lost(monkeypatch, way, place, off):
     motions = Motions(monkeypatch)
     bracket = Answer("lost", place + off - 3e-5, place + off + 3e-5, True)
-    assert ("past it, held" in verdicts.refuted(SYSTEM, bracket, way)) is (off != 0.0)
+    assert ("past it, held" in verdicts.contradiction(SYSTEM, bracket, way)) is (off != 0.0)
     far, stays, past, back = motions.courses[0]
     assert stays == back and min(far, past) < stays < max(far, past)
     Motions(monkeypatch, up=place, down=place)
-    assert "comes back" in verdicts.refuted(SYSTEM, bracket, way) or off != 0.0
+    assert "comes back" in verdicts.contradiction(SYSTEM, bracket, way) or off != 0.0
 
 
 @pytest.mark.parametrize("way", verdicts.WAYS)
 def test_none_is_refuted_by_two_motions_and_a_jump_of_the_record_by_their_lack(monkeypatch, way):
-    low, high = verdicts.ends_of(SYSTEM)
+    low, high = verdicts.ramp_ends(SYSTEM)
     middle = 0.5 * (low + high)
     Motions(monkeypatch, up=middle + 0.01, down=middle - 0.01)
-    assert "two motions last" in verdicts.refuted(SYSTEM, NOTHING, way)
-    assert not verdicts.refuted(SYSTEM, SEEN, way) and not verdicts.refuted(SYSTEM, OPEN, way)
+    assert "two motions last" in verdicts.contradiction(SYSTEM, NOTHING, way)
+    assert not verdicts.contradiction(SYSTEM, SEEN, way) and not verdicts.contradiction(
+        SYSTEM, OPEN, way
+    )
     Motions(monkeypatch, gap=0.0)
-    assert not verdicts.refuted(SYSTEM, NOTHING, way)
-    assert "come back" in verdicts.refuted(SYSTEM, SEEN, way)
+    assert not verdicts.contradiction(SYSTEM, NOTHING, way)
+    assert "come back" in verdicts.contradiction(SYSTEM, SEEN, way)
 
 
 @pytest.mark.parametrize("way", verdicts.WAYS)
@@ -226,11 +244,11 @@ def test_motions_that_exchange_against_the_voltage_are_no_jump_through_the_reson
     monkeypatch, way
 ):
     """On the way there the speed is ahead of the one on the way back: nothing is captured."""
-    low, high = verdicts.ends_of(SYSTEM)
+    low, high = verdicts.ramp_ends(SYSTEM)
     middle = 0.5 * (low + high)
     Motions(monkeypatch, gap=-0.05, up=middle + 0.01, down=middle - 0.01)
-    assert not verdicts.refuted(SYSTEM, NOTHING, way)
-    assert "come back" in verdicts.refuted(SYSTEM, SEEN, way)
+    assert not verdicts.contradiction(SYSTEM, NOTHING, way)
+    assert "come back" in verdicts.contradiction(SYSTEM, SEEN, way)
 
 
 def test_a_voltage_is_held_after_another_and_the_speed_read_at_the_end(monkeypatch):
