@@ -42,6 +42,7 @@ from .jump_verdicts import (
 )
 from .jumps import JUMP, Passing, time_beyond_threshold
 from .losses import (
+    AT_END,
     MOST,
     SLOTS,
     THROUGH,
@@ -151,8 +152,9 @@ class CoupleJob(CoupledRun):
         record = RampRecord(self, table)
         doubts = [record.doubtful_passing(up) for up in UPWARD]
         places = [record.find_further_passings(up) for up in UPWARD]
+        ends = [record.last_stretch(up, places[i]) for i, up in enumerate(UPWARD)]
         verdicts, further = [Verdict(NOT_ASKED)] * len(doubts), [empty_verdict_rows()] * len(doubts)
-        if not any(doubts) and not any(places):
+        if not any(doubts) and not any(places) and not any(ends):
             return pack_verdicts(verdicts, further)
         structure, drive = self.structure, self.drive
         threshold = own_resonance.dividing_speed(structure, drive)
@@ -173,7 +175,13 @@ class CoupleJob(CoupledRun):
                 if doubt is not None:
                     course = test.classify(*doubt, threshold, UPWARD[i], resonance)
                 verdicts[i] = course.verdict
-                further[i] = self.run_further_tests(test, table, course, places[i], UPWARD[i])
+                results = self.run_further_tests(test, table, course, places[i], UPWARD[i])
+                if stretch := ends[i]:
+                    known = [*loss_verdicts(course), *(verdict for _, verdict in results)]
+                    losses = test.losses_before_the_end(stretch, UPWARD[i])
+                    losses = drop_known_losses(losses, known, drive.volts(structure))
+                    results += [(AT_END, verdict) for verdict in losses]
+                further[i] = verdicts_to_rows(results)
         return pack_verdicts(verdicts, further)
 
     def run_further_tests(
@@ -183,8 +191,8 @@ class CoupleJob(CoupledRun):
         course: HeldCourse,
         places: Sequence[Passing],
         up: bool,
-    ) -> np.ndarray:
-        """Hold voltages where the record suggests further jumps; return verdicts."""
+    ) -> list[tuple[int, Verdict]]:
+        """Hold voltages where the record suggests further jumps; return places and verdicts."""
         record = RampRecord(self, table)
         results = [(THROUGH, verdict) for verdict in course.further]
         known, volts = loss_verdicts(course), self.drive.volts(self.structure)
@@ -206,7 +214,7 @@ class CoupleJob(CoupledRun):
             new_verdicts = drop_known_losses(loss_verdicts(held), known, volts)
             known += new_verdicts
             results += [(place, verdict) for verdict in new_verdicts or [Verdict(FOLLOWS)]]
-        return verdicts_to_rows(results)
+        return results
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Build the dataset of all revolutions, of the jumps and of their verdicts.

@@ -321,6 +321,28 @@ class HeldVoltageTest:
             verdict = Verdict(UNDECIDED, low.voltage, points[-1].voltage)
         return HeldCourse(verdict, tuple(others))
 
+    def losses_before_the_end(self, steps: tuple[int, int], up: bool) -> list[Verdict]:
+        """Hold voltages to the end of a ramp and bracket the losses that it would show afterwards.
+
+        Parameters
+        ----------
+        steps : (int, int)
+            Of the run, at which the course begins, and at which the ramp ends.
+        up : bool
+
+        Returns
+        -------
+        list of Verdict
+            Losses, certain and undecided ones; none where the speed follows the voltage.
+        """
+        sign, test = 1.0 if up else -1.0, self.for_further_jumps()
+        low = self.hold_step(steps[0])
+        points = self.climb_stairs(low, self.ramp_voltage(steps[1]))
+        if not any(test.may_be_a_loss(*pair, sign) for pair in pairwise(points)):
+            return []  # so where the first voltage does not settle
+        verdicts = test.bracket_changes(points, sign)
+        return [verdict for verdict in verdicts if verdict.outcome != FOLLOWS]
+
     def bracket_changes(self, points: list[HeldPoint], sign: float) -> list[Verdict]:
         """Bracket the largest speed change and all others that may be jumps.
 

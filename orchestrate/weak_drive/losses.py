@@ -22,6 +22,7 @@ SLOTS = 6  # further jumps of a direction that a dataset tells
 ROWS = 12  # verdicts of a direction that are stored beside that on the passing
 MOST = 4  # further places of a direction at which voltages are held
 THROUGH = -1  # place of a further verdict of the course through the resonance
+AT_END = -2  # place of a verdict on the last stretch of a ramp, which jumps after its end
 SAME = 2e-4  # of K omega: brackets so close are of one loss
 
 
@@ -127,14 +128,13 @@ def gather_losses(
     """
     through = [verdict for place, verdict in further if place == THROUGH]
     covered = [
-        places[place]
-        for place, verdict in further
-        if place != THROUGH and verdict.outcome == NOT_ASKED
+        places[place] for place, verdict in further if place >= 0 and verdict.outcome == NOT_ASKED
     ]
-    main, others = None, []
+    at_end = [verdict for place, verdict in further if place == AT_END]
+    main, others = None, losses_in_ramp_order(table, rows, [], at_end) if at_end else []
     if passing is not None:
         *before, last = losses_in_ramp_order(table, rows, [*covered, passing], [primary, *through])
-        main, others = last, before
+        main, others = last, [*before, *others]
     for place, look in enumerate(places):
         about_place = [verdict for other, verdict in further if other == place]
         untold = Verdict(NOT_ASKED if look.look == JUMP else UNDECIDED)

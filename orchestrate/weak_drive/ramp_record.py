@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +17,7 @@ from .run import CoupledRun
 
 UPWARD = (True, False)  # both directions: whether the voltage rises
 LAST_REVOLUTIONS = 20  # of a ramp: their mean speed is where it ends
+LAST_STRETCH = 0.02  # of K omega, before the end of a ramp: a loss there may show after it
 LATE = 3.0  # of the rotor's time 1/b: how much later a ramp may show what it loses
 
 
@@ -98,6 +100,24 @@ class RampRecord:
                 )
             ]
         return places
+
+    def last_stretch(self, up: bool, places: Sequence[Passing]) -> tuple[int, int] | None:
+        """Return the steps between which a delaminated ramp may lose a motion and not show it.
+
+        The jump comes late, the more so the faster the ramp: near its last voltage it may come
+        after the end. None where the record shows a passing or a suspected jump there.
+        """
+        eta0, rows = self.sweep_leg(up)[0].eta0, self.sweep_leg(up)[1]
+        if self.job.control or self.job.structure.bonded or not rows.size:
+            return None
+        far = np.flatnonzero(np.abs(eta0 - eta0[-1]) > LAST_STRETCH)
+        first = int(rows[far[-1]]) if far.size else int(rows[0])
+        main = self.resonance_passing(up)
+        if any(seen.after >= first for seen in (*places, *([main] if main else []))):
+            return None
+        times = self.table["time"][[first, rows[-1]]]
+        begin, end = (min(math.ceil(at / self.job.scheme.h), self.job.steps() - 1) for at in times)
+        return begin, end
 
     def explain_no_passing(self, up: bool) -> str:
         """Explain why the speed does not pass the resonance in a direction."""

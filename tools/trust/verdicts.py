@@ -307,7 +307,9 @@ def grid_contradiction(system: System, answer: Answer, way: str) -> str:
     """
     low, high = ramp_ends(system)
     sign = 1.0 if way == "up" else -1.0
-    ends = (low + 0.15 - AROUND[0], high - 0.15 + AROUND[1])
+    first = np.fmin(low + 0.15, answer.low) - AROUND[0]
+    last = np.fmax(high - 0.15, answer.high) + AROUND[1]
+    ends = max(first, low), min(last, high)
     voltages = sort_in_direction(np.arange(*ends, GRID).tolist(), way)
     there_and_back = [*voltages, *voltages[::-1]]
     speeds = held_speeds(system, course_start(system, way), there_and_back, SHORT)

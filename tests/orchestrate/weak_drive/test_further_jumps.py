@@ -8,6 +8,7 @@ from orchestrate.weak_drive.further_jumps import find_falls, find_further_jumps
 from orchestrate.weak_drive.held import LOST, UNDECIDED, HeldVoltageTest, HoldSettings, Verdict
 from orchestrate.weak_drive.jumps import DOUBTFUL, JUMP, Passing, SweepLeg, find_passing
 from orchestrate.weak_drive.losses import (
+    AT_END,
     SLOTS,
     THROUGH,
     further_jump_variables,
@@ -19,8 +20,9 @@ from orchestrate.weak_drive.losses import (
 from orchestrate.weak_drive.schedule import Ramp
 from tools.trust.verdicts import RATES, WAYS, draw_with_folds, ramp_ends, run_couple
 
-from .test_held import H, Rotor
+from .test_held import H, Rotor, fold_of
 
+SLOW = pytest.mark.slow
 B = 0.02
 
 
@@ -156,6 +158,38 @@ def test_what_is_not_known_is_undecided_and_takes_nothing_from_the_sure_one(furt
     assert np.isnan(columns["further_jumps"][1][0, 0])
     middle, half = (columns[name][1][0, 0] for name in ("further_held", "further_error"))
     assert (middle - half, middle + half) == pytest.approx((1.3, 1.33))
+
+
+@pytest.mark.parametrize(("slope", "first", "lost"), [(-0.05, 1.1, True), (0.1, 1.1, False)])
+def test_a_ramp_that_ends_before_it_shows_its_loss(slope, first, lost):
+    """It passes the fold by 0.004 and is still on its motion; held voltages find the loss."""
+    fold = fold_of(-0.05)
+    schedule = Ramp(1.4, fold + 0.004, 1e-3, back=False)
+    count = round(schedule.duration / H)
+    test = HeldVoltageTest(
+        lambda other: Rotor(other, slope, first), schedule, H, 1.0, 1.0, 2e4, HoldSettings()
+    )
+    ramp = Rotor(schedule, slope, first)
+    ramp.revolve(range(count))
+    assert ramp.speed < 1.28
+    verdicts = test.losses_before_the_end((count // 2, count - 1), True)
+    assert len(verdicts) == lost
+    for verdict in verdicts:
+        assert verdict.outcome == LOST and verdict.low - 5e-6 <= fold <= verdict.high + 5e-6
+
+
+def test_a_loss_before_the_end_of_a_ramp_without_another_is_its_jump():
+    losses = gather_losses(TABLE, ROWS, None, Verdict(0), [], [(AT_END, LATE_LOSS)])
+    jump, further = pick_jump(*losses, 1.0)
+    assert jump.verdict == LATE_LOSS and jump.is_sure and further == []
+
+
+@pytest.mark.parametrize("rate", [RATES[0], *(pytest.param(one, marks=SLOW) for one in RATES[1:3])])
+def test_a_drive_that_jumps_near_the_end_of_its_ramp(rate):
+    """A ramp of 2e-5 shows it; faster ones were said to lose nothing."""
+    system = draw_with_folds(np.random.default_rng(14599022132451)).of_kind("delaminated")
+    down = run_couple(system, rate)[WAYS.index("down")]
+    assert down.said == "lost" and down.low - 2e-4 < 1.61834 < down.high + 2e-4
 
 
 @pytest.mark.slow
