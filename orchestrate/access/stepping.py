@@ -57,7 +57,7 @@ class SteppingInstance(Instance):
         call, values, _ = self._transfer("Get", "Boolean", [(self.variable(name), 1)], [0])
 
         def read() -> bool:
-            """Read the present value of the Boolean variable."""
+            """Return whether the Boolean variable is true at present."""
             call()
             return bool(values[0])
 

@@ -221,7 +221,7 @@ class HeldVoltageTest:
             self.checkpoints[min((i + 1) * every, steps)] = state
 
     def state_before(self, step: int) -> Table | None:
-        """Return the ramp's state before a step, recomputed from a checkpoint."""
+        """Return the ramp's state before a step, from a checkpoint; None at the start."""
         if step not in self.checkpoints and step:
             last = max((known for known in self.checkpoints if known < step), default=0)
             run = self.begin(self.schedule)
@@ -481,7 +481,7 @@ class HeldVoltageTest:
         return point
 
     def replace_if_lost(self, points: list[HeldPoint], i: int) -> bool:
-        """Replace a point by what a slower course reaches; return if it differs.
+        """Replace a point by a slower course's; return whether it is another motion.
 
         The point's motion may end meanwhile, if it is irregular. And an irregular motion before may
         have fallen into it by chance, where it exists in a narrow range of voltages: where it ends

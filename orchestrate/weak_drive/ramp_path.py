@@ -128,7 +128,7 @@ class Branches:
         return path
 
     def first_leg(self, up: bool, sign: float) -> Motions | None:
-        """Return the leg on which a ramp starts, from its first stable motion."""
+        """Return the leg on which a ramp starts, from its first stable motion, or None."""
         leg, below = self.legs.get(FIRST_LEG[up]), self.legs.get(FIRST_LEG[True])
         if leg is None and not up and below is not None and below.end == LIMIT:
             leg = below.from_index(len(below.speed) - 1, forward=False)
@@ -139,7 +139,7 @@ class Branches:
         return None if turned else leg.from_index(begin, forward=True)
 
     def follow_to_loss(self, motions: Motions, path: Path, sign: float) -> Motions | None:
-        """Follow a ramp until its motion is lost; return the motions it goes on with."""
+        """Follow a ramp until its motion is lost; return the next motions or None."""
         lost = False  # slowly, at a Neimark-Sacker point: a ramp does not see it
         for i in range(len(motions.speed) - 1):
             turned = sign * (motions.voltage[i + 1] - motions.voltage[i]) < 0.0
@@ -160,7 +160,7 @@ class Branches:
         return None
 
     def jump_at_fold(self, fold: int | None, path: Path, sign: float) -> Motions | None:
-        """Record a jump at a fold; return the motions on which the ramp lands."""
+        """Record a jump at a fold; return the motions it lands on, None if unknown."""
         if fold is None:
             path.end = "its motion turns back at a fold that was not located"
             return None
