@@ -293,7 +293,7 @@ export class App {
     if (Number.isFinite(this.eta)) this.shaking.mark(this.eta);
     at("command").textContent = diagramCommand(diagram, this.table.usual);
     const [low, high] = [diagram.low, diagram.high].map((eta) => eta * frequencyUnit(diagram.structure, diagram.level));
-    this.regions.view.picture.describe(`Orbit diagram, gap over ${wordsOf(diagram.level).frequency} from ${shown(low, 6)} to ${shown(high, 6)}, ${count} responses. Arrow keys choose a frequency, plus and minus zoom, b and f go back and forth.`);
+    this.regions.view.picture.describe(`Orbit diagram, gap over ${wordsOf(diagram.level).frequency.replace(", ", " in ")} from ${shown(low, 6)} to ${shown(high, 6)}, ${count} responses. Arrow keys choose a frequency, plus and minus zoom, b and f go back and forth.`);
     this.write();
     this.hint();
     if (complete && this.waiting && !this.regions.quick) {
