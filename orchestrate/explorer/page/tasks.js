@@ -20,7 +20,7 @@ import { waveform } from "./waveform.js";
  */
 
 const REST = [0, 0, 0, 0];
-const EXPONENT = { periods: 400, most: 3200, distance: 1e-7 };
+const EXPONENT = { periods: 400, most: 12800, distance: 1e-7 };
 const SPAN = { periods: 64, points: 1024, highest: 20 };
 
 /**
