@@ -11,8 +11,7 @@ import { lengthOf, omegaOf, periodOf } from "./structure.js";
 
 const SLICE = 20; // periods between two pauses
 const BLOCKS = 8; // parts of the whole whose growths are samples of the mean
-const [ONCE, AGAIN] = [2.36, 4.79]; // of Student's t of as many less one: 95 %; 99.8 % where it is asked for several times
-const ALIGNING = Math.log(10); // by how much a first direction may mislead the sum of growths
+const QUANTILE = 4.79; // of Student's t of as many less one, two-sided 99.8 %: it is asked several times
 
 /**
  * Mean growth rate per unit of tau of a small difference, made small again after each period: over
@@ -41,7 +40,7 @@ export function* exponentOf(instance, point, start, { periods, most, distance })
   let blocks = new Float64Array(BLOCKS);
   for (let n = 0, end = periods; ; n++) {
     if (n === end) {
-      const found = meanOf(blocks, n * step, end === periods ? ONCE : AGAIN);
+      const found = meanOf(blocks, n, step);
       if (Math.abs(found.value) > found.error || 2 * n > most) return found;
       end = 2 * n;
       blocks = paired(blocks);
@@ -61,12 +60,13 @@ export function* exponentOf(instance, point, start, { periods, most, distance })
 /** The same growths in half as many blocks, and as many empty ones. @param {Float64Array} blocks */
 const paired = (blocks) => blocks.map((_, i) => (blocks[2 * i] ?? 0) + (blocks[2 * i + 1] ?? 0));
 
-/** The mean growth, and how far it may be off: by chance, or by the first direction. @param {Float64Array} blocks growth in equal times @param {number} time of all, in tau @param {number} quantile @returns {Exponent} */
-function meanOf(blocks, time, quantile) {
+/** The mean growth, and how far it may be off: by chance (99.8 %), or since differences that grow as the time does are no chaos. @param {Float64Array} blocks growth in equal times @param {number} periods of all @param {number} step a period, in tau @returns {Exponent} */
+function meanOf(blocks, periods, step) {
+  const time = periods * step;
   const sum = blocks.reduce((all, one) => all + one, 0);
   const spread = blocks.reduce((all, one) => all + (one - sum / blocks.length) ** 2, 0);
-  const chance = quantile * Math.sqrt((spread * blocks.length) / (blocks.length - 1));
-  return { value: sum / time, error: Math.max(chance, ALIGNING) / time };
+  const chance = QUANTILE * Math.sqrt((spread * blocks.length) / (blocks.length - 1));
+  return { value: sum / time, error: Math.max(chance, Math.log(periods)) / time };
 }
 
 /** A state close by whose gap is none below zero. @param {number[]} state @param {number[]} d @param {number[]} scale @param {number} offset */

@@ -496,16 +496,3 @@ def test_only_the_sweep_that_the_page_came_with_is_said_to_be_one(opened):
         opened.run(f"document.querySelector(\"[data-save='{name}.svg']\").click()")
         text = opened.download(f"{name}_eta1.25.svg").read_text()
         assert "kernel {" in text and "sweep by" not in text
-
-
-def test_an_exponent_that_goes_on_calls_no_slow_motion_chaos(opened):
-    """It repeats after 68 periods, to which it comes so slowly that its exponent is next to zero."""
-    opened.run(
-        "const units = document.getElementById('units'); units.value = 'own';"
-        "units.dispatchEvent(new Event('change'))"
-    )
-    for name, text in {"f1": "42", "f2": "55", "hertz": "29.4"}.items():
-        typed(opened, name, text)
-    opened.until(READY)
-    assert opened.run("return explorer.inspector.found.response.multiplicity") == 0
-    assert opened.text("sentence").startswith("Nearly repeats, or is still settling")
