@@ -170,15 +170,24 @@ def excitation_texts(data: xr.Dataset, known: Mapping[str, float]) -> dict[str, 
         )
     if "frequency" in known:
         texts["frequency"] = frequency_text(data, known["frequency"])
-    if "amplitude" in known:
+    if "amplitude" in known and units.acceleration and "frequency" in known:
+        texts["amplitude"] = level_text(data, known["amplitude"] * known["frequency"] ** 2)
+    elif "amplitude" in known:
         texts["amplitude"] = f"$a$ = {length_text(data, known['amplitude'])}"
+    elif "level" in known:
+        texts["level"] = level_text(data, known["level"])
     elif "frequency" in data.dims and "amplitude" in data.coords:
         level = (data.amplitude * data.frequency**2).values
         if math.isclose(level.min(), level.max(), rel_tol=1e-9):
-            peak, in_g = f"{level.max():.4g} m/s$^2$", f"{level.max() / GRAVITY:.3g} g"
-            both = {"": f"{peak} ({in_g})", "m/s2": peak, "g": in_g}
-            texts["amplitude"] = rf"$a\,\Omega^2$ = {both[units.acceleration]}"
+            texts["amplitude"] = level_text(data, level.max())
     return texts
+
+
+def level_text(data: xr.Dataset, level: float) -> str:
+    """Format the box's peak acceleration, in m/s2, in the unit that an answer is shown in."""
+    peak, in_g = f"{level:.4g} m/s$^2$", f"{level / GRAVITY:.3g} g"
+    both = {"": f"{peak} ({in_g})", "m/s2": peak, "g": in_g}
+    return rf"$a\,\Omega^2$ = {both[units_of(data).acceleration]}"
 
 
 def prefix(largest: float) -> tuple[float, str]:
