@@ -48,6 +48,7 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
         else:
             in_the_middle: Any = {"transform": panel.transAxes, "ha": "center", "va": "center"}
             panel.text(0.5, 0.5, f"no jump {jump}", **in_the_middle)
+            panel.set(xticks=[], yticks=[])
         panel.set(xlabel="rate$^{2/3}$ in (V/s)$^{2/3}$", ylabel="voltage in V")
         panel.set_title(f"jump {jump}")
     set_title(figure, title)
