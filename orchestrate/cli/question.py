@@ -115,7 +115,9 @@ def asked_units(arguments: argparse.Namespace, question: Question) -> tuple[Unit
     given = [unit for name, unit in UNIT_OF_OPTION.items() if getattr(arguments, name, None)]
     keys = excitation_keys(arguments) if "frequency" in question and not given else ()
     given += [unit for key, unit in UNIT_OF_KEY.items() if key in keys]
-    frequency = over or next(iter(given), "eta" if "eta" in question else "Hz")
+    both = question.get("over", ())  # of a border
+    by_ratio = "eta" in question or (not isinstance(both, str) and "eta" in both)
+    frequency = over or next(iter(given), "eta" if by_ratio else "Hz")
     in_g = getattr(arguments, "g", None) is not None or "acceleration_g" in keys
     asked = Units(frequency, acceleration="g" if in_g else "")
     return asked, units_option(arguments).completed(asked)

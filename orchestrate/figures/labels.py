@@ -259,6 +259,16 @@ def orbit_label(multiplicity: float, impacts_per_period: float) -> str:
     return f"{n if n > 1 else ''}T, {impacts} impact{'s' * (impacts != 1)}"
 
 
+def in_shown_units(data: xr.Dataset, text: str) -> str:
+    """Return a text with its accelerations in m/s2 in the unit that an answer is shown in."""
+
+    def in_shown_unit(match: re.Match[str]) -> str:
+        factor, word = scale_of(data, "m/s2")
+        return f"{float(match[1]) / factor:.4g} {unit_sign(word)}"
+
+    return re.sub(r"(\d[\d.e+-]*) m/s2", in_shown_unit, text)
+
+
 def plain_title(title: str) -> str:
     """Write out the structure's short name at the end of a title, which is made for files.
 

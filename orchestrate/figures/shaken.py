@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import Any
 
 import numpy as np
@@ -10,8 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..units import scale_of
-from .labels import title_from_attributes, unit_sign
+from .labels import in_shown_units, title_from_attributes
 from .scales import acceleration_scale, length_scale
 from .style import BLACK, BLUE, RED, set_title, styled, write_in_panel
 
@@ -38,7 +36,11 @@ def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) ->
     """
     figure = Figure(figsize=(10.4, 7.2), layout="constrained")
     rows = figure.subplots(4, 1, sharex=True, height_ratios=(1.0, 1.6, 1.2, 1.2))
-    set_title(figure, title or f"{excitation_words(data)}; {title_from_attributes(data)}")
+    set_title(
+        figure,
+        title
+        or f"{in_shown_units(data, str(data.attrs['excitation']))}; {title_from_attributes(data)}",
+    )
     box, masses, gap, impacts = rows
     felt, unit = acceleration_scale(data)
     envelope(box, data, "box_acceleration", felt, color=BLACK)
@@ -67,16 +69,6 @@ def draw_impacts(axes: Axes, data: xr.Dataset) -> None:
     size = 5 if count < COLUMNS else 2
     axes.plot(data.impact_time, data.impulse, ".", color=RED, markersize=size)
     axes.set_ylim(bottom=0.0)
-
-
-def excitation_words(data: xr.Dataset) -> str:
-    """Return what shook the box, with accelerations in the unit that the answer is shown in."""
-
-    def in_shown_unit(match: re.Match[str]) -> str:
-        factor, word = scale_of(data, "m/s2")
-        return f"{float(match[1]) / factor:.4g} {unit_sign(word)}"
-
-    return re.sub(r"([\d.e+-]+) m/s2", in_shown_unit, str(data.attrs["excitation"]))
 
 
 def outline(axes: Axes, bonded: xr.Dataset, felt: float) -> None:

@@ -222,5 +222,5 @@ def test_a_basin_says_its_frequency_once_and_gaps_as_asked(exported):
 def test_what_shook_the_box_is_said_in_the_unit_asked_for(exported):
     shock = orchestrate.Shock(peak=5.0 * GRAVITY, length=0.011)
     data = orchestrate.shake(BEAM, shock, progress=False)
-    assert shaken.excitation_words(with_units(data, "g")).startswith("half-sine shock, 5 g for")
-    assert "49.03 m/s$^2$" in shaken.excitation_words(data)
+    assert shaken.draw(with_units(data, "g")).get_suptitle().startswith("half-sine shock, 5 g for")
+    assert "49.03 m/s$^2$" in shaken.draw(data).get_suptitle()
