@@ -114,10 +114,12 @@ def answer_question(
 def asked_units(arguments: argparse.Namespace, question: Question) -> tuple[Units, Units]:
     """Return the units of the frequency options given, and the units to display, as ``Units``."""
     over = UNIT_OF_OPTION.get(str(getattr(arguments, "over", "")), "")
-    chosen = [unit for name, unit in UNIT_OF_OPTION.items() if getattr(arguments, name, None)]
-    keys = excitation_keys(arguments) if "frequency" in question and not chosen else ()
-    chosen += [unit for key, unit in UNIT_OF_KEY.items() if key in keys]
-    frequency = over or next(iter(chosen), "eta" if "eta" in question else "Hz")
+    given = [unit for name, unit in UNIT_OF_OPTION.items() if getattr(arguments, name, None)]
+    keys = excitation_keys(arguments) if "frequency" in question and not given else ()
+    given += [unit for key, unit in UNIT_OF_KEY.items() if key in keys]
+    both = question.get("over", ())  # of a border
+    by_ratio = "eta" in question or (not isinstance(both, str) and "eta" in both)
+    frequency = over or next(iter(given), "eta" if by_ratio else "Hz")
     in_g = getattr(arguments, "g", None) is not None or "acceleration_g" in keys
     asked = Units(frequency, acceleration="g" if in_g else "")
     return asked, read_units(arguments).with_defaults(asked)

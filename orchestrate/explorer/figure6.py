@@ -11,7 +11,7 @@ from ..access.webassembly import kernel_digest
 from ..running.store import load
 from ..structures import Structure
 from ..units import Units
-from .sweep_data import SweepData, empty_sweep, read_sweep
+from .shipped import SweepData, empty_sweep, in_ratios, read_sweep
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,7 +29,7 @@ def first_diagram(structure: Structure, units: Units | None = None) -> SweepData
     then belong to no response of the page.
     """
     units = units or Units()
-    if structure != Structure() or units.frequency not in ("", "eta"):
+    if structure != Structure() or not in_ratios(structure, units):
         return empty_sweep(structure, units)
     data = load(FILE)
     if not is_current(data):

@@ -19,12 +19,12 @@ from ..errors import InputError
 from ..files import open_folder, write_whole
 from ..structures import Drive, Structure
 from ..structures.ranges import STRUCTURE
-from ..units import Units
+from ..units import Units, units_of
 from ..version import __version__
 from .branches import branch_json
 from .bundle import bundle
 from .figure6 import first_diagram
-from .sweep_data import SweepData, check_units, read_sweep
+from .shipped import SweepData, check_units, read_sweep, shown_in
 from .tour import TOUR
 from .words import WORDS
 
@@ -58,7 +58,8 @@ def explore(
     branches : xarray.Dataset, optional
         Of :func:`orchestrate.branch` over ``eta``, drawn over the diagram.
     units : str
-        What the page opens in: ``"eta"``, the paper's ratios, or ``"Hz, mm, g"``. By default the
+        What the page opens in: ``"eta"``, the paper's ratios, or units of frequency, length,
+        acceleration and time such as ``"Hz, mm, g"`` or ``"rad/s, um, m/s2"``. By default the
         ratios for a structure of omega = 1 rad/s, and for a sweep as it was shaken.
     build_folder : path-like, optional
         Where the kernel's WebAssembly is looked for and compiled to.
@@ -71,7 +72,8 @@ def explore(
     Raises
     ------
     InputError
-        Where the data are no sweep along the frequency, or the kernel cannot be compiled here.
+        Where the data are no sweep along the frequency, or one by ratios is to be shown in other
+        units, or the kernel cannot be compiled here.
     StoreError
         Where the file cannot be written.
 
@@ -89,12 +91,12 @@ def explore(
     True
     """
     asked = units if isinstance(units, Units) else Units.from_text(units)
-    check_units(asked)
     if data is None or isinstance(data, Structure):
         chosen = first_diagram(data or Structure(), asked)
     else:
         chosen = read_sweep(data)
         check_units(asked, chosen.level)
+        asked = asked.with_defaults(units_of(data))
     path = Path(output)
     if path.is_dir():
         raise InputError(f"output = {str(output)!r}: is a folder; expected a file to write")
@@ -108,8 +110,8 @@ def explore(
         "oscillator": web_kernel(OSCILLATOR, build_folder),
         "shaker": web_kernel(SHAKER, build_folder),
     }
-    text = render_page(chosen, branch_json(branches), kernels)
-    return write_whole(path, lambda target: target.write_text(text, encoding="utf-8"))
+    text = render_page(chosen, shown_in(asked, chosen.level), branch_json(branches), kernels)
+    return write_whole(path, lambda place: place.write_text(text, encoding="utf-8"))
 
 
 def first_bytes(path: Path) -> bytes:
@@ -120,8 +122,10 @@ def first_bytes(path: Path) -> bytes:
         return file.read(READ)
 
 
-def render_page(chosen: SweepData, drawn: dict[str, Any], kernels: dict[str, WebKernel]) -> str:
-    """Return the page's HTML from a template that escapes all text."""
+def render_page(
+    chosen: SweepData, shown: dict[str, str], drawn: dict[str, Any], kernels: dict[str, WebKernel]
+) -> str:
+    """Return the page's HTML, made by a template that escapes all text."""
     scripts = read_modules()
     made_by = f"vibroimpact {__version__}, kernel {kernels['oscillator'].guid}"
     tables = {name: {"slots": one.slots, "starts": one.starts} for name, one in kernels.items()}
@@ -139,7 +143,7 @@ def render_page(chosen: SweepData, drawn: dict[str, Any], kernels: dict[str, Web
             branches=drawn["branches"],
             source=made_by,
             swept=f"sweep by {chosen.source}" if chosen.source else "",
-            table={**page_data(chosen), **drawn, **tables, "drive": drive_data()},
+            table={**page_data(chosen), "shown": shown, **drawn, **tables, "drive": drive_data()},
             data=compress(chosen.numbers.astype("<f8").tobytes()),
             **{name: compress(kernel.module) for name, kernel in kernels.items()},
             **voltage_slider(),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,10 +19,11 @@ if TYPE_CHECKING:
 
 EXPECTED = "expected a result of orchestrate.sweep along eta or frequency"
 SWEPT = ("eta", "frequency")
+RATIO = ("", "eta")
 SETTINGS = ("transient", "samples", "tolerance")
 READING = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)  # of a file
 MOST_PERIODS = 1_000_000  # of a response that a page computes within seconds
-PAGE_UNITS = ("Hz", "mm", "g", "s")  # of a page that shows no ratios
+OWN = Units("Hz", "mm", "g")  # of a beam of one's own, where nothing else is asked for
 PAPER = (0.1, 8.0)  # frequency ratios of Figure 6
 
 
@@ -65,8 +66,7 @@ class SweepData:
 def empty_sweep(structure: Structure, units: Units) -> SweepData:
     """Return data without a sweep: the page then computes its first diagram itself."""
     settings = {"transient": 500, "samples": 200, "tolerance": 1e-2}
-    by_ratio = units.frequency == "eta" if units.frequency else is_nondimensional(structure)
-    level = ("paper", 1.0) if by_ratio else ("g", 1.0)
+    level = ("paper", 1.0) if in_ratios(structure, units) else ("g", 1.0)
     return SweepData(structure, ("up",), settings, np.empty(0), 0, *PAPER, level, "")
 
 
@@ -123,35 +123,42 @@ def read_checked(data: xr.Dataset, direction: str) -> SweepData:
     )
 
 
-def check_units(units: Units, level: tuple[str, float] | None = None) -> None:
-    """Raise unless the page can show these units: eta, or some of Hz, mm, g and s.
+def in_ratios(structure: Structure, units: Units) -> bool:
+    """Return whether a page opens with the paper's ratios: no other unit is asked for."""
+    if units.length or units.acceleration:
+        return False
+    return units.frequency == "eta" if units.frequency else is_nondimensional(structure)
+
+
+def check_units(units: Units, level: tuple[str, float]) -> None:
+    """Check that a sweep can be shown in some units: one of the paper's motion is in ratios.
 
     Parameters
     ----------
     units : Units
-    level : tuple of str and float, optional
-        Of a sweep, whose responses the page replays as they were shaken.
+    level : tuple of str and float
+        Of the sweep, whose responses the page replays as they were shaken.
 
     Raises
     ------
     InputError
     """
-    other = [word for word in units.words if word not in ("eta", *PAGE_UNITS)]
-    if other:
+    if level[0] == "paper" and (units.length or units.acceleration or units.frequency not in RATIO):
         raise InputError(
-            f"units {units}: the page has no {other[0]}; expected eta, or some of "
-            f"{', '.join(PAGE_UNITS)}"
+            f"units {units}: the page replays the sweep as it was shaken, by the paper's ratios; "
+            "expected eta, or a structure instead of the sweep"
         )
-    own = "eta" if level and level[0] == "paper" else "Hz"
-    if level and units.frequency and units.frequency != own:
-        raise InputError(
-            f"units {units}: the page replays the sweep as it was shaken; expected {own}, or a "
-            "structure instead of the sweep"
-        )
+
+
+def shown_in(units: Units, level: tuple[str, float]) -> dict[str, str]:
+    """Return the units in which the page shows a beam of one's own."""
+    if level[0] == "paper":  # ratios have no unit, but of time
+        units = Units(time=units.time)
+    return asdict(units.with_defaults(OWN))
 
 
 def is_nondimensional(structure: Structure) -> bool:
-    """Return whether a structure's omega is 1 rad/s, as the paper's."""
+    """Return whether a structure is the paper's, whose omega is 1 rad/s."""
     return math.isclose(structure.omega, 1.0)
 
 

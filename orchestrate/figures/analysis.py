@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..units import as_shown
-from .labels import plain_title
+from .labels import in_shown_units, plain_title
 from .scales import label_with_unit, typeset_array_unit
 from .style import (
     BLACK,
@@ -66,7 +66,7 @@ def draw(
         wrong = results[other[0]].attrs["analysis"]
         raise ValueError(f"others[{other[0]!r}]: result of {wrong}; expected one of {kind}")
     figure = DRAW[kind]({name: as_shown(result) for name, result in results.items()})
-    set_title(figure, title or plain_title(str(data.attrs["title"])))
+    set_title(figure, title or in_shown_units(data, plain_title(str(data.attrs["title"]))))
     return figure
 
 

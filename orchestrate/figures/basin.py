@@ -10,8 +10,14 @@ from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
-from ..units import scale_of, units_of
-from .labels import gap_name, orbit_label, symbol, title_from_attributes, typeset_unit
+from ..units import omega_of, scale_of, units_of
+from .labels import (
+    gap_name,
+    orbit_label,
+    symbol,
+    title_from_attributes,
+    typeset_unit,
+)
 from .style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, XI_REL, make_panels, set_title, styled
 
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, RED)  # of the most frequent attractors
@@ -43,7 +49,7 @@ def draw(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", "")) -
     mark_attractors(plane, data)
     plane.set(xlabel=names[0] or x_label, ylabel=names[1] or y_label)
     plane.grid(False)
-    by_ratio = "eta" in data.coords and units_of(data).frequency in ("", "eta")
+    by_ratio = "eta" in data.coords and not units_of(data).frequency  # else the title has it
     eta = [rf"$\eta$ = {float(data.eta):.4g}"] if by_ratio else []
     set_title(figure, title or ", ".join([title_from_attributes(data, ("eta", x, y)), *eta]))
     figure.legend(loc="outside lower left")
@@ -91,6 +97,14 @@ def gap_from_states(data: xr.Dataset, columns: dict[str, np.ndarray]) -> np.ndar
     return gap
 
 
+def gap_text(data: xr.Dataset, gap: float) -> str:
+    """Format a gap over a eta^2, as a length where a unit of length is asked for."""
+    if not (units_of(data).length and {"amplitude", "frequency"} <= set(data.attrs)):
+        return f"{XI_REL} = {gap:.3g}"
+    eta = float(data.attrs["frequency"]) / omega_of(data)
+    return f"gap = {format_length(data, gap * float(data.attrs['amplitude']) * eta**2)}"
+
+
 def label_attractors(plane: Axes, data: xr.Dataset) -> None:
     """Add a legend with period, impacts and share of each coloured attractor."""
     for index, colour in zip(range(data.sizes["attractor"]), COLOURS, strict=False):
@@ -98,7 +112,7 @@ def label_attractors(plane: Axes, data: xr.Dataset) -> None:
         n, impacts = float(part.multiplicity), float(part.impacts_per_period)
         kind = orbit_label(n, impacts) or f"not periodic, {impacts:.2f} impacts per T"
         gap, share = float(part.xi_rel_max), float(part.share)
-        text = f"{share:.1%}: {kind}, largest {XI_REL} = {gap:.3g}"
+        text = f"{share:.1%}: {kind}, largest {gap_text(data, gap)}"
         plane.plot([], [], "s", color=colour, label=text)
     rest = data.share.values[len(COLOURS) :].sum()
     if rest:

@@ -48,7 +48,7 @@ def draw(*curves: xr.Dataset, title: str = "") -> Figure:
         shown.add(kind)
     for curve in curves:
         draw_points(plane, curve, ((first, x_unit), (second, y_unit)), shown)
-    title = title or title_from_attributes(curves[0])
+    title = title or title_from_attributes(curves[0], (first, second))
     plane.set(xlabel=x_label, ylabel=y_label, title=title)
     figure.legend(loc="outside lower right", ncols=min(4, len(shown)))
     return figure

@@ -25,18 +25,33 @@ def draw(*branches: xr.Dataset, title: str = "") -> Figure:
     """
     figure, (plane,) = make_panels(1, 1, (9.6, 5.8))
     name = str(branches[0].attrs["over"])
-    set_gap_scale(plane, np.concatenate([branch.xi_rel.values.ravel() for branch in branches]))
+    factor, gap = gap_scale(branches[0], branches[0].xi_rel)
+    scales = [lengths_of(branch, factor) for branch in branches]
+    gaps = [
+        branch.xi_rel.transpose("sample", "point").values * scale
+        for branch, scale in zip(branches, scales, strict=True)
+    ]
+    set_gap_scale(plane, np.concatenate([rows.ravel() for rows in gaps]))
     unit, label = parameter_scale(branches[0], name)
     low = min(float(branch[name].min()) for branch in branches) / unit
     high = max(float(branch[name].max()) for branch in branches) / unit
     edge = 0.01 * (high - low)  # room for markers at the ends
-    plane.set(xlabel=label, ylabel=rf"{XI_REL}$(nT)$", xlim=(low - edge, high + edge))
+    words = f"{gap}, at $t = nT$" if factor else rf"{XI_REL}$(nT)$"
+    plane.set(xlabel=label, ylabel=words, xlim=(low - edge, high + edge))
     plane.set_title(title or title_from_attributes(branches[0], EXCITATION))
-    for branch in branches:
-        rows = branch.xi_rel.transpose("sample", "point").values
+    for branch, rows, scale in zip(branches, gaps, scales, strict=True):
         draw_branch(plane, branch[name].values / unit, rows, branch.stable.values == 1)
         if branch.sizes.get("bifurcation"):
             at = branch.bifurcation_value.values / unit
-            draw_bifurcations(plane, branch, at, branch.bifurcation_xi_rel.values)
+            there = np.interp(branch.bifurcation_place.values, np.arange(len(scale)), scale)
+            marks = branch.bifurcation_xi_rel.transpose("bifurcation", ...).values
+            draw_bifurcations(plane, branch, at, marks * there[:, np.newaxis])
     legend_below(figure, [plane], columns=8)
     return figure
+
+
+def lengths_of(branch: xr.Dataset, factor: float) -> np.ndarray:
+    """Return what gaps over a eta^2 are multiplied by at each point; 1 for an axis of ratios."""
+    if not factor:
+        return np.ones(branch.sizes["point"])
+    return np.asarray(branch.amplitude.values * branch.eta.values**2 / factor)

@@ -45,9 +45,14 @@ def draw(data: xr.Dataset, title: str = "") -> Figure:
                 panel.errorbar(0.0, end, np.nan_to_num(error), fmt="s", color=colour, capsize=3)
         if panel.get_legend_handles_labels()[0]:
             panel.legend(loc="best", title="at rate 0")
+        elif known.sel(jump=jump):
+            for structure in map(str, data.structure.values):
+                panel.plot([], [], "o", color=COLOURS[structure], markersize=4, label=structure)
+            panel.legend(loc="best", title="too few rates for rate 0")
         else:
             in_the_middle: Any = {"transform": panel.transAxes, "ha": "center", "va": "center"}
             panel.text(0.5, 0.5, f"no jump {jump}", **in_the_middle)
+            panel.set(xticks=[], yticks=[])
         panel.set(xlabel="rate$^{2/3}$ in (V/s)$^{2/3}$", ylabel="voltage in V")
         panel.set_title(f"jump {jump}")
     set_title(figure, title)

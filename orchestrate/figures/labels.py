@@ -174,19 +174,28 @@ def format_excitation(data: xr.Dataset, known: Mapping[str, float]) -> dict[str,
         )
     if "frequency" in known:
         texts["frequency"] = format_frequency(data, known["frequency"])
-    if "amplitude" in known:
+    if "amplitude" in known and units.acceleration and "frequency" in known:
+        texts["amplitude"] = format_level(data, known["amplitude"] * known["frequency"] ** 2)
+    elif "amplitude" in known:
         texts["amplitude"] = f"$a$ = {format_length(data, known['amplitude'])}"
+    elif "level" in known:
+        texts["level"] = format_level(data, known["level"])
     elif "frequency" in data.dims and "amplitude" in data.coords:
         level = (data.amplitude * data.frequency**2).values
         if math.isclose(level.min(), level.max(), rel_tol=1e-9):
-            peak, in_g = f"{level.max():.4g} m/s$^2$", f"{level.max() / GRAVITY:.3g} g"
-            both = {"": f"{peak} ({in_g})", "m/s2": peak, "g": in_g}
-            texts["amplitude"] = rf"$a\,\Omega^2$ = {both[units.acceleration]}"
+            texts["amplitude"] = format_level(data, level.max())
     return texts
 
 
+def format_level(data: xr.Dataset, level: float) -> str:
+    """Format the box's peak acceleration, in m/s2, in the unit that an answer is shown in."""
+    peak, in_g = f"{level:.4g} m/s$^2$", f"{level / GRAVITY:.3g} g"
+    both = {"": f"{peak} ({in_g})", "m/s2": peak, "g": in_g}
+    return rf"$a\,\Omega^2$ = {both[units_of(data).acceleration]}"
+
+
 def si_prefix(largest: float) -> tuple[float, str]:
-    """Return factor and letter of the largest SI prefix in which a length is at least 1.
+    """Return the factor and the letter of the largest SI prefix that leaves a length at least 1.
 
     Examples
     --------
@@ -252,6 +261,16 @@ def orbit_label(multiplicity: float, impacts_per_period: float) -> str:
         return ""
     impacts = round(n * impacts_per_period)
     return f"{n if n > 1 else ''}T, {impacts} impact{'s' * (impacts != 1)}"
+
+
+def in_shown_units(data: xr.Dataset, text: str) -> str:
+    """Return a text with its accelerations in m/s2 in the unit that an answer is shown in."""
+
+    def in_shown_unit(match: re.Match[str]) -> str:
+        factor, word = scale_of(data, "m/s2")
+        return f"{float(match[1]) / factor:.4g} {typeset_unit(word)}"
+
+    return re.sub(r"(\d[\d.e+-]*) m/s2", in_shown_unit, text)
 
 
 def plain_title(title: str) -> str:

@@ -11,8 +11,9 @@ from matplotlib.colors import ListedColormap, LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
-from .labels import title_from_attributes
-from .scales import axis_values
+from ..units import omega_of, units_of
+from .labels import gap_name, title_from_attributes
+from .scales import axis_values, length_scale
 from .style import (
     BLACK,
     GREEN,
@@ -66,11 +67,35 @@ def draw(*maps: xr.Dataset, title: str = "") -> Figure:
         for column, name in enumerate(columns):
             plane = axes[row * len(columns) + column]
             sides = axis_values(data, right), axis_values(data, up)
-            draw_map(plane, data[name].transpose(up, right), sides[0].values, sides[1].values)
+            values, label = shown_values(data, name)
+            draw_map(plane, values.transpose(up, right), sides[0].values, sides[1].values)
             words = "" if column or title or len(maps) == 1 else title_from_attributes(data)
-            plane.set_title("\n".join(filter(None, [words, COLUMNS[name]])))
+            plane.set_title("\n".join(filter(None, [words, label])))
             plane.set(ylabel="" if column else sides[1].label, xlabel=sides[0].label)
     return figure
+
+
+def shown_values(data: xr.Dataset, name: str) -> tuple[xr.DataArray, str]:
+    """Return a quantity and its label; gaps as lengths where a unit of length is asked for."""
+    unit = length_of_ratio(data) if name == "xi_rel_max" and units_of(data).length else None
+    if unit is None:
+        return data[name], COLUMNS[name]
+    lengths = (data[name] * unit).rename(name)
+    factor, letter = length_scale(data, float(lengths.max()))
+    return lengths / factor, f"largest {gap_name(data)} in {letter}m"
+
+
+def length_of_ratio(data: xr.Dataset) -> Any:
+    """Return a eta^2 in m; None where omega changes, or the box's motion is not known."""
+    names = ("level", "amplitude", "frequency")
+    known: dict[str, Any] = {name: data[name] for name in names if name in data.coords}
+    told = {name: data.attrs[name] for name in names if is_finite_number(data.attrs.get(name))}
+    known = {**told, **known}
+    if {"m1", "k1", "omega"} & set(map(str, data.dims)):
+        return None
+    if "level" not in known and {"amplitude", "frequency"} <= set(known):
+        known["level"] = known["amplitude"] * known["frequency"] ** 2
+    return known["level"] / omega_of(data) ** 2 if "level" in known else None
 
 
 def draw_map(plane: Axes, data: xr.DataArray, x: np.ndarray, y: np.ndarray) -> None:

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..constants import TURN
-from ..units import units_of
+from ..units import units_of, with_units
 from .labels import gap_name, title_from_attributes
 from .marks import draw_stems
 from .scales import acceleration_scale, frequency_scale, has_frequency_unit, length_scale
@@ -55,7 +55,8 @@ def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) ->
         axes["phases"].plot(
             bonded.x1 / factor, bonded.v1 / length_scale(data, largest_speed(data))[0], **GLUED
         )
-        top = max(top, draw_spectrum(axes["spectrum"], bonded, (("1", GLUED),)))
+        alike = with_units(bonded, units_of(data))  # one axis has one unit
+        top = max(top, draw_spectrum(axes["spectrum"], alike, (("1", GLUED),)))
     axes["spectrum"].set_ylim(SPECTRUM_FLOOR * (top or 1.0), 2.0 * (top or 1.0))
     above: Any = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.2}
     axes["masses"].legend(ncols=3, **above)

@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .labels import title_from_attributes
+from .labels import in_shown_units, title_from_attributes
 from .scales import acceleration_scale, length_scale
 from .style import BLACK, BLUE, RED, set_title, styled, write_in_panel
 
@@ -36,7 +36,11 @@ def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) ->
     """
     figure = Figure(figsize=(10.4, 7.2), layout="constrained")
     rows = figure.subplots(4, 1, sharex=True, height_ratios=(1.0, 1.6, 1.2, 1.2))
-    set_title(figure, title or f"{data.attrs['excitation']}; {title_from_attributes(data)}")
+    set_title(
+        figure,
+        title
+        or f"{in_shown_units(data, str(data.attrs['excitation']))}; {title_from_attributes(data)}",
+    )
     box, masses, gap, impacts = rows
     scale, unit = acceleration_scale(data)
     draw_signal(box, data, "box_acceleration", scale, color=BLACK)

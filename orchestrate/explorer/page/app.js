@@ -7,7 +7,7 @@ import { WorkerPool } from "./worker_pool.js";
 import { lanesDiffer, nearest, opensElsewhere, scaled, startAt } from "./diagram.js";
 import { listen } from "./diagram_input.js";
 import { DrivePart } from "./drive_part.js";
-import { hertzOf, inHertz, PAPER, pointAt, sameLevel } from "./excitation.js";
+import { inHertz, PAPER, pointAt, sameLevel } from "./excitation.js";
 import { toDefault } from "./field.js";
 import { Inspector } from "./inspector.js";
 import { ETAS, fragmentOf, viewOf } from "./link.js";
@@ -22,6 +22,7 @@ import { shown } from "./scale.js";
 import { Shaking } from "./shaking.js";
 import { omegaOf, sameStructure } from "./structure.js";
 import { TourPart } from "./tour_part.js";
+import { frequencyUnit, showIn, unitsOption, wordsOf } from "./units.js";
 
 /**
  * @typedef {import("./structure.js").Structure} Structure
@@ -42,6 +43,7 @@ export class App {
   /** @param {Awaited<ReturnType<typeof load>>} payload */
   constructor({ table, compiled, worker, diagram }) {
     this.table = table;
+    showIn(table.shown);
     const [unit, value] = table.level;
     /** @type {View} */
     this.usual = {
@@ -290,8 +292,8 @@ export class App {
     this.shaking.reach(diagram.low, diagram.high);
     if (Number.isFinite(this.eta)) this.shaking.mark(this.eta);
     at("command").textContent = diagramCommand(diagram, this.table.usual);
-    const [low, high] = inHertz(diagram.level) ? [diagram.low, diagram.high].map((eta) => hertzOf(eta, diagram.structure)) : [diagram.low, diagram.high];
-    this.regions.view.picture.describe(`Orbit diagram, gap over ${inHertz(diagram.level) ? "frequency in Hz" : "frequency ratio"} from ${shown(low, 6)} to ${shown(high, 6)}, ${count} responses. Arrow keys choose a frequency, plus and minus zoom, b and f go back and forth.`);
+    const [low, high] = [diagram.low, diagram.high].map((eta) => eta * frequencyUnit(diagram.structure, diagram.level));
+    this.regions.view.picture.describe(`Orbit diagram, gap over ${wordsOf(diagram.level).frequency.replace(", ", " in ")} from ${shown(low, 6)} to ${shown(high, 6)}, ${count} responses. Arrow keys choose a frequency, plus and minus zoom, b and f go back and forth.`);
     this.write();
     this.hint();
     if (complete && this.waiting && !this.regions.quick) {
@@ -307,7 +309,7 @@ export class App {
     if (!choice) return;
     const { transient, samples } = choice.settings;
     const asked = { transient: transient + samples, periods, points: 200 };
-    at("motion-command").textContent = motionCommand(choice.point, choice.start, asked, this.table.usual);
+    at("motion-command").textContent = motionCommand(choice.point, choice.start, asked, this.table.usual) + unitsOption(choice.level);
     at("motion").dataset.eta = String(choice.point.eta);
     if (found && !this.basin.shown) this.basin.meet(choice, found.response);
     if (this.basin.visible) this.computeBasin();

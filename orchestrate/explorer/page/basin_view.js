@@ -80,8 +80,7 @@ export class BasinView {
 
   /** Nothing to show. */
   clear() {
-    this.plane = null;
-    this.cursor = null;
+    Object.assign(this, { plane: null, cursor: null, attractors: [], examples: [] });
     this.picture.redraw();
   }
 

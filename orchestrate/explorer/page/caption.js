@@ -1,8 +1,9 @@
 /** What stands below a saved picture: what it shows, of which beam, made by what. */
 
-import { givenHertz, inHertz } from "./excitation.js";
+import { inHertz } from "./excitation.js";
 import { shown } from "./scale.js";
 import { numbersIn } from "./structure.js";
+import { frequencyName, levelShown, ownUnit, scaleAt } from "./units.js";
 
 const SIZE = 11; // px of a letter
 const LINE = 16; // px
@@ -16,10 +17,14 @@ export function beamWords(point, level) {
   if (!inHertz(level)) {
     return `Delaminated beam: e = ${shown(e)}, μ = ${shown(mu)}, κ = ${shown(kappa)}, D = ${shown(D)}, ξ₀ = ${shown(xi0)}; η = ${shown(eta, 7)}`;
   }
-  const halves = `halves of ${shown(f1)} and ${shown(f2)} Hz, ${shown(mass1)} and ${shown(mass2)} kg`;
-  const shaken = `${shown(givenHertz(point), 6)} Hz, ${shown(level.value)} ${level.unit}`;
-  return `Delaminated beam: ${halves}, damping ${shown(zeta)} %, gap ${shown(gap)} mm, e = ${shown(e)}; shaken at ${shaken}`;
+  const [turns, lengths] = [ownUnit("frequency"), ownUnit("length")];
+  const halves = `halves of ${shown(f1 / turns.size)} and ${shown(f2 / turns.size)} ${turns.name}, ${shown(mass1)} and ${shown(mass2)} kg`;
+  const shaken = `${frequencyText(scaleAt(point, level).line)}, ${levelShown(level).text}`;
+  return `Delaminated beam: ${halves}, damping ${shown(zeta)} %, gap ${shown(gap / lengths.size)} ${lengths.name}, e = ${shown(e)}; shaken at ${shaken}`;
 }
+
+/** @param {number} value of the axis */
+const frequencyText = (value) => (frequencyName().startsWith("ratio") ? `η = ${shown(value, 6)}` : `${shown(value, 6)} ${frequencyName()}`);
 
 /** Texts in lines that fit. @param {string[]} texts @param {number} width px */
 export function wrapped(texts, width) {

@@ -2,6 +2,7 @@
 
 import { givenHertz, GRAVITY } from "./excitation.js";
 import { omegaOf } from "./structure.js";
+import { unitsOption } from "./units.js";
 
 /**
  * @typedef {import("./structure.js").Structure} Structure
@@ -24,9 +25,9 @@ function differences(structure, usual) {
 
 /** The diagram: a line, or one for each direction where they begin from other states than rest. @param {Diagram} diagram @param {Structure} usual */
 export function diagramCommand(diagram, usual) {
-  const { structure, direction, points, settings, lanes } = diagram;
+  const { structure, direction, points, settings, lanes, level } = diagram;
   const starts = lanes.map(startOf);
-  const how = `--transient ${settings.transient} --samples ${settings.samples}${sets(structure, usual)}`;
+  const how = `--transient ${settings.transient} --samples ${settings.samples}${sets(structure, usual)}${unitsOption(level)}`;
   const options = rangeOptions(points) || listOptions(points);
   if (options && starts.every(isRest)) return `${PROGRAM} sweep ${options} --direction ${direction} ${how}`;
   /** @param {number[]} start */

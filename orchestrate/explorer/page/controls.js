@@ -1,8 +1,9 @@
-/** Sliders with a number beside each: the paper's parameters, or Hz, mm and kg, and the SI numbers. */
+/** Sliders with a number beside each: the paper's parameters, or those of a beam of one's own, and the SI numbers. */
 
 import { inHertz } from "./excitation.js";
 import { onNumber, showNumber } from "./field.js";
 import { numbersIn, withNumber } from "./structure.js";
+import { ownUnit } from "./units.js";
 
 /**
  * @typedef {import("./structure.js").Structure} Structure
@@ -31,6 +32,19 @@ const OWN = [
 ];
 
 const DIGITS = 7;
+/** @type {Record<string, "frequency" | "length">} of numbers with a unit that is chosen */
+const KINDS = { f1: "frequency", f2: "frequency", gap: "length" };
+
+/** How many Hz or mm the unit of a field is. @param {string} name */
+const sizeOf = (name) => (name in KINDS ? ownUnit(KINDS[name]).size : 1);
+
+/** An entry in the units that the page shows. @param {Entry} entry @returns {Entry} */
+function inOwnUnits([name, label, low, high, step]) {
+  if (!(name in KINDS)) return step ? [name, label, low, high, step] : [name, label, low, high];
+  const ends = [low, high, step ?? 0].map((value) => Number((value / sizeOf(name)).toPrecision(DIGITS)));
+  const words = label.replace(/Hz|mm/, ownUnit(KINDS[name]).name);
+  return step ? [name, words, ends[0], ends[1], ends[2]] : [name, words, ends[0], ends[1]];
+}
 
 export class Controls {
   /**
@@ -48,7 +62,7 @@ export class Controls {
     /** @type {Map<string, HTMLInputElement[]>} */
     this.inputs = new Map();
     at("sliders").append(this.row(RESTITUTION));
-    for (const [id, entries] of /** @type {const} */ ([["paper-sliders", PAPER], ["own-sliders", OWN]])) {
+    for (const [id, entries] of /** @type {const} */ ([["paper-sliders", PAPER], ["own-sliders", OWN.map(inOwnUnits)]])) {
       at(id).append(...entries.map((entry) => this.row(entry)));
     }
     for (const [name, { label }] of Object.entries(units)) at("si").append(this.row([name, `${name}, ${label}`, ...ranges[name]]));
@@ -78,7 +92,7 @@ export class Controls {
 
   /** What is expected, if the number leads to no structure. @param {string} name @param {number} value @param {HTMLInputElement} typed is left as it is */
   set(name, value, typed) {
-    const structure = withNumber(this.structure, name, value);
+    const structure = withNumber(this.structure, name, value * sizeOf(name));
     for (const [other, [low, high]] of Object.entries(this.ranges)) {
       const number = structure[/** @type {keyof Structure} */ (other)] ?? low;
       if (!(number >= low && number <= high)) return `makes ${other} ${number}; expected ${low} to ${high}`;
@@ -100,7 +114,7 @@ export class Controls {
   fill(typed) {
     const values = numbersIn(this.structure);
     for (const [name, inputs] of this.inputs) {
-      for (const input of inputs) if (input !== typed) showNumber(input, values[name], DIGITS);
+      for (const input of inputs) if (input !== typed) showNumber(input, values[name] / sizeOf(name), DIGITS);
     }
   }
 }

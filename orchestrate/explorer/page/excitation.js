@@ -23,9 +23,6 @@ export const sameLevel = (a, b) => a.unit === b.unit && a.value === b.value;
 /** @param {number} eta @param {Structure} structure */
 export const hertzOf = (eta, structure) => (eta * omegaOf(structure)) / (2 * Math.PI);
 
-/** @param {number} hertz @param {Structure} structure */
-export const etaOf = (hertz, structure) => (hertz * 2 * Math.PI) / omegaOf(structure);
-
 /** The paper's frequency ratio as a point, or the frequency in Hz of nine digits that is nearest. @param {Structure} structure @param {number} eta @param {Level} level @returns {Point} */
 export function pointAt(structure, eta, level) {
   if (inHertz(level)) return pointAtHertz(structure, Number(hertzOf(eta, structure).toPrecision(9)), level);

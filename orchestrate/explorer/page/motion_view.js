@@ -142,8 +142,9 @@ export function spectrumChart({ delaminated, bonded }, point, level, measured) {
     { x, y: kept(bonded.amplitude), colour: "two", label: "undamaged" },
   ];
   if (measured && inHertz(level)) {
-    const peaks = peaksUpTo(measured, x[x.length - 1], 2000);
-    series.push({ x: peaks.x, y: kept(peaks.y), colour: "ink", label: "measured", width: 1 });
+    const hertz = point.frequency / (2 * Math.PI * line); // one on the axis
+    const peaks = peaksUpTo(measured, x[x.length - 1] * hertz, 2000);
+    series.push({ x: peaks.x.map((value) => value / hertz), y: kept(peaks.y), colour: "ink", label: "measured", width: 1 });
   }
   return {
     x: { low: 0, high: x[x.length - 1], label: words.line },

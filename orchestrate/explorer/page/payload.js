@@ -6,7 +6,8 @@
  * @typedef {{oscillator: Kernel, shaker: Kernel, drive: import("./coupled.js").Start,
  *   structure: Structure, usual: Structure, ranges: Record<string, [number, number]>, units: import("./structure.js").Units,
  *   settings: import("./response.js").Settings, directions: ("up" | "down")[], count: number,
- *   low: number, high: number, level: ["paper" | "g" | "mm", number], tour: Record<string, string>,
+ *   low: number, high: number, level: ["paper" | "g" | "mm", number],
+ *   shown: import("./units.js").Asked, tour: Record<string, string>,
  *   branches: {x: number[], y: number[], stable: boolean}[],
  *   bifurcations: {eta: number, gap: number, kind: string}[]}} Table
  */

@@ -1,10 +1,11 @@
 /** The fields of how the box is shaken: frequency, level, and the units that numbers have. */
 
-import { etaOf, hertzOf, inHertz, PAPER, pointAt } from "./excitation.js";
+import { inHertz, LEVELS, PAPER, pointAt } from "./excitation.js";
 import { onNumber, showNumber } from "./field.js";
 import { ETAS } from "./link.js";
 import { shown } from "./scale.js";
 import { lengthOf, rescaled } from "./structure.js";
+import { frequencyName, frequencyUnit, levelFrom, levelShown, ownNames, ownUnit, ratioFrom } from "./units.js";
 
 /**
  * @typedef {import("./structure.js").Structure} Structure
@@ -16,6 +17,7 @@ import { lengthOf, rescaled } from "./structure.js";
 /** @type {Level} */
 const FIRST = { unit: "g", value: 1 };
 const DIGITS = 7; // of a frequency ratio that is shown
+const FINE = 9; // of a frequency in Hz
 const OMEGA = 2 * Math.PI * 40; // of a first beam of one's own, rad/s
 
 export class Shaking {
@@ -34,6 +36,8 @@ export class Shaking {
     this.units = units;
     this.structure = structure;
     this.level = level;
+    at("hertz-label").textContent = frequencyName().startsWith("ratio") ? `as ${frequencyName()}` : `in ${frequencyName()}`;
+    at("own").textContent = `your own beam: ${ownNames()}`;
     this.connect(acts);
   }
 
@@ -43,11 +47,11 @@ export class Shaking {
     onNumber(eta, (value) => choose(value, false), "input");
     onNumber(number, (value) => choose(value, true));
     onNumber(hertz, (value) => {
-      const ends = ETAS.map((end) => hertzOf(end, this.structure));
+      const ends = ETAS.map((end) => end * frequencyUnit(this.structure, this.level));
       if (value < ends[0] || value > ends[1]) return `expected ${ends.map((end) => shown(end)).join(" to ")} for this beam`;
-      choose(etaOf(value, this.structure), true);
+      choose(ratioFrom(value, this.structure, this.level), true);
     });
-    onNumber(level, (value) => change(this.structure, { ...this.level, value }));
+    onNumber(level, (value) => change(this.structure, levelFrom(value, this.level)));
     this.at("units").addEventListener("change", ({ target }) => {
       change(...this.converted(/** @type {HTMLSelectElement} */ (target).value === "own"));
     });
@@ -68,8 +72,11 @@ export class Shaking {
     const own = inHertz(level);
     for (const [id, hidden] of Object.entries({ "own-shaking": !own, "paper-number": own })) this.at(id).hidden = hidden;
     /** @type {HTMLSelectElement} */ (this.at("units")).value = own ? "own" : "paper";
-    this.at("level-label").textContent = `level, ${level.unit}`;
-    showNumber(this.inputs.level, level.value);
+    const { name, value } = levelShown(level);
+    const [least, most] = LEVELS[level.unit].map((end) => levelShown({ ...level, value: end }).value);
+    Object.assign(this.inputs.level, { min: least, max: most });
+    this.at("level-label").textContent = `level, ${name}`;
+    showNumber(this.inputs.level, value);
   }
 
   /** The chosen frequency. @param {number} eta */
@@ -77,7 +84,8 @@ export class Shaking {
     const { eta: slider, number, hertz } = this.inputs;
     showNumber(slider, eta);
     showNumber(number, eta, DIGITS);
-    showNumber(hertz, Number(hertzOf(eta, this.structure).toPrecision(9)));
+    // other units have a digit less: the frequency is one in Hz of nine digits
+    showNumber(hertz, eta * frequencyUnit(this.structure, this.level), ownUnit("frequency").size === 1 ? FINE : FINE - 1);
   }
 
   /** Frequencies that the slider reaches. @param {number} low @param {number} high */

@@ -20,6 +20,7 @@ import { waveform } from "./waveform.js";
  */
 
 const REST = [0, 0, 0, 0];
+const EXPONENT = { periods: 400, most: 12800, distance: 1e-7 };
 const SPAN = { periods: 64, points: 1024, highest: 20 };
 
 /**
@@ -88,7 +89,7 @@ function* spectra(instance, { point, start }) {
   const settled = yield* respond(instance, glued, REST, { transient: 2000, samples: 1, tolerance: 1e-2 });
   const bonded = yield* spectrumOf(instance, glued, 2001, SPAN);
   yield { delaminated, bonded, bondedState: settled.end };
-  yield { exponent: yield* exponentOf(instance, point, start, { periods: 400, distance: 1e-7 }) };
+  yield { exponent: yield* exponentOf(instance, point, start, EXPONENT) };
 }
 
 /**

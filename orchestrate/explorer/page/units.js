@@ -1,56 +1,120 @@
-/** In which units a motion is shown: the paper's, or Hz, mm, g and seconds. */
+/** In which units a motion is shown: the paper's; of a beam of one's own Hz, mm, g and seconds, or what the page was asked for. */
 
-import { GRAVITY, hertzOf, inHertz } from "./excitation.js";
+import { GRAVITY, inHertz } from "./excitation.js";
+import { shown } from "./scale.js";
 import { lengthOf, omegaOf, periodOf } from "./structure.js";
 
 /**
  * @typedef {import("./excitation.js").Level} Level
  * @typedef {import("./structure.js").Structure} Structure
  * @typedef {import("./structure.js").Point} Point
+ * @typedef {{frequency: "Hz" | "rpm" | "rad/s" | "eta", length: "m" | "mm" | "um",
+ *   acceleration: "g" | "m/s2", time: "" | "s" | "periods"}} Asked of a beam of one's own; a time
+ *   that is named is for the paper's beam too
  * @typedef {{length: number, speed: number, time: number, line: number, acceleration: number}} Scale
  *   what is one on the axes, in m, m/s, s and m/s²; `line`: what the excitation's frequency is there
  * @typedef {{frequency: string, gap: string, gapSpeed: string, place: string, speed: string,
  *   time: string, line: string, acceleration: string}} Words
  */
 
-/** @type {Words} */
+const SIZES = { Hz: 2 * Math.PI, rpm: (2 * Math.PI) / 60, "rad/s": 1, m: 1, mm: 1e-3, um: 1e-6, g: GRAVITY, "m/s2": 1 };
+/** @type {Record<string, string>} */
+const SPELLED = { um: "µm", "m/s2": "m/s²" };
+const TIMES = { s: "time, s", periods: "time, shaking periods" };
+/** @type {{frequency: "Hz", length: "mm", acceleration: "g", time: ""}} */
+const USUAL = { frequency: "Hz", length: "mm", acceleration: "g", time: "" };
+const RATIO = "shaking frequency η = Ω/ω";
+
+/** @type {Asked} of the whole page, once it is open */
+let asked = USUAL;
+
+/** Say, once, in which units a beam of one's own is shown. @param {Asked} units */
+export const showIn = (units) => (asked = units);
+
+/** Whether frequencies of a beam of one's own are shown as ratios. */
+const asRatio = () => asked.frequency === "eta";
+
+/** The unit of a kind of numbers of a beam of one's own: its name, and how many Hz, mm or g it is. @param {"frequency" | "length" | "acceleration"} kind */
+export function ownUnit(kind) {
+  const word = asked[kind] === "eta" ? "Hz" : asked[kind];
+  return { name: SPELLED[word] ?? word, size: SIZES[/** @type {keyof SIZES} */ (word)] / SIZES[USUAL[kind]] };
+}
+
+/** The unit of the shaking's frequency. */
+export const frequencyName = () => (asRatio() ? "ratio η = Ω/ω" : ownUnit("frequency").name);
+
+/** All units of a beam of one's own. */
+export const ownNames = () => [asRatio() ? "η" : frequencyName(), ownUnit("length").name, ownUnit("acceleration").name].join(", ");
+
+/** How strongly the box is shaken. @param {Level} level */
+export function levelShown({ unit, value }) {
+  const { name, size } = ownUnit(unit === "mm" ? "length" : "acceleration");
+  const number = size === 1 ? value : Number((value / size).toPrecision(7));
+  return { name, value: number, text: `${shown(number)} ${name}` };
+}
+
+/** The level of a number that was typed; digits that a command's option keeps. @param {number} value @param {Level} level @returns {Level} */
+export function levelFrom(value, { unit }) {
+  const { size } = ownUnit(unit === "mm" ? "length" : "acceleration");
+  return { unit, value: size === 1 ? value : Number((value * size).toPrecision(9)) };
+}
+
+/** The option of a command that answers in these units, where they are not the usual ones. @param {Level} level */
+export function unitsOption(level) {
+  const names = [asked.frequency, asked.length, asked.acceleration, asked.time].filter(Boolean).join(",");
+  return !inHertz(level) || names === "Hz,mm,g" ? "" : ` --units ${names}`;
+}
+
+/** @param {Level} level @returns {Words} */
+export function wordsOf(level) {
+  if (!inHertz(level)) return { ...PAPER, time: TIMES[asked.time || "periods"] };
+  const length = ownUnit("length").name;
+  return {
+    frequency: asRatio() ? RATIO : `shaking frequency, ${frequencyName()}`,
+    gap: `gap, ${length}`,
+    gapSpeed: `gap velocity, ${length}/s`,
+    place: `displacement, ${length}`,
+    speed: `velocity, ${length}/s`,
+    time: TIMES[asked.time || "s"],
+    line: asRatio() ? "frequency / ω" : `frequency, ${frequencyName()}`,
+    acceleration: `acceleration, ${ownUnit("acceleration").name}`,
+  };
+}
+
 const PAPER = {
-  frequency: "shaking frequency η = Ω/ω",
+  frequency: RATIO,
   gap: "gap ξ",
   gapSpeed: "gap velocity ξ′",
   place: "displacement ξ",
   speed: "velocity ξ′",
-  time: "time, shaking periods",
   line: "frequency / Ω",
   acceleration: "acceleration ξ″",
 };
-/** @type {Words} */
-const OWN = {
-  frequency: "shaking frequency, Hz",
-  gap: "gap, mm",
-  gapSpeed: "gap velocity, mm/s",
-  place: "displacement, mm",
-  speed: "velocity, mm/s",
-  time: "time, s",
-  line: "frequency, Hz",
-  acceleration: "acceleration, g",
-};
 
-/** @param {Level} level */
-export const wordsOf = (level) => (inHertz(level) ? OWN : PAPER);
+/** What the shaking's frequency is in rad/s where the axis has 1. @param {Structure} structure @param {Level} level */
+function frequencySize(structure, level) {
+  if (!inHertz(level) || asked.frequency === "eta") return omegaOf(structure);
+  return SIZES[asked.frequency];
+}
 
 /** @param {Point} point @param {Level} level @returns {Scale} */
 export function scaleAt(point, level) {
+  const period = periodOf(point);
   if (inHertz(level)) {
-    return { length: 1e-3, speed: 1e-3, time: 1, line: point.frequency / (2 * Math.PI), acceleration: GRAVITY };
+    const length = SIZES[asked.length];
+    const time = asked.time === "periods" ? period : 1;
+    return { length, speed: length, time, line: point.frequency / frequencySize(point.structure, level), acceleration: SIZES[asked.acceleration] };
   }
   const length = lengthOf(point);
   const omega = omegaOf(point.structure);
-  return { length, speed: length * omega, time: periodOf(point), line: 1, acceleration: length * omega * omega };
+  return { length, speed: length * omega, time: asked.time === "s" ? 1 : period, line: 1, acceleration: length * omega * omega };
 }
 
 /** What a frequency ratio of one is on the axis. @param {Structure} structure @param {Level} level */
-export const frequencyUnit = (structure, level) => (inHertz(level) ? hertzOf(1, structure) : 1);
+export const frequencyUnit = (structure, level) => omegaOf(structure) / frequencySize(structure, level);
+
+/** A frequency on the axis as the ratio. @param {number} value @param {Structure} structure @param {Level} level */
+export const ratioFrom = (value, structure, level) => (value * frequencySize(structure, level)) / omegaOf(structure);
 
 /** What a gap of one a eta^2 is on the axis. @param {Point} point @param {Level} level */
 export const gapUnit = (point, level) => lengthOf(point) / scaleAt(point, level).length;

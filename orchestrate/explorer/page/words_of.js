@@ -1,7 +1,8 @@
 /** A response in words: its numbers, its exponent, and a sentence. */
 
-import { GRAVITY, inHertz } from "./excitation.js";
+import { inHertz } from "./excitation.js";
 import { shown } from "./scale.js";
+import { scaleAt, wordsOf } from "./units.js";
 
 /**
  * @typedef {import("./lyapunov.js").Exponent} Exponent
@@ -32,18 +33,22 @@ export function exponentWords(exponent, repeats) {
 /** How many periods a motion of so many samples is compared over. @param {number} samples */
 const comparedOver = (samples) => Math.max(1, Math.floor(samples / 4));
 
+/** How a beam of one's own is shaken, and how far it opens. @param {number} peak @param {import("./structure.js").Point} point @param {import("./excitation.js").Level} level @returns {Record<string, string>} */
+function ownNumbers(peak, point, level) {
+  const [scale, words] = [scaleAt(point, level), wordsOf(level)];
+  const { eta, frequency, amplitude } = point;
+  return {
+    [words.frequency.replace("shaking ", "")]: shown(scale.line, 6),
+    [words.place.replace("displacement", "amplitude of the box")]: shown(amplitude / scale.length),
+    [words.acceleration.replace("acceleration", "acceleration of the box")]: shown((amplitude * frequency * frequency) / scale.acceleration),
+    [`largest ${words.gap}`]: shown((peak * amplitude * eta * eta) / scale.length),
+  };
+}
+
 /** Numbers of a response for people. @param {Response} response @param {import("./structure.js").Point} point @param {import("./excitation.js").Level} level @returns {Record<string, string>} */
-export function numbersOf({ peak, impacts, contact, multiplicity, gaps }, { eta, frequency, amplitude }, level) {
-  const own = inHertz(level);
+export function numbersOf({ peak, impacts, contact, multiplicity, gaps }, point, level) {
   /** @type {Record<string, string>} */
-  const first = own
-    ? {
-        "frequency, Hz": shown(frequency / (2 * Math.PI), 6),
-        "amplitude of the box, mm": shown(1e3 * amplitude),
-        "acceleration of the box, g": shown((amplitude * frequency * frequency) / GRAVITY),
-        "largest gap, mm": shown(1e3 * peak * amplitude * eta * eta),
-      }
-    : { "frequency ratio η": shown(eta, 6), "largest gap ξ": shown(peak, 6) };
+  const first = inHertz(level) ? ownNumbers(peak, point, level) : { "frequency ratio η": shown(point.eta, 6), "largest gap ξ": shown(peak, 6) };
   const count = shown(impacts, DIGITS);
   const often = multiplicity ? `${multiplicity} period${multiplicity > 1 ? "s" : ""}` : `not within ${comparedOver(gaps.length)} periods`;
   return {

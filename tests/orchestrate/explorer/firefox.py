@@ -9,6 +9,7 @@ from .browser import ENTER, TAB, Browser
 
 START = ("--headless", "--no-remote", "--new-instance", "--remote-debugging-port", "0")
 SIZE = {"width": 1300, "height": 1270}
+TRIES, PATIENCE = 4, 15.0  # s
 SAVED = "text/csv,image/png,image/svg+xml"
 
 
@@ -52,7 +53,23 @@ class Firefox(Browser):
                 return told["result"]
 
     def navigate(self, url):
-        self.ask("browsingContext.navigate", context=self.context, url=url, wait="complete")
+        """Load a page; again where a navigation gets lost, of which Firefox tells nothing."""
+        for _ in range(TRIES):
+            self.ask("browsingContext.navigate", context=self.context, url=url, wait="none")
+            end = time.monotonic() + PATIENCE
+            while time.monotonic() < end:
+                if self.is_at(url.partition("#")[0]):
+                    return
+                time.sleep(0.05)
+        raise AssertionError(f"never loaded: {url}")
+
+    def is_at(self, url):
+        """Whether a page is there as a whole; while one process hands over to another it is not."""
+        try:
+            place, state = self.run("return [location.href, document.readyState]")
+        except AssertionError:
+            return False
+        return place.partition("#")[0] == url and state == "complete"
 
     def run(self, script, *arguments):
         call = f"(function () {{ {script}\n}}).apply(null, {json.dumps(arguments)})"

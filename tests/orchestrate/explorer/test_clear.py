@@ -233,7 +233,14 @@ def test_an_exponent_within_its_error_decides_nothing(opened, name):
     assert "too slow to decide here" in opened.text("help-exponent")
 
 
-@pytest.mark.parametrize("eta", [2.9, 1.7])
+def test_in_a_cloud_an_exponent_goes_on_until_its_sign_is_known(opened):
+    """After 400 periods at 3.05 it is 0.004 with an error of 0.015."""
+    opened.run("explorer.choose(3.05, true, [0, 0, 0, 0])")
+    opened.until(READY)
+    assert opened.text("sentence").startswith("Chaos: never repeats")
+
+
+@pytest.mark.parametrize("eta", [2.9, 1.7, 3.05])
 def test_the_error_of_the_exponent_covers_the_careful_one(opened, eta):
     opened.run("explorer.choose(arguments[0], true)", eta)
     opened.until(READY)

@@ -64,3 +64,17 @@ def test_six_tasks_are_done_by_the_page_alone(first):
     assert first.text("sentence") == "The halves stay closed: no impact."
     first.run(WORDS, "a", "3 g at 30 Hz: open")
     first.until("return document.getElementById('sentence').textContent.includes('4 impacts')")
+
+
+def test_other_motions_of_a_frequency_are_not_hinted_at_with_another_beam(opened):
+    """At 1.3 there are two; the pressed beam at 30 Hz has one."""
+    opened.run("explorer.choose(1.3, true)")
+    opened.until(MOVED)
+    opened.run(WORDS, "button", "Other motions")
+    opened.until("return document.getElementById('basins').dataset.complete === 'true'")
+    assert opened.text("hint") == "Other motions here: see below."
+    opened.run("window.scrollTo(0, 0)")
+    opened.run(WORDS, "a", "6 Pressed shut")
+    opened.until(MOVED)
+    opened.until("return explorer.basin.tried")
+    assert opened.run("return document.getElementById('hint').classList.contains('absent')")

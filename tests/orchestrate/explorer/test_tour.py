@@ -1,6 +1,8 @@
 """The guided tour shows what it says: each of its motions is computed through the FMU."""
 
 import functools
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +12,7 @@ from orchestrate.constants import GRAVITY
 from orchestrate.explorer.tour import HILL, TOUR
 from orchestrate.flags import flag_words
 
+MANUAL = Path(__file__).parents[3] / "docs" / "explorer.md"
 FEW = {"direction": "up", "transient": 200, "samples": 20, "progress": False}
 LOWEST = 1e-5  # gaps over a eta^2 that the diagram draws above its strip of zero
 STOPS = {stop.name: stop for step in TOUR for stop in step.stops}
@@ -153,3 +156,18 @@ def test_each_stop_is_a_link_that_opens_its_motion(everywhere):
     (text,) = browser.run(TEXTS)
     assert not text.startswith(step.text)
     assert not browser.run("return document.querySelectorAll('#tour a[aria-current]').length")
+
+
+LINKS = re.findall(r'"explore\.html#tour=([a-z-]+)"', MANUAL.read_text(encoding="utf-8"))
+
+
+@pytest.mark.slow
+def test_the_six_links_of_the_manual_open_their_motions(everywhere, page):
+    assert [step.stops[0].name for step in TOUR] == LINKS and len(LINKS) == 6
+    for name in LINKS:
+        everywhere.open(page, f"#tour={name}")
+        assert everywhere.chosen() == pytest.approx(STOPS[name].eta, rel=1e-8)
+        assert everywhere.run("return explorer.inspector.choice.start") == list(STOPS[name].start)
+        (step,) = [step for step in TOUR if STOPS[name] in step.stops]
+        (text,) = everywhere.run(TEXTS)
+        assert text.startswith(step.text)

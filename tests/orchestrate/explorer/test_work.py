@@ -50,6 +50,24 @@ TASKS = {  # what a worker is asked, and how often it hands over at the least
 MOST = 25_000  # impacts and steps: 5 to 15 ms on a core of today
 
 
+FIRST = """
+const { pool, inspector } = explorer;
+pool.workers.splice(1);
+const came = [];
+const asked = { point: inspector.choice.point, start: inspector.choice.start, periods: 2000 };
+const order = (name) => pool.ask("section", asked, () => came.push(name));
+order("before");
+const { take } = inspector;
+inspector.take = (found) => {
+  came.push("clicked");
+  take.call(inspector, found);
+};
+explorer.choose(0.4);
+window.orders = [order("after"), order("last")];
+window.came = came;
+"""
+
+
 @pytest.fixture
 def probed(opened):
     """The page, with the kernel and what workers compute at hand."""
@@ -94,3 +112,13 @@ def test_a_motion_that_paused_goes_on_as_if_it_had_not(probed):
     """
     first, second, count, alike = probed.run(same)
     assert first == second > 2 and count > 80_000 and alike
+
+
+def test_a_click_comes_before_all_that_is_asked_later(opened):
+    """Without its urgency the two that are newer have the only worker in turn."""
+    opened.chosen()
+    opened.until("return explorer.regions.complete && explorer.inspector.exponent !== undefined")
+    opened.run(FIRST)
+    opened.until("return ['clicked', 'after', 'last'].every((name) => came.includes(name))")
+    came = opened.run("return came")
+    assert set(came[: came.index("clicked")]) <= {"before"}, came

@@ -9,6 +9,7 @@ from orchestrate.dynamics.borders import border
 from orchestrate.dynamics.branches import branch
 from orchestrate.figures import borders, branches, scales
 from orchestrate.structures import Structure
+from orchestrate.units import with_units
 
 PAPER = Structure.nondimensional()
 
@@ -53,3 +54,14 @@ def test_a_border_is_a_line_over_both_parameters():
     (line,) = figure.axes[0].get_lines()
     assert line.get_xdata() == pytest.approx(curve.eta.values)
     assert line.get_ydata() == pytest.approx(curve.e.values)
+
+
+def test_gaps_of_a_branch_are_lengths_where_they_are_asked_for(exported):
+    beam = Structure.from_halves(m1=1, m2=1, f1=42, f2=55, zeta1=0.007, zeta2=0.007)
+    ends = (50.0 * 2.0 * np.pi, 52.0 * 2.0 * np.pi)
+    found = branch(beam, over="frequency", limits=ends, amplitude=5e-5, progress=False, jobs=1)
+    (plane,) = branches.draw(with_units(found, "Hz, mm")).axes
+    assert plane.get_ylabel() == "gap $x_2 - x_1$ in mm, at $t = nT$"
+    lengths = 1e3 * (found.xi_rel * found.amplitude * found.eta**2).values
+    drawn = np.concatenate([np.ravel(line.get_ydata()) for line in plane.lines])
+    assert np.nanmax(drawn) == pytest.approx(lengths.max())

@@ -153,6 +153,12 @@ def test_jump_voltages():
     made["standard_error"] = (tuple(each), [[np.nan] * 2] * 2)
     (panel,) = jump_voltages.draw(xr.Dataset(made, {"rate": rates, **each}), "set").axes
     assert "bonded: 1.5000 V" in texts(panel)
+    made["jumps"] = (tuple(each), [[np.nan, np.nan]] * 2)
+    (panel,) = jump_voltages.draw(xr.Dataset(made, {"rate": rates, **each}), "set").axes
+    assert texts(panel) == ["bonded", "delaminated"] and not panel.texts
+    made["voltage"] = (("rate", *each), np.full((2, 2, 2), np.nan))
+    (panel,) = jump_voltages.draw(xr.Dataset(made, {"rate": rates, **each}), "set").axes
+    assert [text.get_text() for text in panel.texts] == ["no jump up"]
 
 
 def test_a_run_that_is_no_ramp(exported):

@@ -12,6 +12,7 @@ import pytest
 import xarray as xr
 
 import orchestrate
+from orchestrate.constants import GRAVITY
 from orchestrate.errors import StoreError
 from orchestrate.figures import (
     attractors,
@@ -19,12 +20,15 @@ from orchestrate.figures import (
     labels,
     lyapunov,
     maps,
+    motion,
     orbit_diagram,
     phase_curves,
     phase_grid,
+    shaken,
     time_histories,
 )
 from orchestrate.figures.files import save
+from orchestrate.units import with_units
 
 from .drawing import sweep as small_sweep
 
@@ -165,3 +169,58 @@ def test_an_attractor_is_drawn_as_far_as_it_exists():
     shares = [line.get_ydata() for line in middle.lines if line.get_color() == "#c8c8c8"]
     np.testing.assert_array_equal(shares[0], [1.0, 1.0, 0.3, nan])  # not 0 where it is not there
     np.testing.assert_array_equal(shares[1], [nan, nan, 0.7, 1.0])
+
+
+BEAM = orchestrate.Structure.from_halves(m1=1.5, m2=1.2, f1=42, f2=55, zeta1=0.007, zeta2=0.007)
+
+
+def test_two_structures_have_one_unit_on_an_axis(exported):
+    """The bonded one's spectrum was in m/s2 on an axis in g."""
+    turn = 2.0 * np.pi * 50.0
+    shaken = {"frequency": turn, "amplitude": 5.0 / turn**2, "transient": 50, "periods": 4}
+    answers = [orchestrate.simulate(one, **shaken, **HERE) for one in (BEAM, BEAM.as_bonded())]
+    tops = []
+    for units in ("m/s2", "g"):
+        figure = motion.draw(with_units(answers[0], units), bonded=answers[1])
+        (panel,) = (one for one in figure.axes if one.get_ylabel().startswith("acceleration"))
+        assert panel.get_ylabel().endswith({"m/s2": "in m/s$^2$", "g": "in g"}[units])
+        stems = [each.get_segments() for each in panel.collections]
+        tops.append([max(top for (_, _), (_, top) in lines) for lines in stems if len(lines)])
+    assert len(tops[0]) == 3
+    assert np.allclose(tops[0], GRAVITY * np.array(tops[1]))
+
+
+def test_titles_have_the_level_in_the_unit_asked_for(exported):
+    turn = 2.0 * np.pi * 50.0
+    shaken = {"frequency": turn, "amplitude": 0.5 * GRAVITY / turn**2}
+    data = orchestrate.simulate(BEAM, **shaken, periods=1, **HERE)
+    assert r"$a\,\Omega^2$ = 0.5 g" in labels.title_from_attributes(with_units(data, "g"))
+    assert "$a$ = 0.04968 mm" in labels.title_from_attributes(with_units(data, "mm"))
+    turns = list(np.array([45.0, 50.0]) * 2.0 * np.pi)
+    data = orchestrate.map(BEAM, frequency=turns, level=0.5 * GRAVITY, e=[0.4, 0.5], **HERE)
+    figure = maps.draw(with_units(data, "Hz, mm, g"))
+    assert r"$a\,\Omega^2$ = 0.5 g" in figure.get_suptitle()
+    titled = {one.get_title(loc="left"): one for one in figure.axes}
+    panel = titled["largest gap $x_2 - x_1$ in mm"]
+    lengths = data.xi_rel_max * 0.5e3 * GRAVITY / BEAM.omega**2
+    shown = panel.collections[0].get_array()
+    assert np.allclose(np.sort(np.ravel(shown)), np.sort(lengths.values.ravel()))
+
+
+def test_a_basin_says_its_frequency_once_and_gaps_as_asked(exported):
+    plane = {"x": ("x_rel", 0.1, 0.2, 2), "y": ("v_rel", 0.0, 0.1, 2)}
+    data = orchestrate.basin(PAPER, eta=1.7, **plane, **HERE)
+    for units in ("", "eta"):
+        figure = basin.draw(with_units(data, units))
+        title = figure.get_suptitle() + figure.axes[0].get_title(loc="left")
+        assert title.count(r"\eta") == 1
+    (legend,) = basin.draw(with_units(data, "mm")).legends
+    gap = 1e3 * float(data.xi_rel_max[0])
+    assert any(f"largest gap = {gap:.4g} mm" in text.get_text() for text in legend.get_texts())
+
+
+def test_what_shook_the_box_is_said_in_the_unit_asked_for(exported):
+    shock = orchestrate.Shock(peak=5.0 * GRAVITY, length=0.011)
+    data = orchestrate.shake(BEAM, shock, progress=False)
+    assert shaken.draw(with_units(data, "g")).get_suptitle().startswith("half-sine shock, 5 g for")
+    assert "49.03 m/s$^2$" in shaken.draw(data).get_suptitle()

@@ -1,0 +1,180 @@
+"""The page in the units that it was asked for: axes, fields, numbers, commands, what is saved."""
+
+import math
+import re
+import shlex
+
+import pytest
+
+import orchestrate
+from orchestrate import cli
+from orchestrate.constants import GRAVITY, TURN
+from orchestrate.explorer.page import explore
+from orchestrate.units import Units
+
+from .conftest import SLOW, typed
+
+BEAM = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0, "zeta1": 0.007, "zeta2": 0.007}
+READY = "return explorer.regions.complete && !explorer.regions.quick && explorer.inspector.found"
+SHOWN = """
+const kept = {};
+const { inspector, regions } = explorer;
+const old = inspector.pictures.show;
+inspector.pictures.show = (name, chart, words) => (kept[name] = chart);
+inspector.drawMotion();
+inspector.drawSection();
+inspector.drawSpectrum();
+inspector.pictures.show = old;
+const axes = Object.values(kept).map(({ x, y }) => [x.label, y.label]);
+const [left, right] = [kept.history, kept.spectrum].map(({ x }) => x.high);
+return [[regions.view.axes.x.label, regions.view.axes.gaps.label], ...axes, left, right];
+"""
+LABEL = "return document.querySelector(`label[for=${arguments[0]}]`).textContent"
+ASKED = {  # the words of the frequency, the length, the acceleration, the time on axes; their sizes
+    "rad/s, um, m/s2": ("rad/s", "µm", "m/s²", "s", 1.0, 1e-6, 1.0),
+    "rpm, m, g": ("rpm", "m", "g", "s", TURN / 60.0, 1.0, GRAVITY),
+    "Hz, mm, m/s2, periods": ("Hz", "mm", "m/s²", "shaking periods", TURN, 1e-3, 1.0),
+}
+
+
+def value(browser, name):
+    """A number that stands in a field."""
+    return float(browser.get(name, "value"))
+
+
+@pytest.fixture
+def beam(exported):
+    return orchestrate.Structure.from_halves(**BEAM)
+
+
+@pytest.mark.parametrize(
+    "units", [units if i == 0 else pytest.param(units, marks=SLOW) for i, units in enumerate(ASKED)]
+)
+def test_the_page_follows_the_units_asked_for(chromium, beam, units, tmp_path):
+    turns, lengths, pushes, times, turn, length, push = ASKED[units]
+    browser = chromium
+    browser.open(explore(beam, units=units, output=tmp_path / "page.html"))
+    browser.until(READY)
+    typed(browser, "hertz", f"{300.0 / turn:.9g}")
+    typed(browser, "level", "5")
+    typed(browser, "gap-number", f"{-2e-5 / length:g}")
+    browser.until(READY)
+    browser.until("return explorer.inspector.spectra")
+    point = browser.run("return explorer.inspector.choice.point")
+    assert point["frequency"] == pytest.approx(300.0, rel=2e-9)
+    assert point["amplitude"] * point["frequency"] ** 2 == pytest.approx(5.0 * push, rel=2e-9)
+    assert point["structure"]["clearance"] == pytest.approx(-2e-5, rel=1e-12)
+    assert value(browser, "hertz") == pytest.approx(300.0 / turn, rel=1e-8)
+    assert value(browser, "level") == 5.0
+    assert value(browser, "f1") == pytest.approx(42.0 * TURN / turn, rel=1e-6)
+    assert browser.run(LABEL, "hertz") == f"in {turns}"
+    assert browser.run(LABEL, "level") == f"level, {pushes}"
+    assert browser.run(LABEL, "f2") == f"half 2 alone, {turns}"
+    assert browser.text("own") == f"your own beam: {turns}, {lengths}, {pushes}"
+    diagram, history, phase, section, spectrum, last, highest = browser.run(SHOWN)
+    place, speed = f"displacement from rest, {lengths}", f"velocity, {lengths}/s"
+    assert diagram == [f"shaking frequency, {turns}", f"gap, {lengths}"]
+    assert (history, phase) == ([f"time, {times}", place], [place, speed])
+    assert section == [f"gap, {lengths}", f"gap velocity, {lengths}/s"]
+    assert spectrum == [f"frequency, {turns}", f"acceleration, {pushes}"]
+    assert last == pytest.approx(10.0 if times != "s" else 10.0 * TURN / 300.0)
+    assert highest == pytest.approx(20.0 * 300.0 / turn)
+    numbers = browser.text("numbers")
+    assert f"frequency, {turns}{float(f'{300.0 / turn:.6g}'):g}" in numbers
+    assert f"acceleration of the box, {pushes}5" in numbers
+    peak = browser.run("return explorer.inspector.found.response.peak")
+    gap = peak * point["amplitude"] * point["eta"] ** 2 / length
+    told = numbers.partition(f"largest gap, {lengths}")[2].partition("impacts")[0]
+    assert float(told.replace("−", "-")) == pytest.approx(gap, rel=1e-3)
+    assert browser.console() == []
+
+
+@pytest.mark.slow
+def test_its_commands_and_what_it_saves_are_in_these_units(chromium, beam, tmp_path):
+    units = "rad/s, um, m/s2"
+    browser = chromium
+    browser.open(explore(beam, units=units, output=tmp_path / "page.html"), "#from=1&to=1.1")
+    browser.until(READY)
+    for name in ("command", "motion-command"):
+        arguments = cli.make_parser().parse_args(shlex.split(browser.text(name))[3:])
+        assert Units.from_text(arguments.units) == Units.from_text(units)
+    browser.run("document.querySelector('[data-save=\"history.svg\"]').click()")
+    saved = browser.download("history_eta*.svg").read_text(encoding="utf-8")
+    text = " ".join(re.sub("<[^>]*>", " ", saved).split())
+    for words in ("displacement, µm", "halves of 263.9 and 345.6 rad/s", "rad/s, 9.807 m/s²"):
+        assert words in text
+    assert " Hz" not in text and " mm" not in text
+    assert browser.console() == []
+
+
+@pytest.mark.slow
+def test_a_frequency_ratio_stands_beside_lengths_in_mm(chromium, beam, tmp_path):
+    browser = chromium
+    browser.open(explore(beam, units="eta, mm", output=tmp_path / "page.html"))
+    browser.until(READY)
+    typed(browser, "hertz", "1.25")
+    browser.until(READY)
+    assert browser.run("return explorer.eta") == pytest.approx(1.25, rel=1e-8)
+    assert browser.run(LABEL, "hertz") == "as ratio η = Ω/ω"
+    diagram = browser.run(SHOWN)[0]
+    assert diagram == ["shaking frequency η = Ω/ω", "gap, mm"]
+    assert "frequency η = Ω/ω1.25" in browser.text("numbers")
+    assert browser.console() == []
+
+
+@pytest.mark.slow
+def test_a_measured_spectrum_lies_on_the_axis_of_the_page(chromium, beam, tmp_path):
+    """A line of 30 Hz at 1800 rpm."""
+    browser = chromium
+    browser.open(explore(beam, units="rpm", output=tmp_path / "page.html"))
+    browser.until(READY)
+    browser.until("return explorer.inspector.spectra")
+    rows = "".join(f"{i / 1e3},{math.sin(TURN * 30.0 * i / 1e3):.9f}\\n" for i in range(3000))
+    browser.run(
+        "const given = new DataTransfer();"
+        f"given.items.add(new File([`t [s],a1 [g]\\n{rows}`], 'rig.csv'));"
+        "window.dispatchEvent(new DragEvent('drop', { dataTransfer: given, cancelable: true }));"
+    )
+    browser.until("return explorer.inspector.measured")
+    series = """
+    const kept = {};
+    const { inspector } = explorer;
+    const old = inspector.pictures.show;
+    inspector.pictures.show = (name, chart) => (kept[name] = chart);
+    inspector.drawSpectrum();
+    inspector.pictures.show = old;
+    const { x, y } = kept.spectrum.series.find(({ label }) => label === "measured");
+    return [x[y.indexOf(Math.max(...y))], kept.spectrum.x.high, x[x.length - 1]];
+    """
+    place, end, last = browser.run(series)
+    assert place == pytest.approx(1800.0, abs=30.0)
+    assert last <= end * 1.01
+    assert browser.console() == []
+
+
+def test_a_sweep_by_ratios_is_shown_in_ratios_alone(swept, tmp_path):
+    for units in ("Hz", "mm", "m/s2"):
+        with pytest.raises(orchestrate.InputError, match="expected eta, or a structure instead"):
+            explore(swept, units=units, output=tmp_path / "page.html")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.slow
+def test_a_sweep_in_hertz_is_shown_in_any_units(chromium, beam, tmp_path):
+    """Also in those that the sweep itself is shown in."""
+    etas = [1.0 + 0.01 * i for i in range(11)]
+    turns = [eta * beam.omega for eta in etas]
+    amplitude = [5.0 / turn**2 for turn in turns]
+    asked = {"frequency": turns, "amplitude": amplitude, "transient": 100, "samples": 20}
+    data = orchestrate.sweep(beam, **asked, direction="up", progress=False)
+    for units, own, words in (
+        ("rpm", "", "shaking frequency, rpm"),
+        ("", "rpm, um", "shaking frequency, rpm"),
+        ("eta", "rpm", "shaking frequency η = Ω/ω"),
+    ):
+        shown = data.assign_attrs(shown_in=own) if own else data
+        chromium.open(explore(shown, units=units, output=tmp_path / "page.html"))
+        chromium.until(READY)
+        assert chromium.run("return explorer.regions.view.axes.x.label") == words
+        assert chromium.run("return explorer.regions.diagram === explorer.regions.shipped")
+    assert chromium.console() == []
