@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from ..units import omega_of, scale_of, units_of
 from .labels import (
+    format_length,
     gap_name,
     orbit_label,
     symbol,

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from .branch_lines import draw_bifurcations, draw_branch
 from .labels import EXCITATION, title_from_attributes
 from .orbit_diagram import set_gap_scale
-from .scales import parameter_scale
+from .scales import gap_scale, parameter_scale
 from .style import XI_REL, legend_below, make_panels, styled
 
 

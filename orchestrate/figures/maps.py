@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
 from ..units import omega_of, units_of
-from .labels import gap_name, title_from_attributes
+from .labels import gap_name, is_finite_number, title_from_attributes
 from .scales import axis_values, length_scale
 from .style import (
     BLACK,
