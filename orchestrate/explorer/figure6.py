@@ -11,7 +11,7 @@ from ..access.webassembly import kernel_digest
 from ..running.store import load
 from ..structures import Structure
 from ..units import Units
-from .shipped import SweepData, empty_sweep, in_ratios, read_sweep
+from .sweep_data import SweepData, empty_sweep, in_ratios, read_sweep
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -24,7 +24,7 @@ from ..version import __version__
 from .branches import branch_json
 from .bundle import bundle
 from .figure6 import first_diagram
-from .shipped import SweepData, check_units, read_sweep, shown_in
+from .sweep_data import SweepData, check_units, read_sweep, shown_in
 from .tour import TOUR
 from .words import WORDS
 
