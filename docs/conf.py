@@ -137,9 +137,15 @@ def add_explorer(app: Sphinx, failure: Exception | None) -> None:
         explore(output=Path(app.outdir) / "explore.html")
 
 
+def add_empty_icon(app: Sphinx, page: str, template: str, context: dict[str, Any], _: Any) -> None:
+    """Say that there is no icon: else browsers ask for a file that is not there."""
+    context["metatags"] = context.get("metatags", "") + '<link rel="icon" href="data:,">'
+
+
 def setup(app: Sphinx) -> None:
     """Tell Sphinx about the formulas, the public face and the reading time."""
     app.add_directive("public", Public)
     app.connect("doctree-read", add_reading_time)
+    app.connect("html-page-context", add_empty_icon)
     app.connect("build-finished", add_explorer)
     app.add_html_math_renderer("mathml", (as_mathml, None), (as_mathml_block, None))
