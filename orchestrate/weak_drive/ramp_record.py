@@ -102,7 +102,7 @@ class RampRecord:
         return places
 
     def last_stretch(self, up: bool, places: Sequence[Passing]) -> tuple[int, int] | None:
-        """Return the steps between which a delaminated ramp may lose a motion and not show it.
+        """Return first and last step of a stretch that may hide a loss; None where nothing does.
 
         The jump comes late, the more so the faster the ramp: near its last voltage it may come
         after the end. None where the record shows a passing or a suspected jump there.
