@@ -272,7 +272,10 @@ def test_a_verdict_is_said_in_the_units_asked_for(capsys, tmp_path):
     data = xr.Dataset(
         {"frequency": variable([40.0, 50.0], "Hz", ("frequency",)), "name": ("frequency", [1, 2])}
     )
-    assert diagnosis.label_with_unit("frequency", with_units(data, "rpm").frequency) == "frequency in Hz"
+    assert (
+        diagnosis.label_with_unit("frequency", with_units(data, "rpm").frequency)
+        == "frequency in Hz"
+    )
 
 
 def test_the_explorer_opens_in_the_units_asked_for(ask, tmp_path):
