@@ -19,7 +19,7 @@ def argument_documentation(function: Callable[..., Any], name: str) -> tuple[str
     Examples
     --------
     >>> import orchestrate
-    >>> described(orchestrate.poincare, "transient")
+    >>> argument_documentation(orchestrate.poincare, "transient")
     ('int', 'Excitation periods dropped.')
     """
     import orchestrate
@@ -48,7 +48,7 @@ def help_text(meaning: str) -> str:
 
     Examples
     --------
-    >>> help_of("Whether to compute :func:`orchestrate.lyapunov` too. More.")
+    >>> help_text("Whether to compute :func:`orchestrate.lyapunov` too. More.")
     'compute lyapunov too'
     """
     plain = MARKUP.sub(lambda match: match[1] or match[2], meaning).partition(". ")[0].rstrip(".")

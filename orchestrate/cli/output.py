@@ -238,9 +238,9 @@ def result_name(
     Examples
     --------
     >>> from orchestrate.structures import Structure
-    >>> name_of("simulate", Structure(), {"eta": 0.4, "periods": 2})
+    >>> result_name("simulate", Structure(), {"eta": 0.4, "periods": 2})
     'simulate_e0.7_D0.005_eta0.4_7ed5cb'
-    >>> name_of("branch", Structure(), {"over": "frequency", "limits": (31.4159265, 62.831853)})
+    >>> result_name("branch", Structure(), {"over": "frequency", "limits": (31.4159265, 62.831853)})
     'branch_e0.7_D0.005_5-10Hz_e71461'
     """
     in_hertz = question.get("over") == "frequency"  # then its values and limits are in Hz too
@@ -257,7 +257,7 @@ def result_name(
 
 
 def nonzero_parameters(structure: Structure) -> dict[str, float]:
-    """Return a structure's parameters by name, later additions only if they are not 0."""
+    """Return a structure's parameters by name; those added in later versions unless 0."""
     from ..structures.ranges import ADDED
 
     parameters = structure.parameters()

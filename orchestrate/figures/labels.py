@@ -132,7 +132,7 @@ def format_clearance(clearance: float, data: xr.Dataset) -> str:
 
     Examples
     --------
-    >>> clearance_text(1.5e-3, xr.Dataset()), clearance_text(-2e-5, xr.Dataset())
+    >>> format_clearance(1.5e-3, xr.Dataset()), format_clearance(-2e-5, xr.Dataset())
     ('clearance 1.5 mm', 'pressed together by 20 µm')
     """
     words = "clearance" if clearance > 0.0 else "pressed together by"
@@ -199,7 +199,7 @@ def si_prefix(largest: float) -> tuple[float, str]:
 
     Examples
     --------
-    >>> prefix(0.004)
+    >>> si_prefix(0.004)
     (0.001, 'm')
     """
     return next(((f, name) for f, name in PREFIXES if largest >= f), PREFIXES[0])

@@ -161,7 +161,10 @@ def format_number(value: float, unit: str = "", digits: int = 3) -> str:
 
     Examples
     --------
-    >>> text_of(0.012345, "Hz"), text_of(float("nan")), text_of(12.0, "1"), text_of(2e-6, "m")
+    >>> (
+    ...     format_number(0.012345, "Hz"), format_number(float("nan")),
+    ...     format_number(12.0, "1"), format_number(2e-6, "m"),
+    ... )
     ('0.0123 Hz', '–', '12', '2 µm')
     """
     if not math.isfinite(value):
@@ -175,9 +178,9 @@ def format_with_error(value: float, error: float, unit: str = "") -> str:
 
     Examples
     --------
-    >>> with_error(42.12345, 0.0213, "Hz"), with_error(42.0, float("nan"), "Hz")
+    >>> format_with_error(42.12345, 0.0213, "Hz"), format_with_error(42.0, float("nan"), "Hz")
     ('42.123 ± 0.021 Hz', '42 Hz')
-    >>> with_error(8437.5, 120.0, "N/m"), with_error(-3.4e-7, 4.4e-7, "m")
+    >>> format_with_error(8437.5, 120.0, "N/m"), format_with_error(-3.4e-7, 4.4e-7, "m")
     ('8438 ± 120 N/m', '-0.34 ± 0.44 µm')
     """
     if not (math.isfinite(error) and error > 0.0):

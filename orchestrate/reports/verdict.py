@@ -198,7 +198,7 @@ def format_odds(odds: float) -> str:
 
     Examples
     --------
-    >>> ratio_of(23.7), ratio_of(2001.0), ratio_of(0.0005)
+    >>> format_odds(23.7), format_odds(2001.0), format_odds(0.0005)
     ('24 to 1', '2000 to 1', '1 to 2000')
     """
     larger = f"{float(f'{max(odds, 1.0 / odds):.2g}'):g}"
@@ -210,7 +210,7 @@ def make_sentence(words: str) -> str:
 
     Examples
     --------
-    >>> full("gains agree"), full("They do.")
+    >>> make_sentence("gains agree"), make_sentence("They do.")
     ('Gains agree.', 'They do.')
     """
     return f"{words[:1].upper()}{words[1:].rstrip('.')}."

@@ -237,7 +237,7 @@ def growth_ratio(deviation: Floats) -> float:
 
 
 def spread_over_returns(states: Floats, n: int) -> Floats:
-    """Return the largest distance between states any multiple of n periods apart.
+    """Return how far states lie apart at most that n, 2n, 3n ... periods separate.
 
     Parameters
     ----------

@@ -276,7 +276,7 @@ def draw_parameter_set(seed: int, number: int) -> ParameterSet:
 
     Examples
     --------
-    >>> draw(1, 4) == draw(1, 4), draw(1, 4).kind
+    >>> draw_parameter_set(1, 4) == draw_parameter_set(1, 4), draw_parameter_set(1, 4).kind
     (True, 'heavy')
     """
     rng = np.random.default_rng((seed, number))

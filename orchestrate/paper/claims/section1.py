@@ -94,7 +94,7 @@ def fit_linear_curve(speed: np.ndarray, amplitude: np.ndarray) -> tuple[np.ndarr
 
 
 def ascending_branch(run: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Return a ramp's speeds over omega and amplitudes, mm, up to its maximum or jump."""
+    """Return speeds (over omega) and amplitudes (mm) of a ramp, up to the largest or a jump."""
     speed, amplitude = run.Omega.values, 1000.0 * run.amplitude.values
     jump = float(run.jumps.sel(jump="up"))
     on_branch = np.arange(len(speed)) <= int(amplitude.argmax())
