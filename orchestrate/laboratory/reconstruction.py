@@ -196,7 +196,7 @@ def first_fall(derivatives: Floats, scale: float, length: float) -> float | None
 
 @dataclass(frozen=True)
 class SmoothParts:
-    """Hold the accelerations of box and masses in space, without the impulses of impacts.
+    """Hold the absolute accelerations of box and masses, without the impulses of impacts.
 
     Attributes
     ----------

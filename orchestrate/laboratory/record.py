@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 CHANNELS = {  # long names
     "box_acceleration": "acceleration of the box",
-    "acceleration1": "acceleration of mass 1 in space",
-    "acceleration2": "acceleration of mass 2 in space",
+    "acceleration1": "absolute acceleration of mass 1",
+    "acceleration2": "absolute acceleration of mass 2",
 }
 SHORT_NAMES = {"box_acceleration": "base", "acceleration1": "face 1", "acceleration2": "face 2"}
 FEWEST = 4
@@ -46,7 +46,7 @@ def record(
     time : array_like, optional
         s, in equal steps; or give ``sample_rate``, then it begins at 0.
     box_acceleration, acceleration1, acceleration2 : array_like, optional
-        Accelerations in space of the box and the masses, m/s2; one of them at least.
+        Absolute accelerations of the box and the masses, m/s2; one of them at least.
     sample_rate : float, optional
         Hz; by default from ``time``.
     source : str

@@ -57,7 +57,7 @@ def resonance_curve(
         Of the amplitudes: of an acceleration (``"m/s2"``, ``"g"``), a velocity (``"mm/s"``), a
         displacement (``"m"``, ``"mm"``, ``"um"``), or ``"1"``, a transmissibility: over the base.
     relative : bool
-        Whether the amplitudes are those of the motion relative to the base, not in space.
+        Whether the amplitudes are those of the motion relative to the base, not absolute.
     direction : {"up", "down"}, optional
         In which the frequencies were passed, since two motions may exist at one of them. By default
         their order: up if they ascend.

@@ -64,7 +64,7 @@ function advance(instance, time, target, impacts) {
 }
 
 /**
- * Accelerations of both masses in space between impacts, by (6), in contact with its force (18).
+ * Absolute accelerations of both masses between impacts, by (6), in contact with its force (18).
  * @param {Float64Array | number[]} state
  * @param {boolean} touching
  * @param {Point} point

@@ -1,4 +1,4 @@
-/** Amplitude spectra of mass 1's acceleration in space, impulses included: the paper's Figure 3. */
+/** Amplitude spectra of mass 1's absolute acceleration, impulses included: the paper's Figure 3. */
 
 import { periodOf } from "./structure.js";
 
