@@ -196,7 +196,7 @@ def test_a_signal_in_a_callback_ends_the_command(name, code, word):
     assert done.stderr.count("\n") == 1
 
 
-@pytest.mark.parametrize("place", ["make_parser", "signals", "set_up_logging"])
+@pytest.mark.parametrize("place", ["make_parser", "handled_signals", "set_up_logging"])
 def test_an_interrupt_before_the_command_has_begun(monkeypatch, capfd, place):
     def interrupt(*_):
         raise KeyboardInterrupt
