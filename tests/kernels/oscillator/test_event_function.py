@@ -64,7 +64,7 @@ def size(signal):
 def test_value_and_derivatives(make, values, state, age):
     m, signal = make(values, state)
     found = event_function.evaluate(m, age)[:5]
-    fastest = max(1.0, signal.fastest())
+    fastest = max(1.0, signal.fastest_rate())
     growth = (1.0 + age) ** 3  # of the cubic
     for order, value in enumerate(found):
         scale = (size(signal) + 1.0) * fastest**order * growth
@@ -79,7 +79,7 @@ def test_bounds_hold_for_all_later_times(make, values, state, age):
     m, signal = make(values, state)
     found = event_function.evaluate(m, age)
     later = age + np.concatenate([np.linspace(0.0, 3.0, 300), np.geomspace(3.0, 300.0, 300)])
-    rounding = 1e-12 * (size(signal) + 1.0) * max(1.0, signal.fastest()) ** 5
+    rounding = 1e-12 * (size(signal) + 1.0) * max(1.0, signal.fastest_rate()) ** 5
     fifth = signal.derivative().derivative().derivative().derivative().derivative()
     assert np.abs(fifth.sample(later)).max() <= found[5] * (1 + 1e-9) + rounding
 
@@ -107,7 +107,7 @@ def test_bounds_of_nearly_equal_oscillators_hold_as_long_as_they_are_used(
 @given(structures(clearance=True), STATES, st.integers(5, 8))
 def test_bounds_of_higher_derivatives(values, state, order):
     m, signal = flight_and_gap(values, state)
-    rounding = 1e-12 * (size(signal) + 1.0) * max(1.0, signal.fastest()) ** order
+    rounding = 1e-12 * (size(signal) + 1.0) * max(1.0, signal.fastest_rate()) ** order
     for _ in range(order):
         signal = signal.derivative()
     highest = np.abs(signal.sample(np.linspace(0.0, 60.0, 3000))).max()
@@ -121,7 +121,7 @@ def test_the_derivative_that_decides_on_the_boundary_is_newtons(values, state, l
     m, signal = contact_and_pull(values, state)
     order, value = first_nonzero_derivative(m, state[0], state[1], lowest)
     assume(order >= 0)
-    rate = max(1.0, signal.fastest())
+    rate = max(1.0, signal.fastest_rate())
     scale = (size(signal) + 1.0) * rate ** (order + 2)
     for _ in range(order):
         signal = signal.derivative()
