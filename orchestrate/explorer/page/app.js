@@ -59,7 +59,7 @@ export class App {
     this.waiting = false; // for the start of the chosen response
     const size = Math.max(1, Math.min(4, (navigator.hardwareConcurrency || 2) - 1));
     this.pool = new WorkerPool(worker, compiled, size);
-    this.pool.onerror = (text) => this.tell(text);
+    this.pool.onerror = (text, task) => (task === "motion" ? this.inspector.fail(text) : this.tell(text));
     this.regions = new Regions(/** @type {HTMLCanvasElement} */ (at("diagram")), this.pool, diagram, table, () => this.refreshDiagram());
     this.inspector = new Inspector(at, this.pool, () => this.refreshMotion());
     this.player = new Player(at, this.inspector, {

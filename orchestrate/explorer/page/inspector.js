@@ -59,7 +59,22 @@ export class Inspector {
     this.stop();
     Object.assign(this, { choice, found: null, spectra: null, bonded: null, exponent: undefined });
     this.at("exponent").textContent = "…";
+    this.mark("coming");
     this.ask("motion", { ...choice, periods: this.periods, points: POINTS }, ([found]) => this.take(found), true);
+  }
+
+  /** Whether the chosen motion is there yet: until then what is seen of the one before pales. @param {"coming" | "there" | "failed"} state */
+  mark(state) {
+    const page = this.at("motion").parentElement;
+    if (page) page.dataset.motion = state;
+  }
+
+  /** The chosen motion cannot be computed: say so in place of the one before. @param {string} text */
+  fail(text) {
+    this.mark("failed");
+    this.at("sentence").textContent = `This motion cannot be computed: ${text}`;
+    this.at("exponent").textContent = "–";
+    this.at("numbers").querySelectorAll(".told").forEach((row) => row.remove());
   }
 
   /** The same beam without its delamination, from rest. @param {Point} point */
@@ -89,6 +104,7 @@ export class Inspector {
   /** @param {{response: Response, motion: Motion}} found */
   take(found) {
     this.found = found;
+    this.mark("there");
     this.section = found.response.states;
     const { point } = /** @type {Choice} */ (this.choice);
     this.askUndamaged(point);

@@ -16,7 +16,7 @@ export class WorkerPool {
     this.number = 0;
     /** @type {Map<number, (message: any) => void>} */
     this.waiting = new Map();
-    /** @type {(text: string) => void} */
+    /** @type {(text: string, task: string) => void} */
     this.onerror = () => {};
     this.workers = Array.from({ length: size }, () => {
       const worker = new Worker(place);
@@ -53,7 +53,7 @@ export class WorkerPool {
     };
     this.waiting.set(id, (message) => {
       if (message.parts.length) onparts(message.parts);
-      if (message.error) this.onerror(message.error);
+      if (message.error) this.onerror(message.error, task);
       if (message.done) leave();
     });
     const cancel = () => {

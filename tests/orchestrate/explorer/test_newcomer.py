@@ -66,6 +66,37 @@ def test_six_tasks_are_done_by_the_page_alone(first):
     first.until("return document.getElementById('sentence').textContent.includes('4 impacts')")
 
 
+def test_a_level_at_which_the_beam_shuts_shows_the_motion_there(opened):
+    """It goes on from an open motion, made smaller: its faces touch then, and do not overlap."""
+    opened.run(WORDS, "a", "6 Pressed shut")
+    opened.until(MOVED)
+    for level, sentence in (("1.2", "impacts a period"), ("0.9", "stay closed: no impact")):
+        typed(opened, "level", level)
+        opened.until(MOVED)
+        assert sentence in opened.text("sentence")
+        assert f"acceleration of the box, g{level}" in opened.text("numbers")
+    typed(opened, "gap-number", "-0.1")  # pressed harder: from closed it stays closed
+    opened.until(MOVED)
+    assert "stay closed" in opened.text("sentence")
+    for gap in ("0.001", "-0.001"):  # open at rest, then pressed: the faces may not overlap
+        typed(opened, "gap-number", gap)
+        opened.until(MOVED)
+        assert "impacts a period" in opened.text("sentence")
+
+
+def test_a_motion_that_cannot_be_computed_is_not_shown_as_the_one_before(opened):
+    opened.until(MOVED)
+    before = opened.text("sentence")
+    opened.run("explorer.inspect(explorer.eta, [1, -1, 0, 0])")  # the masses overlap
+    opened.until("return document.querySelector('main').dataset.motion === 'failed'")
+    assert opened.text("sentence").startswith("This motion cannot be computed")
+    assert "impacts a period" not in opened.text("numbers")
+    opened.run("explorer.inspect(explorer.eta, [0, 0, 0, 0])")
+    opened.until(MOVED)
+    assert opened.text("sentence") == before
+    assert opened.run("return document.querySelector('main').dataset.motion") == "there"
+
+
 def test_other_motions_of_a_frequency_are_not_hinted_at_with_another_beam(opened):
     """At 1.3 there are two; the pressed beam at 30 Hz has one."""
     opened.run("explorer.choose(1.3, true)")
