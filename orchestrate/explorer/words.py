@@ -68,7 +68,7 @@ WORDS = {
         "The largest Lyapunov exponent: how fast two motions that begin almost alike come apart, "
         "per unit of τ, with its error. Above zero by more than the error: chaos, as a rule. Below "
         "by more: the motion repeats as a rule, or comes to it. Within its error of zero: it "
-        "nearly repeats, or is still settling: too slow to decide here.",
+        "nearly repeats, or is still settling: undecided here.",
     ),
     "spectrum": Term(
         "spectrum",

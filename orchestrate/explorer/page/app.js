@@ -4,13 +4,14 @@ import { BasinPart } from "./basin_part.js";
 import { diagramCommand, motionCommand } from "./command.js";
 import { Controls } from "./controls.js";
 import { WorkerPool } from "./worker_pool.js";
-import { lanesDiffer, nearest, opensElsewhere, scaled, startAt } from "./diagram.js";
+import { lanesDiffer, nearest, scaled, startAt } from "./diagram.js";
 import { listen } from "./diagram_input.js";
 import { DrivePart } from "./drive_part.js";
 import { inHertz, PAPER, pointAt, sameLevel } from "./excitation.js";
 import { toDefault } from "./field.js";
 import { Inspector } from "./inspector.js";
 import { ETAS, fragmentOf, viewOf } from "./link.js";
+import { openingOf } from "./opening.js";
 import { overlayOf } from "./overlay.js";
 import { load } from "./payload.js";
 import { acceptRecords } from "./record_part.js";
@@ -119,6 +120,7 @@ export class App {
       "command-copy": () => this.copy(at("command").textContent ?? "", "command"),
       "motion-command-copy": () => this.copy(at("motion-command").textContent ?? "", "command"),
       reset: () => this.reset(),
+      "own-beam": () => this.enterOwnBeam(),
     };
     for (const id in clicks) at(id).addEventListener("click", clicks[id]);
     at("direction").addEventListener("change", () => this.open(regions.diagram.low, regions.diagram.high));
@@ -165,6 +167,13 @@ export class App {
     this.basin.forget();
     this.restore(this.first);
     this.refreshMotion();
+  }
+
+  /** Show the fields of a beam of one's own, the first ready to be typed into. */
+  enterOwnBeam() {
+    if (!inHertz(this.level)) this.change(...this.shaking.converted(true));
+    input("f1").focus();
+    input("f1").select();
   }
 
   /** Whether it is known where the response at a frequency begins. @param {number} eta */
@@ -284,8 +293,7 @@ export class App {
     if (!diagram) return;
     const count = diagram.points.length * diagram.lanes.length;
     const ways = diagram.lanes.length > 1 ? ", up and down" : "";
-    const shut = complete && opensElsewhere(diagram) ? ". Impacts under a gap of 0: open at other moments" : "";
-    this.tell(`${diagram.points.length} frequencies${ways}: ${complete ? "all computed" : "computing …"}${shut}`);
+    this.tell(`${diagram.points.length} frequencies${ways}: ${complete ? `all computed${openingOf(diagram)}` : "computing …"}`);
     at("diagram").dataset.complete = String(complete);
     Object.assign(input("back"), { disabled: place <= 0 });
     Object.assign(input("forth"), { disabled: place >= seen.length - 1 });

@@ -18,6 +18,7 @@ export class Sound {
   silence() {
     this.wanted = false;
     this.stop();
+    void this.context?.suspend(); // the machine's sound is let go
   }
 
   /** Samples a second. */

@@ -73,9 +73,9 @@ export class BasinPart {
   /** What is known of other motions. @param {boolean} [differ] whether sweeps up and down do */
   hint(differ = false) {
     const complete = Boolean(this.point) && this.at("basins").dataset.complete === "true";
-    if (this.others) return complete ? "Other motions here: see below." : "There is another motion here:";
+    if (this.others) return complete ? "Other motions: see the coloured map." : "There is another motion at this frequency.";
     if (complete) return `No other motion from ${SIDE * SIDE} starts.`;
-    return differ && !this.tried ? "There may be another motion here:" : "";
+    return differ && !this.tried ? "There may be another motion at this frequency." : "";
   }
 
   /** A motion is shown: mark it, and try a few starts. @param {import("./inspector.js").Choice} choice @param {import("./response.js").Response} response */

@@ -23,8 +23,8 @@ const PAPER = [
 ];
 /** @type {Entry[]} */
 const OWN = [
-  ["f1", "half 1 alone, Hz", 0.1, 1e4],
-  ["f2", "half 2 alone, Hz", 0.1, 1e4],
+  ["f1", "natural frequency 1, Hz", 0.1, 1e4],
+  ["f2", "natural frequency 2, Hz", 0.1, 1e4],
   ["mass1", "mass of half 1, kg", 1e-6, 1e4],
   ["mass2", "mass of half 2, kg", 1e-6, 1e4],
   ["zeta", "damping ratio, %", 0, 20, 0.01],
@@ -106,7 +106,7 @@ export class Controls {
   show(structure, level) {
     this.structure = structure;
     this.at("paper-sliders").hidden = inHertz(level);
-    this.at("own-sliders").hidden = !inHertz(level);
+    for (const id of ["own-sliders", "own-note"]) this.at(id).hidden = !inHertz(level);
     this.fill();
   }
 

@@ -119,8 +119,3 @@ export function lanesDiffer({ lanes }, index) {
   if (!up || !down) return false;
   return up.multiplicity !== down.multiplicity || (up.multiplicity > 0 && Math.abs(up.peak - down.peak) > 0.03 * Math.max(up.peak, down.peak));
 }
-
-/** Whether a response knocks though all of its samples are shut: it opens between them. @param {Diagram} diagram */
-export function opensElsewhere({ lanes }) {
-  return lanes.some(({ found }) => found.some((one) => one && one.impacts > 0 && one.gaps.every((gap) => gap <= 0)));
-}

@@ -10,6 +10,7 @@ import {
   sectionChart,
   spectrumChart,
 } from "./motion_view.js";
+import { opensFrom } from "./opening.js";
 import { shown } from "./scale.js";
 import { Sound } from "./audio.js";
 import { averageWords, exponentWords, numbersOf, sentenceOf } from "./words_of.js";
@@ -121,7 +122,7 @@ export class Inspector {
   showNumbers() {
     const { point, level } = /** @type {Choice} */ (this.choice);
     const { response, motion } = /** @type {{response: Response, motion: Motion}} */ (this.found);
-    this.at("sentence").textContent = sentenceOf(response, this.exponent, motion.contact.some(Boolean));
+    this.at("sentence").textContent = sentenceOf(response, this.exponent, motion.contact.some(Boolean)) + (response.impacts || response.peak > 0 ? "" : opensFrom(point, level));
     this.at("average").textContent = averageWords(response.gaps.length);
     this.at("average").classList.toggle("absent", response.multiplicity > 0 || !response.impacts);
     const list = this.at("numbers");

@@ -48,7 +48,7 @@ export class Player {
   refresh() {
     this.showSpeed();
     const { sound, animation } = this.inspector;
-    this.at("listen-word").textContent = sound.wanted ? "Silence" : "Sound";
+    this.at("listen-word").textContent = sound.wanted ? "Stop sound" : "Sound";
     this.at("play").textContent = animation.running ? "Pause" : "Play";
   }
 

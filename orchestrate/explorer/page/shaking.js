@@ -75,7 +75,7 @@ export class Shaking {
     const { name, value } = levelShown(level);
     const [least, most] = LEVELS[level.unit].map((end) => levelShown({ ...level, value: end }).value);
     Object.assign(this.inputs.level, { min: least, max: most });
-    this.at("level-label").textContent = `level, ${name}`;
+    this.at("level-label").textContent = `level, ${name}${name === "g" ? " (of gravity)" : ""}`;
     showNumber(this.inputs.level, value);
   }
 

@@ -11,8 +11,7 @@ import { scaleAt, wordsOf } from "./units.js";
  */
 
 const DIGITS = 3; // of a mean number of impacts, wherever it is shown
-const UNDECIDED = "nearly repeats, or still settling: too slow to decide here";
-const UNDECIDED_MOTION = "Nearly repeats, or is still settling: too slow to decide here";
+const UNDECIDED_MOTION = "Nearly repeats, or is still settling: undecided here";
 
 /** What the sign of an exponent says; nothing where it is within its error. @param {Exponent} exponent @returns {Kind} */
 export function kindOf({ value, error }) {
@@ -24,9 +23,8 @@ export function kindOf({ value, error }) {
 export function exponentWords(exponent, repeats) {
   const { value, error } = exponent;
   const within = error > 0 ? ` ± ${shown(error, 2)}` : "";
-  const converging = repeats ? "regular" : "it converges, but has not repeated yet";
-  const undecided = repeats ? "within its error of zero: too slow to decide here" : UNDECIDED;
-  const words = { chaotic: "chaotic", converging, undecided }[kindOf(exponent)];
+  const converging = `below 0: ${repeats ? "regular" : "it converges, but has not repeated yet"}`;
+  const words = { chaotic: "above 0: chaotic", converging, undecided: "0 within its error: undecided here" }[kindOf(exponent)];
   return `${shown(value, 3)}${within} (${words})`;
 }
 
@@ -60,7 +58,7 @@ export function numbersOf({ peak, impacts, contact, multiplicity, gaps }, point,
 }
 
 /** How much a mean is worth, of a motion that does not repeat. @param {number} periods of the mean */
-export const averageWords = (periods) => `averages over ${periods} periods; another start gives others by some per cent`;
+export const averageWords = (periods) => `averages over ${periods} periods; from another start they differ by some per cent`;
 
 /** So many impacts a period, or a revolution. @param {number} impacts @param {string} [each] */
 export const countOf = (impacts, each = "a period") => `${shown(impacts, DIGITS)} impact${impacts === 1 ? "" : "s"} ${each}`;

@@ -1,7 +1,9 @@
 """Six tasks of a newcomer, by what the page shows alone: mouse, keys and what is written there."""
 
+import numpy as np
 import pytest
 
+import orchestrate
 from orchestrate.explorer.page import explore
 
 from .conftest import typed
@@ -44,7 +46,7 @@ def test_six_tasks_are_done_by_the_page_alone(first):
     label = first.get("diagram", "aria-label")
     assert "frequency in Hz from 4" in label
     # a second motion at 1.3
-    first.run(WORDS, "button", "Reset to the original")
+    first.run(WORDS, "button", "Reset the whole page")
     typed(first, "eta-number", "1.3")
     first.until(MOVED)
     first.run(WORDS, "button", "Other motions")
@@ -84,6 +86,40 @@ def test_a_level_at_which_the_beam_shuts_shows_the_motion_there(opened):
         assert "impacts a period" in opened.text("sentence")
 
 
+def test_from_which_level_on_a_pressed_beam_opens_is_the_closed_forms(opened):
+    opened.run(WORDS, "a", "6 Pressed shut")
+    opened.until(MOVED)
+    opened.until("return explorer.regions.complete && !explorer.regions.quick")
+    assert opened.text("status").endswith("The halves open only from 36.2 to 47 Hz")
+    given = opened.run("return explorer.structure")
+    parts = {name: given[name] for name in ("m1", "m2", "k1", "k2", "d1", "d2", "clearance")}
+    beam = orchestrate.Structure(**parts, e=given["e"])
+    for hertz in (30.0, 20.0, 55.0):
+        typed(opened, "hertz", f"{hertz:g}")
+        opened.until(MOVED)
+        found = orchestrate.contact_threshold(beam, frequency=[2.0 * np.pi * hertz])
+        level = float(found.threshold_acceleration[0]) / 9.80665
+        assert f"Here they open from {level:.4g} g on." in opened.text("sentence")
+
+
+def test_a_button_leads_to_the_fields_of_ones_own_beam(opened):
+    opened.until(MOVED)
+    opened.click("own-beam")
+    assert opened.get("units", "value") == "own"
+    assert opened.run("return document.activeElement.id") == "f1"
+    assert opened.run("return document.getElementById('own-note').checkVisibility()")
+
+
+def test_silence_lets_the_machines_sound_go(opened):
+    opened.until(MOVED)
+    opened.click("listen")
+    opened.until("return explorer.inspector.sound.playing")
+    opened.click("listen")
+    opened.until("return explorer.inspector.sound.context.state === 'suspended'")
+    opened.click("listen")
+    opened.until("return explorer.inspector.sound.context.state === 'running'")
+
+
 def test_a_motion_that_cannot_be_computed_is_not_shown_as_the_one_before(opened):
     opened.until(MOVED)
     before = opened.text("sentence")
@@ -103,7 +139,7 @@ def test_other_motions_of_a_frequency_are_not_hinted_at_with_another_beam(opened
     opened.until(MOVED)
     opened.run(WORDS, "button", "Other motions")
     opened.until("return document.getElementById('basins').dataset.complete === 'true'")
-    assert opened.text("hint") == "Other motions here: see below."
+    assert opened.text("hint") == "Other motions: see the coloured map."
     opened.run("window.scrollTo(0, 0)")
     opened.run(WORDS, "a", "6 Pressed shut")
     opened.until(MOVED)

@@ -222,7 +222,7 @@ def test_the_page_opens_with_a_motion_that_moves_and_sound_is_a_key_away(everywh
     assert browser.run("return explorer.inspector.sound.context === null")
     browser.keys("s")
     browser.until("return explorer.inspector.sound.playing")
-    assert browser.text("listen") == "Silence (S)"
+    assert browser.text("listen") == "Stop sound (S)"
     browser.keys("s")
     assert browser.run("return !explorer.inspector.sound.playing")
 

@@ -1,0 +1,67 @@
+/** When the halves of a pressed beam open: from which level on, and at which frequencies of a diagram. */
+
+import { gapOffset } from "./clearance.js";
+import { GRAVITY, inHertz } from "./excitation.js";
+import { shown } from "./scale.js";
+import { frequencyName, frequencyUnit, levelShown } from "./units.js";
+
+/**
+ * @typedef {import("./structure.js").Structure} Structure
+ * @typedef {import("./structure.js").Point} Point
+ * @typedef {import("./diagram.js").Diagram} Diagram
+ * @typedef {import("./excitation.js").Level} Level
+ */
+
+const MOST = 3; // ranges that are named
+
+/**
+ * The level at which the contact force of the linear motion first falls to zero, for a preload; as
+ * `orchestrate.contact_threshold` computes it.
+ * @param {Point} point
+ * @param {Level} level whose unit the answer has
+ * @returns {Level}
+ */
+export function thresholdOf({ structure: s, frequency }, { unit }) {
+  const [mass, stiffness, damping] = [s.m1 + s.m2, s.k1 + s.k2, s.d1 + s.d2];
+  const square = frequency * frequency;
+  const preload = (-gapOffset(s) * s.k1 * s.k2) / stiffness;
+  // force on half 2 in phase and a quarter of a period off, each over (stiffness - mass square) + i damping frequency
+  const inPhase = (s.k2 - s.m2 * square) * mass - s.m2 * (stiffness - mass * square);
+  const ahead = (s.d2 * mass - s.m2 * damping) * frequency;
+  const swing = Math.hypot(stiffness - mass * square, damping * frequency);
+  const acceleration = (preload * swing) / Math.hypot(inPhase, ahead);
+  return { unit, value: unit === "g" ? acceleration / GRAVITY : (1e3 * acceleration) / square };
+}
+
+/** From which level on a beam that stays closed opens; nothing of one whose halves are not pressed. @param {Point} point @param {Level} level */
+export function opensFrom(point, level) {
+  if (!inHertz(level) || gapOffset(point.structure) >= 0) return "";
+  const threshold = thresholdOf(point, level);
+  return Number.isFinite(threshold.value) ? ` Here they open from ${levelShown(threshold).text} on.` : "";
+}
+
+/** Where a complete diagram's beam opens, or that it does so unseen. @param {Diagram} diagram */
+export function openingOf(diagram) {
+  const pressed = gapOffset(diagram.structure) < 0;
+  if (pressed) return `. The halves open ${rangesOf(diagram)}`;
+  return opensUnseen(diagram) ? ". Impacts where the gap is drawn as 0: the halves open at other moments of the period" : "";
+}
+
+/** Whether a response knocks though all of its samples are shut: it opens between them. @param {Diagram} diagram */
+const opensUnseen = ({ lanes }) =>
+  lanes.some(({ found }) => found.some((one) => one && one.impacts > 0 && one.gaps.every((gap) => gap <= 0)));
+
+/** At which frequencies of a diagram the halves open, in words. @param {Diagram} diagram */
+function rangesOf({ points, lanes, structure, level }) {
+  const open = points.map((_, i) => lanes.some(({ found }) => (found[i]?.impacts ?? 0) > 0));
+  if (open.every(Boolean)) return "at every frequency of the diagram";
+  if (!open.some(Boolean)) return "at no frequency of the diagram";
+  const unit = frequencyUnit(structure, level);
+  /** @param {number} i */
+  const place = (i) => shown(points[i].eta * unit, 4);
+  const starts = open.flatMap((now, i) => (now && !open[i - 1] ? [i] : []));
+  const ends = open.flatMap((now, i) => (now && !open[i + 1] ? [i] : []));
+  if (starts.length > MOST) return `in ${starts.length} ranges of frequencies`;
+  const name = inHertz(level) ? ` ${frequencyName()}` : "";
+  return `only ${starts.map((start, i) => `from ${place(start)} to ${place(ends[i])}`).join(" and ")}${name}`;
+}
