@@ -17,7 +17,7 @@ from .options import (
     read_excitation,
 )
 from .question import answer_question, format_parameter, parameter_parts, read_earlier_result
-from .start_file import structure_from_start
+from .start_file import keep_file_name, structure_from_start
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,7 +35,9 @@ The excitation says where a first orbit is looked for; without it that is the lo
 def add_parser(commands: Commands) -> None:
     """Add the parser of the command ``branch`` with its options."""
     text = "follow periodic motions along a parameter, stable and unstable, to their bifurcations"
-    question = commands.add_response_command("branch", run, text, EXAMPLES, several=False, from_file=True)
+    question = commands.add_response_command(
+        "branch", run, text, EXAMPLES, several=False, from_file=True
+    )
     option = question.group.add_argument
     over = f"what varies: {CONTINUED} (default: %(default)s)"
     option("--over", default="eta", metavar="NAME", help=over)
@@ -53,7 +55,7 @@ def run(arguments: argparse.Namespace) -> None:
         raise InputError("--limits: nothing given; expected FIRST:LAST")
     over, limits = parse_varied(arguments.over, arguments.limits)
     structure = structure_from_start(arguments)
-    keywords = arguments.question.keywords(arguments)
+    keywords = keep_file_name(arguments.question.keywords(arguments))
     excitation = excitation_arguments(arguments, structure, over, keywords["start"] is not None)
     question = {**excitation, "over": over, "limits": limits, **keywords}
     answer_question(arguments, structure, question, print_result, draw_result)

@@ -1,11 +1,11 @@
-"""Option ``--start`` with a stored result: the structure that it was computed for."""
+"""Structure that a stored result was computed for, which commands that begin with it take."""
 
 from __future__ import annotations
 
 import argparse
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from ..structures.ranges import STRUCTURE
@@ -47,6 +47,16 @@ def structure_from_start(arguments: argparse.Namespace) -> Structure:
     return asked
 
 
+def keep_file_name(question: dict[str, Any]) -> dict[str, Any]:
+    """Return a question with ``box_acceleration`` 0, not None, where ``start`` has none either.
+
+    So the name of the result's file stays what it has always been.
+    """
+    stored = {} if question["start"] is None else question["start"].attrs
+    unset = question["box_acceleration"] is None and not stored.get("box_acceleration")
+    return {**question, "box_acceleration": 0.0} if unset else question
+
+
 def stored_structure(option: str, path: Path) -> Structure:
     """Return the structure for which a stored result was computed; raise if it names none."""
     return structure_of(option, path, read_earlier_result(option, path))
@@ -62,7 +72,7 @@ def structure_of(option: str, path: Path, data: xr.Dataset) -> Structure:
         kind = str(data.attrs.get("call", "")).partition("(")[0]
         what = f"a result of {kind}, " if kind else ""
         raise InputError(
-            f"{option} {path}: {what}without a structure; expected a result of orbit or branch"
+            f"{option} {path}: {what}without a structure; expected an orbit or a branch"
         ) from None
 
 
