@@ -141,8 +141,8 @@ STEPS = (
     ),
     Step(
         "Pressed shut",
-        "Pressed together by {0.05 mm}, the halves stay shut at {30 Hz} and {0.5 g}: no test there can "
-        "find the delamination. It opens at other frequencies, and at a higher level.",
+        "Pressed together by {0.05 mm}, the halves stay shut at {30 Hz} and {0.5 g}: no test "
+        "there can find the delamination. It opens at other frequencies, and at a higher level.",
         (
             View(
                 "pressed",
