@@ -44,7 +44,7 @@ def read_diagram(arguments: argparse.Namespace, branches: xr.Dataset | None) -> 
 
     A printed line says so if the branches are of another structure.
     """
-    drawn = branches is not None and structure_of("--branches", arguments.branches, branches)
+    drawn = None if branches is None else structure_of("--branches", arguments.branches, branches)
     data: Any
     if arguments.result is not None:
         if arguments.set or arguments.structure:

@@ -52,7 +52,7 @@ def keep_file_name(question: dict[str, Any]) -> dict[str, Any]:
 
     So the name of the result's file stays what it has always been.
     """
-    stored = {} if question["start"] is None else question["start"].attrs
+    stored: dict[str, Any] = {} if question["start"] is None else question["start"].attrs
     unset = question["box_acceleration"] is None and not stored.get("box_acceleration")
     return {**question, "box_acceleration": 0.0} if unset else question
 
