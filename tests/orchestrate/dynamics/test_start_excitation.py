@@ -42,11 +42,9 @@ def test_the_constant_acceleration_of_the_start_is_kept(monkeypatch):
     assert given.setting.box_acceleration == 0.0
     along = branch(PAPER, start=start, over="box_acceleration", limits=(0.0, 0.1))
     assert along.value == 0.05
-    jobs = []
-    monkeypatch.setattr(manifolds.ManifoldJob, "saddle", jobs.append)
+    monkeypatch.setattr(manifolds.ManifoldJob, "saddle", lambda job: None)
     monkeypatch.setattr(manifolds, "answer", lambda job, *rest: job)
-    manifolds.manifold(PAPER, start=start)
-    assert jobs[0].box_acceleration == 0.05
+    assert manifolds.manifold(PAPER, start=start).box_acceleration == 0.05
 
 
 def test_a_branch_leaves_along_the_parameter_of_the_one_that_it_leaves():
