@@ -4,32 +4,36 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from .grammar import parse_ends, plain_int
-from .options import Commands, add_structure_options, read_structure_options
+from .grammar import plain_int
+from .options import CONTINUED, Commands, add_structure_options, parse_varied
 from .output import add_result_options, add_units_option
 from .question import answer_question, draw_result, format_parameter, read_earlier_result
+from .start_file import structure_from_start
 
 if TYPE_CHECKING:
     import xarray as xr
 
 EXAMPLES = """\
   {program} border --start branch.nc --bifurcation 0 --over eta,e --limits 2.4:2.9,0.6:0.8
---start is what the command branch has written, with the numbers of its bifurcations."""
+  {program} border --start beam.nc --over hz,e --limits 14:18,0.6:0.8
+--start is what the command branch has written, with the numbers of its bifurcations;
+structure and excitation are those of that branch."""
 
 
 def add_parser(commands: Commands) -> None:
     """Add the parser of the command ``border`` with its options."""
     text = "follow a bifurcation of a branch over two parameters: where a window begins or ends"
     parser = commands.add("border", run, text, EXAMPLES)
-    add_structure_options(parser)
+    add_structure_options(parser, "--start")
     question = commands.add_function_options(parser)
-    over = "both parameters, that of the branch first (default: %(default)s)"
-    question.add("over", parse_names, default="eta,e", metavar="NAME,NAME", help=over)
-    limits = "between which each is followed"
-    question.add("limits", parse_limits, metavar="A:B,C:D", help=limits)
+    option = question.group.add_argument
+    over = f"what varies, that of the branch first, each {CONTINUED} (default: %(default)s)"
+    option("--over", default="eta,e", metavar="NAME,NAME", help=over)
+    limits = "between which each is followed, in its own unit"
+    option("--limits", metavar="A:B,C:D", help=limits)
     question.add(
         "start", read_earlier_result, type=Path, metavar="FILE", help="NetCDF file of a branch"
     )
@@ -40,24 +44,26 @@ def add_parser(commands: Commands) -> None:
     add_result_options(parser)
 
 
-def parse_names(option: str, text: str) -> tuple[str, ...]:
-    """Parse a comma-separated list of parameter names into a tuple."""
-    return tuple(part.strip() for part in text.split(","))
-
-
-def parse_limits(option: str, text: str) -> tuple[tuple[float, float], ...]:
-    """Parse an option's limits of several parameters into a tuple of (low, high) pairs."""
-    return tuple(parse_ends(option, part) for part in text.split(","))
+def parse_both(over: str, limits: str) -> dict[str, tuple[Any, ...]]:
+    """Return ``--over`` and ``--limits`` of two parameters as keywords of the public API."""
+    names, ranges = ([part.strip() for part in text.split(",")] for text in (over, limits))
+    if len(names) != 2:
+        raise InputError(f"--over {over}: expected two names, such as eta,e or hz,e")
+    pairs = [parse_varied(*pair) for pair in zip(names, ranges, strict=False)]
+    if len(ranges) != 2:
+        raise InputError(f"--limits {limits}: expected A:B,C:D, a range for each of {over}")
+    return {"over": tuple(name for name, _ in pairs), "limits": tuple(ends for _, ends in pairs)}
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Run ``border``: trace a bifurcation curve over two parameters; print, store and draw it."""
-    structure = read_structure_options(arguments)
     for name in ("start", "limits"):
         if getattr(arguments, name) is None:
             expected = "a file of the command branch" if name == "start" else "A:B,C:D"
             raise InputError(f"--{name}: nothing given; expected {expected}")
-    question = arguments.question.keywords(arguments)
+    both = parse_both(arguments.over, arguments.limits)
+    structure = structure_from_start(arguments)
+    question = {**both, **arguments.question.keywords(arguments)}
     answer_question(arguments, structure, question, print_result, draw_result)
 
 

@@ -7,16 +7,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from .grammar import parse_ends, plain_int
+from .grammar import plain_int
 from .options import (
-    UNITS,
+    CONTINUED,
     Commands,
     frequency_option,
+    parse_varied,
     read_amplitude,
     read_excitation,
-    read_structure_options,
 )
 from .question import answer_question, format_parameter, parameter_parts, read_earlier_result
+from .start_file import keep_file_name, structure_from_start
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,10 +35,11 @@ The excitation says where a first orbit is looked for; without it that is the lo
 def add_parser(commands: Commands) -> None:
     """Add the parser of the command ``branch`` with its options."""
     text = "follow periodic motions along a parameter, stable and unstable, to their bifurcations"
-    question = commands.add_response_command("branch", run, text, EXAMPLES, several=False)
+    question = commands.add_response_command(
+        "branch", run, text, EXAMPLES, several=False, from_file=True
+    )
     option = question.group.add_argument
-    names = "eta, hz, rpm, frequency, amplitude, box_acceleration or a parameter of the structure"
-    over = f"what varies: {names} (default: %(default)s)"
+    over = f"what varies: {CONTINUED} (default: %(default)s)"
     option("--over", default="eta", metavar="NAME", help=over)
     option("--limits", metavar="FIRST:LAST", help="between which it is followed, in its own unit")
     start = "NetCDF file of an orbit or a branch to begin with"
@@ -49,27 +51,14 @@ def add_parser(commands: Commands) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Run ``branch``: trace a branch of periodic orbits; print its bifurcations; store, draw."""
-    structure = read_structure_options(arguments)
-    over, limits = parse_parameter(arguments)
-    keywords = arguments.question.keywords(arguments)
+    if arguments.limits is None:
+        raise InputError("--limits: nothing given; expected FIRST:LAST")
+    over, limits = parse_varied(arguments.over, arguments.limits)
+    structure = structure_from_start(arguments)
+    keywords = keep_file_name(arguments.question.keywords(arguments))
     excitation = excitation_arguments(arguments, structure, over, keywords["start"] is not None)
     question = {**excitation, "over": over, "limits": limits, **keywords}
     answer_question(arguments, structure, question, print_result, draw_result)
-
-
-def parse_parameter(arguments: argparse.Namespace) -> tuple[str, tuple[float, float]]:
-    """Return the varied parameter's name in the public API, and its limits in that one's unit."""
-    from ..structures.sections import TO_RAD_S
-
-    if arguments.limits is None:
-        raise InputError("--limits: nothing given; expected FIRST:LAST")
-    if arguments.over == "g":
-        raise InputError("--over g: expected --over amplitude, in m, at one frequency")
-    first, last = parse_ends("--limits", arguments.limits)
-    if arguments.over in UNITS:
-        to_rad_s = TO_RAD_S[UNITS[arguments.over]]
-        return "frequency", (to_rad_s(first), to_rad_s(last))
-    return arguments.over, (first, last)
 
 
 def excitation_arguments(

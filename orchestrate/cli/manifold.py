@@ -7,14 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..units import range_text
-from .options import (
-    Commands,
-    frequency_option,
-    read_amplitude,
-    read_excitation,
-    read_structure_options,
-)
+from .options import Commands, frequency_option, read_amplitude, read_excitation
 from .question import answer_question, draw_result, read_earlier_result
+from .start_file import keep_file_name, structure_from_start
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,7 +23,9 @@ What starts beside a saddle with one multiplier outside the unit circle leaves a
 def add_parser(commands: Commands) -> None:
     """Add the parser of the command ``manifold`` with its options."""
     text = "the unstable manifold of a saddle of the stroboscopic map, as a curve to each side"
-    question = commands.add_response_command("manifold", run, text, EXAMPLES, several=False)
+    question = commands.add_response_command(
+        "manifold", run, text, EXAMPLES, several=False, from_file=True
+    )
     start = "NetCDF file of an orbit (default: the orbit that the command orbit finds)"
     question.add("start", read_earlier_result, type=Path, metavar="FILE", help=start)
     names = ("period", "box_acceleration", "length", "spacing", "angle", "distance", "most")
@@ -37,8 +34,8 @@ def add_parser(commands: Commands) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Run ``manifold``: trace the unstable manifold of a saddle; print, store and draw it."""
-    structure = read_structure_options(arguments)
-    question = arguments.question.keywords(arguments)
+    structure = structure_from_start(arguments)
+    question = keep_file_name(arguments.question.keywords(arguments))
     has_excitation = (
         frequency_option(arguments) is not None or read_amplitude(arguments) is not None
     )

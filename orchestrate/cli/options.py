@@ -16,6 +16,7 @@ from .declared_options import option_keywords
 from .grammar import (
     is_single_number,
     parse_changes,
+    parse_ends,
     parse_one_or_more,
     parse_values,
     plain_float,
@@ -39,6 +40,9 @@ ASSUMED = {  # what a beam needs beside what is set, with the names that set it 
     "zeta2": ("d2", "D", "D2"),
     "e": (),
 }
+CONTINUED = (  # what a continuation varies, for help texts
+    "eta, hz, rpm, frequency, amplitude, box_acceleration or a parameter of the structure"
+)
 ETA0 = "eta0 = U/(K omega) is the voltage as no-load speed over omega = sqrt(k1/m1)."
 
 
@@ -127,6 +131,7 @@ class Commands:
         examples: str,
         several: bool = True,
         usual: str = "",
+        from_file: bool = False,
     ) -> FunctionOptions:
         """Add a command on responses to harmonic excitation; return its ``FunctionOptions``.
 
@@ -138,9 +143,11 @@ class Commands:
             Whether frequencies may be a range or a list.
         usual : str
             What is asked where no frequency is given.
+        from_file : bool
+            Whether the structure is by default that of a stored result, ``--start``.
         """
         parser = self.add(name, run, text, examples)
-        add_structure_options(parser)
+        add_structure_options(parser, "--start" if from_file else "")
         add_excitation_options(parser, several, usual)
         self.asked.append(parser)
         return self.add_function_options(parser)
@@ -232,14 +239,23 @@ def list_shipped_sets() -> str:
 # -- structures -----------------------------------------------------------------------------------
 
 
-def add_structure_options(parser: argparse.ArgumentParser, default: str = "paper") -> None:
-    """Add ``--structure`` and ``--set``."""
+def add_structure_options(parser: argparse.ArgumentParser, stored: str = "") -> None:
+    """Add ``--structure`` and ``--set``.
+
+    Parameters
+    ----------
+    parser : argparse.ArgumentParser
+    stored : str
+        The option or argument with a stored result, whose structure is the default; None then
+        stands for an option that was not given.
+    """
     group = parser.add_argument_group("structure")
+    usual = f"that of {stored}, else paper" if stored else "%(default)s"
     group.add_argument(
         "--structure",
-        default=default,
+        default=None if stored else "paper",
         metavar="FILE",
-        help="TOML file with a [structure], or the name of a set (default: %(default)s)",
+        help=f"TOML file with a [structure], or the name of a set (default: {usual})",
     )
     add_set_option(
         group,
@@ -581,6 +597,27 @@ def excitation_by_level(
     plain = argparse.Namespace(**{**vars(arguments), "g": None, "amplitude": "1"})
     frequency = read_excitation(plain, structure, one=one)["frequency"]
     return {"frequency": frequency, "level": apply_to_each(lambda peak: peak * GRAVITY, levels)}
+
+
+def parse_varied(name: str, limits: str) -> tuple[str, tuple[float, float]]:
+    """Return a continued parameter's name in the public API, and its limits in that one's unit.
+
+    Parameters
+    ----------
+    name : str
+        As ``--over`` has it: a frequency by its unit too.
+    limits : str
+        FIRST:LAST of ``--limits``.
+    """
+    from ..structures.sections import TO_RAD_S
+
+    if name == "g":
+        raise InputError("--over g: expected --over amplitude, in m, at one frequency")
+    first, last = parse_ends("--limits", limits)
+    if name in UNITS:
+        to_rad_s = TO_RAD_S[UNITS[name]]
+        return "frequency", (to_rad_s(first), to_rad_s(last))
+    return name, (first, last)
 
 
 def add_beside_option(question: FunctionOptions) -> None:

@@ -113,7 +113,8 @@ def answer_question(
 
 def asked_units(arguments: argparse.Namespace, question: Question) -> tuple[Units, Units]:
     """Return the units of the frequency options given, and the units to display, as ``Units``."""
-    over = UNIT_OF_OPTION.get(str(getattr(arguments, "over", "")), "")
+    varied = str(getattr(arguments, "over", "")).replace(" ", "").split(",")  # two of a border
+    over = next((UNIT_OF_OPTION[name] for name in varied if name in UNIT_OF_OPTION), "")
     given = [unit for name, unit in UNIT_OF_OPTION.items() if getattr(arguments, name, None)]
     keys = excitation_keys(arguments) if "frequency" in question and not given else ()
     given += [unit for key, unit in UNIT_OF_KEY.items() if key in keys]
@@ -129,6 +130,8 @@ def excitation_keys(arguments: argparse.Namespace) -> Collection[str]:
     """Return the keys of the section ``[excitation]`` in the TOML file of ``--structure``."""
     from ..structures.files import parse, resolve
 
+    if arguments.structure is None:  # but that of a stored result
+        return ()
     excitation = parse(resolve(arguments.structure)).get("excitation", {})
     return tuple(excitation)
 

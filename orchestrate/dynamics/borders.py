@@ -22,6 +22,7 @@ from .bifurcation_curve import BifurcationCurve, BifurcationTracer
 from .bifurcations import KINDS, TORUS
 from .branches import (
     NODES,
+    acceleration_at_start,
     complete_excitation,
     require_inside_limits,
     require_orbit_dataset,
@@ -196,7 +197,7 @@ def border(
     eta: ArrayLike | None = None,
     frequency: ArrayLike | None = None,
     amplitude: ArrayLike | None = None,
-    box_acceleration: float = 0.0,
+    box_acceleration: float | None = None,
     longest: float = 0.03,
     most: int = 500,
     **running: Unpack[Running],
@@ -259,9 +260,9 @@ def border(
     require_orbit_dataset(start, several=True)
     names = tuple(over)
     check_parameters(names)
-    if len(names) != 2 or names[0] != start.attrs.get("over"):
+    if len(set(names)) != 2 or len(names) != 2 or names[0] != start.attrs.get("over"):
         raise InputError(
-            f"over = {names!r}: expected two names, the first one that of start, "
+            f"over = {names!r}: expected two different names, the first one that of start, "
             f"{start.attrs.get('over')!r}"
         )
     pairs = checked_limit_pairs(names, limits)
@@ -274,11 +275,12 @@ def border(
         pairs[0],
         structure,
     )
-    second = second_start_value(structure, names[1], given, box_acceleration)
+    acceleration = acceleration_at_start(start, box_acceleration)
+    second = second_start_value(structure, names[1], given, acceleration)
     for name, number, pair in zip(names, (value, second), pairs, strict=True):
         require_inside_limits(name, number, pair)
     fixed = tuple((name, number) for name, number in given if name not in names)
-    setting = Setting(structure, fixed, names, pairs, finite_number(ACCELERATION, box_acceleration))
+    setting = Setting(structure, fixed, names, pairs, acceleration)
     for i in range(2):  # what is out of range is said before any work
         setting.form(np.array([pairs[0][i], pairs[1][i]]))
     job = BorderJob(

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from ..access import OSCILLATOR, EventInstance, finder
 from ..checks import checked_integer
+from ..constants import TURN
 from ..errors import InputError
 from ..response.labels import Variable, flags, variable
 from ..response.questions import checked_numbers, checked_structure
@@ -56,6 +57,7 @@ REPORTED = ("value", "state", "xi", "xi_rel", "xi_rel_max", "multipliers", "resi
 NODES = ("node_kind", *NODE)
 KEPT = (*REPORTED, *NODES)  # variables of orbits that those at bifurcations have, too
 BIFURCATION = "bifurcation"
+OF_OMEGA = {"m1", "k1", "omega", "f1"}  # what changes eta at one frequency
 OrbitSegment = BranchSegment[OrbitPoint]
 
 
@@ -220,7 +222,7 @@ def branch(
     frequency: ArrayLike | None = None,
     amplitude: ArrayLike | None = None,
     period: int = 1,
-    box_acceleration: float = 0.0,
+    box_acceleration: float | None = None,
     longest: float = 0.03,
     most: int = 1000,
     **running: Unpack[Running],
@@ -246,8 +248,8 @@ def branch(
         The excitation, where it does not vary; by default that of ``start``.
     period : int
         Excitation periods of the orbit, without ``start``.
-    box_acceleration
-        As in :func:`orchestrate.orbit`.
+    box_acceleration : float, optional
+        As in :func:`orchestrate.orbit`; by default that of ``start``, else 0.
     longest : float
         Longest step along the branch: about the limits' span, and phases in rad, are measured in 1.
     most : int
@@ -287,22 +289,22 @@ def branch(
     require_delaminated(checked_structure(structure))
     if start is not None:
         require_orbit_dataset(start, several=switch is not None)
+        require_same_parameter(start, over, switch)
     low_high = checked_limits(over, limits)
+    acceleration = acceleration_at_start(start, box_acceleration)
     given = complete_excitation(
         start, (over,), excitation_arguments(eta, frequency, amplitude), low_high, structure
     )
     if start is None:
         start, value = find_first_orbit(
-            structure, over, low_high, given, period, box_acceleration, running
+            structure, over, low_high, given, period, acceleration, running
         )
     else:
-        value = start_value(start, over, switch, structure)
+        value = start_value(start, over, switch, structure, acceleration)
     require_inside_limits(over, value, low_high)
     nodes, kind = start_nodes(start, "switch", switch)
     fixed = tuple((name, number) for name, number in given if name != over)
-    setting = Setting(
-        structure, fixed, (over,), (low_high,), finite_number(ACCELERATION, box_acceleration)
-    )
+    setting = Setting(structure, fixed, (over,), (low_high,), acceleration)
     for limit in low_high:  # what is out of range is said before any work
         setting.form(np.array([limit]))
     job = BranchJob(
@@ -335,6 +337,26 @@ def require_orbit_dataset(start: Any, several: bool) -> None:
         raise InputError(
             "start: several orbits; expected one, such as branch.isel(point=0), or switch="
         )
+
+
+def require_same_parameter(start: xr.Dataset, over: str, switch: int | None) -> None:
+    """Raise unless a branch, at whose bifurcation another begins, is along the same parameter."""
+    along = start.attrs.get("over", over)
+    if switch is not None and along != over:
+        raise InputError(
+            f"over = {over!r}: the branch of start is along {along!r}; expected the same with "
+            f"switch = {switch!r}"
+        )
+
+
+def acceleration_at_start(start: xr.Dataset | None, argument: float | None) -> float:
+    """Return the box's constant acceleration, m/s2: the argument, else that of the start, or 0."""
+    if argument is not None or start is None:
+        return finite_number(ACCELERATION, 0.0 if argument is None else argument)
+    stored = start[ACCELERATION] if ACCELERATION in start.coords else None
+    if stored is not None and not stored.ndim:  # a point of a branch along it
+        return float(stored)
+    return float(start.attrs.get(ACCELERATION, 0.0))
 
 
 def checked_limits(over: str, limits: ArrayLike) -> tuple[float, float]:
@@ -373,10 +395,17 @@ def complete_excitation(
                     "expected over='frequency' where the amplitude matters"
                 )
             wanted = ("frequency", "amplitude")
+        if "eta" in wanted and not OF_OMEGA.isdisjoint(varied) and is_by_frequency(start):
+            wanted = ("frequency", "amplitude")
         return tuple((name, float(start[name].values.flat[0])) for name in wanted)
     if over in ("eta", "frequency", "amplitude") and over not in names:
         return (*arguments, (over, limits[0]))
     return arguments
+
+
+def is_by_frequency(start: xr.Dataset) -> bool:
+    """Return whether an orbit or a branch was asked for by the frequency, not by eta."""
+    return "frequency" in str(start.attrs.get("excitation", ""))
 
 
 def find_first_orbit(
@@ -412,12 +441,15 @@ def find_first_orbit(
 def require_inside_limits(over: str, value: float, limits: tuple[float, float]) -> None:
     """Raise ``InputError`` unless the parameter's start value lies between its limits."""
     if not limits[0] <= value <= limits[1]:
+        unit = f" rad/s, {value / TURN:.6g} Hz," if over == "frequency" else ""
         raise InputError(
-            f"limits = {limits!r}: {over} = {value!r} at the start; expected it inside"
+            f"limits = {limits!r}: {over} = {value!r}{unit} at the start; expected it inside"
         )
 
 
-def start_value(start: xr.Dataset, over: str, switch: int | None, structure: Structure) -> float:
+def start_value(
+    start: xr.Dataset, over: str, switch: int | None, structure: Structure, acceleration: float
+) -> float:
     """Return the parameter's value at the start: of the orbit, or of bifurcation ``switch``."""
     if switch is not None:
         return float(
@@ -426,7 +458,7 @@ def start_value(start: xr.Dataset, over: str, switch: int | None, structure: Str
     if over in start.coords:
         return float(start[over])
     if over == ACCELERATION:
-        return 0.0
+        return acceleration
     return structure.get(over)
 
 

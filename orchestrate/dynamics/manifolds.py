@@ -19,7 +19,7 @@ from ..response.questions import checked_positive, checked_structure
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .branches import complete_excitation, require_orbit_dataset
+from .branches import acceleration_at_start, complete_excitation, require_orbit_dataset
 from .closed_form import Floats
 from .continuation import NoConvergenceError, fix_sign
 from .curve_growth import (
@@ -39,7 +39,6 @@ from .orbits import (
     FirstGuess,
     SingleOrbitQuestion,
     excitation_arguments,
-    finite_number,
     guess_from_result,
     orbit,
 )
@@ -354,7 +353,7 @@ def manifold(
     frequency: ArrayLike | None = None,
     amplitude: ArrayLike | None = None,
     period: int = 1,
-    box_acceleration: float = 0.0,
+    box_acceleration: float | None = None,
     length: float = 5.0,
     spacing: float = 0.005,
     angle: float = 0.2,
@@ -374,8 +373,8 @@ def manifold(
         The excitation; by default that of ``start``.
     period : int
         Excitation periods of the orbit, without ``start``.
-    box_acceleration
-        As in :func:`orchestrate.orbit`.
+    box_acceleration : float, optional
+        As in :func:`orchestrate.orbit`; by default that of ``start``, else 0.
     length : float
         Arclength of each side, over the orbit's size.
     spacing : float
@@ -428,6 +427,7 @@ def manifold(
     """
     require_delaminated(checked_structure(structure))
     arguments = excitation_arguments(eta, frequency, amplitude)
+    acceleration = acceleration_at_start(start, box_acceleration)
     if start is None:
         run_options: dict[str, Any] = {
             name: value
@@ -435,14 +435,14 @@ def manifold(
             if name in ("fmu", "build_folder", "progress")
         }
         keywords: dict[str, Any] = {**dict(arguments), **run_options, "period": period}
-        start = orbit(structure, box_acceleration=box_acceleration, **keywords)
+        start = orbit(structure, box_acceleration=acceleration, **keywords)
     require_orbit_dataset(start, several=False)
     excitation = complete_excitation(start, ("e",), arguments, (0.0, 0.0), structure)
     job = ManifoldJob(
         name=f"manifold_{structure.label()}",
         structure=structure,
         excitation=excitation,
-        box_acceleration=finite_number(ACCELERATION, box_acceleration),
+        box_acceleration=acceleration,
         start=guess_from_result(start),
         period=start.sizes["sample"],
         length=checked_positive("length", length),

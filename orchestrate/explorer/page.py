@@ -25,7 +25,7 @@ from .branches import branch_json
 from .bundle import bundle
 from .figure6 import first_diagram
 from .sweep_data import SweepData, check_units, read_sweep, shown_in
-from .tour import TOUR
+from .tour import TOUR, tour_in
 from .words import WORDS
 
 if TYPE_CHECKING:
@@ -138,7 +138,7 @@ def render_page(
             style=Markup(style),  # own sources, in elements whose content HTML takes as it stands
             script=Markup(script),
             worker=Markup(bundle(scripts, "worker")),
-            tour=TOUR,
+            tour=tour_in(shown),
             words=WORDS,
             branches=drawn["branches"],
             source=made_by,

@@ -1,24 +1,30 @@
 """Texts and motions of the guided tour, six steps for a first visitor.
 
+Numbers with a unit stand in braces in the texts, as ``{30 Hz}`` or ``{36.2 and 47 Hz}``, and are
+shown in the units of the page.
 That a step shows what it says is computed by a test, through the FMU.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from decimal import Decimal
 from typing import Any
 
 from ..structures import Structure
+from ..units import FACTORS
 
 START = (0.0, 0.0, 0.0, 0.0)
 OTHER = (-0.055, -0.041, -2.263, -2.141)  # leads to the second motion at 1.3
 OMEGA = 2.0 * math.pi * 40.0  # of the pressed beam, whose other numbers are the paper's, rad/s
 HILL = (36.2, 47.0)  # Hz: where the pressed beam opens at 0.5 g, and nowhere else in its region
 AT_LOW_LEVEL = (
-    f"The diagram is of 0.5 g: the beam opens between {HILL[0]:g} and {HILL[1]:g} Hz alone."
+    f"The diagram is of {{0.5 g}}: the beam opens between {{{HILL[0]:g} and {HILL[1]:g} Hz}} alone."
 )
-AT_HIGH_LEVEL = "The diagram is of 3 g: the beam opens at every frequency of it."
+AT_HIGH_LEVEL = "The diagram is of {3 g}: the beam opens at every frequency of it."
 PRESSED: dict[str, Any] = {
     "region": (0.25, 1.5),
     "changes": {
@@ -26,6 +32,10 @@ PRESSED: dict[str, Any] = {
         "clearance": -5e-5,
     },
 }
+QUANTITY = re.compile(r"\{([\d.]+)( and ([\d.]+))? (Hz|mm|g)\}")  # in a text
+KINDS = {"Hz": "frequency", "mm": "length", "g": "acceleration"}
+SPELLED = {"um": "µm", "m/s2": "m/s²"}
+USUAL = {kind: unit for unit, kind in KINDS.items()}
 
 
 @dataclass(frozen=True)
@@ -90,7 +100,7 @@ class Step:
     stops: tuple[View, ...]
 
 
-TOUR = (
+STEPS = (
     Step(
         "Quiet",
         "A delaminated beam, split along its middle into two halves, is shaken. Well above its "
@@ -131,13 +141,20 @@ TOUR = (
     ),
     Step(
         "Pressed shut",
-        "Pressed together by 0.05 mm, the halves stay shut at 30 Hz and 0.5 g: no test there can "
-        "find the delamination. It opens at other frequencies, and at a higher level.",
+        "Pressed together by {0.05 mm}, the halves stay shut at {30 Hz} and {0.5 g}: no test "
+        "there can find the delamination. It opens at other frequencies, and at a higher level.",
         (
-            View("pressed", "0.5 g at 30 Hz: shut", 0.75, level=0.5, about=AT_LOW_LEVEL, **PRESSED),
+            View(
+                "pressed",
+                "{0.5 g} at {30 Hz}: shut",
+                0.75,
+                level=0.5,
+                about=AT_LOW_LEVEL,
+                **PRESSED,
+            ),
             View(
                 "pressed-hill",
-                "0.5 g at 41 Hz: open",
+                "{0.5 g} at {41 Hz}: open",
                 1.025,
                 level=0.5,
                 about=AT_LOW_LEVEL,
@@ -145,7 +162,7 @@ TOUR = (
             ),
             View(
                 "pressed-open",
-                "3 g at 30 Hz: open",
+                "{3 g} at {30 Hz}: open",
                 0.75,
                 level=3.0,
                 about=AT_HIGH_LEVEL,
@@ -154,3 +171,56 @@ TOUR = (
         ),
     ),
 )
+
+
+def in_units(text: str, shown: Mapping[str, str]) -> str:
+    """Return a text of the tour with its numbers in the units of a page.
+
+    Parameters
+    ----------
+    text : str
+        Numbers with a unit in braces.
+    shown : mapping
+        Units of ``frequency``, ``length`` and ``acceleration``, words of :mod:`orchestrate.units`.
+
+    Examples
+    --------
+    >>> rpm = {"frequency": "rpm", "length": "um", "acceleration": "m/s2"}
+    >>> in_units("shut at {30 Hz} and {0.5 g}", rpm)
+    'shut at 1800 rpm and 4.903 m/s²'
+    """
+
+    def convert(match: re.Match[str]) -> str:
+        """Return one or two numbers and their unit, in that of the page."""
+        first, _, last, unit = match.groups()
+        sizes = FACTORS[KINDS[unit]]
+        word = shown[KINDS[unit]]
+        scale = sizes[unit] / (OMEGA if word == "eta" else sizes[word])
+        both = [plain_number(float(each) * scale) for each in (first, last) if each]
+        numbers = " and ".join(both)
+        return f"η = {numbers}" if word == "eta" else f"{numbers} {SPELLED.get(word, word)}"
+
+    return QUANTITY.sub(convert, text)
+
+
+def plain_number(value: float) -> str:
+    """Return a number with four digits, without an exponent."""
+    return format(Decimal(f"{value:.4g}"), "f")
+
+
+def tour_in(shown: Mapping[str, str]) -> tuple[Step, ...]:
+    """Return the steps of the tour with all their texts in the units of a page."""
+    return tuple(
+        replace(
+            step,
+            text=in_units(step.text, shown),
+            stops=tuple(
+                replace(stop, label=in_units(stop.label, shown), about=in_units(stop.about, shown))
+                for stop in step.stops
+            ),
+        )
+        for step in STEPS
+    )
+
+
+TOUR = tour_in(USUAL)

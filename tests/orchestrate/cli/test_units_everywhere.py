@@ -278,6 +278,12 @@ def test_a_verdict_is_said_in_the_units_asked_for(capsys, tmp_path):
     )
 
 
+TOURS = {  # what the page says of the pressed beam
+    **dict.fromkeys(["", "eta", "Hz,mm,g", "mm"], "by 0.05 mm, the halves stay shut at 30 Hz and"),
+    "rad/s,um,m/s2": "by 50 µm, the halves stay shut at 188.5 rad/s and 4.903 m/s²:",
+}
+
+
 def test_the_explorer_opens_in_the_units_asked_for(ask, tmp_path):
     page = tmp_path / "page.html"
     asked = (("", "paper"), ("eta", "paper"), ("Hz,mm,g", "g"), ("rad/s,um,m/s2", "g"), ("mm", "g"))
@@ -289,3 +295,4 @@ def test_the_explorer_opens_in_the_units_asked_for(ask, tmp_path):
         shown = json.loads(re.search(r'"shown": ?(\{[^}]*\})', text)[1])
         words = Units.from_text(units).with_defaults(Units("Hz", "mm", "g"))
         assert level == "paper" or Units(**shown) == words
+        assert TOURS[units] in text, units

@@ -9,7 +9,7 @@ import pytest
 
 import orchestrate
 from orchestrate.constants import GRAVITY
-from orchestrate.explorer.tour import HILL, TOUR
+from orchestrate.explorer.tour import HILL, TOUR, tour_in
 from orchestrate.flags import flag_words
 
 MANUAL = Path(__file__).parents[3] / "docs" / "explorer.md"
@@ -171,3 +171,39 @@ def test_the_six_links_of_the_manual_open_their_motions(everywhere, page):
         (step,) = [step for step in TOUR if STOPS[name] in step.stops]
         (text,) = everywhere.run(TEXTS)
         assert text.startswith(step.text)
+
+
+@pytest.mark.parametrize(
+    ("frequency", "length", "acceleration", "text", "labels", "about"),
+    [
+        ("Hz", "mm", "g", "0.05 mm, 30 Hz, 0.5 g", "41 Hz, 3 g", "between 36.2 and 47 Hz alone"),
+        (
+            *("rpm", "um", "m/s2", "50 µm, 1800 rpm, 4.903 m/s²", "2460 rpm, 29.42 m/s²"),
+            "between 2172 and 2820 rpm alone",
+        ),
+        (
+            *("rad/s", "m", "g", "0.00005 m, 188.5 rad/s, 0.5 g", "257.6 rad/s, 3 g"),
+            "between 227.5 and 295.3 rad/s alone",
+        ),
+        (
+            "eta",
+            "mm",
+            "g",
+            "η = 0.75, 0.5 g",
+            "η = 1.025, 3 g",
+            "between η = 0.905 and 1.175 alone",
+        ),
+    ],
+)
+def test_all_texts_are_in_the_units_of_the_page(
+    frequency, length, acceleration, text, labels, about
+):
+    shown = {"frequency": frequency, "length": length, "acceleration": acceleration}
+    step = tour_in(shown)[-1]
+    said = " ".join(stop.label for stop in step.stops)
+    assert all(part in step.text for part in text.split(", "))
+    assert all(part in said for part in labels.split(", "))
+    assert about in step.stops[0].about
+    whole = " ".join([step.text, said, *(stop.about for stop in step.stops)])
+    other = {"Hz", "mm", "g"} - set(shown.values())
+    assert not other & set(re.findall(r"[a-zA-Z]+", whole)) and "{" not in whole

@@ -1,0 +1,150 @@
+"""Commands that begin with a stored result take its structure, or say that it is another."""
+
+from __future__ import annotations
+
+import argparse
+import functools
+import json
+import math
+
+import pytest
+import xarray as xr
+
+import orchestrate
+from orchestrate.cli.question import asked_units
+from orchestrate.structures import Structure
+
+BEAM = Structure.from_file("beam")
+STORED = BEAM.replace(e=0.65)
+HERTZ = ("--over", "hz", "--limits", "14:18")
+COMMANDS = {
+    "branch": HERTZ,
+    "border": ("--over", "hz,e", "--limits", "14:18,0.6:0.8"),
+    "manifold": (),
+}
+
+
+@pytest.fixture
+def path(tmp_path):
+    """Return a file whose attributes are those of a branch of the beam along the frequency."""
+    attributes = {name: float(value) for name, value in STORED.parameters().items()}
+    call = {"call": "branch(...)", "over": "frequency", "identity": json.dumps({"question": {}})}
+    path = tmp_path / "stored.nc"
+    data = xr.Dataset({"stable": ("point", [1])}, attrs={**attributes, **call})
+    data.to_netcdf(path)
+    return path
+
+
+@pytest.fixture
+def asked(monkeypatch):
+    """Return a list to which each question of a command is added, which is not computed."""
+    questions = []
+
+    def unanswered(function):
+        @functools.wraps(function)
+        def ask_only(structure, **question):
+            questions.append((structure, question))
+            raise RuntimeError("not computed")
+
+        return ask_only
+
+    for command in COMMANDS:
+        monkeypatch.setattr(orchestrate, command, unanswered(getattr(orchestrate, command)))
+    return questions
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_the_structure_is_that_of_the_file(ask, path, asked, command):
+    done = ask(command, "--start", path, *COMMANDS[command])
+    ((structure, _),) = asked
+    assert structure == STORED
+    assert done.out == ""
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_another_structure_is_taken_and_said_in_one_line(ask, path, asked, command):
+    said = f"--start {path} was computed for another structure: "
+    for options, structure, difference in (
+        (("--set", "e=0.6"), STORED.replace(e=0.6), "e = 0.65 there, 0.6 here"),
+        (("--structure", "beam"), BEAM, "e = 0.65 there, 0.7 here"),
+        (("--structure", "paper"), Structure(), "m1 = 1.5 there, 1 here"),
+    ):
+        done = ask(command, "--start", path, *COMMANDS[command], *options)
+        assert asked.pop()[0] == structure
+        (line,) = done.out.splitlines()
+        assert line.startswith(said + difference)
+    same = ("--structure", "beam", "--set", "e=0.65")
+    assert ask(command, "--start", path, *COMMANDS[command], *same).out == ""
+
+
+@pytest.mark.parametrize("command", ["branch", "manifold"])
+def test_without_a_file_it_is_the_paper_s_as_before(ask, asked, command):
+    limits = ("--limits", "2.4:2.8") if command == "branch" else ()
+    done = ask(command, "--eta", "2.5", *limits)
+    ((structure, question),) = asked
+    assert structure == Structure() and question["box_acceleration"] == 0.0
+    assert done.out == ""
+
+
+def test_a_file_without_a_structure_is_refused(ask, tmp_path):
+    path = tmp_path / "other.nc"
+    xr.Dataset({"x": ("t", [1.0])}, attrs={"call": "analyse(...)"}).to_netcdf(path)
+    done = ask("branch", "--start", path, *HERTZ)
+    done.complaint(f"--start {path}", "a result of analyse", "expected an orbit or a branch")
+
+
+@pytest.mark.parametrize(
+    ("over", "limits", "in_rad_s"),
+    [
+        ("hz,e", "14:18,0.6:0.8", 2.0 * math.pi),
+        ("rpm,e", "840:1080,0.6:0.8", 2.0 * math.pi / 60.0),
+        ("frequency,e", "88:113,0.6:0.8", 1.0),
+        (" hz , e", "14:18, 0.6:0.8", 2.0 * math.pi),
+    ],
+)
+def test_border_reads_the_frequencies_that_branch_reads(ask, path, asked, over, limits, in_rad_s):
+    ask("border", "--start", path, "--over", over, "--limits", limits)
+    name, ends = over.split(",")[0].strip(), limits.split(",")[0]
+    ask("branch", "--start", path, "--over", name, "--limits", ends)
+    (_, border), (_, branch) = asked
+    assert border["over"] == ("frequency", "e") and branch["over"] == "frequency"
+    assert border["limits"] == (branch["limits"], (0.6, 0.8))
+    first, last = map(float, ends.split(":"))
+    assert branch["limits"] == pytest.approx((first * in_rad_s, last * in_rad_s))
+
+
+@pytest.mark.parametrize(
+    ("over", "limits", "words"),
+    [
+        ("hz", "14:18,1:2", ["--over hz", "two names"]),
+        ("hz,e", "14:18", ["--limits 14:18", "a range for each"]),
+        ("g,e", "1:2,0.6:0.8", ["--over g", "--over amplitude"]),
+    ],
+)
+def test_border_says_what_is_wrong_with_its_parameters(ask, path, over, limits, words):
+    ask("border", "--start", path, "--over", over, "--limits", limits).complaint(*words)
+
+
+def test_border_says_frequencies_in_the_unit_of_the_question(path):
+    for over, unit in (("hz,e", "Hz"), ("rpm,e", "rpm"), ("frequency,e", "rad/s"), ("e,hz", "Hz")):
+        arguments = argparse.Namespace(command="border", over=over, structure=None, units="")
+        usual, shown = asked_units(arguments, {"over": ("frequency", "e")})
+        assert usual.frequency == shown.frequency == unit
+
+
+def test_the_explorer_draws_branches_over_the_diagram_of_their_structure(
+    ask, path, monkeypatch, tmp_path
+):
+    pages = []
+
+    def write(data, **options):
+        pages.append(data)
+        raise RuntimeError("not written")
+
+    monkeypatch.setattr("orchestrate.explorer.page.explore", write)
+    shown = ("explore", "--no-open", "--branches", path)
+    assert ask(*shown).out == ""
+    other = ask(*shown, "--structure", "paper").out
+    assert pages == [STORED, Structure()]
+    assert other.startswith(f"--branches {path} was computed for another structure: m1 = 1.5")
+    ask("explore", path, "--structure", "paper", "--no-open").complaint("expected one of them")

@@ -1,0 +1,54 @@
+"""What is kept of the excitation of a stored orbit or branch where a continuation begins."""
+
+import pytest
+import xarray as xr
+
+from orchestrate.dynamics import borders, branches, manifolds
+from orchestrate.dynamics.branches import branch, complete_excitation
+from orchestrate.dynamics.orbits import orbit
+from orchestrate.errors import InputError
+from orchestrate.structures import Structure
+
+PAPER = Structure.nondimensional(e=0.7, D=0.005)
+BEAM = Structure.from_file("beam")
+BY_FREQUENCY = "[['frequency', 97.4], ['amplitude', 0.0001]]"
+
+
+def asked(excitation):
+    """Return a stored orbit as far as its excitation goes."""
+    at = {"eta": 1.3, "frequency": 97.4, "amplitude": 1e-4}
+    return xr.Dataset(coords=at, attrs={"excitation": excitation})
+
+
+@pytest.mark.parametrize("over", ["k1", "m1", "omega", "f1"])
+def test_where_omega_varies_the_frequency_is_kept_that_was_asked_for(over):
+    for varied in ((over,), ("e", over)):
+        kept = complete_excitation(asked(BY_FREQUENCY), varied, (), (0.0, 1.0), BEAM)
+        assert kept == (("frequency", 97.4), ("amplitude", 1e-4))
+        kept = complete_excitation(asked("[['eta', 1.3]]"), varied, (), (0.0, 1.0), BEAM)
+        assert kept == (("eta", 1.3),)
+    kept = complete_excitation(asked(BY_FREQUENCY), ("e",), (), (0.0, 1.0), BEAM)
+    assert kept == (("eta", 1.3),)
+
+
+def test_the_constant_acceleration_of_the_start_is_kept(monkeypatch):
+    """Of an orbit that is stable, whose manifold is refused after that."""
+    start = orbit(PAPER, eta=1.7, box_acceleration=0.05)
+    for module in (branches, borders):
+        monkeypatch.setattr(module, "answer", lambda job, *rest: job)
+    kept = branch(PAPER, start=start, limits=(1.6, 1.8))
+    assert kept.setting.box_acceleration == 0.05
+    given = branch(PAPER, start=start, limits=(1.6, 1.8), box_acceleration=0.0)
+    assert given.setting.box_acceleration == 0.0
+    along = branch(PAPER, start=start, over="box_acceleration", limits=(0.0, 0.1))
+    assert along.value == 0.05
+    monkeypatch.setattr(manifolds.ManifoldJob, "saddle", lambda job: None)
+    monkeypatch.setattr(manifolds, "answer", lambda job, *rest: job)
+    assert manifolds.manifold(PAPER, start=start).box_acceleration == 0.05
+
+
+def test_a_branch_leaves_along_the_parameter_of_the_one_that_it_leaves():
+    attributes = {"over": "frequency", "excitation": BY_FREQUENCY}
+    start = xr.Dataset({"node_kind": (("point", "node"), [[0]])}, attrs=attributes)
+    with pytest.raises(InputError, match="over = 'e': .* along 'frequency'; expected the same"):
+        branch(BEAM, start=start, switch=0, over="e", limits=(0.6, 0.8))
