@@ -203,16 +203,12 @@ export class App {
     input("direction").value = diagram.direction;
     const other = !sameStructure(this.structure, diagram.structure) || !sameLevel(this.level, diagram.level);
     this.set(diagram.structure, diagram.level);
-    if (other) {
-      this.tour.describe("");
-      this.carryOn();
-    }
+    if (other) this.carryOn();
   }
 
   /** Other parameters: the diagram follows, the motion goes on from where it was; frequencies stay, in Hz those in Hz once one was chosen there. @param {Structure} structure @param {Level} [level] */
   change(structure, level = this.level) {
     this.tour.leave();
-    this.tour.describe("");
     const hertz = inHertz(level) && inHertz(this.level) && !this.carried;
     const held = hertz ? omegaOf(this.structure) / omegaOf(structure) : 1;
     this.eta *= held;

@@ -62,6 +62,7 @@ function rangesOf({ points, lanes, structure, level }) {
   const starts = open.flatMap((now, i) => (now && !open[i - 1] ? [i] : []));
   const ends = open.flatMap((now, i) => (now && !open[i + 1] ? [i] : []));
   if (starts.length > MOST) return `in ${starts.length} ranges of frequencies`;
-  const name = inHertz(level) ? ` ${frequencyName()}` : "";
-  return `only ${starts.map((start, i) => `from ${place(start)} to ${place(ends[i])}`).join(" and ")}${name}`;
+  const asRatio = !inHertz(level) || frequencyName().startsWith("ratio");
+  const ranges = starts.map((start, i) => `from ${place(start)} to ${place(ends[i])}`).join(" and ");
+  return asRatio ? `only ${ranges.replaceAll("from ", "from η = ")}` : `only ${ranges} ${frequencyName()}`;
 }

@@ -6,7 +6,6 @@ export class TourPart {
     this.stops = stops;
     this.links = tour.querySelectorAll("a");
     this.texts = /** @type {NodeListOf<HTMLElement>} */ (tour.querySelectorAll("[data-text]"));
-    this.about = /** @type {NodeListOf<HTMLElement>} */ (tour.querySelectorAll("[data-stop]"));
     this.name = ""; // of the stop that is shown
     tour.querySelector("#words-link")?.addEventListener("click", showWords);
     for (const button of tour.querySelectorAll("[data-close]")) button.addEventListener("click", () => this.show(""));
@@ -29,13 +28,7 @@ export class TourPart {
       const here = link.closest("ol") ? step === link.dataset.step : link.hash === `#tour=${name}`;
       link.ariaCurrent = here ? "step" : null;
     }
-    this.describe(name);
     for (const text of this.texts) text.hidden = text.dataset.text !== step;
-  }
-
-  /** Show what is said of a stop's diagram; without a name, of none. @param {string} name */
-  describe(name) {
-    for (const text of this.about) text.hidden = text.dataset.stop !== name;
   }
 
   /** Something else than the stop is shown now; its step's text and links stay. */

@@ -92,7 +92,9 @@ def test_where_another_motion_is_known_the_page_says_so(opened, eta, others):
         "return [...document.querySelectorAll('#basins li')].map((row) => row.innerText)"
     )
     assert len(rows) == 1 + others
-    words = "Other motions: see the coloured map." if others else "No other motion from 4096 starts."
+    words = (
+        "Other motions: see the coloured map." if others else "No other motion from 4096 starts."
+    )
     assert hinted(opened) and opened.text("hint") == words
     assert sum("shown now" in row for row in rows) == 1
     if others:
@@ -118,7 +120,10 @@ def test_where_all_of_a_few_starts_lead_to_one_motion_nothing_hints_at_another(o
     assert opened.run("return explorer.basin.few.length") == 1
     assert opened.run("return explorer.basin.hint(true)") == ""  # whatever the sweeps suggest
     opened.run("explorer.basin.tried = false")
-    assert opened.run("return explorer.basin.hint(true)") == "There may be another motion at this frequency."
+    assert (
+        opened.run("return explorer.basin.hint(true)")
+        == "There may be another motion at this frequency."
+    )
 
 
 def test_no_sentence_moves_what_is_below_it(opened):
