@@ -90,7 +90,7 @@ def draw(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] = ()) 
     for name in (name for row in rows[-2:] for name in row):  # panels of two widths
         axes[name].tick_params(labelbottom=True)
         axes[name].set_xlabel(x.label)
-    legend_below(figure, axes.values(), columns=6)
+    legend_below(figure, reversed(list(axes.values())), columns=6)
     return figure
 
 
