@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 
 from ..units import as_shown
 from .labels import in_shown_units, plain_title
+from .resonance import COLOURS as STRUCTURES
 from .scales import label_with_unit, typeset_array_unit
 from .style import (
     BLACK,
@@ -35,6 +36,7 @@ COLOURS = (BLUE, RED, BLACK, ORANGE, GREEN, PURPLE)
 DECADES = 6  # of an axis, below the largest value
 FEW = 300.0  # largest over smallest value of an axis that has plain numbers
 DEGREES = 180.0 / np.pi
+NOTE_ENDS = {"left": (0.0, 0.4), "right": (0.6, 1.0), "center": (0.3, 0.7)}  # of a panel's width
 
 
 @styled
@@ -121,12 +123,15 @@ def iterate_records(results: Results, channel: str) -> Iterator[tuple[str, xr.Da
 
 
 def colours_by_label(results: Results) -> dict[str, str]:
-    """Return a dict from record label to line colour; black for one labelled "measured"."""
-    free = [colour for colour in COLOURS if colour != BLACK]
-    colours: dict[str, str] = {}
-    for label in results:
+    """Return a dict from record label to line colour.
+
+    Black is one labelled "measured"; a structure has the colour that it has in other pictures.
+    """
+    colours = {label: STRUCTURES[label] for label in results if label in STRUCTURES}
+    free = [colour for colour in COLOURS if colour not in (BLACK, *colours.values())]
+    for number, label in enumerate(label for label in results if label not in colours):
         measured = label.startswith("measured") and BLACK not in colours.values()
-        colours[label] = BLACK if measured else free[len(colours) % len(free)]
+        colours[label] = BLACK if measured else free[number % len(free)]
     return colours
 
 
@@ -161,12 +166,28 @@ def phase_in_degrees(phase: xr.DataArray) -> np.ndarray:
 
 
 def note_hidden(axes: Axes, values: Mapping[str, list[np.ndarray]]) -> None:
-    """Write into a panel the labels of records whose curves lie below its axis."""
+    """Write into a panel the labels of records whose curves lie below its axis.
+
+    The words stand where the lowest visible curve is highest.
+    """
     low = axes.get_ylim()[0]
     hidden = [name for name, arrays in values.items() if np.nanmedian(np.hstack(arrays)) < low]
     if any(hidden):
-        place: Any = {"transform": axes.transAxes, "ha": "left", "va": "bottom"}
-        axes.text(0.01, 0.02, f"below this axis: {', '.join(hidden)}", fontsize=8, **place)
+        free = {align: lowest_curve(axes, *ends) for align, ends in NOTE_ENDS.items()}
+        align = max(free, key=lambda each: free[each])
+        place: Any = {"transform": axes.transAxes, "ha": align, "va": "bottom"}
+        x = {"left": 0.01, "right": 0.99, "center": 0.5}[align]
+        axes.text(x, 0.02, f"below this axis: {', '.join(hidden)}", fontsize=8, **place)
+
+
+def lowest_curve(axes: Axes, begin: float, end: float) -> float:
+    """Return the lowest height of a panel's visible curves between two parts of its width."""
+    axes.autoscale_view(scaley=False)
+    to_axes = axes.transData + axes.transAxes.inverted()
+    points = np.concatenate([to_axes.transform(line.get_xydata()) for line in axes.lines])
+    x, y = points.T
+    inside = (x >= begin) & (x <= end) & (y >= 0.0)
+    return float(y[inside].min()) if inside.any() else 1.0
 
 
 def split_sweep(data: xr.Dataset) -> Iterator[tuple[xr.Dataset, str]]:

@@ -119,6 +119,6 @@ def label_attractors(plane: Axes, data: xr.Dataset) -> None:
     if rest:
         words = f"{rest:.1%}: {data.sizes['attractor'] - len(COLOURS)} others"
         plane.plot([], [], "s", color=OTHER, label=words)
-    none = float(np.mean(data.attractor_of.values < 0))
-    if none:
-        plane.plot([], [], "s", color="white", markeredgecolor=OTHER, label=f"{none:.1%}: none")
+    if (data.attractor_of.values < 0).any():  # in no share
+        words = "no states: the gap would be below 0"
+        plane.plot([], [], "s", color="white", markeredgecolor=OTHER, label=words)

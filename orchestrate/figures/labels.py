@@ -279,7 +279,7 @@ def plain_title(title: str) -> str:
     Examples
     --------
     >>> plain_title("Orders: swept sine: e0.6_f42-55_clearance-2e-05")
-    'Orders: swept sine, $e$ = 0.6, $f_1$, $f_2$ = 42, 55 Hz, clearance = -2e-05 m'
+    'Orders: swept sine, $e$ = 0.6, $f_1$ = 42 Hz, $f_2$ = 55 Hz, clearance = -2e-05 m'
     >>> plain_title("Orders: Record beam.csv")
     'Orders: Record beam.csv'
     """
@@ -291,12 +291,30 @@ def plain_title(title: str) -> str:
 
 
 def expand_label_part(part: str) -> str:
-    """Return one part of a structure's file-name label, such as ``f42-55``, as words."""
+    r"""Return one part of a structure's file-name label, such as ``f42-55``, as words.
+
+    Examples
+    --------
+    >>> expand_label_part("zeta0.005-0.01")
+    '$\\zeta_1$ = 0.5 %, $\\zeta_2$ = 1 %'
+    """
     match = PART_OF_LABEL.fullmatch(part)
     if match is None or not match["values"]:
         return part
     name, values = match["name"], re.split(r"(?<=\d)-", match["values"])
     names = [name] if len(values) == 1 else [f"{name}{i + 1}" for i in range(len(values))]
-    letters = [symbol(each).partition(" in ") for each in names]
-    numbers = f"{', '.join(values)} {letters[0][2]}".rstrip()
-    return f"{', '.join(letter for letter, _, _ in letters)} = {numbers}"
+    return ", ".join(map(format_label_value, names, values))
+
+
+def format_label_value(name: str, text: str) -> str:
+    """Return a parameter and its value with unit; damping ratios in per cent, as titles have them.
+
+    Examples
+    --------
+    >>> format_label_value("zeta", "0.007"), format_label_value("clearance", "-2e-05")
+    ('zeta = 0.7 %', 'clearance = -2e-05 m')
+    """
+    letter, _, unit = symbol(name).partition(" in ")
+    if name.startswith("zeta"):
+        text, unit = f"{100.0 * float(text):.4g}", "%"
+    return f"{letter} = {text} {unit}".rstrip()

@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
 from ..units import omega_of, units_of
-from .labels import gap_name, is_finite_number, title_from_attributes
-from .scales import axis_values, length_scale
+from .labels import gap_name, is_finite_number, si_prefix, title_from_attributes
+from .scales import axis_values, has_frequency_unit, length_scale
 from .style import (
     BLACK,
     GREEN,
@@ -41,7 +41,7 @@ SHADES = (
     *("#dfe6ee", SKY, GREEN, YELLOW, ORANGE, RED, PURPLE),  # 1 to 7
     *("#7a4a1e", BLACK),  # 8 and more, none
 )
-KINDS = ("1", "2", "3", "4", "5", "6", "7", "8+", "none")
+KINDS = ("1", "2", "3", "4", "5", "6", "7", "8+", "not\nperiodic")
 NOTHING = "#d9d9d9"  # no impacts
 
 
@@ -76,10 +76,18 @@ def draw(*maps: xr.Dataset, title: str = "") -> Figure:
 
 
 def shown_values(data: xr.Dataset, name: str) -> tuple[xr.DataArray, str]:
-    """Return a quantity and its label; gaps as lengths where a unit of length is asked for."""
-    unit = length_of_ratio(data) if name == "xi_rel_max" and units_of(data).length else None
+    """Return a quantity and its label; gaps and impulses in SI, or in the unit asked for.
+
+    They stay ratios where neither the structure is in SI nor a unit of length is asked for.
+    """
+    in_si = has_frequency_unit(data) or units_of(data).length
+    unit = length_of_ratio(data) if name in ("xi_rel_max", "impulse_max") and in_si else None
     if unit is None:
         return data[name], COLUMNS[name]
+    if name == "impulse_max":  # over m1 omega a eta^2
+        impulses = (data[name] * unit * float(data.attrs["m1"]) * omega_of(data)).rename(name)
+        factor, letter = si_prefix(float(impulses.max()))
+        return impulses / factor, f"largest impulse in {letter}N s"
     lengths = (data[name] * unit).rename(name)
     factor, letter = length_scale(data, float(lengths.max()))
     return lengths / factor, f"largest {gap_name(data)} in {letter}m"

@@ -61,7 +61,7 @@ def draw_phase(plane: Axes, data: xr.Dataset, size: float) -> None:
         data, float(abs(data.v_rel).max()) if data.sizes["point"] else 1.0
     )
     plane.plot(data.x_rel / factor, data.v_rel / pace, color=BLACK, markersize=size, **POINTS)
-    plane.set(xlabel=f"gap in {letter}m", ylabel=f"its rate in {speed_letter}m/s")
+    plane.set(xlabel=f"gap in {letter}m", ylabel=f"gap velocity in {speed_letter}m/s")
 
 
 def draw_impacts(plane: Axes, data: xr.Dataset, size: float) -> None:

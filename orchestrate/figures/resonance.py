@@ -31,6 +31,7 @@ STYLES: dict[str, Any] = {  # down lies on up
     "up": {"linestyle": "-", "linewidth": 1.8, "alpha": 0.75},
     "down": {"linestyle": "--", "linewidth": 1.0},
 }
+JUMP_LINES: dict[str, Any] = {"up": ":", "down": (0, (6.0, 2.0, 1.0, 2.0))}
 LAYOUT: list[Any] = [["x1_max", "x2_max"], ["a1_max", "a2_max"], ["x_rel_max", "x_rel_max"]]
 NAMES = {
     "x1_max": "max $|x_1|$ in {}",
@@ -84,12 +85,12 @@ def draw(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] = ()) 
         draw_peaks(plane, data, name, parameter, x)
         if name in LENGTHS and branches:
             draw_overlay(plane, branches, name, display_unit(data, data[name])[0])
-    if "x_rel_max" in axes:
+    if "x_rel_max" in axes and data.sizes.get("jump"):
         draw_jumps(axes["x_rel_max"], data, parameter, x)
     for name in (name for row in rows[-2:] for name in row):  # panels of two widths
         axes[name].tick_params(labelbottom=True)
         axes[name].set_xlabel(x.label)
-    legend_below(figure, axes.values(), columns=6)
+    legend_below(figure, reversed(list(axes.values())), columns=6)
     return figure
 
 
@@ -180,19 +181,17 @@ def draw_peaks(axes: Axes, data: xr.Dataset, name: str, parameter: str, x: AxisV
 
 
 def draw_jumps(axes: Axes, data: xr.Dataset, parameter: str, x: AxisValues) -> None:
-    """Draw a dotted line at each jump of the gap, with its frequency and direction."""
-    count = data.sizes.get("jump", 0)
-    if count:
-        axes.set_ylim(bottom=axes.get_ylim()[0] / 4.0)  # room for words below the curves
-    for i in range(count):
-        jump = data.isel(jump=i)
-        direction = str(jump.jump_direction.values)
-        at = axis_position(float(jump[f"jump_{parameter}"]), data[parameter], x)
-        axes.axvline(at, color=BLACK, linestyle=":", linewidth=0.8)
-        text_style: Any = {"fontsize": 7, "rotation": 90, "va": "bottom"}
-        side = "left" if direction == "up" else "right"
-        words = f" {x.text(at)}, jump {direction}"
-        axes.text(at, 0.02, words, ha=side, transform=axes.get_xaxis_transform(), **text_style)
+    """Draw a line at each jump of the gap; list their frequencies above the panel."""
+    texts = []
+    for direction, style in JUMP_LINES.items():
+        jumps = data[f"jump_{parameter}"].where(data.jump_direction == direction, drop=True)
+        positions = sorted(axis_position(float(jump), data[parameter], x) for jump in jumps)
+        for at in positions:
+            axes.axvline(at, color=BLACK, linewidth=0.8, linestyle=style, label=f"jump {direction}")
+        if positions:
+            texts.append(f"jump{'s' * (len(positions) > 1)} {direction} at {x.text(*positions)}")
+    if texts:
+        axes.set_title("; ".join(texts), fontsize=8)
 
 
 def axis_position(value: float, parameter: xr.DataArray, x: AxisValues) -> float:

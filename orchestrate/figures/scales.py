@@ -20,6 +20,9 @@ FREQUENCIES = {
 }
 
 
+MAX_LISTED = 6  # numbers that a list of values has before it says how many more there are
+
+
 class AxisValues(NamedTuple):
     """Values and label of a horizontal axis, in display units.
 
@@ -32,10 +35,22 @@ class AxisValues(NamedTuple):
     values: np.ndarray
     label: str
 
-    def text(self, value: float) -> str:
-        """Format a value with the unit of its axis."""
-        unit = self.label.rpartition(" in ")[2] if " in " in self.label else ""
-        return f"{value:.5g} {unit}".rstrip()
+    def text(self, *values: float) -> str:
+        """Format values with the unit of the axis once, or after its letter where it has none.
+
+        Examples
+        --------
+        >>> AxisValues(np.ones(1), "frequency in Hz").text(9.9, 16.3)
+        '9.9, 16.3 Hz'
+        >>> AxisValues(np.ones(1), "$e$").text(0.3)
+        '$e$ = 0.3'
+        """
+        words, _, unit = self.label.rpartition(" in ")
+        letter = f"{unit} = " if not words and unit.startswith("$") else ""
+        left = len(values) - MAX_LISTED
+        numbers = ", ".join(f"{value:.5g}" for value in values[:MAX_LISTED])
+        text = f"{letter}{numbers} {unit if words else ''}".rstrip()
+        return f"{text} and {left} more" if left > 0 else text
 
 
 def varied_dimension(data: xr.DataArray) -> str:

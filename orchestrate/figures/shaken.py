@@ -44,12 +44,12 @@ def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) ->
     box, masses, gap, impacts = rows
     scale, unit = acceleration_scale(data)
     draw_signal(box, data, "box_acceleration", scale, color=BLACK)
-    box.set_ylabel(f"box in {unit}")
+    box.set_ylabel(f"acceleration\nof box in {unit}")
     for name, style in MASSES:
         draw_signal(masses, data, name, scale, alpha=0.55, **style)
     if bonded is not None:
         draw_bonded_envelope(masses, bonded, scale)
-    masses.set_ylabel(f"masses in {unit}")
+    masses.set_ylabel(f"acceleration\nof masses in {unit}")
     masses.legend(ncols=3, loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.2)
     factor, letter = length_scale(data, float(data.x_rel.max()))
     draw_signal(gap, data, "x_rel", factor, color=BLACK)

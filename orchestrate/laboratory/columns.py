@@ -204,6 +204,22 @@ def taken_text(table: Columns, places: Mapping[str, int]) -> str:
     )
 
 
+def column_taken(attributes: Mapping[Any, Any], channel: str) -> str:
+    """Return what a record's attribute ``columns`` says a channel was read from, or its name.
+
+    Examples
+    --------
+    >>> read_as = {"columns": 'time "t", base "shaker table", face 1 "left"'}
+    >>> column_taken(read_as, "box_acceleration"), column_taken({}, "box_acceleration")
+    ('base "shaker table"', 'box_acceleration')
+    """
+    word = re.escape(SHORT_NAMES.get(channel, channel))
+    ends = "|".join(map(re.escape, ("time", *SHORT_NAMES.values())))
+    pattern = rf'(?:^|, )({word} ".*?")(?=, (?:{ends}) "|, by their order|$)'
+    match = re.search(pattern, str(attributes.get("columns", "")))
+    return match[1] if match else channel
+
+
 def column_label(table: Columns, column: Column) -> str:
     """Return the names of file and column as a text for messages."""
     return f'{table.path}, column "{column.name}"'

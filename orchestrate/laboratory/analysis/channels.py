@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ...errors import InputError
 from ...response.labels import Variable, variable
+from ..columns import column_taken
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -43,6 +44,8 @@ class Channels:
         m/s2.
     title : str
         Of the record.
+    box_label : str
+        What messages call the box's acceleration: the column of the file that it was read from.
     """
 
     time: Floats
@@ -50,6 +53,7 @@ class Channels:
     names: tuple[str, ...]
     values: Floats
     title: str
+    box_label: str = BOX
 
     @classmethod
     def from_record(cls, record: xr.Dataset, needed: tuple[str, ...] = ()) -> Channels:
@@ -84,7 +88,8 @@ class Channels:
             raise InputError(f"record: {time.size} samples; expected at least {FEWEST_SAMPLES}")
         rate = sample_rate(time, record.attrs.get("sample_rate"))
         values = np.stack([finite(name, array, time) for name, array in present.items()])
-        return cls(time, rate, tuple(present), values, str(record.attrs.get("title", "record")))
+        title, box_label = str(record.attrs.get("title", "record")), column_taken(record.attrs, BOX)
+        return cls(time, rate, tuple(present), values, title, box_label)
 
     @property
     def box(self) -> Floats:

@@ -245,10 +245,10 @@ def measured_phase(channels: Channels) -> Floats:
 
     box = channels.box - channels.box.mean()
     if not np.ptp(box) > 0.0:
-        raise InputError(f"{BOX}: does not move; expected a swept sine")
+        raise InputError(f"{channels.box_label}: does not move; expected a swept sine")
     angle = np.unwrap(np.angle(hilbert(box))) + 0.5 * math.pi
     if not angle[-1] > angle[0]:
-        raise InputError(f"{BOX}: its phase does not grow; expected a swept sine")
+        raise InputError(f"{channels.box_label}: its phase does not grow; expected a swept sine")
     return np.asarray(angle)
 
 
@@ -267,7 +267,8 @@ def against_box(
     beside = float(np.median(residual[row] / np.maximum(np.abs(box) * 0.5**0.5, 1e-300)))
     if not beside <= NO_SINE:
         raise InputError(
-            f"{BOX}: {beside:.2g} of its sine's rms is no sine; expected a swept sine, or phase="
+            f"{channels.box_label}: {beside:.2g} of its sine's rms is no sine; "
+            "expected a swept sine, or phase="
         )
     shift = np.angle(box)
     return np.asarray(amplitudes * np.exp(-1j * np.array(orders)[:, None] * shift))

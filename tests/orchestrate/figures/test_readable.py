@@ -13,10 +13,12 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 
 from orchestrate.figures import (
+    analysis,
     attractors,
     basin,
     labels,
     lyapunov,
+    manifold,
     maps,
     marks,
     motion,
@@ -161,6 +163,22 @@ def mapped(si: bool) -> xr.Dataset:
     return xr.Dataset(found, sides, {**known(si), "e": "0.1 ... 0.9"})
 
 
+def tracked(size: float = 1.0) -> xr.Dataset:
+    """Orders of a swept sine; beside large ones a small record is visible at its start alone."""
+    hertz = np.linspace(9.0, 16.0, 60)
+    amplitude = size * np.ones((1, 2, 1)) * np.where(hertz < 9.2, 3e-3 / size, 1.0)
+    variables = {
+        "amplitude": (("channel", "order", "time"), amplitude, {"units": "m/s2"}),
+        "phase": (("channel", "order", "time"), 0.0 * amplitude, {"units": "rad"}),
+        "sweep_rate": ("time", np.ones(60)),
+    }
+    sides = {"channel": ["acceleration1"], "order": [1.0, 2.0], "time": np.arange(60.0)}
+    sides["frequency"] = ("time", hertz, {"units": "Hz"})
+    structure = Structure.from_halves(m1=1.5, m2=1.2, f1=11.9, f2=13.5, zeta1=0.005, zeta2=0.01)
+    title = f"Orders: Shaken by swept sine 9 to 16 Hz in 100 s: {structure.label()}"
+    return xr.Dataset(variables, sides, {"analysis": "orders", "title": title})
+
+
 PICTURES = {
     "orbit": lambda si: orbit_diagram.draw(sweep(si=si)),
     "both ways": lambda si: orbit_diagram.draw(sweep(700, si, both=True)),
@@ -172,6 +190,7 @@ PICTURES = {
     "motion": lambda si: motion.draw(moving(si)),
     "map": lambda si: maps.draw(mapped(si)),
     "levels": lambda si: resonance_levels.draw(levels(si)),
+    "orders": lambda si: analysis.draw(tracked(), "delaminated", {"bonded": tracked(1e-7)}),
 }
 
 
@@ -214,6 +233,26 @@ def test_nothing_is_cut_off_or_covered(name):
         inside = [axes.bbox.padded(-1).overlaps(box) for axes in figure.axes]
         assert not any(inside), "covers data"
         assert [text for text, other in texts.items() if other.padded(-1).overlaps(box)] == []
+
+
+def words_on_lines(figure, renderer) -> list[str]:
+    """Words inside of panels that a line runs through, or a mark lies on."""
+    found = []
+    for axes in figure.axes:
+        texts = [text for text in axes.texts if text.get_text() and text.get_visible()]
+        for text, line in itertools.product(texts, axes.lines):
+            box, path = text.get_window_extent(renderer), line.get_transform()
+            path = path.transform_path(line.get_path())
+            bare = line.get_linestyle() == "None"
+            inside = [box.contains(*point) for point in path.vertices]
+            if len(path.vertices) and (any(inside) if bare else path.intersects_bbox(box, False)):
+                found.append(text.get_text())
+    return found
+
+
+@pytest.mark.parametrize("name", PICTURES)
+def test_no_words_lie_on_a_line(name):
+    assert words_on_lines(*picture(name)) == []
 
 
 def colliding_numbers(figure, renderer) -> list[tuple[str, str]]:
@@ -348,15 +387,15 @@ def test_resonance_has_all_curves_and_their_peaks():
     data = curves(True)
     figure = resonance.draw(data)
     assert [text.get_text() for text in figure.legends[0].get_texts()] == [
-        f"{structure}, {way}" for structure in ("delaminated", "bonded") for way in ("up", "down")
+        *(f"{structure}, {way}" for structure in resonance.COLOURS for way in ("up", "down")),
+        *("jump up", "jump down"),
     ]
     first, *_, gap = figure.axes
     told = [text.get_text() for text in first.texts]
     assert [words.partition(":")[0] for words in told] == ["delaminated", "bonded"]
     assert told[0] == f"delaminated: {float(data.x1_max[0].max()):.4g} m at 12.523 Hz"
     assert len([line for line in first.lines if line.get_marker() == "v"]) == 2
-    jumps = [text.get_text() for text in gap.texts if text.get_rotation() == 90]
-    assert jumps == [" 11.937 Hz, jump up", " 12.732 Hz, jump down"]  # 75 and 80 rad/s
+    assert gap.get_title("left") == "jump up at 11.937 Hz; jump down at 12.732 Hz"  # 75, 80 rad/s
     assert [line.get_color() for line in gap.lines].count(style.BLUE) == 1  # glued: no gap
     labelled = [bool(plane.get_xlabel()) for plane in figure.axes]
     assert labelled == [False, False, True, True, True]  # two widths, each with its numbers
@@ -414,7 +453,7 @@ def test_a_map_says_where_there_is_none():
 def test_a_basin_names_all_that_is_in_it():
     texts = [text.get_text() for text in basin.draw(plane(False)).legends[0].get_texts()]
     assert len(texts) == len(basin.COLOURS) + 2
-    assert texts[-2:] == ["25.0%: 2 others", "12.5%: none"]
+    assert texts[-2:] == ["25.0%: 2 others", "no states: the gap would be below 0"]
 
 
 def test_titles_tell_what_is_not_usual():
@@ -476,5 +515,39 @@ def test_titles_have_no_names_of_files(structure):
     title = labels.plain_title(f"Orders: swept sine: {structure.label()}")
     assert title.startswith("Orders: swept sine, ")
     assert "_" not in "".join(title.split("$")[::2])  # outside of formulas
-    for number in ("0.6", "42, 55 Hz", "-2e-05 m") if structure.clearance else ():
+    told = ("0.6", "= 42 Hz", "= 55 Hz", "= 0.7 %", "= 1 %", "-2e-05 m")
+    for number in told if structure.clearance else ():
         assert number in title
+
+
+def test_a_map_has_impulses_in_newton_seconds_where_the_structure_is_in_si():
+    """m1 omega a eta^2 of 1.5 kg, 75 rad/s, 1 mm at eta 1 and 2."""
+    sides = {"e": [0.3, 0.5], "frequency": [75.0, 150.0], "eta": ("frequency", [1.0, 2.0])}
+    attributes = {**known(True), "amplitude": 1e-3}
+    names = ("impacts_per_period", "multiplicity", "xi_rel_max", "impulse_max")
+    data = xr.Dataset({name: (("e", "frequency"), np.ones((2, 2))) for name in names}, sides)
+    values, label = maps.shown_values(data.assign_attrs(attributes), "impulse_max")
+    assert label == "largest impulse in mN s"
+    assert values.transpose("e", "frequency").values[0] == pytest.approx([112.5, 450.0])
+    assert maps.shown_values(data.assign_attrs(attributes), "xi_rel_max")[1].endswith("in mm")
+    by_ratio = mapped(False)
+    by_ratio["impulse_max"] = by_ratio.xi_rel_max
+    assert maps.shown_values(by_ratio, "impulse_max")[1] == maps.COLUMNS["impulse_max"]
+
+
+def test_a_manifold_has_the_unit_asked_for():
+    over = ("side", "point")
+    gaps = xr.Dataset(
+        {"x_rel": (over, np.full((2, 3), 2e-5)), "v_rel": (over, np.full((2, 3), 1e-3))},
+        {"side": ["+", "-"]},
+        {**known(True), "shown_in": "mm"},
+    )
+    axes = manifold.draw(gaps).axes[0]
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("gap in mm", "gap velocity in mm/s")
+    assert axes.lines[0].get_xdata()[0] == pytest.approx(0.02)
+
+
+def test_numbers_without_a_unit_have_their_letter():
+    assert scales.AxisValues(np.ones(1), scales.ETA).text(1.04) == r"$\eta$ = 1.04"
+    many = scales.AxisValues(np.ones(1), scales.FREQUENCIES["Hz"]).text(*range(10))
+    assert many == "0, 1, 2, 3, 4, 5 Hz and 4 more"

@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from orchestrate import InputError, SteppedSine, SweptSine, harmonics, track_orders
+from orchestrate import InputError, SteppedSine, SweptSine, harmonics, read_record, track_orders
 from orchestrate.laboratory.analysis.channels import Channels
 from orchestrate.laboratory.analysis.orders import against_box
 
@@ -204,6 +204,17 @@ def test_random_vibration_has_no_orders():
     still = make(100.0, np.zeros(1000), np.zeros(1000))
     with pytest.raises(InputError, match="does not move"):
         track_orders(still)
+
+
+def test_messages_name_the_column_that_the_user_gave(tmp_path):
+    time = np.arange(0.0, 2.0, 0.01)
+    path, names = tmp_path / "beam.csv", "t [s],shaker, top [g],face [g]"
+    head = names.replace("shaker, top", '"shaker, top').replace("[g],face", '[g]",face')
+    columns = np.column_stack([time, 0.0 * time, np.sin(60.0 * time)])
+    np.savetxt(path, columns, delimiter=",", header=head, comments="")
+    data = read_record(path, columns=("t", "shaker, top", "face"))
+    with pytest.raises(InputError, match='^base "shaker, top": does not move'):
+        track_orders(data)
 
 
 def test_a_result_of_shake_is_taken_as_it_is(exported):
