@@ -276,6 +276,7 @@ def test_commands_do_not_know_each_other():
         "output",
         "overlay",
         "question",
+        "start_file",
     }
     commands = {path.stem for path in (ROOT / "orchestrate" / "cli").glob("*.py")} - shared
     assert {"build", "sweep", "paper"} <= commands

