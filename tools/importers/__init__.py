@@ -86,6 +86,7 @@ def names_header(fmu: Path) -> str:
         "#include <math.h>",
         f'#define TOKEN "{description.guid}"',
         f"#define TIME_REFERENCE {time}u",
+        f"#define FMI_VERSION {description.fmi_version[0]}",
     ]
     is_shaker = description.name == "MotorShaker"
     defines += ["#define MOTOR_SHAKER"] * is_shaker
@@ -113,8 +114,8 @@ def compile_importer(
     for name, content in native_form.fmi_headers(version).items():
         (folder / name).write_bytes(content)
     number = version[-1]
-    parts = ("importer", "fuzz", "hostile", "arguments")
-    sources = [*(HERE / f"{part}{number}.c" for part in parts), HERE / "modes.c", HERE / "fuzz.c"]
+    shared = ("importer", "modes", "fuzz", "hostile", "arguments")
+    parts = (*shared, f"fuzz{number}", f"arguments{number}")
     target = folder / f"importer{number}.exe"
     windows = any("windows" in word for word in command or ())
     libraries = [] if windows else ["-ldl", "-lpthread", "-lm"]
@@ -126,7 +127,7 @@ def compile_importer(
             f"-I{folder}",
             "-o",
             target,
-            *sources,
+            *(HERE / f"{part}.c" for part in parts),
             *libraries,
         ],
         folder,

@@ -29,7 +29,7 @@ typedef struct {
     double minimum, maximum;
 } Name;
 
-#include "names.h" /* generated from modelDescription.xml: NAMES, TOKEN */
+#include "names.h" /* generated from modelDescription.xml: NAMES, TOKEN, FMI_VERSION */
 #define NAME_COUNT (sizeof NAMES / sizeof *NAMES)
 
 static const Name *named(const char *name) {

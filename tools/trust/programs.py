@@ -37,7 +37,7 @@ def compile_program(fmu: Path, name: str) -> Path:
     for header, content in native_form.fmi_headers("fmi3").items():
         (folder / header).write_bytes(content)
     program = folder / name
-    files = [NATIVE / f"{name}.c", importers.HERE / "importer3.c"]
+    files = [NATIVE / f"{name}.c", importers.HERE / "importer.c"]
     places = [f"-I{folder}", f"-I{importers.HERE}"]
     own = [*(importers.c_compiler() or ["cc"]), *OPTIONS, *CALLS, *places]
     subprocess.run([*own, "-o", program, *files, "-ldl", "-lm"], check=True)

@@ -6,7 +6,7 @@
 #include <complex.h>
 #include <math.h>
 
-#include "importer3.h"
+#include "version.h"
 
 enum { GRAZING, EQUAL, CHATTERING, FAST, CUBIC, STEEP, CONTACT, KINDS };
 enum { TERMS = 5, BOX = 4 };
