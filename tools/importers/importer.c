@@ -1,6 +1,9 @@
 /* The importer of either FMI version, see importer.h. */
 #include "version.h"
 
+int checks, failures;
+_Thread_local int messages;
+_Thread_local char message[4096];
 Functions fmi;
 static void *library;
 
@@ -61,6 +64,16 @@ void fmu_set(void *instance, const char *name, double value) {
     if (variable->type == 'R') must(set_reals(instance, &variable->reference, 1, &value));
     else if (variable->type == 'I') must(set_integers(instance, &variable->reference, 1, &whole));
     else must(set_booleans(instance, &variable->reference, 1, &truth));
+}
+
+void fmu_set_all(void *instance, int count, char **arguments) {
+    for (int i = 0; i < count; i++) {
+        char *equals = strchr(arguments[i], '=');
+        if (!equals) continue;
+        *equals = 0;
+        fmu_set(instance, arguments[i], strtod(equals + 1, NULL));
+        *equals = '=';
+    }
 }
 
 double fmu_get(void *instance, const Name *variable) {

@@ -201,10 +201,6 @@ static Flight draw(uint64_t *seed, int kind) {
 
 /* -- the FMU ---------------------------------------------------------------------------------- */
 
-int checks, failures;
-_Thread_local int messages;
-_Thread_local char message[4096];
-
 /* Value references, in the order of their names below. */
 enum { PARAMETERS = 21, STATE = 6 };
 static const char *const SET[PARAMETERS] = {"m1", "m2", "k1", "k2", "d1", "d2", "e", "gamma", "box_amplitude", "box_frequency", "phase_start",
