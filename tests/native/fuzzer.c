@@ -1,10 +1,6 @@
 /* libFuzzer's way in: the FMU's binary from the environment, and each input one test. */
 #include "fuzz.h"
 
-int checks, failures;
-_Thread_local int messages;
-_Thread_local char message[4096];
-
 int LLVMFuzzerInitialize(int *count, char ***arguments) {
     (void)count, (void)arguments;
     fmu_load(getenv("FMU_BINARY"));

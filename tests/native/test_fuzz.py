@@ -155,9 +155,7 @@ def test_a_coverage_guided_fuzzer_finds_nothing(exported, fmus, tmp_path, versio
         forms.MODELS[model],
         ("clang",),
     )
-    units = [
-        importers.HERE / f"{unit}.c" for unit in (f"importer{number}", f"fuzz{number}", "fuzz")
-    ]
+    units = [importers.HERE / f"{unit}.c" for unit in ("importer", f"fuzz{number}", "fuzz")]
     options = ["-std=gnu11", "-O1", "-g", f"-fsanitize=fuzzer,{guards}", f"-I{folder}"]
     command = [
         "clang",

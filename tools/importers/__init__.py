@@ -86,6 +86,7 @@ def names_header(fmu: Path) -> str:
         "#include <math.h>",
         f'#define TOKEN "{description.guid}"',
         f"#define TIME_REFERENCE {time}u",
+        f"#define FMI_VERSION {description.fmi_version[0]}",
     ]
     is_shaker = description.name == "MotorShaker"
     defines += ["#define MOTOR_SHAKER"] * is_shaker
@@ -100,6 +101,29 @@ def c_literal(text: str | None, otherwise: float) -> str:
     return repr(value).replace("inf", "INFINITY") if math.isinf(value) else value.hex()
 
 
+def compile_against(
+    fmu: Path,
+    folder: Path,
+    programs: Iterable[Path],
+    options: Sequence[str],
+    command: Sequence[str] | None = None,
+) -> Path:
+    """Compile C files that include ``version.h`` against an FMU; return the program's path."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "names.h").write_text(names_header(fmu), encoding="utf-8")
+    number = describe(fmu).fmi_version[0]
+    for name, content in native_form.fmi_headers(f"fmi{number}").items():
+        (folder / name).write_bytes(content)
+    target = folder / f"importer{number}.exe"
+    windows = any("windows" in word for word in command or ())
+    libraries = [] if windows else ["-ldl", "-lpthread", "-lm"]
+    places = [f"-I{folder}", f"-I{HERE}"]
+    command = [*(command or c_compiler() or ["cc"]), *WARNINGS, *options, *places]
+    files = [HERE / "importer.c", *programs]
+    run_compiler([*command, "-o", target, *files, *libraries], folder)
+    return target
+
+
 def compile_importer(
     version: str,
     fmu: Path,
@@ -108,30 +132,9 @@ def compile_importer(
     options: Sequence[str] = ("-O1", "-g"),
 ) -> Path:
     """Compile the importer of an FMI version for an FMU; return the program's path."""
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "names.h").write_text(names_header(fmu), encoding="utf-8")
-    for name, content in native_form.fmi_headers(version).items():
-        (folder / name).write_bytes(content)
     number = version[-1]
-    parts = ("importer", "fuzz", "hostile", "arguments")
-    sources = [*(HERE / f"{part}{number}.c" for part in parts), HERE / "modes.c", HERE / "fuzz.c"]
-    target = folder / f"importer{number}.exe"
-    windows = any("windows" in word for word in command or ())
-    libraries = [] if windows else ["-ldl", "-lpthread", "-lm"]
-    run_compiler(
-        [
-            *(command or c_compiler()),
-            *WARNINGS,
-            *options,
-            f"-I{folder}",
-            "-o",
-            target,
-            *sources,
-            *libraries,
-        ],
-        folder,
-    )
-    return target
+    parts = ("modes", "fuzz", "hostile", "arguments", f"fuzz{number}", f"arguments{number}")
+    return compile_against(fmu, folder, [HERE / f"{part}.c" for part in parts], options, command)
 
 
 def shim_files(version: str) -> list[str]:
@@ -168,6 +171,11 @@ def rebuild_shim(
     ]
     run_compiler(command, folder)
     return target
+
+
+def settings(values: Mapping[str, float]) -> list[str]:
+    """Return start values as arguments of a program that calls ``fmu_set_all``."""
+    return [f"{name}={float(value).hex()}" for name, value in values.items()]
 
 
 @dataclass(frozen=True)
@@ -213,8 +221,7 @@ class Importer:
         **values: float,
     ) -> list[list[float]]:
         """Return outputs at each of ``times``; the first one is the start."""
-        settings = [f"{name}={float(value).hex()}" for name, value in values.items()]
-        done = self.run("simulate", ",".join(names), *settings, under=under, times=times)
+        done = self.run("simulate", ",".join(names), *settings(values), under=under, times=times)
         return [
             [float.fromhex(cell) for cell in line.split()]
             for line in done.stdout.splitlines()

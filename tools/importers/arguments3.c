@@ -1,8 +1,8 @@
-/* FMI 3.0: null pointers, wrong references, wrong tokens, no instance at all. */
-#include "hostile3.h"
+/* FMI 3.0 alone: functions and arrays of its own, wrong tokens, no instance at all. */
+#include "hostile.h"
 
 /* Types no variable has, and functions modelDescription.xml does not offer. */
-void absent(fmi3Instance c) {
+void absent(Instance c) {
     fmi3ValueReference r = 0;
     size_t size = 0;
     double x = 0.0;
@@ -73,7 +73,7 @@ void instantiation(void) {
     CHECK(fmi.InstantiateModelExchange("a", TOKEN, NULL, false, false, NULL, NULL) == NULL);
     CHECK(fmi.InstantiateScheduledExecution("a", TOKEN, NULL, false, false, NULL, NULL, NULL, NULL, NULL) == NULL);
     for (int i = 0; i < 2; i++) {
-        fmi3Instance c = fmi.InstantiateCoSimulation(i ? "" : NULL, TOKEN, NULL, true, false, false, true, NULL, 0, NULL, i ? take_message : NULL, NULL);
+        Instance c = fmi.InstantiateCoSimulation(i ? "" : NULL, TOKEN, NULL, true, false, false, true, NULL, 0, NULL, i ? take_message : NULL, NULL);
         CHECK(c != NULL);
         messages = 0;
         CHECK(step_to(c, 0.0, 1.0) == fmi3Error && messages == i); /* errors are told with logging off too */
@@ -83,29 +83,14 @@ void instantiation(void) {
     }
 }
 
-void null_pointers(fmi3Instance c) {
+void own_null_pointers(Instance c) {
     double x[4] = {0.0}, last;
     fmi3Int32 one = 1;
     fmi3Boolean b = true, event, end, early;
     const unsigned *r = reference(OUTPUT), *in = reference(SMOOTH_INPUT), *t = reference(TUNABLE), *n = reference(COUNT);
-    REFUSED(c, fmi.GetFloat64(c, NULL, 1, x, 1)); REFUSED(c, fmi.GetFloat64(c, r, 1, NULL, 1));
-    REFUSED(c, fmi.SetFloat64(c, NULL, 1, x, 1)); REFUSED(c, fmi.SetFloat64(c, in, 1, NULL, 1));
-    REFUSED(c, fmi.GetInt32(c, NULL, 1, &one, 1)); REFUSED(c, fmi.GetInt32(c, n, 1, NULL, 1));
-    REFUSED(c, fmi.SetInt32(c, NULL, 1, &one, 1)); REFUSED(c, fmi.SetInt32(c, n, 1, NULL, 1));
-    REFUSED(c, fmi.GetBoolean(c, NULL, 1, &b, 1)); REFUSED(c, fmi.GetBoolean(c, t, 1, NULL, 1));
-    REFUSED(c, fmi.SetBoolean(c, NULL, 1, &b, 1)); REFUSED(c, fmi.SetBoolean(c, t, 1, NULL, 1));
-    REFUSED(c, fmi.GetOutputDerivatives(c, NULL, 1, &one, x, 1)); REFUSED(c, fmi.GetOutputDerivatives(c, r, 1, NULL, x, 1));
-    REFUSED(c, fmi.GetOutputDerivatives(c, r, 1, &one, NULL, 1)); REFUSED(c, fmi.GetOutputDerivatives(c, r, 1, &one, x, 2));
-    REFUSED(c, fmi.GetFMUState(c, NULL)); REFUSED(c, fmi.SetFMUState(c, NULL));
+    REFUSED(c, fmi.GetOutputDerivatives(c, r, 1, &one, x, 2));
     REFUSED(c, fmi.DoStep(c, 20.0, 1.0, true, NULL, &end, &early, &last)); REFUSED(c, fmi.DoStep(c, 20.0, 1.0, true, &event, NULL, &early, &last));
     REFUSED(c, fmi.DoStep(c, 20.0, 1.0, true, &event, &end, NULL, &last)); REFUSED(c, fmi.DoStep(c, 20.0, 1.0, true, &event, &end, &early, NULL));
-    IS_OK(fmi.GetFloat64(c, NULL, 0, NULL, 0)); IS_OK(fmi.SetFloat64(c, NULL, 0, NULL, 0)); IS_OK(fmi.GetInt32(c, NULL, 0, NULL, 0));
-    IS_OK(fmi.SetInt32(c, NULL, 0, NULL, 0)); IS_OK(fmi.GetBoolean(c, NULL, 0, NULL, 0)); IS_OK(fmi.SetBoolean(c, NULL, 0, NULL, 0));
-    IS_OK(fmi.FreeFMUState(c, NULL)); IS_OK(fmi.SetDebugLogging(c, true, 0, NULL));
-    const char *categories[] = {"logStatusError", "%s%n"}, *nothing = NULL;
-    IS_OK(fmi.SetDebugLogging(c, true, 1, categories)); REFUSED(c, fmi.SetDebugLogging(c, true, 2, categories));
-    REFUSED(c, fmi.SetDebugLogging(c, true, 1, &nothing)); REFUSED(c, fmi.SetDebugLogging(c, true, 1, NULL));
-    IS_OK(fmi.GetOutputDerivatives(c, NULL, 0, NULL, NULL, 0));
     /* numbers of values that do not fit the references */
     size_t wrong[] = {0, 2, 3, SIZE_MAX};
     for (int i = 0; i < 4; i++) {
@@ -125,25 +110,38 @@ void null_pointers(fmi3Instance c) {
     REFUSED(c, fmi.GetFloat64(c, &ARRAYS_END, 1, x, 2));
 }
 
-/* Every reference with every type: only those of modelDescription.xml; those of arrays' elements are another test's. */
-void references(fmi3Instance c) {
-    for (unsigned i = 0; i < 2200; i++) {
-        unsigned r = i < 2100 ? i : i < 2150 ? 0x7fffffc0u + i - 2100 : 0xffffffffu - (i - 2150);
-        const Name *name = NULL;
-        for (size_t k = 0; k < NAME_COUNT; k++) if (NAMES[k].reference == r) name = &NAMES[k];
-        char type = name ? name->type : 0;
-        double x = 0.0;
-        fmi3Int32 n = 0;
-        fmi3Boolean b = false;
-        if (type != 'R' || !name->settable) REFUSED(c, fmi.SetFloat64(c, &r, 1, &x, 1));
-        if (type != 'I' || !name->settable) REFUSED(c, fmi.SetInt32(c, &r, 1, &n, 1));
-        if (type != 'B' || !name->settable) REFUSED(c, fmi.SetBoolean(c, &r, 1, &b, 1));
-        if (type != 'I') REFUSED(c, fmi.GetInt32(c, &r, 1, &n, 1));
-        if (type != 'B') REFUSED(c, fmi.GetBoolean(c, &r, 1, &b, 1));
-        if (type == 'I') IS_OK(fmi.GetInt32(c, &r, 1, &n, 1));
-        if (type == 'B') IS_OK(fmi.GetBoolean(c, &r, 1, &b, 1));
-        if (type == 'R') IS_OK(fmi.GetFloat64(c, &r, 1, &x, 1));
-        else if (r == TIME_REFERENCE) { IS_OK(fmi.GetFloat64(c, &r, 1, &x, 1)); CHECK(x == 20.0); }
-        else if ((r >= TIME_REFERENCE && (!ARRAYS || r < POSITIONS)) || r >= ARRAYS_END) REFUSED(c, fmi.GetFloat64(c, &r, 1, &x, 1));
+/* In event mode: the clock alone, and null pointers for what the importer does not want to know. */
+void event_mode(Instance c) {
+    fmi3Clock tick = false;
+    unsigned other[] = {1999, 2001, 0, *reference(INTEGER_OUTPUT), 0xffffffffu};
+    for (int i = 0; i < 5; i++) REFUSED(c, fmi.GetClock(c, &other[i], 1, &tick));
+    REFUSED(c, fmi.GetClock(c, NULL, 1, &tick)); REFUSED(c, fmi.GetClock(c, &CLOCK, 1, NULL)); REFUSED(c, fmi.SetClock(c, &CLOCK, 1, &tick));
+    IS_OK(fmi.GetClock(c, NULL, 0, NULL));
+    if (TICKS) IS_OK(fmi.GetClock(c, &CLOCK, 1, &tick));
+    else REFUSED(c, fmi.GetClock(c, &CLOCK, 1, &tick));
+    CHECK(tick == (TICKS != NULL));
+    IS_OK(fmi.EvaluateDiscreteStates(c));
+    IS_OK(fmi.UpdateDiscreteStates(c, NULL, NULL, NULL, NULL, NULL, NULL));
+    if (TICKS) IS_OK(fmi.GetClock(c, &CLOCK, 1, &tick));
+    CHECK(!tick);
+    IS_OK(fmi.EnterStepMode(c));
+    IS_OK(step_to(c, 20.0, 1.0));
+    fmi.FreeInstance(c);
+}
+
+/* Before initialization mode: start values, and nothing that is calculated. */
+void start_values(Instance c) {
+    for (size_t i = 0; i < NAME_COUNT; i++) {
+        const Name *name = &NAMES[i];
+        double x;
+        Integer n;
+        Boolean b;
+        picture(c);
+        Status status = name->type == 'R'   ? get_reals(c, &name->reference, 1, &x)
+                        : name->type == 'I' ? get_integers(c, &name->reference, 1, &n)
+                                            : get_booleans(c, &name->reference, 1, &b);
+        if (name->settable) IS_OK(status);
+        else { refused(c, status, __FILE__, __LINE__, name->name); SAYS(name->name); }
     }
+    fmi.FreeInstance(c);
 }

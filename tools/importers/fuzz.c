@@ -1,5 +1,6 @@
 /* What both FMI versions are put through, see fuzz.h. */
 #include "fuzz.h"
+#include "version.h"
 
 enum { INSTANCES = 3 };
 
@@ -33,6 +34,30 @@ void told(int status) {
     messages = 0;
 }
 
+void fuzz_reset(void *instance) { told(fmi.Reset(instance)); }
+
+/* The time an instance has reached, where the FMU tells it. */
+static double time_reached(void *instance, double otherwise) {
+    double reached;
+#if FMI_VERSION == 2
+    Status status = fmi.GetRealStatus(instance, fmi2LastSuccessfulTime, &reached);
+#else
+    unsigned time = TIME_REFERENCE;
+    Status status = get_reals(instance, &time, 1, &reached);
+#endif
+    told(status);
+    return status == FMI_OK ? reached : otherwise;
+}
+
+/* Back to the state that was kept; whether the FMU takes it. */
+static bool go_back(Slot *slot) {
+    Status status = set_state(slot->instance, slot->state);
+    told(status);
+    return status == FMI_OK;
+}
+
+static void forget(Slot *slot) { told(free_state(slot->instance, &slot->state)); }
+
 /* A byte changed anywhere, or a number of the state: another one, or that of another place. */
 static void damage(Bytes *in, char *bytes, size_t size) {
     size_t place = (size_t)take(in) * 256 + take(in), count = size / sizeof(double) - 1; /* the last is the checksum */
@@ -55,15 +80,15 @@ static void serialised(Bytes *in, Slot *slot) {
     if (one_in(in, 2)) seal(bytes, size);
     messages = 0;
     Slot read = {.instance = slot->instance};
-    int status = fuzz_read(read.instance, bytes, one_in(in, 16) ? size - 1 : size, &read.state);
+    Status status = deserialize(read.instance, bytes, one_in(in, 16) ? size - 1 : size, &read.state);
     told(status);
-    if (status == 0 && fuzz_return(&read)) {
-        slot->time = fuzz_time(slot->instance, slot->time);
+    if (status == FMI_OK && go_back(&read)) {
+        slot->time = time_reached(slot->instance, slot->time);
         fuzz_step(in, slot->instance, slot->time, damaged ? 0x1p-20 : 0.25);
         if (damaged) fuzz_reset(slot->instance); /* what nobody saved may take long to step */
-        slot->time = fuzz_time(slot->instance, slot->time);
+        slot->time = time_reached(slot->instance, slot->time);
     }
-    fuzz_forget(&read);
+    forget(&read);
     free(bytes);
 }
 
@@ -72,15 +97,15 @@ static void call(Bytes *in, Slot *slot) {
     case 0: case 1: case 2: fuzz_values(in, slot->instance); break;
     case 3: case 4: case 5: fuzz_life(in, slot->instance); break;
     case 6: case 7: serialised(in, slot); break;
-    case 8: fuzz_keep(slot); break;
-    case 9: if (slot->state) fuzz_return(slot); break;
+    case 8: told(get_state(slot->instance, &slot->state)); break;
+    case 9: if (slot->state) go_back(slot); break;
     case 10: fuzz_rest(in, slot->instance); break;
     default: {
         double size = any_step(in), time = one_in(in, 16) ? any_number(in) : slot->time;
         fuzz_step(in, slot->instance, time, size);
     }
     }
-    slot->time = fuzz_time(slot->instance, slot->time);
+    slot->time = time_reached(slot->instance, slot->time);
 }
 
 void fuzz(const uint8_t *data, size_t size) {
@@ -89,7 +114,7 @@ void fuzz(const uint8_t *data, size_t size) {
     for (int i = 0; i < INSTANCES; i++) fuzz_open(&in, &slots[i]);
     while (in.at < in.end) call(&in, &slots[take(&in) % INSTANCES]);
     for (int i = 0; i < INSTANCES; i++) {
-        fuzz_forget(&slots[i]);
+        forget(&slots[i]);
         fmu_close(slots[i].instance);
     }
 }

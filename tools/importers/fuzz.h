@@ -20,19 +20,14 @@ double any_number(Bytes *in);
 
 /* Every refusal comes with a message. */
 void told(int status);
+void fuzz_reset(void *instance);
 
-/* An FMI version: each reads its arguments from the bytes. */
+/* Of an FMI version: each reads its arguments from the bytes. */
 void fuzz_open(Bytes *in, Slot *slot);
 void fuzz_values(Bytes *in, void *instance);
 void fuzz_life(Bytes *in, void *instance);
 void fuzz_rest(Bytes *in, void *instance);
 void fuzz_step(Bytes *in, void *instance, double time, double size);
-double fuzz_time(void *instance, double otherwise); /* reached, where the FMU tells it */
-void fuzz_reset(void *instance);
-void fuzz_keep(Slot *slot);
-bool fuzz_return(Slot *slot);
-void fuzz_forget(Slot *slot);
-int fuzz_read(void *instance, const char *bytes, size_t size, void **state);
 
 /* The calls of one input, on a few instances; all are freed at the end. */
 void fuzz(const uint8_t *data, size_t size);

@@ -1,6 +1,6 @@
 /* FMI 2.0 by bytes, see fuzz.h. */
 #include "fuzz.h"
-#include "importer2.h"
+#include "version.h"
 
 /* Most inputs begin where there is most to do. */
 void fuzz_open(Bytes *in, Slot *slot) {
@@ -58,24 +58,3 @@ void fuzz_rest(Bytes *in, void *instance) {
 }
 
 void fuzz_step(Bytes *in, void *instance, double time, double size) { told(fmi.DoStep(instance, time, size, one_in(in, 2))); }
-
-double fuzz_time(void *instance, double otherwise) {
-    double reached;
-    fmi2Status status = fmi.GetRealStatus(instance, fmi2LastSuccessfulTime, &reached);
-    told(status);
-    return status == fmi2OK ? reached : otherwise;
-}
-
-void fuzz_reset(void *instance) { told(fmi.Reset(instance)); }
-
-void fuzz_keep(Slot *slot) { told(fmi.GetFMUstate(slot->instance, &slot->state)); }
-
-bool fuzz_return(Slot *slot) {
-    fmi2Status status = fmi.SetFMUstate(slot->instance, slot->state);
-    told(status);
-    return status == fmi2OK;
-}
-
-void fuzz_forget(Slot *slot) { told(fmi.FreeFMUstate(slot->instance, &slot->state)); }
-
-int fuzz_read(void *instance, const char *bytes, size_t size, void **state) { return fmi.DeSerializeFMUstate(instance, bytes, size, state); }

@@ -1,6 +1,6 @@
 /* FMI 3.0 by bytes, see fuzz.h. */
 #include "fuzz.h"
-#include "importer3.h"
+#include "version.h"
 
 enum { ROOM = 1024 };
 
@@ -67,28 +67,4 @@ void fuzz_step(Bytes *in, void *instance, double time, double size) {
     fmi3Boolean event, end, early;
     double last;
     told(fmi.DoStep(instance, time, size, one_in(in, 2), &event, &end, &early, one_in(in, 64) ? NULL : &last));
-}
-
-double fuzz_time(void *instance, double otherwise) {
-    unsigned time = TIME_REFERENCE;
-    double reached;
-    fmi3Status status = fmi.GetFloat64(instance, &time, 1, &reached, 1);
-    told(status);
-    return status == fmi3OK ? reached : otherwise;
-}
-
-void fuzz_reset(void *instance) { told(fmi.Reset(instance)); }
-
-void fuzz_keep(Slot *slot) { told(fmi.GetFMUState(slot->instance, &slot->state)); }
-
-bool fuzz_return(Slot *slot) {
-    fmi3Status status = fmi.SetFMUState(slot->instance, slot->state);
-    told(status);
-    return status == fmi3OK;
-}
-
-void fuzz_forget(Slot *slot) { told(fmi.FreeFMUState(slot->instance, &slot->state)); }
-
-int fuzz_read(void *instance, const char *bytes, size_t size, void **state) {
-    return fmi.DeserializeFMUState(instance, (const fmi3Byte *)bytes, size, state);
 }

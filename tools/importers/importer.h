@@ -29,7 +29,7 @@ typedef struct {
     double minimum, maximum;
 } Name;
 
-#include "names.h" /* generated from modelDescription.xml: NAMES, TOKEN */
+#include "names.h" /* generated from modelDescription.xml: NAMES, TOKEN, FMI_VERSION */
 #define NAME_COUNT (sizeof NAMES / sizeof *NAMES)
 
 static const Name *named(const char *name) {
@@ -74,6 +74,7 @@ void fmu_load(const char *path);
 void fmu_unload(void);
 void *fmu_open(const char *name);
 void fmu_set(void *instance, const char *name, double value);
+void fmu_set_all(void *instance, int count, char **arguments);         /* name=value each */
 double fmu_get(void *instance, const Name *variable);
 void fmu_initialize(void *instance, double start);
 void fmu_step(void *instance, double time, double size);

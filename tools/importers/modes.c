@@ -7,10 +7,6 @@
 #include <pthread.h>
 #endif
 
-int checks, failures;
-_Thread_local int messages;
-_Thread_local char message[4096];
-
 /* The sixth grows as long as something goes on: impacts, or the angle of the rotor. */
 #ifdef MOTOR_SHAKER
 static const char *const OUTPUTS[] = {"box_position", "box_velocity", "speed", "motor_power", "motor_energy", "angle", "box_jerk", "stored_energy"};
@@ -20,17 +16,6 @@ static const char *const OUTPUTS[] = {"x1", "x2", "v1", "v2", "phase", "impact_c
 #define OUTPUT_COUNT (sizeof OUTPUTS / sizeof *OUTPUTS)
 
 static double seconds(void) { return (double)clock() / CLOCKS_PER_SEC; }  /* of the processor: other processes do not count */
-
-/* name=value on the command line. */
-static void set_all(void *instance, int count, char **arguments) {
-    for (int i = 0; i < count; i++) {
-        char *equals = strchr(arguments[i], '=');
-        if (!equals) continue;
-        *equals = 0;
-        fmu_set(instance, arguments[i], strtod(equals + 1, NULL));
-        *equals = '=';
-    }
-}
 
 static void outputs(void *instance, double values[OUTPUT_COUNT]) {
     for (size_t i = 0; i < OUTPUT_COUNT; i++) values[i] = fmu_get(instance, named(OUTPUTS[i]));
@@ -54,7 +39,7 @@ static void simulate(char *wanted, int count, char **arguments) {
     int width = 0;
     for (char *name = strtok(wanted, ","); name && width < 256; name = strtok(NULL, ",")) variables[width++] = named(name);
     void *instance = fmu_open("simulate");
-    set_all(instance, count, arguments);
+    fmu_set_all(instance, count, arguments);
     char line[128];
     double time = 0.0;
     for (int row = 0; fgets(line, sizeof line, stdin); row++) {
@@ -184,7 +169,7 @@ static void timed(const char *label, int count, double size, int values, char **
     double best = 1e300;
     for (int round = 0; round < 5; round++) {
         void *instance = fmu_open("timed");
-        set_all(instance, values, arguments);
+        fmu_set_all(instance, values, arguments);
         fmu_initialize(instance, 0.0);
         double begin = seconds();
         for (int k = 0; k < count; k++) fmu_step(instance, size * k, size);

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import tempfile
-import zipfile
 from collections import Counter
 from dataclasses import dataclass
-from os import PathLike
 from pathlib import Path
 
-from orchestrate.access import describe
 from orchestrate.structures import Structure
+from tools import importers
 
-from .sources import HERE, run_command
+from .sources import HERE
 
-BINARY = "binaries/x86_64-linux/TwoMassImpactOscillator.so"
-COUNTED = ("evaluations", "impact_count", "contact_count")
 # chattering into permanent contact each period, up to 0.4; flights of one and many impacts; chaos
 FREQUENCIES = (0.1, 0.2, 0.3, 0.4, 0.6, 1.13, 2.0, 2.9)
 SIZE = 1e-4  # s
@@ -59,25 +55,17 @@ class StepTimes:
         raise ValueError("expected steps")
 
 
-def measure_steps(fmu: str | PathLike[str], eta: float, steps: int) -> StepTimes:
+def measure_steps(fmu: Path, eta: float, steps: int) -> StepTimes:
     """Time many steps of the paper's structure (omega = 75 rad/s) at one frequency."""
     beam = Structure.from_file("beam")
     values = {**beam.parameters(), "box_frequency": eta * beam.omega}
     values["box_amplitude"] = 1e-3 / eta**2
     with tempfile.TemporaryDirectory() as folder:
-        with zipfile.ZipFile(fmu) as archive:
-            library = archive.extract(BINARY, folder)
-        known = describe(fmu)
-        reference = {name: str(v.valueReference) for name, v in known.variables.items()}
-        reals = {name for name in values if name not in ("bonded",)}
-        start_values = [
-            part for name in reals for part in (reference[name], repr(float(values[name])))
-        ]
-        program = Path(folder) / "steps"
-        options = ("-O2", "-std=gnu99", "-Wall", "-Wextra", "-Werror")
-        run_command("gcc", *options, HERE / "steps.c", "-ldl", "-o", program)
-        order = [str(steps), repr(SIZE), str(RUNS), *(reference[name] for name in COUNTED)]
-        text = run_command(program, library, known.guid, *order, *start_values, timeout=3600.0)
+        program = importers.compile_against(fmu, Path(folder), [HERE / "steps.c"], ("-O2",))
+        library = importers.unpack_binary(fmu, "fmi3", Path(folder))
+        importer = importers.Importer(program, library, "fmi3")
+        order = (steps, SIZE, RUNS, *importers.settings(values))
+        text = importer.run(*order, timeout=3600.0).stdout
     lines = [line.split() for line in text.splitlines()]
     evaluations, impacts, contacts = (int(count) for _, count in lines[:3])
     times = Counter({int(time): int(count) for time, count in lines[3:]})

@@ -106,12 +106,11 @@ def arm_importer() -> Any:
 
 def simulate_by_arm(drawn: ParameterSet, grid: Sequence[float]) -> Bits:
     """Return the outputs at the end of a grid, by the ARM binary under an emulator."""
-    names, values = (*STATE, *STEP), {k: float(v) for k, v in drawn.values.items()}
-    settings = [f"{name}={value.hex()}" for name, value in values.items()]
+    from tools import importers
+
+    names, settings = ",".join((*STATE, *STEP)), importers.settings(drawn.values)
     program, times = arm_importer(), [drawn.start_time, *grid]
-    done = program.run(
-        "simulate", ",".join(names), *settings, under=ARM, times=times, success=False
-    )
+    done = program.run("simulate", names, *settings, under=ARM, times=times, success=False)
     rows = [line.split() for line in done.stdout.splitlines() if not line.startswith("CHECKS")]
     if done.returncode:
         return (NOT,)

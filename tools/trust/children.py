@@ -13,7 +13,7 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -59,8 +59,6 @@ class ChildCommand:
         For temporary files and both outputs.
     prepare : callable, optional
         Called in the child first.
-    environment : mapping, optional
-        Further variables.
     """
 
     def __init__(
@@ -68,7 +66,6 @@ class ChildCommand:
         arguments: list[str],
         folder: Path,
         prepare: Callable[[], object] | None = None,
-        environment: Mapping[str, str] | None = None,
     ) -> None:
         """Start the command in a child process."""
         folder.mkdir(parents=True, exist_ok=True)
@@ -77,7 +74,7 @@ class ChildCommand:
         sys.stdout.flush()
         self.pid = os.fork()
         if self.pid == 0:
-            run_child(arguments, self.files, folder, prepare, environment or {})
+            run_child(arguments, self.files, folder, prepare)
         self.finished: FinishedCommand | None = None
 
     def is_running(self) -> bool:
@@ -121,7 +118,6 @@ def run_child(
     files: list[Path],
     folder: Path,
     prepare: Callable[[], object] | None,
-    environment: Mapping[str, str],
 ) -> None:
     """Run the command in the forked child, and exit the process: never returns."""
     code = 70
@@ -132,7 +128,7 @@ def run_child(
         sys.stdout, sys.stderr = (io.TextIOWrapper(io.FileIO(n, "w")) for n in (1, 2))
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, signal.SIG_DFL)
-        os.environ.update({"TMPDIR": str(folder), "SOURCE_DATE_EPOCH": "0", **environment})
+        os.environ.update({"TMPDIR": str(folder), "SOURCE_DATE_EPOCH": "0"})
         tempfile.tempdir = None
         # of its own: killed with the lock of all in hand it would stop every child after it
         tqdm.set_lock(threading.RLock())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -158,14 +159,14 @@ def group_rows(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
     """Return groups of rows: all, then by noise, level and length of the delamination."""
     masses = table[table["size"].isna()]
     groups = [("all", table), ("two masses", masses)]
-    for low, high in roc.neighbour_pairs(NOISE):
+    for low, high in pairwise(NOISE):
         groups.append(
             (f"noise {100 * low:g} to {100 * high:g} %", rows_within(masses, "noise", low, high))
         )
-    for low, high in roc.neighbour_pairs(LEVEL):
+    for low, high in pairwise(LEVEL):
         groups.append((f"level {low:g} to {high:g} m/s²", rows_within(masses, "level", low, high)))
     beams = table[table["size"].notna()]
-    for low, high in roc.neighbour_pairs(SIZE):
+    for low, high in pairwise(SIZE):
         size = beams["size"].astype(float)
         own = beams[(beams.delaminated == 0) | ((size >= low) & (size < high))]
         groups.append((f"finite elements, {low:g} to {high:g} of the length", own))

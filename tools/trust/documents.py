@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 MARKUP = "</script><script>alert(1)</script><img src=x onerror=alert(1)>"
@@ -41,6 +41,11 @@ def write_toml(place: Path, chance: random.Random) -> None:
         "\ufeff\ufeff[structure]\n",
         "\0" * 1000,
     )
+    write_text_or_noise(place, chance, texts)
+
+
+def write_text_or_noise(place: Path, chance: random.Random, texts: Sequence[str]) -> None:
+    """Write one of the texts, or in one of five cases random bytes."""
     data = chance.choice(texts).encode("utf-8", "surrogatepass")
     if chance.random() < 0.2:
         data = chance.randbytes(chance.randrange(1000))
@@ -70,10 +75,7 @@ def write_course(place: Path, chance: random.Random) -> None:
         "\0" * count,
         "",
     )
-    data = chance.choice(texts).encode("utf-8", "surrogatepass")
-    if chance.random() < 0.2:
-        data = chance.randbytes(chance.randrange(1000))
-    place.write_bytes(data)
+    write_text_or_noise(place, chance, texts)
 
 
 def write_result(place: Path, chance: random.Random, good: Path) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import http.server
 import json
 import math
@@ -201,5 +200,4 @@ def hostile_fragment(chance: random.Random, address: str) -> str:
 def delete_files(*paths: Path) -> None:
     """Delete the forged files of a trial."""
     for path in paths:
-        with contextlib.suppress(FileNotFoundError):
-            path.unlink()
+        path.unlink(missing_ok=True)

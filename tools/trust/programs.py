@@ -7,14 +7,12 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from fmu_src.export import native_form
 from orchestrate.access import describe
 from orchestrate.access.unpacked import unpacked
 from tools import importers
 
 NATIVE = Path(__file__).parent / "native"
-OPTIONS = ("-std=gnu11", "-O3", "-march=native", "-Wall", "-Wextra", "-Wno-unused-function")
-CALLS = ("-fno-math-errno", "-fno-trapping-math", "-fcx-limited-range")
+OPTIONS = ("-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-fcx-limited-range")
 
 
 @functools.cache
@@ -31,17 +29,8 @@ def compile_program(fmu: Path, name: str) -> Path:
     Path
         In a temporary folder of the process, kept until its end.
     """
-    folder = temporary_folder() / describe(fmu).digest[:16]
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "names.h").write_text(importers.names_header(fmu), encoding="utf-8")
-    for header, content in native_form.fmi_headers("fmi3").items():
-        (folder / header).write_bytes(content)
-    program = folder / name
-    files = [NATIVE / f"{name}.c", importers.HERE / "importer3.c"]
-    places = [f"-I{folder}", f"-I{importers.HERE}"]
-    own = [*(importers.c_compiler() or ["cc"]), *OPTIONS, *CALLS, *places]
-    subprocess.run([*own, "-o", program, *files, "-ldl", "-lm"], check=True)
-    return program
+    folder = temporary_folder() / describe(fmu).digest[:16] / name
+    return importers.compile_against(fmu, folder, [NATIVE / f"{name}.c"], OPTIONS)
 
 
 @functools.cache

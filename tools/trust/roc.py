@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -80,8 +79,3 @@ def format_share(count: int, of: int) -> str:
     if not of:
         return "none"
     return f"{100.0 * count / of:.1f} % of {of} ({100.0 * low:.1f} to {100.0 * high:.1f})"
-
-
-def neighbour_pairs(edges: Sequence[float]) -> list[tuple[float, float]]:
-    """Return neighbouring pairs of edges."""
-    return list(zip(edges[:-1], edges[1:], strict=True))

@@ -6,7 +6,7 @@
 #include <complex.h>
 #include <math.h>
 
-#include "importer3.h"
+#include "version.h"
 
 enum { GRAZING, EQUAL, CHATTERING, FAST, CUBIC, STEEP, CONTACT, KINDS };
 enum { TERMS = 5, BOX = 4 };
@@ -200,10 +200,6 @@ static Flight draw(uint64_t *seed, int kind) {
 }
 
 /* -- the FMU ---------------------------------------------------------------------------------- */
-
-int checks, failures;
-_Thread_local int messages;
-_Thread_local char message[4096];
 
 /* Value references, in the order of their names below. */
 enum { PARAMETERS = 21, STATE = 6 };
