@@ -74,10 +74,6 @@ class ResonanceLevelsJob(Question):
         """Return how many sweeps are independent, over all levels."""
         return sum(job.independent_series() for job in self.level_jobs)
 
-    def count(self) -> int:
-        """Return the number of responses, over all levels."""
-        return sum(job.count() for job in self.level_jobs)
-
     def items(self, inputs: Inputs) -> Sequence[Point]:
         """Return the operating points of all responses, level by level."""
         return [point for job in self.level_jobs for point in job.items(inputs)]
