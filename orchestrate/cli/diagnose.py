@@ -9,6 +9,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import orchestrate
+
 from ..errors import InputError
 from ..units import with_units
 from .options import Commands, add_set_option, plain_float, read_structure_options
@@ -106,7 +108,7 @@ def run(arguments: argparse.Namespace) -> None:
     units = read_record_units(arguments)
     for path, verdict in verdicts.items():
         print_verdict(path, with_units(verdict, units))
-        signs = compute_signs(records[path], others, guess)
+        signs = orchestrate.signs(records[path], other=others, structure=guess)
         write_files(arguments, names[path], {"": verdict, "_signs": signs}, formats, plots)
     if refused:
         count = len(records) + len(refused)
@@ -237,13 +239,6 @@ def origin_attributes(
         "command": getattr(arguments, "command_line", ""),
     }
     return {name: text for name, text in words.items() if text}
-
-
-def compute_signs(record: xr.Dataset, others: list[xr.Dataset], guess: Structure) -> xr.Dataset:
-    """Compute a record's model-free signs of delamination, beside further records of the beam."""
-    from .. import signs
-
-    return signs(record, other=others, structure=guess)
 
 
 def write_files(

@@ -103,7 +103,7 @@ class ResonanceLevelsJob(Question):
             regular,
             dim=xr.DataArray(levels, dims="level", name="level"),
             data_vars=[
-                str(name) for name, values in whole.data_vars.items() if varies_with_level(values)
+                str(name) for name, values in whole.data_vars.items() if "structure" in values.dims
             ],
             coords=["amplitude"],
             compat="equals",
@@ -195,11 +195,6 @@ def resonance_levels(
         jump=checked_positive("jump", jump),
     )
     return answer(job, running, finder(running))
-
-
-def varies_with_level(values: xr.DataArray) -> bool:
-    """Return whether a variable differs between levels, by its dimension ``structure``."""
-    return "structure" in values.dims
 
 
 def checked_distinct_numbers(name: str, argument: Any) -> tuple[float, ...]:
