@@ -15,15 +15,12 @@ from ..errors import InputError
 from ..units import with_units
 from .options import Commands, add_set_option, plain_float, read_structure_options
 from .output import (
-    FORMATS,
-    PLOTS,
     add_result_options,
     add_units_option,
-    check_output,
+    check_file_options,
     digest,
     draw_picture,
     export_formats,
-    parse_endings,
     read_record_units,
     read_running_options,
     unit_note,
@@ -95,9 +92,7 @@ def add_parser(commands: Commands) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Run ``diagnose``: compute a verdict per record; print it; write results and reports."""
-    formats = parse_endings("--format", arguments.format, FORMATS)
-    plots = parse_endings("--plot", arguments.plot, PLOTS)
-    check_output(arguments.output)
+    formats, plots = check_file_options(arguments)
     guess = read_guess(arguments)
     others = [read_one_record(arguments, path) for path in arguments.other]
     if others and len(arguments.records) > 1:

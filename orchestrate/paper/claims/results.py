@@ -18,19 +18,6 @@ from ..sweep_windows import runs
 Edges = tuple[float, float]  # two neighbouring frequencies
 
 
-class Shares(NamedTuple):
-    """Shares of responses between two frequencies that are chaotic, and neutral.
-
-    Attributes
-    ----------
-    chaotic, neutral : float
-        Their shares.
-    """
-
-    chaotic: float
-    neutral: float
-
-
 class Limit(NamedTuple):
     """An exact limit of stability: frequency, kind of bifurcation, orbit.
 
@@ -140,6 +127,14 @@ def impacts_in_response(data: xr.Dataset) -> np.ndarray:
     ).astype(int)
 
 
+def etas_where_sweeps_differ(results: Results, case: str, low: float, high: float) -> np.ndarray:
+    """Return the frequencies between two at which up- and down-sweep differ in their impacts."""
+    up, down = results.up(case), results.down(case)
+    etas = up.eta.values
+    differ = impacts_in_response(up) != impacts_in_response(down)
+    return etas[differ & (etas > low) & (etas < high)]
+
+
 def is_orbit(data: xr.Dataset, n: int, impacts: int) -> np.ndarray:
     """Return a Boolean array: responses with period nT and ``impacts`` impacts in it."""
     return (data.multiplicity.values == n) & (impacts_in_response(data) == impacts)
@@ -173,7 +168,7 @@ def longest_edges(data: xr.Dataset, flags: np.ndarray) -> tuple[Edges, Edges]:
     return lower, (float(etas[last]), float(etas[min(last + 1, len(etas) - 1)]))
 
 
-def irregular_shares(results: Results, case: str, low: float, high: float) -> Shares:
+def irregular_shares(results: Results, case: str, low: float, high: float) -> tuple[float, float]:
     """Return the chaotic and neutral shares of settled responses between two frequencies.
 
     One whose state repeats is periodic, whatever the sign of its exponent in a finite time.
@@ -181,7 +176,5 @@ def irregular_shares(results: Results, case: str, low: float, high: float) -> Sh
     part = between(results.exponent(case), low, high)
     repeats = between(results.settled(case), low, high).multiplicity.values > 0
     verdicts = part.verdict.values
-    return Shares(
-        chaotic=float(np.mean((verdicts == CHAOTIC) & ~repeats)),
-        neutral=float(np.mean((verdicts == NEUTRAL) & ~repeats)),
-    )
+    chaotic, neutral = ((verdicts == kind) & ~repeats for kind in (CHAOTIC, NEUTRAL))
+    return float(np.mean(chaotic)), float(np.mean(neutral))
