@@ -18,6 +18,19 @@ from ..sweep_windows import runs
 Edges = tuple[float, float]  # two neighbouring frequencies
 
 
+class Shares(NamedTuple):
+    """Shares of responses between two frequencies that are chaotic, and neutral.
+
+    Attributes
+    ----------
+    chaotic, neutral : float
+        Their shares.
+    """
+
+    chaotic: float
+    neutral: float
+
+
 class Limit(NamedTuple):
     """An exact limit of stability: frequency, kind of bifurcation, orbit.
 
@@ -168,7 +181,7 @@ def longest_edges(data: xr.Dataset, flags: np.ndarray) -> tuple[Edges, Edges]:
     return lower, (float(etas[last]), float(etas[min(last + 1, len(etas) - 1)]))
 
 
-def irregular_shares(results: Results, case: str, low: float, high: float) -> tuple[float, float]:
+def irregular_shares(results: Results, case: str, low: float, high: float) -> Shares:
     """Return the chaotic and neutral shares of settled responses between two frequencies.
 
     One whose state repeats is periodic, whatever the sign of its exponent in a finite time.
@@ -176,5 +189,7 @@ def irregular_shares(results: Results, case: str, low: float, high: float) -> tu
     part = between(results.exponent(case), low, high)
     repeats = between(results.settled(case), low, high).multiplicity.values > 0
     verdicts = part.verdict.values
-    chaotic, neutral = ((verdicts == kind) & ~repeats for kind in (CHAOTIC, NEUTRAL))
-    return float(np.mean(chaotic)), float(np.mean(neutral))
+    return Shares(
+        chaotic=float(np.mean((verdicts == CHAOTIC) & ~repeats)),
+        neutral=float(np.mean((verdicts == NEUTRAL) & ~repeats)),
+    )
