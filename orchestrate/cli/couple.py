@@ -16,7 +16,6 @@ from .drive_options import (
     add_only_option,
     add_schedule_options,
     add_step_option,
-    check_file_options,
     format_title,
     make_controller,
     make_schedule,
@@ -31,6 +30,7 @@ from .grammar import plain_float
 from .options import Commands, read_drive_options
 from .output import (
     add_result_options,
+    check_file_options,
     digest,
     draw_picture,
     export_formats,

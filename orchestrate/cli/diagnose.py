@@ -9,19 +9,18 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import orchestrate
+
 from ..errors import InputError
 from ..units import with_units
 from .options import Commands, add_set_option, plain_float, read_structure_options
 from .output import (
-    FORMATS,
-    PLOTS,
     add_result_options,
     add_units_option,
-    check_output,
+    check_file_options,
     digest,
     draw_picture,
     export_formats,
-    parse_endings,
     read_record_units,
     read_running_options,
     unit_note,
@@ -93,9 +92,7 @@ def add_parser(commands: Commands) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Run ``diagnose``: compute a verdict per record; print it; write results and reports."""
-    formats = parse_endings("--format", arguments.format, FORMATS)
-    plots = parse_endings("--plot", arguments.plot, PLOTS)
-    check_output(arguments.output)
+    formats, plots = check_file_options(arguments)
     guess = read_guess(arguments)
     others = [read_one_record(arguments, path) for path in arguments.other]
     if others and len(arguments.records) > 1:
@@ -106,7 +103,7 @@ def run(arguments: argparse.Namespace) -> None:
     units = read_record_units(arguments)
     for path, verdict in verdicts.items():
         print_verdict(path, with_units(verdict, units))
-        signs = compute_signs(records[path], others, guess)
+        signs = orchestrate.signs(records[path], other=others, structure=guess)
         write_files(arguments, names[path], {"": verdict, "_signs": signs}, formats, plots)
     if refused:
         count = len(records) + len(refused)
@@ -237,13 +234,6 @@ def origin_attributes(
         "command": getattr(arguments, "command_line", ""),
     }
     return {name: text for name, text in words.items() if text}
-
-
-def compute_signs(record: xr.Dataset, others: list[xr.Dataset], guess: Structure) -> xr.Dataset:
-    """Compute a record's model-free signs of delamination, beside further records of the beam."""
-    from .. import signs
-
-    return signs(record, other=others, structure=guess)
 
 
 def write_files(

@@ -13,13 +13,9 @@ from ..errors import InputError
 from ..units import Units, with_readable_lengths, with_units
 from .grammar import parse_ends, parse_number_or_ends, parse_rates, plain_float
 from .output import (
-    FORMATS,
-    PLOTS,
     Files,
-    check_output,
     digest,
     draw_picture,
-    parse_endings,
     print_units_note,
     read_running_options,
     read_units,
@@ -346,7 +342,7 @@ def answer_each_structure(
     for state, data in asked.items():
         files[state].write(data, None)
     fresh = any(one_file.fresh for one_file in files.values())
-    plots = parse_endings("--plot", arguments.plot, PLOTS)
+    plots = next(iter(files.values())).plots
     path = picture_path(arguments, base_name)
     for file in draw_picture(path, plots, fresh, lambda: draw(shown)):
         print(file)
@@ -371,14 +367,6 @@ def answer_both_structures(
     print_result(shown)
     print_units_note(arguments, shown)
     files.write(asked[""], partial(draw, shown) if draw else None)
-
-
-def check_file_options(arguments: argparse.Namespace) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Check ``--format``, ``--plot``, ``--output``; return formats and picture endings."""
-    formats = parse_endings("--format", arguments.format, FORMATS)
-    plots = parse_endings("--plot", arguments.plot, PLOTS)
-    check_output(arguments.output)
-    return formats, plots
 
 
 def format_title(runs: Mapping[str, xr.Dataset], name: str, control: str = "") -> str:

@@ -218,6 +218,14 @@ def check_output(folder: Path, option: str = "--output") -> None:
         raise InputError(f"{option} {folder}: {reason}; expected a folder that can be written")
 
 
+def check_file_options(arguments: argparse.Namespace) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Check ``--format``, ``--plot``, ``--output``; return formats and picture endings."""
+    formats = parse_endings("--format", arguments.format, FORMATS)
+    plots = parse_endings("--plot", arguments.plot, PLOTS)
+    check_output(arguments.output)
+    return formats, plots
+
+
 # -- names ----------------------------------------------------------------------------------------
 
 

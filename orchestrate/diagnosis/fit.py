@@ -123,7 +123,7 @@ def fit(
     [47.0, 0.01]
     """
     chosen = checked_free(free)
-    kind = checked_hypothesis(hypothesis)
+    kind = checked_word("hypothesis", hypothesis, (DELAMINATED, *SHORT_NAMES))
     structure = delaminated_guess(guess)
     data = CurveData.from_curve(record, structure) if is_curve(record) else checked_data(record)
     job = FitJob(
@@ -136,11 +136,6 @@ def fit(
         kind=kind,
     )
     return answer(job, running, finder(running))
-
-
-def checked_hypothesis(hypothesis: str) -> str:
-    """Check that a hypothesis has a known short name, and return it."""
-    return checked_word("hypothesis", hypothesis, (DELAMINATED, *SHORT_NAMES))
 
 
 def checked_free(free: Sequence[str]) -> tuple[str, ...]:

@@ -182,7 +182,7 @@ def plan_test(
     if structure.bonded:
         raise InputError("structure: bonded; expected a guess of the delaminated one")
     f = checked_frequencies(frequencies)
-    wanted = checked_levels(levels)
+    wanted = np.unique(checked_positive("levels", levels, "m/s2"))
     sensors = sensor_by_channel(sensor)
     limit = checked_number("threshold", threshold, 1e-3, 1e6)
     noise = checked_noise(sensors, checked_number("periods", periods, 2.0, 1e4), gain_error)
@@ -314,11 +314,6 @@ def checked_frequencies(frequencies: ArrayLike) -> Floats:
         text = "expected two at least, ascending, in Hz"
         raise InputError(f"frequencies = {frequencies!r}: {text}")
     return f
-
-
-def checked_levels(levels: ArrayLike) -> Floats:
-    """Check that levels are positive, and return them in ascending order, m/s2."""
-    return np.unique(checked_positive("levels", levels, "m/s2"))
 
 
 def checked_positive(name: str, given: ArrayLike, unit: str) -> Floats:

@@ -180,19 +180,11 @@ class SearchJob(Job):
                 found.append(DelaminatedWithClearance(self.guess, (*free, "clearance")))
         return tuple(found)
 
-    def searches(self) -> list[tuple[str, float]]:
-        """List the independent searches (sound hypotheses, parts of the scan), then the end."""
+    def items(self, inputs: Inputs) -> Sequence[tuple[str, float]]:
+        """Return the independent searches (sound hypotheses, parts of the scan), then the end."""
         sound = [("sound", float(position)) for position in range(len(self.sound))]
         scan = [("scan", split) for split in STARTING_SPLITS] if self.delaminated else []
         return [*scan, *sound, ("end", 0.0)]
-
-    def count(self) -> int:
-        """Return the number of searches."""
-        return len(self.searches())
-
-    def items(self, inputs: Inputs) -> Sequence[tuple[str, float]]:
-        """Return the searches as the items of the job."""
-        return self.searches()
 
     def work(
         self,

@@ -111,7 +111,10 @@ def signs(
     count = checked_integer("seeds", seeds, 1, 1000)
     every = [sensor_channels(one) for one in (record, *others)]
     names = checked_responses(every)
-    edge = None if high_band is None else checked_band(high_band, every[0].sample_rate)
+    edge = high_band
+    if edge is not None:
+        highest = MAX_EDGE * every[0].sample_rate
+        edge = checked_number("high_band", edge, 1e-9, highest, "Hz")
     level = None if noise is None else checked_number("noise", noise, 0.0, math.inf, "m/s2", True)
     swept = [is_swept(channels, length) for channels in every]
     own = [
@@ -167,11 +170,6 @@ def checked_responses(every: Sequence[Channels]) -> tuple[str, ...]:
             have = " and ".join(channels.responses()[0]) or "none"
             raise InputError(f"other[{number}]: {have}; expected {' and '.join(names)}")
     return names
-
-
-def checked_band(high_band: float, rate: float) -> float:
-    """Check the frequency above which signs at high frequencies are taken, and return it in Hz."""
-    return checked_number("high_band", high_band, 1e-9, MAX_EDGE * rate, "Hz")
 
 
 def sound_structure(

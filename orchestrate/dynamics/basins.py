@@ -353,7 +353,7 @@ def basin(
     if x is None or y is None:
         known = find_known_attractors(point, settings, running)
         if x is None and y is None and at is None:
-            at = known.mean_state()
+            at = known.samples.mean(axis=0)
     sides = (
         known.default_axis("x_rel") if x is None and known else checked_axis("x", x),
         known.default_axis("v_rel") if y is None and known else checked_axis("y", y),
@@ -403,10 +403,6 @@ class KnownAttractors(NamedTuple):
             BEYOND * max(float(rates.max()), self.point.excitation.frequency * gap)
         )
         return PlaneAxis(name, -high, high, COUNT)
-
-    def mean_state(self) -> tuple[float, ...]:
-        """Return the mean of the known attractors' states at phase 0: the plane's centre."""
-        return tuple(self.samples.mean(axis=0).tolist())
 
 
 def find_known_attractors(

@@ -114,10 +114,6 @@ class Saddle:
         """Excitation periods until a point is on the same side: doubled if the multiplier < 0."""
         return self.periods if self.multiplier > 0.0 else 2 * self.periods
 
-    def state_at_distance(self, distance: float) -> Floats:
-        """Return the state at a distance from the saddle along the unstable direction."""
-        return self.state + distance * self.direction
-
 
 def round_off_last_bits(numbers: Floats, size: float, to: float = ROUNDED[0]) -> Floats:
     """Round numbers to a multiple of ``to`` times ``size``: equal on all processors.
@@ -206,14 +202,12 @@ class ManifoldJob(SingleOrbitQuestion):
         """Grow both sides of the manifold from the saddle; return their points as a table."""
         saddle = self.saddle()
         with Instance(fmus[OSCILLATOR]) as instance:
-            curves = [self.grow_side(instance, saddle, sign) for sign in (1.0, -1.0)]
+            settings = self.growth_settings(saddle)
+            curves = [
+                CurveGrower(self.point_function(instance, saddle, sign), settings).grow()
+                for sign in (1.0, -1.0)
+            ]
         return {**curves_table(curves, saddle), "saddle": saddle.state[np.newaxis]}
-
-    def grow_side(self, instance: Instance, saddle: Saddle, sign: float) -> GrownCurve:
-        """Grow one side of the manifold (``sign`` +1 or -1) from the saddle; return the curve."""
-        return CurveGrower(
-            self.point_function(instance, saddle, sign), self.growth_settings(saddle)
-        ).grow()
 
     def point_function(
         self, instance: Instance, saddle: Saddle, sign: float
@@ -238,7 +232,7 @@ class ManifoldJob(SingleOrbitQuestion):
             """Return the manifold's point at s: the image after floor(s) returns of the map."""
             returns = math.floor(s)
             distance = self.distance * saddle.size * saddle.growth_factor ** (s - returns)
-            state, counts = run(saddle.state_at_distance(sign * distance), returns)
+            state, counts = run(saddle.state + sign * distance * saddle.direction, returns)
             return CurvePoint(s, state, tuple(int(n) for n in counts - returns * own))
 
         return image

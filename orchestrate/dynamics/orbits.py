@@ -74,10 +74,6 @@ class FirstGuess:
 class OneItemQuestion(Question, ABC):
     """Base of jobs with a single item, computed in one go."""
 
-    def count(self) -> int:
-        """Return 1: such a job has one item."""
-        return 1
-
     def items(self, inputs: Inputs) -> Sequence[int]:
         """Return the items: a list with 0, the index of the only one."""
         return [0]

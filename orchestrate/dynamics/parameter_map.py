@@ -115,10 +115,6 @@ class MapJob(Question):
         del others["given"]
         return {**{name: plain(value) for name, value in self.given}, **others}
 
-    def count(self) -> int:
-        """Return the number of grid points of the map."""
-        return len(self.points)
-
     def items(self, inputs: Inputs) -> Sequence[Point]:
         """Return the items: structure and excitation of each grid point."""
         return self.points

@@ -96,6 +96,8 @@ class Random(ExcitationSignal):
 
     def pieces(self, accuracy: float = 1e-6) -> Pieces:
         """Return equal pieces: values at their Chebyshev points by inverse Fourier transforms."""
+        from scipy.fft import next_fast_len
+
         amplitudes = self._amplitudes()
         order = np.arange(len(amplitudes))
         phases = np.random.default_rng(self.seed).uniform(0.0, TURN, len(amplitudes))
@@ -104,7 +106,8 @@ class Random(ExcitationSignal):
         # as a sine whose fourth derivative has the same ratio to it, by root mean squares
         ratio = np.linalg.norm(amplitudes * omega**4) / np.linalg.norm(amplitudes)
         longest = phase_step(accuracy) / ratio**0.25
-        count = next_fast(max(math.ceil(self.duration / longest), 4 * len(lines)))
+        least = max(math.ceil(self.duration / longest), 4 * len(lines))
+        count = int(next_fast_len(least, real=True))
         step = self.duration / count
 
         def signal_at(shift: float, weights: Any = 1.0) -> NDArray[np.float64]:
@@ -118,10 +121,3 @@ class Random(ExcitationSignal):
         error = step**4 * np.abs(signal_at(0.0, omega**4)).max() * rise / ERROR
         nodes = self.duration * np.arange(count + 1) / count
         return Pieces.from_values(nodes, values, float(error))
-
-
-def next_fast(count: int) -> int:
-    """Return the next length from ``count`` on for which Fourier transforms are fast."""
-    from scipy.fft import next_fast_len
-
-    return int(next_fast_len(count, real=True))

@@ -75,13 +75,9 @@ class ShakeJob(Question):
         found["excitation"] = {"kind": type(self.excitation).__name__, **found["excitation"]}
         return found
 
-    def count(self) -> int:
-        """Return the number of pieces."""
-        return len(self.pieces.derivatives)
-
     def items(self, inputs: Inputs) -> Sequence[int]:
         """Return the indices of the pieces."""
-        return range(self.count())
+        return range(len(self.pieces.derivatives))
 
     def times(self, first: float = 0.0, end: float = math.inf) -> NDArray[np.float64]:
         """Return the sampling times from ``first`` up to, not including, ``end``, s."""

@@ -59,10 +59,6 @@ class ChatteringJob(Job):
     latest: int = 3
     item: ClassVar[str] = "sequence"
 
-    def count(self) -> int:
-        """Return the number of sequences: restitutions times gammas."""
-        return len(self.restitutions) * len(self.gammas)
-
     def items(self, inputs: Inputs) -> Sequence[Structure]:
         """Return a structure for each pair of restitution and gamma."""
         return [

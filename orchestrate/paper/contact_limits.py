@@ -46,10 +46,6 @@ class ContactLimitJob(Job):
     transient: int = 250
     samples: int = 40
 
-    def count(self) -> int:
-        """Return the number of short sweeps: cases times gammas."""
-        return len(self.structures) * len(self.gammas)
-
     def items(self, inputs: Inputs) -> list[tuple[Structure, tuple[float, float]]]:
         """Return structure and frequency range of each short sweep."""
         return [

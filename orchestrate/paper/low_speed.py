@@ -59,10 +59,6 @@ class LowSpeedJob(Job):
     gamma: float = 1e-4
     chunk_size: ClassVar[int] = 10
 
-    def count(self) -> int:
-        """Return the number of motions."""
-        return len(self.points)
-
     def items(self, inputs: Inputs) -> Sequence[Point]:
         """Return the structures with their excitations."""
         return self.points

@@ -20,16 +20,11 @@ def longest_run(flags: np.ndarray) -> tuple[int, int] | None:
     return max(runs(flags), key=lambda run: run[1] - run[0], default=None)
 
 
-def has_one_impact(sweep: xr.Dataset, n: int) -> np.ndarray:
-    """Return a Boolean array: responses with period nT and one impact in it."""
-    slack = 1.5 / sweep.sizes["sample"]  # of a count over a span that is no multiple of the period
-    one = np.abs(sweep.impacts_per_period.values - 1.0 / n) <= slack
-    return (sweep.multiplicity.values == n) & one
-
-
 def window(sweep: xr.Dataset, n: int) -> tuple[float, float] | None:
     """Return first and last eta of the longest window nT with one impact; None without one."""
-    run = longest_run(has_one_impact(sweep, n))
+    slack = 1.5 / sweep.sizes["sample"]  # of a count over a span that is no multiple of the period
+    one_impact = np.abs(sweep.impacts_per_period.values - 1.0 / n) <= slack
+    run = longest_run((sweep.multiplicity.values == n) & one_impact)
     etas = sweep.eta.values
     return None if run is None else (float(etas[run[0]]), float(etas[run[1]]))
 
@@ -40,10 +35,6 @@ def relative_peak(sweep: xr.Dataset, n: int) -> float | None:
     if limits is None:
         return None
     part = sweep.sel(eta=slice(*limits))
-    return local_maximum(part.eta.values, part.xi_rel_max.values)
-
-
-def local_maximum(etas: np.ndarray, gaps: np.ndarray) -> float | None:
-    """Return the eta of the gap's largest inner local maximum; None without one."""
+    etas, gaps = part.eta.values, part.xi_rel_max.values
     inside = np.flatnonzero((gaps[1:-1] > gaps[:-2]) & (gaps[1:-1] >= gaps[2:])) + 1
     return float(etas[inside[np.argmax(gaps[inside])]]) if len(inside) else None

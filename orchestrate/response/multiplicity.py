@@ -113,47 +113,17 @@ def find_repetition(states: Floats, tolerance: float) -> Repetition:
         Of :func:`scale_states`.
     tolerance : float
         Largest deviation of a repeated state.
-    """
-    later, limit = later_half(states)
-    for n in repeating_periods(later, limit, tolerance):
-        return Repetition(n, float(deviations(later, n).max()))
-    return Repetition(0, np.inf)
-
-
-def multiplicity(
-    samples: ArrayLike, tolerance: float, frequency: float = 1.0, gap: float | None = None
-) -> int:
-    """Return the multiplicity of stroboscopic samples: least n that repeats, 0 without.
-
-    Parameters
-    ----------
-    samples : array_like, shape (n_samples, 4)
-        x1, x2 in m, v1, v2 in m/s at the same phase of successive periods.
-    tolerance : float
-        Largest deviation of a repeated state over the motion's size, see :func:`scale_states`.
-    frequency : float
-        Of the excitation, rad/s.
-    gap : float, optional
-        Largest gap of the motion, m.
-
-    Returns
-    -------
-    int
-        0 where no n up to a quarter of the samples does: irregular.
 
     Notes
     -----
     Only the later half of the samples is compared: at low damping and high frequency a transient
     outlives hundreds of periods. A quasi-periodic response narrower than the tolerance counts as
-    periodic.
-
-    Examples
-    --------
-    >>> one, other = [1.0, 1.5, 0.0, 0.1], [1.2, 1.5, 0.0, 0.1]
-    >>> multiplicity([one, other] * 20, 1e-2)
-    2
+    periodic. Where no n up to a quarter of the samples does, the response is irregular: n is 0.
     """
-    return find_repetition(scale_states(samples, frequency, gap), tolerance).multiplicity
+    later, limit = later_half(states)
+    for n in repeating_periods(later, limit, tolerance):
+        return Repetition(n, float(deviations(later, n).max()))
+    return Repetition(0, np.inf)
 
 
 def decide_multiplicity(states: Floats, tolerance: float) -> Decision:

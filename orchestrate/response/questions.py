@@ -409,10 +409,6 @@ class OneMotionQuestion(Question, ABC):
 
     excitation: Excitation
 
-    def count(self) -> int:
-        """Return 1: there is one motion."""
-        return 1
-
     def items(self, inputs: Inputs) -> Sequence[Point]:
         """Return the items: a list with the structure under its excitation."""
         return [Point(self.structure, self.excitation)]

@@ -135,7 +135,8 @@ class ResonanceJob(SweepJob):
         for curve in self.curves(data):
             parts = str(curve.structure.values) != KINDS[0]  # glued, no response is irregular
             inside = inside_irregular(parts & (curve.multiplicity_decided.values == IRREGULAR))
-            for index in prominent_maxima(larger_displacement(curve), self.prominence):
+            larger = np.maximum(curve.x1_max.values, curve.x2_max.values)
+            for index in prominent_maxima(larger, self.prominence):
                 rows.append(curve.isel({self.series.name: index}))
                 noise.append(inside[index])
         text = "whether it lies inside a range of irregular responses, where a maximum is chance"
@@ -186,11 +187,6 @@ class ResonanceJob(SweepJob):
             )
             for key in dict.fromkeys((name, "hertz"))
         }
-
-
-def larger_displacement(curve: xr.Dataset) -> NDArray[np.float64]:
-    """Return the larger of both masses' largest displacements, along a curve."""
-    return np.maximum(curve.x1_max.values, curve.x2_max.values)
 
 
 def resonance(

@@ -74,10 +74,6 @@ class ResonanceLevelsJob(Question):
         """Return how many sweeps are independent, over all levels."""
         return sum(job.independent_series() for job in self.level_jobs)
 
-    def count(self) -> int:
-        """Return the number of responses, over all levels."""
-        return sum(job.count() for job in self.level_jobs)
-
     def items(self, inputs: Inputs) -> Sequence[Point]:
         """Return the operating points of all responses, level by level."""
         return [point for job in self.level_jobs for point in job.items(inputs)]
@@ -107,7 +103,7 @@ class ResonanceLevelsJob(Question):
             regular,
             dim=xr.DataArray(levels, dims="level", name="level"),
             data_vars=[
-                str(name) for name, values in whole.data_vars.items() if varies_with_level(values)
+                str(name) for name, values in whole.data_vars.items() if "structure" in values.dims
             ],
             coords=["amplitude"],
             compat="equals",
@@ -199,11 +195,6 @@ def resonance_levels(
         jump=checked_positive("jump", jump),
     )
     return answer(job, running, finder(running))
-
-
-def varies_with_level(values: xr.DataArray) -> bool:
-    """Return whether a variable differs between levels, by its dimension ``structure``."""
-    return "structure" in values.dims
 
 
 def checked_distinct_numbers(name: str, argument: Any) -> tuple[float, ...]:

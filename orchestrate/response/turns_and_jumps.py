@@ -81,13 +81,9 @@ def jump_indices(curve: ArrayLike, minimum: float) -> Rows:
     steps = np.abs(np.diff(values))
     large = steps > minimum * np.maximum(np.abs(values[1:]), np.abs(values[:-1]))
     padded = np.pad(steps, NEIGHBOURS)
-    around = [np.roll(padded, shift)[NEIGHBOURS:-NEIGHBOURS] for shift in neighbour_offsets()]
+    shifts = [shift for shift in range(-NEIGHBOURS, NEIGHBOURS + 1) if shift]
+    around = [np.roll(padded, shift)[NEIGHBOURS:-NEIGHBOURS] for shift in shifts]
     indices: Rows = np.flatnonzero(
         large & (steps > JUMP_FACTOR * np.max(around, axis=0, initial=0.0))
     )
     return indices
-
-
-def neighbour_offsets() -> list[int]:
-    """Return the offsets of a step's neighbours that it is compared with, 0 left out."""
-    return [shift for shift in range(-NEIGHBOURS, NEIGHBOURS + 1) if shift]

@@ -68,7 +68,7 @@ def compute(
         names = changed_modules(own_code, code)
         raise WorkerError(f"a worker has other sources ({names}); expected the same version there")
     paths = {
-        model: fmu_file(model, fmu) if isinstance(fmu, bytes) else fmu
+        model: write_fmu_once(model, fmu) if isinstance(fmu, bytes) else fmu
         for model, fmu in fmus.items()
     }
     if warmup_items:
@@ -77,15 +77,10 @@ def compute(
     return start, job.work(paths, items, previous)
 
 
-def fmu_file(model: str, content: bytes) -> Path:
-    """Write an FMU's bytes, sent to this worker, to a temporary file once; return its path."""
-    return write_fmu_once(model, hashlib.sha256(content).hexdigest(), content)
-
-
 @functools.lru_cache(maxsize=16)
-def write_fmu_once(model: str, digest: str, content: bytes) -> Path:
-    """Write an FMU's bytes to this process's temporary folder by digest; return the path."""
-    folder = process_folder() / f"sent-{digest[:32]}"
+def write_fmu_once(model: str, content: bytes) -> Path:
+    """Write an FMU's bytes, sent to this worker, to a temporary file once; return its path."""
+    folder = process_folder() / f"sent-{hashlib.sha256(content).hexdigest()[:32]}"
     folder.mkdir(exist_ok=True)
     return write_whole(folder / f"{model}.fmu", lambda path: path.write_bytes(content))
 

@@ -159,7 +159,10 @@ def write_mat(data: xr.Dataset, path: Path) -> list[Path]:
     from scipy.io import savemat
 
     variables = data.variables.items()
-    content: dict[str, Any] = {str(name): matlab_value(array.values) for name, array in variables}
+    content: dict[str, Any] = {  # MATLAB's cell arrays of texts are arrays of objects
+        str(name): array.values.astype(object) if array.dtype.kind in "USO" else array.values
+        for name, array in variables
+    }
     content["units"] = {str(n): str(a.attrs.get("units", "")) for n, a in variables}
     content["long_names"] = {str(n): str(a.attrs.get("long_name", "")) for n, a in variables}
     content["dimensions"] = {str(n): ", ".join(map(str, a.dims)) for n, a in variables}
@@ -171,11 +174,6 @@ def write_mat(data: xr.Dataset, path: Path) -> list[Path]:
             savemat(file, content, long_field_names=True, oned_as="column", do_compression=True)
 
     return [write_whole(path, save)]
-
-
-def matlab_value(values: NDArray[Any]) -> NDArray[Any]:
-    """Return an array of texts as objects (MATLAB's cell array), any other array unchanged."""
-    return values.astype(object) if values.dtype.kind in "USO" else values
 
 
 WRITERS: dict[str, Callable[[xr.Dataset, Path], list[Path]]] = {

@@ -63,12 +63,7 @@ def identity_of(job: Job, fmus: Mapping[str, Fmu], known: Mapping[str, Identity]
     }
     if job.needs():
         identity["from"] = {name: fingerprint(known[name]) for name in job.needs()}
-    return json_round_trip(identity)
-
-
-def json_round_trip(identity: Identity) -> Identity:
-    """Return an identity as it reads back from JSON, to compare with stored ones."""
-    restored: Identity = json.loads(json.dumps(identity))
+    restored: Identity = json.loads(json.dumps(identity))  # as it reads back from a file
     return restored
 
 

@@ -69,9 +69,9 @@ class Job(ABC):
         """Return the names of other jobs whose results this job takes as input."""
         return ()
 
-    @abstractmethod
     def count(self) -> int:
-        """Return the number of items of the job, known before any work is done."""
+        """Return the number of items; a job whose items need other results knows it by itself."""
+        return len(self.items({}))
 
     def independent_series(self) -> int:
         """Return how many equally long, independent series a sequential job's items form."""

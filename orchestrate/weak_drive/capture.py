@@ -88,10 +88,6 @@ class CaptureJob(Job):
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
     item: ClassVar[str] = "value"
 
-    def count(self) -> int:
-        """Return the number of parameter values; at least one."""
-        return max(1, len(self.values))
-
     def items(self, inputs: Inputs) -> Sequence[System]:
         """Return one pair of structure and drive for each parameter value."""
         system = System(self.structure, self.drive)

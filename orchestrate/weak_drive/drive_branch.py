@@ -83,10 +83,6 @@ class DriveBranchJob(Job):
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
     item: ClassVar[str] = "branch"
 
-    def count(self) -> int:
-        """Return the number of structures: bonded and delaminated."""
-        return len(STRUCTURES)
-
     def items(self, inputs: Inputs) -> Sequence[Structure]:
         """Return the structure as bonded and as delaminated."""
         return self.structure.as_bonded(), self.structure.as_delaminated()

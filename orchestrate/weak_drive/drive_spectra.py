@@ -62,10 +62,6 @@ class DriveSpectraJob(Job):
 
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
 
-    def count(self) -> int:
-        """Return the number of structures: bonded and delaminated."""
-        return len(KINDS)
-
     def items(self, inputs: Inputs) -> Sequence[Structure]:
         """Return the structure as bonded and as delaminated."""
         return self.structure.as_bonded(), self.structure.as_delaminated()

@@ -112,10 +112,6 @@ class JumpVoltagesJob(Job):
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
     item: ClassVar[str] = "ramp"
 
-    def count(self) -> int:
-        """Return the number of ramps."""
-        return len(KINDS) * len(self.schedules)
-
     def items(self, inputs: Inputs) -> Sequence[tuple[Structure, Ramp]]:
         """Return the structure and the schedule of each ramp, the slowest first."""
         both = (self.structure.as_bonded(), self.structure.as_delaminated())

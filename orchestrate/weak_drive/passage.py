@@ -86,13 +86,9 @@ class PassageJob(Job):
     has_final_chunk: ClassVar[bool] = True
     item: ClassVar[str] = "step"
 
-    def count(self) -> int:
-        """Return the number of items: all communication steps and one held-voltage test."""
-        return self.run.count()
-
     def items(self, inputs: Inputs) -> Sequence[int]:
         """Return the item indices: all communication steps, then the held-voltage test."""
-        return range(self.count())
+        return self.run.items(inputs)
 
     def chunks(self) -> list[Chunk]:
         """Split the items into chunks; the held-voltage test is its own last chunk."""

@@ -183,14 +183,9 @@ def settling_test(structure: Structure, drive: Drive, stay: int) -> SettlingTest
         threshold=own_resonance.dividing_speed(structure, drive) * omega,
         omega=omega,
         slow=longest_time_constant(structure, drive),
-        motor=motor_time_constant(structure, drive),
+        motor=min(1.0 / drive.b(structure), LONGEST_MEMORY) / omega,
         stay=stay,
     )
-
-
-def motor_time_constant(structure: Structure, drive: Drive) -> float:
-    """Return the time constant 1/b of the motor without load, s; it is limited."""
-    return min(1.0 / drive.b(structure), LONGEST_MEMORY) / structure.omega
 
 
 def longest_time_constant(structure: Structure, drive: Drive) -> float:

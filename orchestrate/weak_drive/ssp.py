@@ -204,6 +204,8 @@ def write_ssp(
     >>> names[:3]
     ['SystemStructure.ssd', 'resources/oscillator.ssv', 'resources/shaker.ssv']
     """
+    from ..access.exported import find
+
     check("voltage", voltage, "V")
     speed = voltage / drive.motor_constant if speed_start is None else speed_start
     check("speed_start", speed, "rad/s")
@@ -215,7 +217,7 @@ def write_ssp(
         "shaker": {**drive.parameters(), "speed_start": speed, "voltage": voltage},
     }
     text = f"Motor and box with a {state} structure, at {voltage:g} V"
-    paths = [Path(fmu) for fmu in fmus or exported_fmus()]
+    paths = [Path(fmu) for fmu in fmus or (find(model, "fmi2").path for model in MODELS.values())]
     known = {name: describe(fmu) for name, fmu in zip(MODELS, paths, strict=True)}
     files = {"SystemStructure.ssd": system_description(text, float(stop), known)}
     files |= {
@@ -224,10 +226,3 @@ def write_ssp(
     for model, fmu in zip(MODELS.values(), paths, strict=True):
         files[f"resources/{model}.fmu"] = fmu.read_bytes()
     return write_whole(path, lambda temporary: write_archive(temporary, files))
-
-
-def exported_fmus() -> list[Path]:
-    """Return the paths of the two exported FMUs of FMI 2.0."""
-    from ..access.exported import find
-
-    return [find(model, form="fmi2").path for model in MODELS.values()]

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
-from .claim import LIMIT, Finding, check_limit, check_number, register_claim, rounds_to
+from .claim import LIMIT, NUMBER, Finding, check_limit, check_number, register_claim, rounds_to
 from .results import Results, impacts_in_response, is_orbit, lower_edge, upper_edge
 
 SWEEP = "up-sweep, multiplicity and impacts"
@@ -39,6 +40,20 @@ def register_limit(
     """
     enter = register_claim(section, text, printed, how, tolerance, full)
     enter(lambda results: find(results, printed, *where))
+
+
+def register_contact_end(section: str, printed: str, case: str, inside: float) -> None:
+    """Add the claim on the frequency at which a case's permanent contact ends."""
+    text = "T-periodic with permanent contact below"
+    register_limit(section, text, printed, contact_end, case, inside, how=LAST_CONTACT)
+
+
+def register_peak(section: str, case: str, height: str, place: str) -> None:
+    """Add the claims on the size and the frequency of a case's largest gap."""
+    settings: Any = {"tolerance": NUMBER, "full": False}
+    how = "up-sweep, exact"
+    register_limit(section, "max xi_Rel", height, peak_height, case, how=how, **settings)
+    register_limit(section, "its place", place, peak_frequency, case, how="up-sweep", **settings)
 
 
 def contact_end(results: Results, printed: str, case: str, inside: float) -> Finding:

@@ -140,6 +140,14 @@ def impacts_in_response(data: xr.Dataset) -> np.ndarray:
     ).astype(int)
 
 
+def etas_where_sweeps_differ(results: Results, case: str, low: float, high: float) -> np.ndarray:
+    """Return the frequencies between two at which up- and down-sweep differ in their impacts."""
+    up, down = results.up(case), results.down(case)
+    etas = up.eta.values
+    differ = impacts_in_response(up) != impacts_in_response(down)
+    return etas[differ & (etas > low) & (etas < high)]
+
+
 def is_orbit(data: xr.Dataset, n: int, impacts: int) -> np.ndarray:
     """Return a Boolean array: responses with period nT and ``impacts`` impacts in it."""
     return (data.multiplicity.values == n) & (impacts_in_response(data) == impacts)

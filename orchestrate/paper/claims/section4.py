@@ -5,21 +5,20 @@ from __future__ import annotations
 import numpy as np
 
 from ..cases import CASES
-from .claim import LIMIT, NO, NUMBER, YES, Check, Finding, check_limit, check_parts, register_claim
+from .claim import LIMIT, NO, YES, Check, Finding, check_limit, check_parts, register_claim
 from .limit_claims import (
     BRANCH,
-    LAST_CONTACT,
     SWEEP,
-    contact_end,
     orbit_end,
     orbit_start,
-    peak_frequency,
-    peak_height,
+    register_contact_end,
     register_limit,
+    register_peak,
 )
 from .results import (
     Results,
     between,
+    etas_where_sweeps_differ,
     impacts_in_response,
     irregular_shares,
     is_orbit,
@@ -29,7 +28,6 @@ from .results import (
 
 HUNDREDTH = 0.005  # by half a unit of its one digit 1.1 would hold anywhere from 1.05 to 1.15
 SECOND_DIGIT = LIMIT.replace("last printed digit", "second digit, which its neighbours have")
-EXACT = "up-sweep, exact"
 
 
 def all_periodic(case: str, low: float, high: float) -> Check:
@@ -75,15 +73,7 @@ def make_alternation_check(case: str, low: float, high: float) -> Check:
     return check
 
 
-register_limit(
-    "4.1",
-    "T-periodic with permanent contact below",
-    "0.48",
-    contact_end,
-    "damped",
-    0.45,
-    how=LAST_CONTACT,
-)
+register_contact_end("4.1", "0.48", "damped", 0.45)
 register_claim("4.1", "T-periodic below 1.08", "all", SWEEP, full=True)(
     all_periodic("damped", 0.1, 1.077)
 )
@@ -132,19 +122,7 @@ def check_two_impacts_from(results: Results) -> Finding:
 
 
 register_limit("4.1", "two impacts up to", "1.08", orbit_end, "damped", "T/2", 1.0)
-register_limit(
-    "4.1", "max xi_Rel", "2.63", peak_height, "damped", how=EXACT, tolerance=NUMBER, full=False
-)
-register_limit(
-    "4.1",
-    "its place",
-    "1.056",
-    peak_frequency,
-    "damped",
-    how="up-sweep",
-    tolerance=NUMBER,
-    full=False,
-)
+register_peak("4.1", "damped", "2.63", "1.056")
 register_limit(
     "4.1",
     "T-periodic with one impact from 1.08 up to",
@@ -166,12 +144,7 @@ register_limit(
 )
 def check_non_unique(results: Results) -> Finding:
     """Check at which frequencies up- and down-sweep differ."""
-    up, down = results.up("damped"), results.down("damped")
-    differ = up.eta.values[
-        (impacts_in_response(up) != impacts_in_response(down))
-        & (up.eta.values > 1.0)
-        & (up.eta.values < 1.4)
-    ]
+    differ = etas_where_sweeps_differ(results, "damped", 1.0, 1.4)
     text = (
         f"up and down differ at {len(differ)} frequencies from {differ.min():.3f} to "
         f"{differ.max():.3f}"
@@ -226,34 +199,14 @@ def check_only_first_eliminated(results: Results) -> Finding:
     return check_parts(parts, "; ".join(text))
 
 
-register_limit(
-    "4.2",
-    "T-periodic with permanent contact below",
-    "0.97",
-    contact_end,
-    "plastic",
-    0.90,
-    how=LAST_CONTACT,
-)
+register_contact_end("4.2", "0.97", "plastic", 0.90)
 register_claim("4.2", "T-periodic below 1.37", "all", SWEEP, full=True)(
     all_periodic("plastic", 0.1, 1.37)
 )
 register_limit("4.2", "three impacts from", "0.97", orbit_start, "plastic", "T/3", 1.0)
 register_limit("4.2", "three impacts up to", "1.02", orbit_end, "plastic", "T/3", 1.0)
 register_limit("4.2", "two impacts up to", "1.23", orbit_end, "plastic", "T/2", 1.1)
-register_limit(
-    "4.2", "max xi_Rel", "16.41", peak_height, "plastic", how=EXACT, tolerance=NUMBER, full=False
-)
-register_limit(
-    "4.2",
-    "its place",
-    "1.048",
-    peak_frequency,
-    "plastic",
-    how="up-sweep",
-    tolerance=NUMBER,
-    full=False,
-)
+register_peak("4.2", "plastic", "16.41", "1.048")
 register_claim(
     "4.2", "one impact from 1.23 to 1.37, above as for e = 0.7", "the same", SWEEP, full=True
 )(make_alternation_check("plastic", 1.23, 2.6))

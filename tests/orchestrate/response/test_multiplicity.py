@@ -18,7 +18,6 @@ from orchestrate.response.multiplicity import (
     UNDECIDED,
     decide_multiplicity,
     find_repetition,
-    multiplicity,
     scale_states,
     spread_over_returns,
 )
@@ -28,6 +27,10 @@ from orchestrate.structures import Excitation, Structure
 
 TOLERANCE = 1e-2
 GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
+
+
+def multiplicity(samples, tolerance, frequency=1.0, gap=None):
+    return find_repetition(scale_states(samples, frequency, gap), tolerance).multiplicity
 
 
 @st.composite
