@@ -267,7 +267,7 @@ def test_a_torus_has_repeated_after_no_number_of_periods(phase, angle):
     def turn(n):
         return 2.0 * np.pi * (angle * n + phase)
 
-    states = states_of(lambda n: 0.3 * np.cos(turn(n)), of_velocity=lambda n: 0.3 * np.sin(turn(n)))
+    states = states_of(lambda n: 0.3 * np.cos(turn(n)), of_velocity=lambda n: np.sin(turn(n)))
     exact = min(abs(angle * n - round(angle * n)) for n in range(1, 51)) < 1e-4
     assert exact or decide_multiplicity(states, TOLERANCE).decided != REPEATED
 
