@@ -398,6 +398,33 @@ def test_described_parameters_are_the_arguments(file):
 ANNOTATED = [
     file for file in FILES if file.startswith(("orchestrate/", "fmu_src/export/", "tools/"))
 ]
+CLASS = re.compile(r"(?<![\w.])[A-Z][a-z]+[A-Za-z]*\b")  # but those of other packages, with a dot
+EXCITATIONS = {"SweptSine", "SteppedSine", "Random", "Shock", "Sampled"}  # public names
+
+
+def described_types(docstring: str | None) -> list[str]:
+    """Types in the sections of a numpydoc docstring: after a colon, or the line below Returns."""
+    lines = (docstring or "").splitlines()
+    types = [line.partition(" : ")[2] for line in lines if " : " in line]
+    heads = zip(lines, lines[1:], lines[2:], strict=False)
+    alone = [b for a, line, b in heads if a in ("Returns", "Yields") and line.startswith("---")]
+    return types + [line for line in alone if " : " not in line]
+
+
+@pytest.mark.parametrize("file", ANNOTATED)
+def test_described_types_are_there(file):
+    """A class that was renamed is not named by its old name."""
+    known = {"None", "True", "False", "Dataset"} | EXCITATIONS
+    docstrings = [ast.get_docstring(node) for node in definitions(tree_of(file))]  # type: ignore[arg-type]
+    code = re.sub(r'"""[\s\S]*?"""', "", (ROOT / file).read_text(encoding="utf-8"))
+    names = set(re.findall(r"\w+", code)) | known
+    told = [
+        word
+        for text in docstrings
+        for line in described_types(text)
+        for word in CLASS.findall(line)
+    ]
+    assert [word for word in told if word not in names] == []
 
 
 @pytest.mark.parametrize("file", ANNOTATED)

@@ -67,7 +67,7 @@ def simulate_schedule(
     ----------
     job : SweepJob
     workers : int
-    clockwork : Clockwork
+    clockwork : TimedChunks
     each : float
         Seconds that handing out a chunk and taking its result cost beside.
     """

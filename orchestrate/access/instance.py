@@ -51,7 +51,7 @@ class Instance:
 
     Attributes
     ----------
-    description : Description
+    description : orchestrate.access.description.Description
 
     Raises
     ------

@@ -244,7 +244,7 @@ def test_function_value(
     curve : BifurcationCurve
     root : Root
     kind : PointKind
-    known : Characteristic, optional
+    known : CharacteristicPolynomial, optional
         The polynomial at the root.
 
     Raises

@@ -115,7 +115,7 @@ class GrownCurve:
     points : list of CurvePoint
     arclength : list of float
         Without what is broken.
-    breaks : dict of int, Border
+    breaks : dict of int, ItineraryChange
         By the number of the first point after each break.
     end : str
     """

@@ -109,7 +109,7 @@ class ImpactsQuestion(StartStatesQuestion, ABC):
         ----------
         impacts : Impacts
             Non-dimensional, of ``periods`` periods.
-        item : Followed
+        item : FollowedResponse
             From the state that the periods begin with.
         """
 

@@ -72,7 +72,7 @@ def response_statistics(impacts: Impacts, item: FollowedResponse, periods: int) 
     ----------
     impacts : Impacts
         Non-dimensional, of the periods.
-    item : Followed
+    item : FollowedResponse
     periods : int
     """
     structure, excitation = item.point

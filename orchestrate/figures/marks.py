@@ -87,7 +87,7 @@ def draw_samples(
     axes : Axes
     x : ndarray, shape (n,)
     samples : ndarray, shape (n, m)
-    marks : Marks
+    marks : MarkStyle
     label : str
     """
     gaps, each = samples.ravel(), samples.shape[1]

@@ -60,7 +60,7 @@ def reproduce(
 
     Returns
     -------
-    Outcome
+    Reproduction
     """
     whole = plan.make_plan(resolution)
     parts = whole.choose(figures)

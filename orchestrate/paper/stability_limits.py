@@ -80,7 +80,7 @@ class LimitsJob(Job):
         Names of the up-sweeps, in the order of the cases, whose responses the branches begin with.
     structures : tuple of Structure
         Of these sweeps.
-    branches : tuple of Followed
+    branches : tuple of BranchSpec
     """
 
     sweeps: tuple[str, ...]

@@ -58,7 +58,7 @@ def simulate_curve(
 
     Returns
     -------
-    Curve
+    SampledCurve
         ``tau`` counts from the first kept period on.
     """
     span = point.excitation.period

@@ -48,7 +48,7 @@ class Motion(NamedTuple):
         ----------
         states : ndarray, shape (4, ...)
             x1, x2, v1, v2.
-        rates : Rates
+        rates : MotionCoefficients
         forces : (ndarray, ndarray)
             Minus the box's acceleration, and its time derivative.
         """

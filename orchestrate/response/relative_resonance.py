@@ -64,7 +64,7 @@ def follow_to_peak(
 
     Returns
     -------
-    Peak
+    RelativeResonance
         The known response itself where none larger of its kind is found.
     """
     etas = np.round(eta + step * np.arange(1, round(reach / step)), 9)

@@ -125,7 +125,7 @@ def folds(
 
     Returns
     -------
-    list of Place
+    list of BifurcationPoint
         By speed: a jump up, where eta0 is largest, then a jump down, and so on; empty without
         folds.
     """
@@ -257,7 +257,7 @@ def stability_limits(
 
     Returns
     -------
-    up, down : Place or None
+    up, down : BifurcationPoint or None
         The end of the stable branch that comes from below, and of the one from beyond; None where
         all motions are stable.
     """
@@ -278,7 +278,7 @@ def branch_stability(
 
     Returns
     -------
-    points : list of Place
+    points : list of BifurcationPoint
     stable : list of bool
         Of the motions below the first point, between each and the next, and beyond the last one.
     """

@@ -206,7 +206,7 @@ def threshold_voltage(
 
     Returns
     -------
-    low, high : End
+    low, high : ThresholdEnd
         NaN where the highest voltage does not pass, or none captures.
     """
     captured = [i for i, outcome in enumerate(outcomes) if outcome.captured]

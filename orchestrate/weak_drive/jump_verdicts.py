@@ -97,7 +97,7 @@ def explain_no_jump(
     passing : Passing
     held, final : Verdict
         Of held voltages, before and after the averaged theory was asked.
-    theory : Theory
+    theory : AveragedPrediction
     hold : float
         Time for which voltages were held at most, s.
     """
