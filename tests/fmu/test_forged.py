@@ -8,6 +8,7 @@ import pytest
 from fmu_src.kernels.oscillator import memory as oscillator
 from fmu_src.kernels.shaker import memory as shaker
 
+from ..sparing import ordinary
 from .driver import BUILD, FORMS, run
 
 DRIVE = {"box_amplitude": 0.8, "box_frequency": 1.13}
@@ -61,7 +62,7 @@ def test_every_slot_forged(form, model, tmp_path):
     assert problems == []
 
 
-@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("form", ordinary(FORMS))
 @pytest.mark.parametrize(
     ("slot", "value", "words"),
     [
