@@ -53,7 +53,7 @@ WORDS = {
     ),
     "xi0": Term(
         "gap at rest ξ₀",
-        "The gap between the halves at rest, in m. Below zero they are pressed together.",
+        "The gap between the halves at rest. Below zero they are pressed together.",
     ),
     "e": Term(
         "restitution e",

@@ -120,7 +120,6 @@ export class App {
       "command-copy": () => this.copy(at("command").textContent ?? "", "command"),
       "motion-command-copy": () => this.copy(at("motion-command").textContent ?? "", "command"),
       reset: () => this.reset(),
-      "own-beam": () => this.enterOwnBeam(),
     };
     for (const id in clicks) at(id).addEventListener("click", clicks[id]);
     at("direction").addEventListener("change", () => this.open(regions.diagram.low, regions.diagram.high));
@@ -167,13 +166,6 @@ export class App {
     this.basin.forget();
     this.restore(this.first);
     this.refreshMotion();
-  }
-
-  /** Show the fields of a beam of one's own, the first ready to be typed into. */
-  enterOwnBeam() {
-    if (!inHertz(this.level)) this.change(...this.shaking.converted(true));
-    input("f1").focus();
-    input("f1").select();
   }
 
   /** Whether it is known where the response at a frequency begins. @param {number} eta */

@@ -27,7 +27,7 @@ const OWN = [
   ["f2", "natural frequency 2, Hz", 0.1, 1e4],
   ["mass1", "mass of half 1, kg", 1e-6, 1e4],
   ["mass2", "mass of half 2, kg", 1e-6, 1e4],
-  ["zeta", "damping ratio, %", 0, 20, 0.01],
+  ["zeta", "damping, %", 0, 20, 0.01],
   ["gap", "gap at rest, mm", -0.5, 0.5, 0.005],
 ];
 

@@ -37,14 +37,13 @@ export function thresholdOf({ structure: s, frequency }, { unit }) {
 export function opensFrom(point, level) {
   if (!inHertz(level) || gapOffset(point.structure) >= 0) return "";
   const threshold = thresholdOf(point, level);
-  return Number.isFinite(threshold.value) ? ` Here they open from ${levelShown(threshold).text} on.` : "";
+  return Number.isFinite(threshold.value) ? ` At this frequency they open from ${levelShown(threshold).text} on.` : "";
 }
 
 /** Where a complete diagram's beam opens, or that it does so unseen. @param {Diagram} diagram */
 export function openingOf(diagram) {
-  const pressed = gapOffset(diagram.structure) < 0;
-  if (pressed) return `. The halves open ${rangesOf(diagram)}`;
-  return opensUnseen(diagram) ? ". Impacts where the gap is drawn as 0: the halves open at other moments of the period" : "";
+  const ranges = gapOffset(diagram.structure) < 0 ? `. The halves open ${rangesOf(diagram)}` : "";
+  return ranges + (opensUnseen(diagram) ? ". A dot at 0 where there are impacts: they open at other moments of the period" : "");
 }
 
 /** Whether a response knocks though all of its samples are shut: it opens between them. @param {Diagram} diagram */

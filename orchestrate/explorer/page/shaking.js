@@ -37,7 +37,7 @@ export class Shaking {
     this.structure = structure;
     this.level = level;
     at("hertz-label").textContent = frequencyName().startsWith("ratio") ? `as ${frequencyName()}` : `in ${frequencyName()}`;
-    at("own").textContent = `your own beam: ${ownNames()}`;
+    at("own").textContent = `your own: ${ownNames()}`;
     this.connect(acts);
   }
 
@@ -52,6 +52,10 @@ export class Shaking {
       choose(ratioFrom(value, this.structure, this.level), true);
     });
     onNumber(level, (value) => change(this.structure, levelFrom(value, this.level)));
+    this.at("own-beam").addEventListener("click", () => {
+      if (!inHertz(this.level)) change(...this.converted(true));
+      /** @type {HTMLInputElement} */ (this.at("f1")).select(); // the first of the fields, ready to be typed into
+    });
     this.at("units").addEventListener("change", ({ target }) => {
       change(...this.converted(/** @type {HTMLSelectElement} */ (target).value === "own"));
     });

@@ -61,7 +61,10 @@ export function numbersOf({ peak, impacts, contact, multiplicity, gaps }, point,
 export const averageWords = (periods) => `averages over ${periods} periods; from another start they differ by some per cent`;
 
 /** So many impacts a period, or a revolution. @param {number} impacts @param {string} [each] */
-export const countOf = (impacts, each = "a period") => `${shown(impacts, DIGITS)} impact${impacts === 1 ? "" : "s"} ${each}`;
+export function countOf(impacts, each = "a period") {
+  const count = shown(impacts, DIGITS);
+  return `${count} impact${count === "1" ? "" : "s"} ${each}`;
+}
 
 /** The same of a motion: of periods that differ it is the mean. @param {number} impacts @param {number} multiplicity */
 export const meanCountOf = (impacts, multiplicity) => `${multiplicity === 1 ? "" : "on average "}${countOf(impacts)}`;
@@ -74,7 +77,7 @@ export function sentenceOf({ impacts, contact, multiplicity, peak, gaps }, expon
     const every = multiplicity === 1 ? "every shaking period" : `after ${multiplicity} shaking periods`;
     return `Repeats ${every}: ${count}${contact ? ", then the halves stick together for a while" : ""}.`;
   }
-  const sticks = `; at times${seen ? "" : ", before the stretch shown,"} the halves stick together`;
+  const sticks = `; at times${seen ? "" : ", outside the periods shown,"} the halves stick together`;
   return `${withoutRepeating(exponent, gaps.length)}, ${count}${contact ? sticks : ""}.`;
 }
 

@@ -209,7 +209,7 @@ def test_contact_that_is_not_in_the_picture_is_said_to_have_been_before_it(opene
         "const { response, motion } = explorer.inspector.found;"
         "response.contact = true; motion.contact.fill(0); explorer.inspector.showNumbers()"
     )
-    assert "at times, before the stretch shown, the halves stick" in opened.text("sentence")
+    assert "at times, outside the periods shown, the halves stick" in opened.text("sentence")
 
 
 EXPONENTS = {  # of a motion that has not repeated: value and error, headline, label

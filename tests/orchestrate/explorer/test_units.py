@@ -69,8 +69,8 @@ def test_the_page_follows_the_units_asked_for(chromium, beam, units, tmp_path):
     assert value(browser, "f1") == pytest.approx(42.0 * TURN / turn, rel=1e-6)
     assert browser.run(LABEL, "hertz") == f"in {turns}"
     assert browser.run(LABEL, "level") == f"level, {pushes}"
-    assert browser.run(LABEL, "f2") == f"half 2 alone, {turns}"
-    assert browser.text("own") == f"your own beam: {turns}, {lengths}, {pushes}"
+    assert browser.run(LABEL, "f2") == f"natural frequency 2, {turns}"
+    assert browser.text("own") == f"your own: {turns}, {lengths}, {pushes}"
     diagram, history, phase, section, spectrum, last, highest = browser.run(SHOWN)
     place, speed = f"displacement from rest, {lengths}", f"velocity, {lengths}/s"
     assert diagram == [f"shaking frequency, {turns}", f"gap, {lengths}"]
