@@ -10,7 +10,7 @@ import orchestrate
 from ..units import text_of, units_of, with_units
 from .grammar import parse_state
 from .options import Commands, read_excitation, read_structure_options
-from .question import answer_question
+from .question import answer_question, format_largest_gap
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -39,13 +39,16 @@ def run(arguments: argparse.Namespace) -> None:
 
     def draw_orbit(data: xr.Dataset) -> Any:
         """Simulate one period from the orbit's state and draw the motion; return the figure."""
+        from ..figures.labels import title_from_attributes
         from ..figures.motion import draw
 
         start = data.state.isel(sample=0).values
         motion = orchestrate.simulate(
             structure, **excitation, periods=arguments.period, start=start
         )
-        return draw(with_units(motion, units_of(data)))
+        shown = with_units(motion, units_of(data))
+        stable = "stable" if bool(data.stable) else "unstable"
+        return draw(shown, f"{stable} orbit, {title_from_attributes(shown)}")
 
     drawable = not arguments.box_acceleration
     answer_question(arguments, structure, question, print_result, draw_orbit if drawable else None)
@@ -66,4 +69,4 @@ def print_result(data: xr.Dataset) -> None:
     for i, state in enumerate(data.state.values):
         numbers = ", ".join(f"{value:.8g}" for value in state)
         print(f"state at phase 0 after {i} periods: {numbers} (x1, x2 in m, v1, v2 in m/s)")
-    print(f"largest gap: xi_Rel = {float(data.xi_rel_max):.6g}")
+    print(f"largest gap: {format_largest_gap(data)}")
