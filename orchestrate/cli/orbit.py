@@ -39,7 +39,6 @@ def run(arguments: argparse.Namespace) -> None:
 
     def draw_orbit(data: xr.Dataset) -> Any:
         """Simulate one period from the orbit's state and draw the motion; return the figure."""
-        from ..figures.labels import title_from_attributes
         from ..figures.motion import draw
 
         start = data.state.isel(sample=0).values
@@ -47,19 +46,29 @@ def run(arguments: argparse.Namespace) -> None:
             structure, **excitation, periods=arguments.period, start=start
         )
         shown = with_units(motion, units_of(data))
-        stable = "stable" if bool(data.stable) else "unstable"
-        return draw(shown, f"{stable} orbit, {title_from_attributes(shown)}")
+        return draw(shown, orbit_title(data, shown))
 
     drawable = not arguments.box_acceleration
     answer_question(arguments, structure, question, print_result, draw_orbit if drawable else None)
+
+
+def orbit_title(orbit: xr.Dataset, motion: xr.Dataset) -> str:
+    """Return the title of an orbit's picture: whether it is stable, structure and excitation."""
+    from ..figures.labels import title_from_attributes
+
+    return f"{stability(orbit)} orbit, {title_from_attributes(motion)}"
+
+
+def stability(orbit: xr.Dataset) -> str:
+    """Return "stable" or "unstable"."""
+    return "stable" if bool(orbit.stable) else "unstable"
 
 
 def print_result(data: xr.Dataset) -> None:
     """Print an orbit's stability, multipliers, impacts, states at phase 0 and largest gap."""
     parts = data.multipliers.transpose("multiplier", "part").values
     size = max(abs(complex(*pair)) for pair in parts)
-    word = "stable" if bool(data.stable) else "unstable"
-    print(f"{word}: the largest of its multipliers has the absolute value {size:.6f}")
+    print(f"{stability(data)}: the largest of its multipliers has the absolute value {size:.6f}")
     print("multipliers " + ", ".join(f"{real:.6f}{imaginary:+.6f}i" for real, imaginary in parts))
     times = data.impact_time.values
     for time, speed in zip(times, data.impact_velocity.values, strict=True):

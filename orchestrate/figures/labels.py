@@ -295,27 +295,40 @@ def plain_title(title: str) -> str:
     --------
     >>> plain_title("Orders: swept sine: e0.6_f42-55_clearance-2e-05")
     'Orders: swept sine, $e$ = 0.6, $f_1$ = 42 Hz, $f_2$ = 55 Hz, clearance = -2e-05 m'
+    >>> plain_title("Orders: Shaken: e0.6, as sensors read it")
+    'Orders: Shaken, $e$ = 0.6, as sensors read it'
     >>> plain_title("Orders: Record beam.csv")
     'Orders: Record beam.csv'
     """
-    words = title_without_structure(title)
-    label = title.removeprefix(f"{words}: ")
-    return (
-        title if words == title else ", ".join([words, *map(expand_label_part, label.split("_"))])
-    )
+    words, label, ending = split_title(title)
+    written = [expand_label_part(part) for part in label.split("_") if part]
+    return ", ".join([words, *written]) + ending
 
 
 def title_without_structure(title: str) -> str:
-    """Return a title without the structure's file-name label that ends it.
+    """Return a title without the structure's file-name label.
 
     Examples
     --------
     >>> title_without_structure("Map over frequency and e: e0.6_f42-55")
     'Map over frequency and e'
     """
-    words, _, label = title.rpartition(": ")
-    is_label = words and all(PART_OF_LABEL.fullmatch(part) for part in label.split("_"))
-    return words if is_label else title
+    words, _, ending = split_title(title)
+    return words + ending
+
+
+def split_title(title: str) -> tuple[str, str, str]:
+    """Return what is before a structure's file-name label, the label, and what is after it.
+
+    Examples
+    --------
+    >>> split_title("Orders: Shaken: e0.6_f42, as sensors read it")
+    ('Orders: Shaken', 'e0.6_f42', ', as sensors read it')
+    """
+    words, _, rest = title.rpartition(": ")
+    label, comma, ending = rest.partition(", ")
+    is_label = bool(words) and all(PART_OF_LABEL.fullmatch(part) for part in label.split("_"))
+    return (words, label, comma + ending) if is_label else (title, "", "")
 
 
 def expand_label_part(part: str) -> str:

@@ -132,3 +132,10 @@ def test_the_largest_gap_is_a_length_where_the_motion_of_the_box_is_known(comman
         more = {"share": ("attractor", [1.0]), "decided_by": ("attractor", [0])}
         print_attractors(data.assign({**more, "state": ("coordinate", [0.0] * 4)}), "the plane")
     assert "xi_Rel = 1.5, 3 mm" in capsys.readouterr().out
+
+
+def test_the_picture_of_an_orbit_says_whether_it_is_stable():
+    motion = xr.Dataset(attrs={"e": 0.7, "eta": 3.0})
+    for stable, word in ((1, "stable"), (0, "unstable")):
+        title = orbit_command.orbit_title(xr.Dataset({"stable": stable}), motion)
+        assert title == f"{word} orbit, $e$ = 0.7, $\\eta$ = 3"
