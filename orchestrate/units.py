@@ -153,7 +153,7 @@ def omega_of(data: xr.Dataset | Mapping[str, float]) -> float:
 
 
 def length_of_ratio(data: xr.Dataset) -> xr.DataArray | float | None:
-    """Return a eta^2 in m, by which displacements over it are multiplied.
+    """Return the length a eta^2, in m, over which the paper has displacements.
 
     It is None where omega changes, or where the box's motion is not known.
 
