@@ -153,9 +153,9 @@ def omega_of(data: xr.Dataset | Mapping[str, float]) -> float:
 
 
 def length_of_ratio(data: xr.Dataset) -> xr.DataArray | float | None:
-    """Return the length a eta^2, in m, over which the paper has displacements.
+    """Return a eta^2 in m; None where omega changes or the box's motion is not known.
 
-    It is None where omega changes, or where the box's motion is not known.
+    The paper's displacements xi are over this length.
 
     Examples
     --------
