@@ -152,6 +152,35 @@ def omega_of(data: xr.Dataset | Mapping[str, float]) -> float:
         return math.nan
 
 
+def length_of_ratio(data: xr.Dataset) -> xr.DataArray | float | None:
+    """Return a eta^2 in m; None where omega changes or the box's motion is not known.
+
+    The paper's displacements xi are over this length.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> beam = xr.Dataset(attrs={"k1": 4.0, "m1": 1.0, "level": 0.2})
+    >>> length_of_ratio(beam)
+    0.05
+    """
+    names = ("level", "amplitude", "frequency")
+    known: dict[str, Any] = {name: data[name] for name in names if name in data.coords}
+    asked = {name: data.attrs.get(name) for name in names}
+    told = {name: value for name, value in asked.items() if is_number(value)}
+    known = {**told, **known}
+    if {"m1", "k1", "omega"} & set(map(str, data.coords)):
+        return None
+    if "level" not in known and {"amplitude", "frequency"} <= set(known):
+        known["level"] = known["amplitude"] * known["frequency"] ** 2
+    return known["level"] / omega_of(data) ** 2 if "level" in known else None
+
+
+def is_number(value: object) -> bool:
+    """Return whether an attribute is a finite number."""
+    return isinstance(value, (int, float)) and math.isfinite(value)
+
+
 def period_of(data: xr.Dataset) -> float:
     """Return the box's excitation period, s, of a dataset at one frequency; nan for others."""
     for holder in (data.attrs, data.coords):

@@ -86,9 +86,8 @@ def excitation_arguments(
 def draw_result(data: xr.Dataset) -> Any:
     """Draw a branch over its parameter; return the figure."""
     from ..figures.branches import draw
-    from ..figures.labels import title_from_attributes
 
-    return draw(data, title=title_from_attributes(data))
+    return draw(data)
 
 
 def print_result(data: xr.Dataset) -> None:

@@ -15,7 +15,13 @@ from .options import (
     read_excitation,
     read_structure_options,
 )
-from .question import answer_question, draw_result, format_parameter, has_flag
+from .question import (
+    answer_question,
+    draw_result,
+    format_largest_gap,
+    format_parameter,
+    has_flag,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -88,7 +94,7 @@ def print_result(data: xr.Dataset) -> None:
     where = ", ".join(
         format_parameter(data, str(name), float(top[name])) for name in data.xi_rel_max.dims
     )
-    print(f"largest gap: xi_Rel = {float(top.xi_rel_max):.6g} at {where}")
+    print(f"largest gap: {format_largest_gap(top)} at {where}")
     impacts = data.impacts_per_period
     print(f"impacts per period: {float(impacts.min()):.4g} to {float(impacts.max()):.4g}")
     if "exponent" in data:

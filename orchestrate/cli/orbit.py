@@ -10,7 +10,7 @@ import orchestrate
 from ..units import text_of, units_of, with_units
 from .grammar import parse_state
 from .options import Commands, read_excitation, read_structure_options
-from .question import answer_question
+from .question import answer_question, format_largest_gap
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -45,18 +45,30 @@ def run(arguments: argparse.Namespace) -> None:
         motion = orchestrate.simulate(
             structure, **excitation, periods=arguments.period, start=start
         )
-        return draw(with_units(motion, units_of(data)))
+        shown = with_units(motion, units_of(data))
+        return draw(shown, orbit_title(data, shown))
 
     drawable = not arguments.box_acceleration
     answer_question(arguments, structure, question, print_result, draw_orbit if drawable else None)
+
+
+def orbit_title(orbit: xr.Dataset, motion: xr.Dataset) -> str:
+    """Return the title of an orbit's picture: whether it is stable, structure and excitation."""
+    from ..figures.labels import title_from_attributes
+
+    return f"{stability(orbit)} orbit, {title_from_attributes(motion)}"
+
+
+def stability(orbit: xr.Dataset) -> str:
+    """Return "stable" or "unstable"."""
+    return "stable" if bool(orbit.stable) else "unstable"
 
 
 def print_result(data: xr.Dataset) -> None:
     """Print an orbit's stability, multipliers, impacts, states at phase 0 and largest gap."""
     parts = data.multipliers.transpose("multiplier", "part").values
     size = max(abs(complex(*pair)) for pair in parts)
-    word = "stable" if bool(data.stable) else "unstable"
-    print(f"{word}: the largest of its multipliers has the absolute value {size:.6f}")
+    print(f"{stability(data)}: the largest of its multipliers has the absolute value {size:.6f}")
     print("multipliers " + ", ".join(f"{real:.6f}{imaginary:+.6f}i" for real, imaginary in parts))
     times = data.impact_time.values
     for time, speed in zip(times, data.impact_velocity.values, strict=True):
@@ -66,4 +78,4 @@ def print_result(data: xr.Dataset) -> None:
     for i, state in enumerate(data.state.values):
         numbers = ", ".join(f"{value:.8g}" for value in state)
         print(f"state at phase 0 after {i} periods: {numbers} (x1, x2 in m, v1, v2 in m/s)")
-    print(f"largest gap: xi_Rel = {float(data.xi_rel_max):.6g}")
+    print(f"largest gap: {format_largest_gap(data)}")

@@ -362,6 +362,25 @@ def format_ranges(data: xr.Dataset, name: str, values: Any, flags: Any, max_rang
     return f"{words} {unit}".rstrip() + (f" and {left} shorter ranges" if left else "")
 
 
+def format_largest_gap(data: xr.Dataset, form: str = ".6g") -> str:
+    """Format a response's largest gap over a eta^2 and, where the box's motion is known, as length.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        With ``xi_rel_max`` of one response.
+    form : str
+        Of the ratio.
+    """
+    from ..units import length_of_ratio, text_of
+
+    ratio, length = float(data.xi_rel_max), length_of_ratio(data)
+    parts = [f"xi_Rel = {ratio:{form}}"]
+    if length is not None and math.isfinite(float(length)):
+        parts.append(text_of(data, ratio * float(length), "m", ".4g"))
+    return ", ".join(parts)
+
+
 def print_attractors(data: xr.Dataset, whole: str) -> None:
     """Print attractors with share, period, impacts and a state, two lines each.
 
@@ -382,7 +401,7 @@ def print_attractors(data: xr.Dataset, whole: str) -> None:
         print(
             f"  {number}: {float(attractor.share):6.1%} of {whole}, {word}, "
             f"{float(attractor.impacts_per_period):.4g} impacts per period, "
-            f"largest gap xi_Rel = {float(attractor.xi_rel_max):.5g}{doubt}"
+            f"largest gap {format_largest_gap(attractor, '.5g')}{doubt}"
         )
         state = ",".join(f"{value:.6g}" for value in attractor.state.values)
         print(f"     a state on it at phase 0, x1, x2 in m, v1, v2 in m/s: {state}")

@@ -127,7 +127,8 @@ class BranchJob(OneItemQuestion):
         }
         ends = [str(text) for text in table["bifurcation_ends"]]
         periods = along["zero"].shape[1]
-        title = f"Branch of orbits of {periods} periods along {name}: {self.structure.label()}"
+        count = f"{periods} period{'s' * (periods != 1)}"
+        title = f"Branch of orbits of {count} along {name}: {self.structure.label()}"
         attributes = {"title": title, "over": name, "first_end": ends[0], "last_end": ends[1]}
         dataset = xr.Dataset({**data, **bifurcation_variables(setting, table)}, attrs=attributes)
         return dataset.set_coords(list(orbit_coordinates(setting, along, "point")))

@@ -236,7 +236,7 @@ def draw_psd(results: Results) -> Figure:
             shown.append(data.psd.values[1:])
         limit_log_axis(plane, shown)
         plane.set_title(CHANNELS[channel])
-        plane.set_ylabel(typeset_array_unit(first_result(results).psd))
+        plane.set_ylabel(f"spectral density\nin {typeset_array_unit(first_result(results).psd)}")
         plane.legend(loc="upper right")
     axes[-1].set_xlabel(frequency_label(results))
     return figure

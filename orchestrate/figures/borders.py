@@ -9,9 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..flags import flag_words
-from .labels import title_from_attributes
+from .held_excitation import branch_title
 from .scales import parameter_scale
-from .style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, make_panels, styled
+from .style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, make_panels, set_title, styled
 
 MARKERS = ("*", "D", "o", "s", "^", "P", "v", "X", "<", ">", "h")  # by number of the point's kind
 COLOURS = {
@@ -48,8 +48,8 @@ def draw(*curves: xr.Dataset, title: str = "") -> Figure:
         shown.add(kind)
     for curve in curves:
         draw_points(plane, curve, ((first, x_unit), (second, y_unit)), shown)
-    title = title or title_from_attributes(curves[0], (first, second))
-    plane.set(xlabel=x_label, ylabel=y_label, title=title)
+    plane.set(xlabel=x_label, ylabel=y_label)
+    set_title(figure, title or branch_title(curves[0], (first, second)))
     figure.legend(loc="outside lower right", ncols=min(4, len(shown)))
     return figure
 

@@ -7,10 +7,10 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from .branch_lines import draw_bifurcations, draw_branch
-from .labels import EXCITATION, title_from_attributes
+from .held_excitation import branch_title
 from .orbit_diagram import set_gap_scale
 from .scales import gap_scale, parameter_scale
-from .style import XI_REL, legend_below, make_panels, styled
+from .style import XI_REL, legend_below, make_panels, set_title, styled
 
 
 @styled
@@ -38,7 +38,7 @@ def draw(*branches: xr.Dataset, title: str = "") -> Figure:
     edge = 0.01 * (high - low)  # room for markers at the ends
     words = f"{gap}, at $t = nT$" if factor else rf"{XI_REL}$(nT)$"
     plane.set(xlabel=label, ylabel=words, xlim=(low - edge, high + edge))
-    plane.set_title(title or title_from_attributes(branches[0], EXCITATION))
+    set_title(figure, title or branch_title(branches[0], [name]))
     for branch, rows, scale in zip(branches, gaps, scales, strict=True):
         draw_branch(plane, branch[name].values / unit, rows, branch.stable.values == 1)
         if branch.sizes.get("bifurcation"):

@@ -10,6 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from .labels import format_voltage, typeset_unit
 from .style import BLACK, GREEN, GREY, ORANGE, legend_under, make_panels, set_title, styled
 
 PASSED, UNDECIDED = GREEN, ORANGE
@@ -36,7 +37,7 @@ def draw(maps: Mapping[str, xr.Dataset], title: str = "") -> Figure:
         else:
             draw_passage_times(panel, data)
         panel.label_outer()
-        legend_under(panel, columns=4)
+        legend_under(panel, columns=3)
     set_title(figure, title)
     return figure
 
@@ -73,7 +74,7 @@ def draw_map(axes: Axes, data: xr.Dataset, over: str) -> None:
     if inside.sum() > 1:
         axes.plot(data.fold.where(inside), data[over], **FOLD)
     unit = str(data[over].attrs["units"])
-    axes.set_ylabel(over.replace("_", " ") + ("" if unit == "1" else f" in {unit}"))
+    axes.set_ylabel(over.replace("_", " ") + ("" if unit == "1" else f" in {typeset_unit(unit)}"))
 
 
 def draw_passage_times(axes: Axes, data: xr.Dataset) -> None:
@@ -87,7 +88,9 @@ def draw_passage_times(axes: Axes, data: xr.Dataset) -> None:
             axes.plot(volts[chosen], np.full(chosen.sum(), 0.02), label=name, **mark, **low)
     border = float(data.border)
     if np.isfinite(border):
-        axes.axvline(border, color=BLACK, linewidth=1.0, label=f"border, {border:.4f} V")
+        error = 0.5 * float(data.border_high - data.border_low)
+        text = f"border, {format_voltage(border, error)}"
+        axes.axvline(border, color=BLACK, linewidth=1.0, label=text)
     if is_threshold_uncertain(data):
         ends = float(data.border_low), float(data.border_high)
         axes.axvspan(*ends, color=UNDECIDED, alpha=0.3, linewidth=0.0, label="undecided between")

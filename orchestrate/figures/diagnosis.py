@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from ..units import as_shown
+from .analysis import note_hidden
 from .labels import plain_title
 from .scales import label_with_unit, typeset_array_unit
 from .style import (
@@ -81,9 +82,8 @@ def write_values(axes: Axes, place: np.ndarray, ratios: np.ndarray, values: np.n
     for y, ratio, value in zip(place, ratios, values, strict=True):
         known = np.isfinite(ratio)
         text = f"{value:.3g}" if known else "not in this record"
-        x = max(float(ratio), FEWEST_DECADES[0]) if known else FEWEST_DECADES[0]
+        x = float(ratio) if known and ratio > LIMIT else LIMIT  # lines are left of it
         offset: Any = {"xytext": (3, 0), "textcoords": "offset points", "zorder": 4}
-        offset["bbox"] = {"facecolor": "white", "edgecolor": "none", "pad": 0.6}
         colour = BLACK if known else GREY
         axes.annotate(text, (x, y), va="center", fontsize=7, color=colour, **offset)
 
@@ -195,6 +195,7 @@ def draw_detect(data: xr.Dataset, title: str = "") -> Figure:
             plane.plot(at.frequency, at.fitted.sel(hypothesis=name), label=name, **line)
         plane.set_yscale("log")
         limit_decades(plane, at.measured.values)
+        note_curves_below(plane, at, shown)
         if place % columns == 0:
             plane.set_ylabel(f"order {order:g}\nin {typeset_array_unit(data.measured)}")
         if place < columns:
@@ -204,6 +205,14 @@ def draw_detect(data: xr.Dataset, title: str = "") -> Figure:
     legend_below(figure, axes, 3)
     set_title(figure, title or str(data.attrs.get("title", "")))
     return figure
+
+
+def note_curves_below(plane: Axes, data: xr.Dataset, shown: list[str]) -> None:
+    """Write into a panel which fits, or whether the floor, lie below its axis."""
+    curves = {name: data.fitted.sel(hypothesis=name).values for name in shown}
+    if "floor" in data:
+        curves["floor"] = data.floor.values
+    note_hidden(plane, {name: [y] for name, y in curves.items() if np.isfinite(y).any()})
 
 
 def with_hypothesis_dimension(data: xr.Dataset) -> xr.Dataset:

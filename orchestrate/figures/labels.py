@@ -53,6 +53,7 @@ UNIT_SIGNS = {
     "m/s2": "m/s$^2$",
     "m2/s4/Hz": "(m/s$^2$)$^2$/Hz",
     "g2/Hz": "g$^2$/Hz",
+    "kg.m2": "kg m$^2$",
 }
 PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
@@ -194,6 +195,20 @@ def format_level(data: xr.Dataset, level: float) -> str:
     return rf"$a\,\Omega^2$ = {both[units_of(data).acceleration]}"
 
 
+def format_voltage(voltage: float, error: float) -> str:
+    """Format a voltage and its error, of which two digits are shown.
+
+    Examples
+    --------
+    >>> format_voltage(6.325, 0.0251), format_voltage(1.5, math.nan)
+    ('6.325 ± 0.025 V', '1.5000 V')
+    """
+    if not (math.isfinite(error) and error > 0.0):
+        return f"{voltage:.4f} V"
+    places = max(0, 1 - math.floor(math.log10(error)))
+    return f"{voltage:.{places}f} ± {error:.{places}f} V"
+
+
 def si_prefix(largest: float) -> tuple[float, str]:
     """Return the factor and the letter of the largest SI prefix that leaves a length at least 1.
 
@@ -280,14 +295,40 @@ def plain_title(title: str) -> str:
     --------
     >>> plain_title("Orders: swept sine: e0.6_f42-55_clearance-2e-05")
     'Orders: swept sine, $e$ = 0.6, $f_1$ = 42 Hz, $f_2$ = 55 Hz, clearance = -2e-05 m'
+    >>> plain_title("Orders: Shaken: e0.6, as sensors read it")
+    'Orders: Shaken, $e$ = 0.6, as sensors read it'
     >>> plain_title("Orders: Record beam.csv")
     'Orders: Record beam.csv'
     """
-    words, _, label = title.rpartition(": ")
-    parts = [PART_OF_LABEL.fullmatch(part) for part in label.split("_")]
-    if not words or not all(parts):
-        return title
-    return ", ".join([words, *(expand_label_part(part[0]) for part in parts if part)])
+    words, label, ending = split_title(title)
+    written = [expand_label_part(part) for part in label.split("_") if part]
+    return ", ".join([words, *written]) + ending
+
+
+def title_without_structure(title: str) -> str:
+    """Return a title without the structure's file-name label.
+
+    Examples
+    --------
+    >>> title_without_structure("Map over frequency and e: e0.6_f42-55")
+    'Map over frequency and e'
+    """
+    words, _, ending = split_title(title)
+    return words + ending
+
+
+def split_title(title: str) -> tuple[str, str, str]:
+    """Return what is before a structure's file-name label, the label, and what is after it.
+
+    Examples
+    --------
+    >>> split_title("Orders: Shaken: e0.6_f42, as sensors read it")
+    ('Orders: Shaken', 'e0.6_f42', ', as sensors read it')
+    """
+    words, _, rest = title.rpartition(": ")
+    label, comma, ending = rest.partition(", ")
+    is_label = bool(words) and all(PART_OF_LABEL.fullmatch(part) for part in label.split("_"))
+    return (words, label, comma + ending) if is_label else (title, "", "")
 
 
 def expand_label_part(part: str) -> str:

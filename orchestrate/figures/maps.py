@@ -11,8 +11,8 @@ from matplotlib.colors import ListedColormap, LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
-from ..units import omega_of, units_of
-from .labels import gap_name, is_finite_number, si_prefix, title_from_attributes
+from ..units import length_of_ratio, omega_of, units_of
+from .labels import gap_name, si_prefix, title_from_attributes
 from .scales import axis_values, has_frequency_unit, length_scale
 from .style import (
     BLACK,
@@ -91,19 +91,6 @@ def shown_values(data: xr.Dataset, name: str) -> tuple[xr.DataArray, str]:
     lengths = (data[name] * unit).rename(name)
     factor, letter = length_scale(data, float(lengths.max()))
     return lengths / factor, f"largest {gap_name(data)} in {letter}m"
-
-
-def length_of_ratio(data: xr.Dataset) -> Any:
-    """Return a eta^2 in m; None where omega changes, or the box's motion is not known."""
-    names = ("level", "amplitude", "frequency")
-    known: dict[str, Any] = {name: data[name] for name in names if name in data.coords}
-    told = {name: data.attrs[name] for name in names if is_finite_number(data.attrs.get(name))}
-    known = {**told, **known}
-    if {"m1", "k1", "omega"} & set(map(str, data.dims)):
-        return None
-    if "level" not in known and {"amplitude", "frequency"} <= set(known):
-        known["level"] = known["amplitude"] * known["frequency"] ** 2
-    return known["level"] / omega_of(data) ** 2 if "level" in known else None
 
 
 def draw_map(plane: Axes, data: xr.DataArray, x: np.ndarray, y: np.ndarray) -> None:

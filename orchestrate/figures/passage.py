@@ -58,7 +58,7 @@ def draw(
             panel.axvline(0.0, color=GREY, linewidth=0.8, zorder=0)
         column_axes[0].set_title(f"{name}: {format_jumps(data)}")
         turns = "a revolution" if period == 1 else f"{period} revolutions"
-        column_axes[3].set_title(f"means of {turns}, twice")
+        column_axes[3].set_title(f"averaged over {turns}, twice")
         column_axes[4].set_xlabel(f"time {words} in s")
         column_axes[4].set_xlim(time[0], time[-1])
     speed, displacement = label_with_unit("speed", data.speed), label_with_unit("$x_1$", data.x1)

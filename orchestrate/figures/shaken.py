@@ -36,11 +36,7 @@ def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) ->
     """
     figure = Figure(figsize=(10.4, 7.2), layout="constrained")
     rows = figure.subplots(4, 1, sharex=True, height_ratios=(1.0, 1.6, 1.2, 1.2))
-    set_title(
-        figure,
-        title
-        or f"{in_shown_units(data, str(data.attrs['excitation']))}; {title_from_attributes(data)}",
-    )
+    set_title(figure, title or shaken_title(data))
     box, masses, gap, impacts = rows
     scale, unit = acceleration_scale(data)
     draw_signal(box, data, "box_acceleration", scale, color=BLACK)
@@ -57,6 +53,12 @@ def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) ->
     draw_impacts(impacts, data)
     impacts.set(xlabel="time in s", xlim=(0.0, float(data.time[-1])))
     return figure
+
+
+def shaken_title(data: xr.Dataset) -> str:
+    """Return a title with the excitation, its level in the unit asked for, and the structure."""
+    words = data.attrs.get("excitation_description") or data.attrs["excitation"]
+    return f"{in_shown_units(data, str(words))}; {title_from_attributes(data)}"
 
 
 def draw_impacts(axes: Axes, data: xr.Dataset) -> None:

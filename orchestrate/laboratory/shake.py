@@ -128,8 +128,9 @@ class ShakeJob(Question):
             },
             {"time": variable("time", self.times(), "s", "time from the start")},
             {
-                "title": f"Shaken by {self.excitation.label}: {self.structure.label()}",
+                "title": f"Shaken by {self.excitation.description}: {self.structure.label()}",
                 "excitation": self.excitation.label,
+                "excitation_description": self.excitation.description,
             },
         )
 

@@ -66,6 +66,18 @@ def checked_level(name: str, given: object, low: float, high: float) -> float | 
     return profile
 
 
+def format_level(level: float | Profile) -> str:
+    """Format a peak acceleration; of a profile its lowest and its highest one.
+
+    Examples
+    --------
+    >>> format_level(0.19613), format_level(((9.0, 0.1), (16.0, 0.5)))
+    ('0.1961 m/s2', '0.1 m/s2 to 0.5 m/s2')
+    """
+    values = [level] if isinstance(level, float) else [value for _, value in level]
+    return " to ".join(f"{end:.4g} m/s2" for end in dict.fromkeys((min(values), max(values))))
+
+
 def along_profile(profile: Profile, frequency: Floats) -> Floats:
     """Interpolate a profile between break points in log-log scales; 0 outside."""
     corners, values = np.log(np.array(profile)).T
@@ -91,7 +103,12 @@ class ExcitationSignal(ABC):
     @property
     @abstractmethod
     def label(self) -> str:
-        """Short description for titles and names of files."""
+        """Short description for names of files."""
+
+    @property
+    def description(self) -> str:
+        """Description with the level, for titles; by default the label."""
+        return self.label
 
     @property
     @abstractmethod
@@ -139,6 +156,11 @@ class SumOfSignals(ExcitationSignal):
     def label(self) -> str:
         """Labels of all parts."""
         return " + ".join(part.label for part in self.parts)
+
+    @property
+    def description(self) -> str:
+        """Descriptions of all parts."""
+        return " + ".join(part.description for part in self.parts)
 
     @property
     def usual_rate(self) -> float:

@@ -21,6 +21,7 @@ from .signals import (
     along_profile,
     checked,
     checked_level,
+    format_level,
 )
 
 CYCLES = Quantity("cycles", "", "", 0.0, 1e6)
@@ -88,6 +89,11 @@ class SteppedSine(ExcitationSignal):
         first, last, count = self.frequencies[0], self.frequencies[-1], len(self.frequencies)
         over = f"{first:g} to {last:g} Hz in {count} steps" if count > 1 else f"{first:g} Hz"
         return f"stepped sine {over} and {self.duration:.4g} s"
+
+    @property
+    def description(self) -> str:
+        """Frequencies, duration and peak acceleration, for titles."""
+        return f"{self.label} at {format_level(self.acceleration)}"
 
     @property
     def usual_rate(self) -> float:

@@ -22,6 +22,7 @@ from .signals import (
     along_profile,
     checked,
     checked_level,
+    format_level,
 )
 
 
@@ -93,6 +94,11 @@ class SweptSine(ExcitationSignal):
     def label(self) -> str:
         """Frequencies and duration, for titles."""
         return f"swept sine {self.first:g} to {self.last:g} Hz in {self.duration:.4g} s"
+
+    @property
+    def description(self) -> str:
+        """Frequencies, duration and peak acceleration, for titles."""
+        return f"{self.label} at {format_level(self.acceleration)}"
 
     @property
     def usual_rate(self) -> float:

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from ..errors import InputError
+from ..figures.labels import title_without_structure
 from ..figures.plot import function_name, plot
 from ..units import OVER_OMEGA, as_shown, scale_of
 from .page import Picture, Section, Table, format_number
@@ -36,9 +37,14 @@ def draw_result(answer: xr.Dataset, words: str) -> Picture | None:
         return None
 
 
+def title_of(answer: xr.Dataset) -> str:
+    """Return a result's title as a heading; pictures and tables tell of its structure."""
+    return title_without_structure(str(answer.attrs.get("title") or function_name(answer)))
+
+
 def picture_section(answer: xr.Dataset) -> Section:
     """Return a section with a result's picture and scalar numbers."""
-    title = str(answer.attrs.get("title") or function_name(answer))
+    title = title_of(answer)
     tables = [table for table in (scalar_table(answer), parameter_table(answer)) if table.rows]
     return Section(title, picture=draw_result(answer, title), tables=tables)
 

@@ -10,7 +10,7 @@ from ..errors import InputError
 from ..figures.plot import function_name
 from ..files import write_whole
 from ..units import Units, with_units
-from .answers import result_sections
+from .answers import result_sections, title_of
 from .origin import origin_section
 from .page import Page
 from .verdict import make_verdict
@@ -70,7 +70,7 @@ def report(
     ordered = sorted(shown, key=lambda answer: not is_verdict(answer))
     first = ordered[0]
     sections = [section for answer in ordered for section in result_sections(answer)]
-    heading = title or str(first.attrs.get("title") or function_name(first))
+    heading = title or title_of(first)
     record = str(first.attrs.get("record_file", ""))
     page = Page(
         heading,

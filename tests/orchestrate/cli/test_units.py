@@ -3,8 +3,15 @@
 import hashlib
 import re
 
+import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
+
+from orchestrate.cli import map as map_command
+from orchestrate.cli import orbit as orbit_command
+from orchestrate.cli.question import print_attractors
+from orchestrate.units import with_units
 
 BEAM = ("--structure", "beam", "--set", "clearance=-2e-5")
 ASKED = ("--hz", "11:13:1", "--g", "0.02")
@@ -102,3 +109,33 @@ def test_wrong_units_are_refused_before_anything_is_computed(ask):
     done = ask("sweep", "--eta", "1.2", "--units", "Hz,rpm")
     done.complaint("--units Hz,rpm: Hz and rpm; expected one unit of frequency")
     ask("simulate", "--eta", "1.2", "--units", "ft").complaint("--units ft: ft; expected a list of")
+
+
+@pytest.mark.parametrize("command", ["map", "orbit", "basin"])
+def test_the_largest_gap_is_a_length_where_the_motion_of_the_box_is_known(command, capsys):
+    """1.5 times a Omega^2/omega^2, which is 0.2/100 m."""
+    one = {"xi_rel_max": 1.5, "multiplicity": 1.0, "impacts_per_period": 1.0}
+    over = {"map": ("e",), "orbit": (), "basin": ("attractor",)}[command]
+    data = xr.Dataset(
+        {name: (over, np.full((1,) * len(over), value)) for name, value in one.items()},
+        attrs={"k1": 100.0, "m1": 1.0, "level": 0.2},
+    )
+    data = with_units(data.assign_coords({name: [0.5] for name in over}), "mm")
+    if command == "map":
+        words = {"flag_values": [0, 1], "flag_meanings": "repeated undecided"}
+        map_command.print_result(data.assign(multiplicity_decided=("e", [0], words)))
+    elif command == "orbit":
+        more = {"stable": 1, "multipliers": (("multiplier", "part"), [[0.5, 0.0]])}
+        more |= {"impact_time": ("impact", []), "impact_velocity": ("impact", [])}
+        orbit_command.print_result(data.assign({**more, "state": ("sample", [])}))
+    else:
+        more = {"share": ("attractor", [1.0]), "decided_by": ("attractor", [0])}
+        print_attractors(data.assign({**more, "state": ("coordinate", [0.0] * 4)}), "the plane")
+    assert "xi_Rel = 1.5, 3 mm" in capsys.readouterr().out
+
+
+def test_the_picture_of_an_orbit_says_whether_it_is_stable():
+    motion = xr.Dataset(attrs={"e": 0.7, "eta": 3.0})
+    for stable, word in ((1, "stable"), (0, "unstable")):
+        title = orbit_command.orbit_title(xr.Dataset({"stable": stable}), motion)
+        assert title == f"{word} orbit, $e$ = 0.7, $\\eta$ = 3"

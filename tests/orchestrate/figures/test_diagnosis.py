@@ -8,6 +8,7 @@ import xarray as xr
 
 import orchestrate
 from orchestrate.diagnosis.indicators import INDICATORS
+from orchestrate.figures import diagnosis
 from orchestrate.figures.diagnosis import FEWEST_DECADES
 
 
@@ -69,3 +70,17 @@ def test_a_plan_shows_map_recommended_sweep_and_preload(plan):
 def test_a_plan_at_one_level_shows_curves(plan):
     figure = orchestrate.plot(plan.isel(level=[1]))
     assert {"orders 2 and 3", "order 1"} <= set(texts(figure))
+
+
+def test_values_lie_on_no_line_and_curves_below_an_axis_are_named(signs):
+    """Texts begin right of both lines; a fit that a panel does not show is named in it."""
+    (axes,) = orchestrate.plot(signs).axes
+    assert all(text.xy[0] >= diagnosis.LIMIT for text in axes.texts)
+    over = ("hypothesis", "order", "channel", "frequency")
+    fitted = np.ones((2, 1, 1, 5)) * np.array([1.0, 1e-6]).reshape(2, 1, 1, 1)
+    made = {"measured": (over[1:], np.ones((1, 1, 5)), {"units": "m/s2"})}
+    made |= {"fitted": (over, fitted), "misfit": ("hypothesis", [0.1, 2.0])}
+    names = {"hypothesis": ["delaminated", "bonded"], "order": [2.0]}
+    names |= {"channel": ["acceleration1"], "frequency": np.arange(1.0, 6.0)}
+    (plane,) = diagnosis.draw_detect(xr.Dataset(made, names)).axes
+    assert [text.get_text() for text in plane.texts] == ["below this axis: bonded"]

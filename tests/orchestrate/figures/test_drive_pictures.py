@@ -128,7 +128,7 @@ def test_capture():
     data["passage_time"] = xr.where(data.passes > 0, 5.0, np.nan)
     data.rotor_inertia.attrs["units"] = "kg.m2"
     figure = capture.draw({"bonded": data, "delaminated": data}, "set")
-    assert [axes.get_ylabel() for axes in figure.axes] == ["rotor inertia in kg.m2", ""]
+    assert [axes.get_ylabel() for axes in figure.axes] == ["rotor inertia in kg m$^2$", ""]
     kinds = {"captured", "passes", "undecided", "border", "undecided between"}
     assert kinds == {*texts(figure.axes[0])}
     nothing_overlaps(figure)
@@ -136,9 +136,9 @@ def test_capture():
     figure = capture.draw({"bonded": decided, "delaminated": wide}, "set")
     assert "time" in figure.axes[0].get_ylabel()
     shown, doubtful = (set(texts(panel)) for panel in figure.axes)
-    assert {"border, 1.0500 V", "fold, averaged theory"} < shown
+    assert {"border, 1.0500 ± 0.0030 V", "fold, averaged theory"} < shown
     assert {"undecided", "undecided between"}.isdisjoint(shown)
-    assert {"undecided", "undecided between", "border, 1.1500 V"} < doubtful
+    assert {"undecided", "undecided between", "border, 1.150 ± 0.070 V"} < doubtful
     assert "fold, averaged theory" not in doubtful  # it lies outside of what was tried
     nothing_overlaps(figure)
 
@@ -153,9 +153,13 @@ def test_jump_voltages():
     made["standard_error"] = (tuple(each), [[np.nan] * 2] * 2)
     (panel,) = jump_voltages.draw(xr.Dataset(made, {"rate": rates, **each}), "set").axes
     assert "bonded: 1.5000 V" in texts(panel)
+    made["jumps"] = (tuple(each), [[1.5, np.nan], [np.nan] * 2])
+    made["standard_error"] = (tuple(each), [[4e-4, np.nan], [np.nan] * 2])
+    (panel,) = jump_voltages.draw(xr.Dataset(made, {"rate": rates, **each}), "set").axes
+    assert texts(panel) == ["bonded: 1.50000 ± 0.00040 V", "delaminated: 2 rates"]
     made["jumps"] = (tuple(each), [[np.nan, np.nan]] * 2)
     (panel,) = jump_voltages.draw(xr.Dataset(made, {"rate": rates, **each}), "set").axes
-    assert texts(panel) == ["bonded", "delaminated"] and not panel.texts
+    assert texts(panel) == ["bonded: 2 rates", "delaminated: 2 rates"] and not panel.texts
     made["voltage"] = (("rate", *each), np.full((2, 2, 2), np.nan))
     (panel,) = jump_voltages.draw(xr.Dataset(made, {"rate": rates, **each}), "set").axes
     assert [text.get_text() for text in panel.texts] == ["no jump up"]

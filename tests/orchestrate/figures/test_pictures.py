@@ -224,3 +224,14 @@ def test_what_shook_the_box_is_said_in_the_unit_asked_for(exported):
     data = orchestrate.shake(BEAM, shock, progress=False)
     assert shaken.draw(with_units(data, "g")).get_suptitle().startswith("half-sine shock, 5 g for")
     assert "49.03 m/s$^2$" in shaken.draw(data).get_suptitle()
+
+
+@pytest.mark.parametrize("spacing", ["swept", "stepped"])
+def test_the_level_of_a_sine_is_in_the_title(spacing):
+    level = 0.02 * GRAVITY
+    sine = orchestrate.SweptSine(first=9.0, last=16.0, acceleration=level, duration=60.0)
+    if spacing == "stepped":
+        sine = orchestrate.SteppedSine(frequencies=(9.0, 16.0), acceleration=level)
+    told = {"excitation": sine.label, "excitation_description": sine.description}
+    title = shaken.shaken_title(with_units(xr.Dataset(attrs=told), "g"))
+    assert title.startswith(f"{sine.label} at 0.02 g; ") and "m/s2" not in sine.label

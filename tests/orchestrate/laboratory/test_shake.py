@@ -303,7 +303,7 @@ def test_a_stored_run_goes_on_and_is_read_again(tmp_path):
     first = shake(BEAM, SWEEP, store=path, progress=False)
     again = shake(BEAM, SWEEP, store=path, progress=False)
     assert first.identical(again)
-    assert again.attrs["title"].startswith("Shaken by swept sine 40 to 52 Hz in 1.5 s: ")
+    assert again.attrs["title"].startswith("Shaken by swept sine 40 to 52 Hz in 1.5 s at ")
     other = dataclasses.replace(SWEEP, last=53.0)
     with pytest.raises(InputError, match="last = 52.0 there, 53.0 here"):
         shake(BEAM, other, store=path, progress=False)

@@ -13,6 +13,7 @@ import xarray as xr
 
 import orchestrate
 from orchestrate.errors import InputError
+from orchestrate.reports.answers import title_of
 from orchestrate.reports.page import Page, Section, Table, Verdict, format_number, format_with_error
 from orchestrate.reports.verdict import measured_record, verdict_sections
 
@@ -203,3 +204,9 @@ def test_the_signature_is_on_the_page_of_what_it_comes_from(signs, tmp_path):
     signature = end.partition("Read and signed")[2]
     assert "Yes." in signature and "It is." in signature  # the verdict, where it is signed
     parsed(html)
+
+
+def test_a_heading_has_no_name_of_a_file():
+    told = {"title": "Map over frequency and e: e0.6_m1.5-1.4_f11.9-13.5", "call": "map()"}
+    assert title_of(xr.Dataset(attrs=told)) == "Map over frequency and e"
+    assert title_of(xr.Dataset(attrs={**told, "title": "Orders: Record a.csv"})).endswith("a.csv")
