@@ -19,7 +19,7 @@ import math
 from collections.abc import Callable, Iterator
 from copy import copy
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import pairwise, product
 from typing import NamedTuple
 
 import numpy as np
@@ -28,7 +28,7 @@ from ..running.job import Chunk, Table
 from .further_jumps import SMALLEST
 from .jumps import Passing
 from .run import Run
-from .schedule import Constant, Schedule
+from .schedule import Constant, Ramp, Schedule
 
 MEMORY = (
     "oscillator_state",
@@ -152,6 +152,9 @@ class HoldSettings:
         How far past the passing of the ramp the steps go, over K omega.
     max_holds : int
         Most voltages that are held after them.
+    rates : tuple of float
+        Of ramps from the end of a motion, over K omega in a time 1/omega: usual ones, whatever that
+        of the run was.
     """
 
     block: int = 24
@@ -170,6 +173,7 @@ class HoldSettings:
     max_stairs: int = 25
     past: float = 0.02
     max_holds: int = 200
+    rates: tuple[float, ...] = (2e-4, 1e-4, 5e-5)
 
 
 class HeldVoltageTest:
@@ -246,6 +250,18 @@ class HeldVoltageTest:
         """Change the voltage in one step from a held point, and hold it there."""
         return self.hold_voltage(point.state, voltage)._replace(origin=point.voltage)
 
+    def ramp_from(self, point: HeldPoint, voltage: float, rate: float) -> HeldPoint:
+        """Ramp the voltage from a held point at a rate over K omega^2, and hold it then."""
+        ramp = Ramp(point.voltage, voltage, rate * self.volts * self.omega, back=False)
+        run = self.begin(ramp)
+        try:
+            run.set_state(point.state)
+            run.revolve(range(math.ceil(ramp.duration / self.step)))
+            state = run.get_state()
+        finally:
+            run.master.close()
+        return self.hold_voltage(state, voltage)
+
     def hold_voltage(self, state: Table | None, voltage: float) -> HeldPoint:
         """Simulate a constant voltage from a state until the speed settles."""
         count = math.ceil(self.longest / self.step)
@@ -314,7 +330,7 @@ class HeldVoltageTest:
             points += self.extend_past(points[-1], target, ends[1], sign, far)
         if not is_beyond(points[-1]):
             return HeldCourse(Verdict(UNDECIDED, points[-1].voltage, target))
-        verdict, *others = self.bracket_changes(list(points), sign)
+        verdict, *others = self.judge_course(list(points), sign)
         if verdict.outcome == FOLLOWS and not (
             is_beyond(points[-1], far) and self.returns_same_way(points)
         ):
@@ -338,10 +354,88 @@ class HeldVoltageTest:
         sign, test = 1.0 if up else -1.0, self.for_further_jumps()
         low = self.hold_step(steps[0])
         points = self.climb_stairs(low, self.ramp_voltage(steps[1]))
-        if not any(test.may_be_a_loss(*pair, sign) for pair in pairwise(points)):
+        if not any(
+            test.may_be_a_loss(*pair, sign) or test.falls_back(*pair, sign)
+            for pair in pairwise(points)
+        ):
             return []  # so where the first voltage does not settle
-        verdicts = test.bracket_changes(points, sign)
+        verdicts = test.judge_course(points, sign)
         return [verdict for verdict in verdicts if verdict.outcome != FOLLOWS]
+
+    def judge_course(self, points: list[HeldPoint], sign: float) -> list[Verdict]:
+        """Bracket the losses of a course; undecided are those that another ramp may not meet.
+
+        A motion may end against the way: the speed goes back to that of another motion, which the
+        course follows then. But a ramp goes on while its motion ends, and may come to one further
+        along instead, as chance has it. Where one does, the motion is lost at that end; and where
+        one may, what the course loses afterwards is undecided.
+        """
+        for i, pair in enumerate(pairwise(points)):
+            bracket = self.bracket_exchange(*pair, sign)
+            what = self.classify_landing(bracket[1], points[i:], sign) if bracket else FOLLOWS
+            if bracket and what != FOLLOWS:
+                before, after = (
+                    [verdict for verdict in verdicts if verdict.outcome != FOLLOWS]
+                    for verdicts in (
+                        self.bracket_changes(part, sign) if len(part) > 1 else []
+                        for part in (points[: i + 1], points[i + 1 :])
+                    )
+                )
+                end = Verdict(what, bracket[0].voltage, bracket[1].voltage)
+                return [end, *before, *(verdict._replace(outcome=UNDECIDED) for verdict in after)]
+        return self.bracket_changes(points, sign)
+
+    def falls_back(self, low: HeldPoint, high: HeldPoint, sign: float) -> bool:
+        """Return whether the speed changes against the way of the voltage, by another motion's."""
+        return sign * (high.speed - low.speed) < 0.0 and self.differ(low, high)
+
+    def bracket_exchange(
+        self, low: HeldPoint, high: HeldPoint, sign: float
+    ) -> tuple[HeldPoint, HeldPoint] | None:
+        """Halve a step in which the speed falls back; None unless a motion is lost there."""
+        if not self.falls_back(low, high, sign):
+            return None
+        while not self.is_within(low, high, self.settings.width):
+            middle = self.step_from(low, 0.5 * (low.voltage + high.voltage))
+            if not math.isfinite(middle.speed):
+                return None
+            stays = sign * (high.speed - middle.speed) < sign * (middle.speed - low.speed)
+            low, high = (middle, high) if stays else (low, middle)
+        apart = self.settings.two_motions + speed_difference_error(low, high)
+        is_other = sign * (high.speed - low.speed) < -apart
+        return (low, high) if is_other and self.classify_return(low, high) == LOST else None
+
+    def classify_landing(self, landed: HeldPoint, points: list[HeldPoint], sign: float) -> int:
+        """Return LOST if a ramp from a motion's end comes to one further along than the course.
+
+        UNDECIDED if none does, but there is one to come to; else FOLLOWS.
+
+        Parameters
+        ----------
+        landed : HeldPoint
+            Past the end.
+        points : list of HeldPoint
+            Of the course, from the last one before the end on.
+        sign : float
+        """
+        last, *points = points
+        if len(points) < 2:
+            return FOLLOWS
+        cut, _, beyond = largest_change(points, sign)
+        near = [
+            point for point in points[: cut + 1] if self.is_within(last, point, self.settings.past)
+        ]
+        for point, rate in product(near[:-3:-1], self.settings.rates):
+            if self.is_further(self.ramp_from(last, point.voltage, rate), point, sign):
+                return LOST
+        back = self.climb_stairs(beyond, landed.voltage)[-1]
+        is_there = back.voltage != landed.voltage or self.is_further(back, landed, sign)
+        return UNDECIDED if is_there else FOLLOWS
+
+    def is_further(self, point: HeldPoint, other: HeldPoint, sign: float) -> bool:
+        """Return whether a point is on a motion further along than another at its voltage."""
+        apart = self.settings.two_motions + speed_difference_error(point, other)
+        return sign * (point.speed - other.speed) > apart
 
     def bracket_changes(self, points: list[HeldPoint], sign: float) -> list[Verdict]:
         """Bracket the largest speed change and all others that may be jumps.
