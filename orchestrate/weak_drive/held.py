@@ -10,7 +10,9 @@ way. The course begins before the resonance and ends beyond it, of the bonded st
 delaminated one. Where the speed comes back, the steps are halved further, until the speed changes
 less from each of them to the next than it would between two motions that are told apart, and all
 the steps go back: so the speed follows the voltage. What has not settled in the time that is given,
-comes back another way, or is still steep at the shortest step, decides nothing.
+comes back another way, or is still steep at the shortest step, decides nothing. Where the speed
+falls back against the way of the voltage a motion ends too, and chance may have it to which other
+one a ramp comes: the course tries ramps from before that end.
 """
 
 from __future__ import annotations
@@ -98,6 +100,8 @@ class HeldPoint(NamedTuple):
         Of the run, to go on from.
     origin : float
         Voltage from which it was reached in one step, V; NaN where that was a state of the run.
+    least, most : float
+        Extremes of its mean speeds on the way there, over omega; NaN where there are none.
     """
 
     voltage: float
@@ -106,6 +110,8 @@ class HeldPoint(NamedTuple):
     begin: float
     state: Table
     origin: float
+    least: float = math.nan
+    most: float = math.nan
 
 
 @dataclass(frozen=True)
@@ -267,7 +273,7 @@ class HeldVoltageTest:
         count = math.ceil(self.longest / self.step)
         piece = max(1, round(150.0 / self.omega / self.step))
         run, speeds = self.begin(Constant(voltage, count * self.step)), np.zeros(0)
-        speed, error = math.nan, 0.0
+        speed, error, means = math.nan, 0.0, np.zeros(0)
         try:
             if state is not None:
                 run.set_state(state)
@@ -279,7 +285,8 @@ class HeldVoltageTest:
                 if math.isfinite(speed):
                     break
             begin = float(speeds[:FIRST].mean()) if speeds.size else math.nan
-            return HeldPoint(voltage, speed, error, begin, run.get_state(), math.nan)
+            ends = (float(means.min()), float(means.max())) if means.size else (math.nan, math.nan)
+            return HeldPoint(voltage, speed, error, begin, run.get_state(), math.nan, *ends)
         finally:
             run.master.close()
 
@@ -422,8 +429,8 @@ class HeldVoltageTest:
         if len(points) < 2:
             return FOLLOWS
         cut, _, beyond = largest_change(points, sign)
-        near = [
-            point for point in points[: cut + 1] if self.is_within(last, point, self.settings.past)
+        near = [  # not the last one before: there a ramp throws any motion out
+            point for point in points[:cut] if self.is_within(last, point, self.settings.past)
         ]
         for point, rate in product(near[:-3:-1], self.settings.rates):
             if self.is_further(self.ramp_from(last, point.voltage, rate), point, sign):
@@ -503,9 +510,14 @@ class HeldVoltageTest:
         return points
 
     def has_left_motion(self, low: HeldPoint, sign: float) -> bool:
-        """Return whether the held speed left the motion that the ramp was on."""
+        """Return whether the held speed left the motion that the ramp was on.
+
+        It does not come back from further along, but where a motion ended meanwhile.
+        """
         allowed = 2.0 * self.settings.distinct + 3.0 * low.error
-        return sign * (low.speed - low.begin) < -allowed
+        furthest = low.most if sign > 0.0 else low.least
+        came_back = sign * (low.speed - furthest) < -allowed and not self.is_irregular(low)
+        return came_back or sign * (low.speed - low.begin) < -allowed
 
     def bracket_largest_change(self, points: list[HeldPoint], sign: float) -> Verdict:
         """Halve voltage steps until the largest speed change is bracketed, and judge it."""

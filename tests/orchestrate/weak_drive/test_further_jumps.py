@@ -255,6 +255,33 @@ def test_a_drive_that_jumps_soon_after_the_begin_of_its_ramp(rate):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("rate", RATES[:2])
+def test_a_drive_whose_first_motion_ends_against_the_way(rate):
+    """Ramps fall at 1.612; a motion on which one may land beside it was said to be theirs."""
+    structure, drive = draw_with_folds(np.random.default_rng(90232375555884)).of_kind("delaminated")
+    volts = drive.volts(structure)
+    speed = rate * volts * structure.omega
+    ends = 1.75 * volts, 1.5 * volts
+    down = couple(structure, drive, voltage=ends, rate=speed, back=False, progress=False)
+    down = down.sel(jump="down")
+    assert not np.isfinite(down.held_jumps) or down.held_jumps / volts > 1.6115
+    assert down.held_verdict == UNDECIDED or down.held_jumps / volts < 1.6123
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rate", RATES[2:])
+def test_an_irregular_drive_jumps_nowhere_by_its_record(rate):
+    """Its mean speed goes from 1.47 to 1.53 by and by, up and down: 2e-5 told two jumps."""
+    system = draw_with_folds(np.random.default_rng(92120022409811))
+    structure, drive = system.of_kind("delaminated")
+    volts, omega = drive.volts(structure), structure.omega
+    ends = tuple(end * volts for end in ramp_ends(system))
+    speed = rate * volts * omega
+    run = couple(structure, drive, voltage=ends, rate=speed, hold=1.0 / omega, progress=False)
+    assert "by the record" not in {*run.decided.values, *run.further_decided.values.ravel()}
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("rate", RATES[:3])
 @pytest.mark.parametrize(
     ("seed", "way", "jump"), [(251, "down", 1.35711), (15186479623816, "up", None)]

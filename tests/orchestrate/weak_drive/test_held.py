@@ -375,3 +375,18 @@ def test_an_irregular_motion_has_settled_but_not_one_that_drifts():
     assert speed == pytest.approx(1.3, abs=2.0 * error) and 3e-4 < error < 1e-3
     drifts = 1.3 + scatter + 1e-3 * np.arange(48)
     assert np.isnan(settled_speed(drifts, HoldSettings())[0])
+
+
+def test_it_begins_before_a_motion_that_ends_while_the_first_voltage_is_held():
+    """The speed goes further and comes back, to another motion: the course began on that one."""
+
+    class Ended(Scripted):
+        def hold_step(self, step):
+            point = super().hold_step(step)
+            return point._replace(most=point.speed + 0.02 * (step > 10), least=point.speed)
+
+    ended = Ended()
+    assert ended.verdict() == FOLLOWS and ended.held == [15, 2]
+    regular = ended.at(1.5)._replace(most=1.33)
+    assert ended.has_left_motion(regular, 1.0)
+    assert not ended.has_left_motion(regular._replace(error=6e-3), 1.0)
