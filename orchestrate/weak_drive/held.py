@@ -377,20 +377,37 @@ class HeldVoltageTest:
         along instead, as chance has it. Where one does, the motion is lost at that end; and where
         one may, what the course loses afterwards is undecided.
         """
+        found = self.find_left_motion(points, sign)
+        if found is None:
+            verdicts = self.bracket_changes(points, sign)
+            found = self.find_left_motion(points, sign)  # halved steps show what longer ones hid
+            if found is None:
+                return verdicts
+        i, end = found
+        before, after = (
+            [
+                verdict
+                for verdict in (self.bracket_changes(part, sign) if len(part) > 1 else [])
+                if verdict.outcome != FOLLOWS
+            ]
+            for part in (points[: i + 1], points[i + 1 :])
+        )
+        return [end, *before, *(verdict._replace(outcome=UNDECIDED) for verdict in after)]
+
+    def find_left_motion(self, points: list[HeldPoint], sign: float) -> tuple[int, Verdict] | None:
+        """Find a motion that ends against the way and that ramps may leave for one further along.
+
+        Returns
+        -------
+        (int, Verdict), optional
+            Index of the last point before its end, and the end: ``LOST`` or ``UNDECIDED``.
+        """
         for i, pair in enumerate(pairwise(points)):
             bracket = self.bracket_exchange(*pair, sign)
             what = self.classify_landing(bracket[1], points[i:], sign) if bracket else FOLLOWS
             if bracket and what != FOLLOWS:
-                before, after = (
-                    [verdict for verdict in verdicts if verdict.outcome != FOLLOWS]
-                    for verdicts in (
-                        self.bracket_changes(part, sign) if len(part) > 1 else []
-                        for part in (points[: i + 1], points[i + 1 :])
-                    )
-                )
-                end = Verdict(what, bracket[0].voltage, bracket[1].voltage)
-                return [end, *before, *(verdict._replace(outcome=UNDECIDED) for verdict in after)]
-        return self.bracket_changes(points, sign)
+                return i, Verdict(what, bracket[0].voltage, bracket[1].voltage)
+        return None
 
     def falls_back(self, low: HeldPoint, high: HeldPoint, sign: float) -> bool:
         """Return whether the speed changes against the way of the voltage, by another motion's."""
@@ -429,8 +446,11 @@ class HeldVoltageTest:
         if len(points) < 2:
             return FOLLOWS
         cut, _, beyond = largest_change(points, sign)
-        near = [  # not the last one before: there a ramp throws any motion out
-            point for point in points[:cut] if self.is_within(last, point, self.settings.past)
+        near = [  # and clear of the next end, where a ramp throws any motion out
+            point
+            for point in points[: cut + 1]
+            if self.is_within(last, point, self.settings.past)
+            and not self.is_within(point, beyond, self.settings.stair)
         ]
         for point, rate in product(near[:-3:-1], self.settings.rates):
             if self.is_further(self.ramp_from(last, point.voltage, rate), point, sign):

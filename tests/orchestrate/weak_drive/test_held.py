@@ -238,6 +238,22 @@ def test_a_ramp_from_a_held_point():
     assert low.speed < high.begin < 1.3
 
 
+def test_a_motion_that_ends_against_the_way_within_a_step_of_the_course():
+    """The long step came to the last motion at once; steps halved come to the one beside it."""
+
+    class Hidden(FallsBack):
+        def step_from(self, point, voltage):
+            leaps = voltage - point.voltage > 3.5e-3 and point.voltage <= 1.52 < voltage
+            return self.at(voltage, 0.1) if leaps else super().step_from(point, voltage)
+
+    course = Hidden(2e-3, 1.525)
+    points = course.climb_stairs(course.at(1.5), 1.56)
+    assert not any(course.falls_back(*pair, 1.0) for pair in zip(points, points[1:], strict=False))
+    first, *others = course.judge_course(points, 1.0)
+    assert first.outcome == LOST and first.low <= 1.52 + 1e-9 and first.high >= 1.52 - 1e-9
+    assert {verdict.outcome for verdict in others} <= {UNDECIDED}
+
+
 def test_a_speed_that_falls_and_comes_back_with_the_voltage_ends_no_motion():
     class Dip(Scripted):
         def step_from(self, point, voltage):
