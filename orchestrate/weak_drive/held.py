@@ -331,6 +331,7 @@ class HeldVoltageTest:
                 break
             step, back = max(ends[0], step - back), 2 * back
             low = self.hold_step(step)
+        low = self.begin_before_end(low, step, ends[0], sign)
         target = self.target_voltage(steps.after, ends[1], sign)
         points = self.climb_stairs(low, target)
         if not is_beyond(points[-1], far):
@@ -395,7 +396,7 @@ class HeldVoltageTest:
         return [end, *before, *(verdict._replace(outcome=UNDECIDED) for verdict in after)]
 
     def find_left_motion(self, points: list[HeldPoint], sign: float) -> tuple[int, Verdict] | None:
-        """Find a motion that ends against the way and that ramps may leave for one further along.
+        """Find a motion that ends against the way and may be left for one further along, or None.
 
         Returns
         -------
@@ -504,7 +505,7 @@ class HeldVoltageTest:
 
     def target_voltage(self, after: int, last: int, sign: float) -> float:
         """Return the voltage where the held steps are to end, well past the jump, V."""
-        past = self.ramp_voltage(after) + sign * self.settings.past * self.volts
+        past = self.ramp_voltage(after) + sign * self.past_volts
         end = self.ramp_voltage(last)
         return min(past, end) if sign > 0.0 else max(past, end)
 
@@ -530,14 +531,44 @@ class HeldVoltageTest:
         return points
 
     def has_left_motion(self, low: HeldPoint, sign: float) -> bool:
-        """Return whether the held speed left the motion that the ramp was on.
-
-        It does not come back from further along, but where a motion ended meanwhile.
-        """
+        """Return whether the held speed left the motion that the ramp was on."""
         allowed = 2.0 * self.settings.distinct + 3.0 * low.error
+        return sign * (low.speed - low.begin) < -allowed
+
+    def came_back(self, low: HeldPoint, sign: float) -> bool:
+        """Return whether the held speed came back from further along, as past a motion's end."""
         furthest = low.most if sign > 0.0 else low.least
-        came_back = sign * (low.speed - furthest) < -allowed and not self.is_irregular(low)
-        return came_back or sign * (low.speed - low.begin) < -allowed
+        allowed = 2.0 * self.settings.distinct + 3.0 * low.error
+        return sign * (low.speed - furthest) < -allowed and not self.is_irregular(low)
+
+    def begin_before_end(self, low: HeldPoint, step: int, first: int, sign: float) -> HeldPoint:
+        """Return where to begin if a motion ended while the first voltage was held, else that.
+
+        The speed came back then, which it also does after a fast ramp: it is such an end if a
+        course from well before falls back on its way there.
+
+        Parameters
+        ----------
+        low : HeldPoint
+        step, first : int
+            Of the run: that of the held point, and the earliest.
+        sign : float
+        """
+        if not self.came_back(low, sign):
+            return low
+        back = 1
+        while step > first and abs(self.ramp_voltage(step) - low.voltage) < self.past_volts:
+            step, back = max(first, step - back), 2 * back
+        earlier = self.hold_step(step)
+        if math.isnan(earlier.speed) or earlier.voltage == low.voltage:
+            return low
+        path = pairwise(self.climb_stairs(earlier, low.voltage))
+        return earlier if any(self.falls_back(*pair, sign) for pair in path) else low
+
+    @property
+    def past_volts(self) -> float:
+        """Return how far past the passing of the ramp the steps go, V."""
+        return self.settings.past * self.volts
 
     def bracket_largest_change(self, points: list[HeldPoint], sign: float) -> Verdict:
         """Halve voltage steps until the largest speed change is bracketed, and judge it."""

@@ -393,16 +393,20 @@ def test_an_irregular_motion_has_settled_but_not_one_that_drifts():
     assert np.isnan(settled_speed(drifts, HoldSettings())[0])
 
 
-def test_it_begins_before_a_motion_that_ends_while_the_first_voltage_is_held():
-    """The speed goes further and comes back, to another motion: the course began on that one."""
+@pytest.mark.parametrize(("ends", "begin"), [(True, 8), (False, 15)])
+def test_it_begins_before_a_motion_that_ends_while_the_first_voltage_is_held(ends, begin):
+    """The speed comes back from further along: the course began on the motion past that end."""
 
     class Ended(Scripted):
-        def hold_step(self, step):
-            point = super().hold_step(step)
-            return point._replace(most=point.speed + 0.02 * (step > 10), least=point.speed)
+        def step_from(self, point, voltage):
+            return self.at(voltage, -0.02 * (ends and voltage > 1.465))
 
     ended = Ended()
-    assert ended.verdict() == FOLLOWS and ended.held == [15, 2]
-    regular = ended.at(1.5)._replace(most=1.33)
-    assert ended.has_left_motion(regular, 1.0)
-    assert not ended.has_left_motion(regular._replace(error=6e-3), 1.0)
+    speed = ended.at(ended.ramp_voltage(15), -0.02 * ends).speed
+    low = ended.at(ended.ramp_voltage(15))._replace(speed=speed, most=speed + 0.02)
+    found = ended.begin_before_end(low, 15, 0, 1.0)
+    assert found.voltage == ended.ramp_voltage(begin)
+    calm = low._replace(most=speed + 1e-3)
+    assert ended.begin_before_end(calm, 15, 0, 1.0) is calm
+    irregular = low._replace(error=6e-3)
+    assert ended.begin_before_end(irregular, 15, 0, 1.0) is irregular
