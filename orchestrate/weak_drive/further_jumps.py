@@ -77,11 +77,9 @@ def find_further_jumps(
             continue
         earlier = torque[max(0, high - limits.around * width, *ended) : high]
         later = torque[low : low + limits.around * width]
-        known = earlier if ended or len(earlier) >= APART * width else later
-        noise, fall = (
-            limits.clearness * scatter_about_trend(known, width),
-            torque[high] - torque[low],
-        )
+        begins = not ended and len(earlier) < APART * width
+        scatter = calmest_scatter(later, width) if begins else scatter_about_trend(earlier, width)
+        noise, fall = limits.clearness * scatter, torque[high] - torque[low]
         reach = LASTING * width
         lasts = noise <= LEAST or earlier[-reach:].mean() - later[:reach].mean() > 0.5 * fall
         if fall > max(LEAST, noise) and lasts:
@@ -140,6 +138,18 @@ def scatter_about_trend(values: np.ndarray, width: int) -> float:
     for _ in range(3):
         third = lag_difference(third, width)
     return float(np.sqrt(np.mean(third**2) / 20.0))
+
+
+def calmest_scatter(values: np.ndarray, width: int) -> float:
+    """Estimate the least scatter about a smooth trend of stretches that follow each other.
+
+    After a jump at the begin of a fast ramp the torque swings for long: these swings are no scatter
+    of the motion before, and of an irregular motion each stretch scatters.
+    """
+    stretches = range(0, max(1, len(values) - APART * width + 1), LASTING * width)
+    return min(
+        scatter_about_trend(values[first : first + LASTING * width], width) for first in stretches
+    )
 
 
 def true_stretches(runs: np.ndarray, first: int, last: int) -> list[tuple[int, int]]:

@@ -10,7 +10,9 @@ way. The course begins before the resonance and ends beyond it, of the bonded st
 delaminated one. Where the speed comes back, the steps are halved further, until the speed changes
 less from each of them to the next than it would between two motions that are told apart, and all
 the steps go back: so the speed follows the voltage. What has not settled in the time that is given,
-comes back another way, or is still steep at the shortest step, decides nothing.
+comes back another way, or is still steep at the shortest step, decides nothing. Where the speed
+falls back against the way of the voltage a motion ends too, and chance may have it to which other
+one a ramp comes: the course tries ramps from before that end.
 """
 
 from __future__ import annotations
@@ -19,7 +21,7 @@ import math
 from collections.abc import Callable, Iterator
 from copy import copy
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import pairwise, product
 from typing import NamedTuple
 
 import numpy as np
@@ -28,7 +30,7 @@ from ..running.job import Chunk, Table
 from .further_jumps import SMALLEST
 from .jumps import Passing
 from .run import Run
-from .schedule import Constant, Schedule
+from .schedule import Constant, Ramp, Schedule
 
 MEMORY = (
     "oscillator_state",
@@ -98,6 +100,8 @@ class HeldPoint(NamedTuple):
         Of the run, to go on from.
     origin : float
         Voltage from which it was reached in one step, V; NaN where that was a state of the run.
+    least, most : float
+        Extremes of its mean speeds on the way there, over omega; NaN where there are none.
     """
 
     voltage: float
@@ -106,6 +110,8 @@ class HeldPoint(NamedTuple):
     begin: float
     state: Table
     origin: float
+    least: float = math.nan
+    most: float = math.nan
 
 
 @dataclass(frozen=True)
@@ -152,6 +158,9 @@ class HoldSettings:
         How far past the passing of the ramp the steps go, over K omega.
     max_holds : int
         Most voltages that are held after them.
+    rates : tuple of float
+        Of ramps from the end of a motion, over K omega in a time 1/omega: usual ones, whatever that
+        of the run was.
     """
 
     block: int = 24
@@ -170,6 +179,7 @@ class HoldSettings:
     max_stairs: int = 25
     past: float = 0.02
     max_holds: int = 200
+    rates: tuple[float, ...] = (2e-4, 1e-4, 5e-5)
 
 
 class HeldVoltageTest:
@@ -246,12 +256,24 @@ class HeldVoltageTest:
         """Change the voltage in one step from a held point, and hold it there."""
         return self.hold_voltage(point.state, voltage)._replace(origin=point.voltage)
 
+    def ramp_from(self, point: HeldPoint, voltage: float, rate: float) -> HeldPoint:
+        """Ramp the voltage from a held point at a rate over K omega^2, and hold it then."""
+        ramp = Ramp(point.voltage, voltage, rate * self.volts * self.omega, back=False)
+        run = self.begin(ramp)
+        try:
+            run.set_state(point.state)
+            run.revolve(range(math.ceil(ramp.duration / self.step)))
+            state = run.get_state()
+        finally:
+            run.master.close()
+        return self.hold_voltage(state, voltage)
+
     def hold_voltage(self, state: Table | None, voltage: float) -> HeldPoint:
         """Simulate a constant voltage from a state until the speed settles."""
         count = math.ceil(self.longest / self.step)
         piece = max(1, round(150.0 / self.omega / self.step))
         run, speeds = self.begin(Constant(voltage, count * self.step)), np.zeros(0)
-        speed, error = math.nan, 0.0
+        speed, error, means = math.nan, 0.0, np.zeros(0)
         try:
             if state is not None:
                 run.set_state(state)
@@ -263,7 +285,8 @@ class HeldVoltageTest:
                 if math.isfinite(speed):
                     break
             begin = float(speeds[:FIRST].mean()) if speeds.size else math.nan
-            return HeldPoint(voltage, speed, error, begin, run.get_state(), math.nan)
+            ends = (float(means.min()), float(means.max())) if means.size else (math.nan, math.nan)
+            return HeldPoint(voltage, speed, error, begin, run.get_state(), math.nan, *ends)
         finally:
             run.master.close()
 
@@ -308,13 +331,14 @@ class HeldVoltageTest:
                 break
             step, back = max(ends[0], step - back), 2 * back
             low = self.hold_step(step)
+        low = self.begin_before_end(low, step, ends[0], sign)
         target = self.target_voltage(steps.after, ends[1], sign)
         points = self.climb_stairs(low, target)
         if not is_beyond(points[-1], far):
             points += self.extend_past(points[-1], target, ends[1], sign, far)
         if not is_beyond(points[-1]):
             return HeldCourse(Verdict(UNDECIDED, points[-1].voltage, target))
-        verdict, *others = self.bracket_changes(list(points), sign)
+        verdict, *others = self.judge_course(list(points), sign)
         if verdict.outcome == FOLLOWS and not (
             is_beyond(points[-1], far) and self.returns_same_way(points)
         ):
@@ -338,10 +362,108 @@ class HeldVoltageTest:
         sign, test = 1.0 if up else -1.0, self.for_further_jumps()
         low = self.hold_step(steps[0])
         points = self.climb_stairs(low, self.ramp_voltage(steps[1]))
-        if not any(test.may_be_a_loss(*pair, sign) for pair in pairwise(points)):
+        if not any(
+            test.may_be_a_loss(*pair, sign) or test.falls_back(*pair, sign)
+            for pair in pairwise(points)
+        ):
             return []  # so where the first voltage does not settle
-        verdicts = test.bracket_changes(points, sign)
+        verdicts = test.judge_course(points, sign)
         return [verdict for verdict in verdicts if verdict.outcome != FOLLOWS]
+
+    def judge_course(self, points: list[HeldPoint], sign: float) -> list[Verdict]:
+        """Bracket the losses of a course; undecided are those that another ramp may not meet.
+
+        A motion may end against the way: the speed goes back to that of another motion, which the
+        course follows then. But a ramp goes on while its motion ends, and may come to one further
+        along instead, as chance has it. Where one does, the motion is lost at that end; and where
+        one may, what the course loses afterwards is undecided.
+        """
+        found = self.find_left_motion(points, sign)
+        if found is None:
+            verdicts = self.bracket_changes(points, sign)
+            found = self.find_left_motion(points, sign)  # halved steps show what longer ones hid
+            if found is None:
+                return verdicts
+        i, end = found
+        before, after = (
+            [
+                verdict
+                for verdict in (self.bracket_changes(part, sign) if len(part) > 1 else [])
+                if verdict.outcome != FOLLOWS
+            ]
+            for part in (points[: i + 1], points[i + 1 :])
+        )
+        return [end, *before, *(verdict._replace(outcome=UNDECIDED) for verdict in after)]
+
+    def find_left_motion(self, points: list[HeldPoint], sign: float) -> tuple[int, Verdict] | None:
+        """Find a motion that ends against the way and may be left for one further along, or None.
+
+        Returns
+        -------
+        (int, Verdict), optional
+            Index of the last point before its end, and the end: ``LOST`` or ``UNDECIDED``.
+        """
+        for i, pair in enumerate(pairwise(points)):
+            bracket = self.bracket_exchange(*pair, sign)
+            what = self.classify_landing(bracket[1], points[i:], sign) if bracket else FOLLOWS
+            if bracket and what != FOLLOWS:
+                return i, Verdict(what, bracket[0].voltage, bracket[1].voltage)
+        return None
+
+    def falls_back(self, low: HeldPoint, high: HeldPoint, sign: float) -> bool:
+        """Return whether the speed changes against the way of the voltage, by another motion's."""
+        return sign * (high.speed - low.speed) < 0.0 and self.differ(low, high)
+
+    def bracket_exchange(
+        self, low: HeldPoint, high: HeldPoint, sign: float
+    ) -> tuple[HeldPoint, HeldPoint] | None:
+        """Halve a step in which the speed falls back; None unless a motion is lost there."""
+        if not self.falls_back(low, high, sign):
+            return None
+        while not self.is_within(low, high, self.settings.width):
+            middle = self.step_from(low, 0.5 * (low.voltage + high.voltage))
+            if not math.isfinite(middle.speed):
+                return None
+            stays = sign * (high.speed - middle.speed) < sign * (middle.speed - low.speed)
+            low, high = (middle, high) if stays else (low, middle)
+        apart = self.settings.two_motions + speed_difference_error(low, high)
+        is_other = sign * (high.speed - low.speed) < -apart
+        return (low, high) if is_other and self.classify_return(low, high) == LOST else None
+
+    def classify_landing(self, landed: HeldPoint, points: list[HeldPoint], sign: float) -> int:
+        """Return LOST if a ramp from a motion's end comes to one further along than the course.
+
+        UNDECIDED if none does, but there is one to come to; else FOLLOWS.
+
+        Parameters
+        ----------
+        landed : HeldPoint
+            Past the end.
+        points : list of HeldPoint
+            Of the course, from the last one before the end on.
+        sign : float
+        """
+        last, *points = points
+        if len(points) < 2:
+            return FOLLOWS
+        cut, _, beyond = largest_change(points, sign)
+        near = [  # and clear of the next end, where a ramp throws any motion out
+            point
+            for point in points[: cut + 1]
+            if self.is_within(last, point, self.settings.past)
+            and not self.is_within(point, beyond, self.settings.stair)
+        ]
+        for point, rate in product(near[:-3:-1], self.settings.rates):
+            if self.is_further(self.ramp_from(last, point.voltage, rate), point, sign):
+                return LOST
+        back = self.climb_stairs(beyond, landed.voltage)[-1]
+        is_there = back.voltage != landed.voltage or self.is_further(back, landed, sign)
+        return UNDECIDED if is_there else FOLLOWS
+
+    def is_further(self, point: HeldPoint, other: HeldPoint, sign: float) -> bool:
+        """Return whether a point is on a motion further along than another at its voltage."""
+        apart = self.settings.two_motions + speed_difference_error(point, other)
+        return sign * (point.speed - other.speed) > apart
 
     def bracket_changes(self, points: list[HeldPoint], sign: float) -> list[Verdict]:
         """Bracket the largest speed change and all others that may be jumps.
@@ -383,7 +505,7 @@ class HeldVoltageTest:
 
     def target_voltage(self, after: int, last: int, sign: float) -> float:
         """Return the voltage where the held steps are to end, well past the jump, V."""
-        past = self.ramp_voltage(after) + sign * self.settings.past * self.volts
+        past = self.ramp_voltage(after) + sign * self.past_volts
         end = self.ramp_voltage(last)
         return min(past, end) if sign > 0.0 else max(past, end)
 
@@ -412,6 +534,41 @@ class HeldVoltageTest:
         """Return whether the held speed left the motion that the ramp was on."""
         allowed = 2.0 * self.settings.distinct + 3.0 * low.error
         return sign * (low.speed - low.begin) < -allowed
+
+    def came_back(self, low: HeldPoint, sign: float) -> bool:
+        """Return whether the held speed came back from further along, as past a motion's end."""
+        furthest = low.most if sign > 0.0 else low.least
+        allowed = 2.0 * self.settings.distinct + 3.0 * low.error
+        return sign * (low.speed - furthest) < -allowed and not self.is_irregular(low)
+
+    def begin_before_end(self, low: HeldPoint, step: int, first: int, sign: float) -> HeldPoint:
+        """Return where to begin if a motion ended while the first voltage was held, else that.
+
+        The speed came back then, which it also does after a fast ramp: it is such an end if a
+        course from well before falls back on its way there.
+
+        Parameters
+        ----------
+        low : HeldPoint
+        step, first : int
+            Of the run: that of the held point, and the earliest.
+        sign : float
+        """
+        if not self.came_back(low, sign):
+            return low
+        back = 1
+        while step > first and abs(self.ramp_voltage(step) - low.voltage) < self.past_volts:
+            step, back = max(first, step - back), 2 * back
+        earlier = self.hold_step(step)
+        if math.isnan(earlier.speed) or earlier.voltage == low.voltage:
+            return low
+        path = pairwise(self.climb_stairs(earlier, low.voltage))
+        return earlier if any(self.falls_back(*pair, sign) for pair in path) else low
+
+    @property
+    def past_volts(self) -> float:
+        """Return how far past the passing of the ramp the steps go, V."""
+        return self.settings.past * self.volts
 
     def bracket_largest_change(self, points: list[HeldPoint], sign: float) -> Verdict:
         """Halve voltage steps until the largest speed change is bracketed, and judge it."""

@@ -71,8 +71,8 @@ class Criterion(NamedTuple):
         Least share times the square of the growth of the whole change. By the edge of a fold, where
         the branch is vertical but not lost, it is 2 to 6 at every rate.
     clearness : float
-        Least change of the speed over the scatter of its changes before and after: the speed of an
-        irregular motion comes and goes by itself.
+        Least change of the speed over the scatter of its changes before and after, in as long a
+        time too: the speed of an irregular motion comes and goes by itself.
     around : int
         Of how many widths of the running mean before and after that scatter is.
     """
@@ -173,12 +173,30 @@ def classify_stretch(
         return SMOOTH
     free = slip[before] - slip[last]
     strong = inertia * growth**2 >= limits.strength * free
-    far = limits.around * width
-    around = rise[max(0, before - far) : max(0, before - width)], rise[last + width : last + far]
-    noise = max((float(np.std(part)) for part in around if len(part)), default=0.0)
+    noise = scatter_of_changes(means.Omega, width, (before, last), limits)
     clear = strong and abs(leg.Omega[last] - leg.Omega[before]) >= limits.clearness * noise
     sure = before > width and inertia >= limits.share * free and clear
     return JUMP if sure else DOUBTFUL
+
+
+def scatter_of_changes(
+    speed: np.ndarray, width: int, stretch: tuple[int, int], limits: Criterion
+) -> float:
+    """Return how much the mean speed changes by itself before and after a stretch.
+
+    The speed of an irregular motion wanders for longer than the mean takes: of its changes in one
+    width and of those in as many rows as the stretch has, the larger ones count.
+    """
+    before, last = stretch
+    far = limits.around * width
+    around = speed[max(0, before - far) : before], speed[last + width : last + width + far]
+    changes = [
+        lag_difference(part, lag)
+        for part in around
+        for lag in (width, min(last - before, far // 4))
+        if len(part) > (lag if lag == width else lag + width)
+    ]
+    return max((float(np.std(change)) for change in changes), default=0.0)
 
 
 def running_mean(values: np.ndarray, width: int) -> np.ndarray:

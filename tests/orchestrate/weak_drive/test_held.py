@@ -184,6 +184,86 @@ def test_an_irregular_motion_that_ends_by_chance_is_undecided(early, what):
         assert verdict.low - 1e-9 <= 1.52 - early <= verdict.high + 1e-9
 
 
+class FallsBack(Scripted):
+    """A motion that ends at 1.52: a short step comes to one 0.02 below, which ends at 1.54.
+
+    A ramp over more than ``throws`` comes at once to the last one, 0.1 above, which ends at
+    ``lasts`` on the way back.
+    """
+
+    def __init__(self, throws, lasts):
+        super().__init__()
+        self.throws, self.lasts = throws, lasts
+
+    def step_from(self, point, voltage):
+        above = point.speed - self.at(point.voltage).speed
+        if voltage > 1.54 or (above > 0.05 and voltage > self.lasts):
+            higher = 0.1
+        else:
+            higher = 0.0 if above > -0.01 and voltage <= 1.52 else -0.02
+        return self.at(voltage, higher)._replace(origin=point.voltage)
+
+    def ramp_from(self, point, voltage, rate):
+        is_thrown = voltage - point.voltage > self.throws
+        return self.at(voltage, 0.1) if is_thrown else self.step_from(point, voltage)
+
+
+@pytest.mark.parametrize(
+    ("throws", "lasts", "outcomes", "place"),
+    [
+        (0.01, 1.5, [LOST, UNDECIDED], 1.52),
+        (1.0, 1.5, [UNDECIDED, UNDECIDED], 1.52),
+        (1.0, 1.535, [LOST], 1.54),
+    ],
+)
+def test_a_motion_that_ends_against_the_way(throws, lasts, outcomes, place):
+    """A course stepped to the motion before it, and told where that ends; ramps did not."""
+    course = FallsBack(throws, lasts)
+    points = course.climb_stairs(course.at(1.5), 1.56)
+    verdicts = course.judge_course(points, 1.0)
+    assert [verdict.outcome for verdict in verdicts] == outcomes
+    for verdict, here in zip(verdicts, (place, 1.54), strict=False):
+        assert verdict.low - 1e-9 <= here <= verdict.high + 1e-9
+        assert verdict.high - verdict.low <= 1.01e-4
+
+
+def test_a_ramp_from_a_held_point():
+    """It goes on from the state there, and is held at its end."""
+    test = HeldVoltageTest(
+        lambda other: Rotor(other, 0.1, 1.0), Ramp(1.4, 1.6, 1e-4), H, 1.0, 1.0, 2e4
+    )
+    low = test.hold_voltage({"speed": np.array([1.2])}, 1.45)
+    high = test.ramp_from(low, 1.5, 1e-4)
+    assert high.voltage == 1.5 and high.speed == pytest.approx(1.3, abs=1e-4)
+    assert low.speed < high.begin < 1.3
+
+
+def test_a_motion_that_ends_against_the_way_within_a_step_of_the_course():
+    """The long step came to the last motion at once; steps halved come to the one beside it."""
+
+    class Hidden(FallsBack):
+        def step_from(self, point, voltage):
+            leaps = voltage - point.voltage > 3.5e-3 and point.voltage <= 1.52 < voltage
+            return self.at(voltage, 0.1) if leaps else super().step_from(point, voltage)
+
+    course = Hidden(2e-3, 1.525)
+    points = course.climb_stairs(course.at(1.5), 1.56)
+    assert not any(course.falls_back(*pair, 1.0) for pair in zip(points, points[1:], strict=False))
+    first, *others = course.judge_course(points, 1.0)
+    assert first.outcome == LOST and first.low <= 1.52 + 1e-9 and first.high >= 1.52 - 1e-9
+    assert {verdict.outcome for verdict in others} <= {UNDECIDED}
+
+
+def test_a_speed_that_falls_and_comes_back_with_the_voltage_ends_no_motion():
+    class Dip(Scripted):
+        def step_from(self, point, voltage):
+            return self.at(voltage, -0.02 * (voltage > 1.52))._replace(origin=point.voltage)
+
+    dip = Dip()
+    points = dip.climb_stairs(dip.at(1.5), 1.56)
+    assert [verdict.outcome for verdict in dip.judge_course(points, 1.0)] == [FOLLOWS]
+
+
 class Window(Scripted):
     """An irregular motion that follows the voltage; up to 1.52 it may fall into a regular one.
 
@@ -311,3 +391,22 @@ def test_an_irregular_motion_has_settled_but_not_one_that_drifts():
     assert speed == pytest.approx(1.3, abs=2.0 * error) and 3e-4 < error < 1e-3
     drifts = 1.3 + scatter + 1e-3 * np.arange(48)
     assert np.isnan(settled_speed(drifts, HoldSettings())[0])
+
+
+@pytest.mark.parametrize(("ends", "begin"), [(True, 8), (False, 15)])
+def test_it_begins_before_a_motion_that_ends_while_the_first_voltage_is_held(ends, begin):
+    """The speed comes back from further along: the course began on the motion past that end."""
+
+    class Ended(Scripted):
+        def step_from(self, point, voltage):
+            return self.at(voltage, -0.02 * (ends and voltage > 1.465))
+
+    ended = Ended()
+    speed = ended.at(ended.ramp_voltage(15), -0.02 * ends).speed
+    low = ended.at(ended.ramp_voltage(15))._replace(speed=speed, most=speed + 0.02)
+    found = ended.begin_before_end(low, 15, 0, 1.0)
+    assert found.voltage == ended.ramp_voltage(begin)
+    calm = low._replace(most=speed + 1e-3)
+    assert ended.begin_before_end(calm, 15, 0, 1.0) is calm
+    irregular = low._replace(error=6e-3)
+    assert ended.begin_before_end(irregular, 15, 0, 1.0) is irregular

@@ -49,6 +49,28 @@ def test_a_motor_without_folds():
     assert all("follows the voltage" in text for text in found.no_jump.values)
 
 
+def wandering(size, seed):
+    """A ramp whose speed follows the voltage and wanders by ``size`` for 250/omega each time."""
+    rng, rate, b = np.random.default_rng(seed), 2e-5, 0.03
+    time = np.arange(0.0, 2e4, 5.0)
+    eta0 = 1.3 + rate * time
+    speed, torque, speeds, level = 1.25, 0.05, [], 0.0
+    for i, voltage in enumerate(eta0):
+        if i % 50 == 0:
+            level = size * rng.normal()
+        torque += 5.0 * 0.02 * (0.05 + level - torque)
+        speed += 5.0 * b * (voltage - torque - speed)
+        speeds.append(speed)
+    return SweepLeg(time, eta0, np.array(speeds)), b
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_a_speed_that_wanders_by_itself_makes_no_sure_jump(seed):
+    leg, b = wandering(0.02, seed)
+    found = find_passing(leg, b, up=True, threshold=1.45)
+    assert found is None or found.look != JUMP
+
+
 @pytest.mark.slow
 def test_a_ramp_too_fast_to_tell():
     """The record shows no jump, the theory a fold: held voltages decide."""
