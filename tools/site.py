@@ -9,6 +9,7 @@ shows titles alone: browsers do not let a page read its neighbours.
 
 from __future__ import annotations
 
+import argparse
 import subprocess
 import sys
 import time
@@ -113,10 +114,13 @@ def build_site(folder: Path) -> None:
     (folder / ".nojekyll").touch()  # or GitHub's pages would leave _static out
 
 
-def main(folder: str = "site/html") -> None:
+def main() -> None:
     """Build the site, check it, and print its size."""
+    parser = argparse.ArgumentParser(description="Build manual and explorer as one static site.")
+    parser.add_argument("folder", nargs="?", type=Path, default=Path("site/html"))
+    folder = parser.parse_args().folder
     begin = time.monotonic()
-    site = Site(Path(folder))
+    site = Site(folder)
     build_site(site.folder)
     wrong = [*site.broken_links(), *site.external_resources()]
     if wrong:
@@ -127,4 +131,4 @@ def main(folder: str = "site/html") -> None:
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main()
