@@ -24,6 +24,7 @@ HEARD = 0.3  # s in which a signal that went to all processes has reached the ch
 DEAF = 5.0  # s after which a child that has not heard a signal is ended
 GRACE = 20.0  # s that one that has heard it has for ending
 POLL = 0.25  # s
+DYING = 3.0  # s that workers, once killed, may take to end on a busy machine
 KEPT = "what was stored before is kept"
 UNPACKED = "vibroimpact-fmu-"  # temporary folders begin so (`temporary`), then comes the process
 TOLD, HEEDED = b"D", b"S"  # what the child says: it has done its work; it has heard a signal
@@ -127,6 +128,7 @@ class Supervisor:
         self.words = b""
         self.signals: list[tuple[int, float]] = []  # number and time
         self.handed_on = self.forced = False
+        self.interrupted: list[int] = []  # processes that a signal has found at work
 
     def run(self, wake_reader: int, wake_writer: int) -> int:
         """Wait for the child, passing signals on through a pipe; return its exit code."""
@@ -166,6 +168,7 @@ class Supervisor:
         if not self.signals:
             return
         asked, first = self.signals[0]
+        self.interrupted = self.interrupted or [self.child, *descendants(self.child)]
         waited, heard = time.monotonic() - first, HEEDED in self.words
         if waited > HEARD and not heard and not self.handed_on:
             self.handed_on = True
@@ -185,6 +188,7 @@ class Supervisor:
     def exit_code(self, status: int) -> int:
         """Return the exit code for a wait status; print why, unless the child ended by itself."""
         code = os.waitstatus_to_exitcode(status)
+        remove_unpacked_of_ended(self.interrupted)
         if TOLD in self.words and code >= 0:
             return code
         remove_unpacked(self.child)
@@ -223,7 +227,26 @@ def descendants(pid: int) -> Iterator[int]:
                 yield from descendants(child)
 
 
+def unpacked_folders(pid: int) -> list[Path]:
+    """Return the temporary folders of unpacked FMUs that a process has made."""
+    return list(Path(tempfile.gettempdir()).glob(f"{UNPACKED}{pid}-*"))
+
+
 def remove_unpacked(pid: int) -> None:
     """Delete the temporary folders of unpacked FMUs that a process has left behind."""
-    for folder in Path(tempfile.gettempdir()).glob(f"{UNPACKED}{pid}-*"):
+    for folder in unpacked_folders(pid):
         shutil.rmtree(folder, ignore_errors=True)
+
+
+def remove_unpacked_of_ended(pids: list[int]) -> None:
+    """Delete what interrupted processes have left behind; wait some seconds for late ones to end.
+
+    A killed worker may still be ending when the command itself has looked for leftovers.
+    """
+    end = time.monotonic() + DYING
+    for pid in pids:  # those of `descendants`, which has none where there is no /proc
+        process = Path(f"/proc/{pid}")
+        while unpacked_folders(pid) and process.exists() and time.monotonic() < end:
+            time.sleep(0.01)
+        if not process.exists():
+            remove_unpacked(pid)

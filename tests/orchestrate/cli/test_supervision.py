@@ -183,3 +183,32 @@ def test_the_installed_command_is_the_same():
 
     (point,) = entry_points(group="console_scripts", name="vibroimpact")
     assert point.load() is __main__.main
+
+
+def test_what_a_late_worker_leaves_behind_is_removed_after_an_interrupt(tmp_path):
+    """A worker that was killed may end after the command itself, on a busy machine."""
+    script = """
+import os, subprocess, sys, tempfile, time
+from orchestrate.supervisor import confirm_signal, run_supervised
+def work():
+    late = subprocess.Popen(["sleep", "60"])
+    folder = os.path.join(tempfile.gettempdir(), f"vibroimpact-fmu-{late.pid}-late")
+    os.mkdir(folder)
+    print("works", flush=True)
+    try:
+        time.sleep(60)
+    except KeyboardInterrupt:
+        confirm_signal()
+        subprocess.Popen(["sh", "-c", f"sleep 0.5; kill -9 {late.pid}"])
+        return 130
+sys.exit(run_supervised(work))
+"""
+    surroundings = {**os.environ, "TMPDIR": str(tmp_path)}
+    process = subprocess.Popen(
+        [sys.executable, "-c", script], cwd=ROOT, env=surroundings, stdout=subprocess.PIPE
+    )
+    assert process.stdout.readline() == b"works\n"
+    time.sleep(0.5)
+    process.send_signal(signal.SIGINT)
+    assert process.wait(20) == 130
+    assert list(tmp_path.iterdir()) == []
