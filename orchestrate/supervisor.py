@@ -245,8 +245,16 @@ def remove_unpacked_of_ended(pids: list[int]) -> None:
     """
     end = time.monotonic() + DYING
     for pid in pids:  # those of `descendants`, which has none where there is no /proc
-        process = Path(f"/proc/{pid}")
-        while unpacked_folders(pid) and process.exists() and time.monotonic() < end:
+        while unpacked_folders(pid) and is_running(pid) and time.monotonic() < end:
             time.sleep(0.01)
-        if not process.exists():
+        if not is_running(pid):
             remove_unpacked(pid)
+
+
+def is_running(pid: int) -> bool:
+    """Return whether a process runs still: one that has ended may wait for its parent to see it."""
+    try:
+        state = Path(f"/proc/{pid}/stat").read_bytes().rpartition(b")")[2].split()[:1]
+    except OSError:
+        return False
+    return state not in ([b"Z"], [b"X"])
