@@ -166,8 +166,7 @@ def length_of_ratio(data: xr.Dataset) -> xr.DataArray | float | None:
     """
     names = ("level", "amplitude", "frequency")
     known: dict[str, Any] = {name: data[name] for name in names if name in data.coords}
-    asked = {name: data.attrs.get(name) for name in names}
-    told = {name: value for name, value in asked.items() if is_number(value)}
+    told = {name: data.attrs[name] for name in names if is_finite_number(data.attrs.get(name))}
     known = {**told, **known}
     if {"m1", "k1", "omega"} & set(map(str, data.coords)):
         return None
@@ -176,9 +175,12 @@ def length_of_ratio(data: xr.Dataset) -> xr.DataArray | float | None:
     return known["level"] / omega_of(data) ** 2 if "level" in known else None
 
 
-def is_number(value: object) -> bool:
-    """Return whether an attribute is a finite number."""
-    return isinstance(value, (int, float)) and math.isfinite(value)
+def is_finite_number(value: Any) -> bool:
+    """Return whether an attribute is one finite number."""
+    try:
+        return not isinstance(value, str) and math.isfinite(value)
+    except TypeError:
+        return False
 
 
 def period_of(data: xr.Dataset) -> float:

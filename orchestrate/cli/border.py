@@ -11,7 +11,7 @@ from .grammar import plain_int
 from .options import CONTINUED, Commands, add_structure_options, parse_varied
 from .output import add_result_options, add_units_option
 from .question import answer_question, draw_result, format_parameter, read_earlier_result
-from .start_file import structure_from_start
+from .start_file import read_structure_and_question
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -62,9 +62,8 @@ def run(arguments: argparse.Namespace) -> None:
             expected = "a file of the command branch" if name == "start" else "A:B,C:D"
             raise InputError(f"--{name}: nothing given; expected {expected}")
     both = parse_both(arguments.over, arguments.limits)
-    structure = structure_from_start(arguments)
-    question = {**both, **arguments.question.keywords(arguments)}
-    answer_question(arguments, structure, question, print_result, draw_result)
+    structure, question = read_structure_and_question(arguments)
+    answer_question(arguments, structure, {**both, **question}, print_result, draw_result)
 
 
 def print_result(data: xr.Dataset) -> None:

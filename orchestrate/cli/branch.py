@@ -17,7 +17,7 @@ from .options import (
     read_excitation,
 )
 from .question import answer_question, format_parameter, parameter_parts, read_earlier_result
-from .start_file import keep_file_name, structure_from_start
+from .start_file import keep_file_name, read_structure_and_question
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -54,8 +54,8 @@ def run(arguments: argparse.Namespace) -> None:
     if arguments.limits is None:
         raise InputError("--limits: nothing given; expected FIRST:LAST")
     over, limits = parse_varied(arguments.over, arguments.limits)
-    structure = structure_from_start(arguments)
-    keywords = keep_file_name(arguments.question.keywords(arguments))
+    structure, keywords = read_structure_and_question(arguments)
+    keywords = keep_file_name(keywords)
     excitation = excitation_arguments(arguments, structure, over, keywords["start"] is not None)
     question = {**excitation, "over": over, "limits": limits, **keywords}
     answer_question(arguments, structure, question, print_result, draw_result)

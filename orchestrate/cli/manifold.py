@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ..units import range_text
 from .options import Commands, frequency_option, read_amplitude, read_excitation
 from .question import answer_question, draw_result, read_earlier_result
-from .start_file import keep_file_name, structure_from_start
+from .start_file import keep_file_name, read_structure_and_question
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,8 +34,8 @@ def add_parser(commands: Commands) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Run ``manifold``: trace the unstable manifold of a saddle; print, store and draw it."""
-    structure = structure_from_start(arguments)
-    question = keep_file_name(arguments.question.keywords(arguments))
+    structure, question = read_structure_and_question(arguments)
+    question = keep_file_name(question)
     has_excitation = (
         frequency_option(arguments) is not None or read_amplitude(arguments) is not None
     )

@@ -11,7 +11,6 @@ from ..errors import InputError
 from ..structures.ranges import STRUCTURE
 from .grammar import parse_changes
 from .options import print_assumptions, read_structure_options
-from .question import read_earlier_result
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -23,11 +22,14 @@ MOST_NAMED = 3  # parameters that a line on two structures names
 READING = (KeyError, TypeError, ValueError)  # of attributes
 
 
-def structure_from_start(arguments: argparse.Namespace) -> Structure:
-    """Return the structure of ``--structure``, or else of the file of ``--start``, with ``--set``.
+def read_structure_and_question(
+    arguments: argparse.Namespace,
+) -> tuple[Structure, dict[str, Any]]:
+    """Return the structure and the keywords of a command that may begin with a stored result.
 
-    Without either that is the paper's. If the file was computed for another structure than the one
-    asked for, a printed line says so.
+    The structure is that of ``--structure``, else that of the result of ``--start``, else the
+    paper's, with ``--set``. If the result was computed for another structure than the one asked
+    for, a printed line says so.
 
     Raises
     ------
@@ -36,15 +38,16 @@ def structure_from_start(arguments: argparse.Namespace) -> Structure:
     """
     if arguments.start is None:
         arguments.structure = arguments.structure or "paper"
-        return read_structure_options(arguments)
+        return read_structure_options(arguments), arguments.question.keywords(arguments)
     changes = parse_changes(arguments.set)
     asked = read_structure_options(arguments) if arguments.structure else None
-    stored = stored_structure("--start", arguments.start)
+    question = arguments.question.keywords(arguments)
+    stored = structure_of("--start", arguments.start, question["start"])
     if asked is None:
         asked = stored.replace(**changes)
         print_assumptions(asked, "", changes)
     print_difference("--start", arguments.start, stored, asked)
-    return asked
+    return asked, question
 
 
 def keep_file_name(question: dict[str, Any]) -> dict[str, Any]:
@@ -55,11 +58,6 @@ def keep_file_name(question: dict[str, Any]) -> dict[str, Any]:
     stored: dict[str, Any] = {} if question["start"] is None else question["start"].attrs
     unset = question["box_acceleration"] is None and not stored.get("box_acceleration")
     return {**question, "box_acceleration": 0.0} if unset else question
-
-
-def stored_structure(option: str, path: Path) -> Structure:
-    """Return the structure for which a stored result was computed; raise if it names none."""
-    return structure_of(option, path, read_earlier_result(option, path))
 
 
 def structure_of(option: str, path: Path, data: xr.Dataset) -> Structure:

@@ -352,8 +352,7 @@ def require_same_parameter(start: xr.Dataset, over: str, switch: int | None) -> 
 
 def acceleration_at_start(start: xr.Dataset | None, argument: float | None) -> float:
     """Return the box's constant acceleration, m/s2: the argument, else that of the start, or 0."""
-    is_dataset = hasattr(start, "coords")  # anything else is refused where the start is checked
-    if argument is not None or start is None or not is_dataset:
+    if argument is not None or start is None:
         return finite_number(ACCELERATION, 0.0 if argument is None else argument)
     stored = start[ACCELERATION] if ACCELERATION in start.coords else None
     if stored is not None and not stored.ndim:  # a point of a branch along it

@@ -421,6 +421,8 @@ def manifold(
     """
     require_delaminated(checked_structure(structure))
     arguments = excitation_arguments(eta, frequency, amplitude)
+    if start is not None:
+        require_orbit_dataset(start, several=False)
     acceleration = acceleration_at_start(start, box_acceleration)
     if start is None:
         run_options: dict[str, Any] = {
@@ -430,7 +432,6 @@ def manifold(
         }
         keywords: dict[str, Any] = {**dict(arguments), **run_options, "period": period}
         start = orbit(structure, box_acceleration=acceleration, **keywords)
-    require_orbit_dataset(start, several=False)
     excitation = complete_excitation(start, ("e",), arguments, (0.0, 0.0), structure)
     job = ManifoldJob(
         name=f"manifold_{structure.label()}",

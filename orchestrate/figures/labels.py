@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Mapping
-from typing import Any
 
 import xarray as xr
 
 from ..constants import GRAVITY, TURN
 from ..structures.ranges import ADDED, STRUCTURE
-from ..units import omega_of, scale_of, units_of
+from ..units import is_finite_number, omega_of, scale_of, units_of
 
 SYMBOLS = {
     "eta": r"$\eta$",
@@ -218,14 +217,6 @@ def si_prefix(largest: float) -> tuple[float, str]:
     (0.001, 'm')
     """
     return next(((f, name) for f, name in PREFIXES if largest >= f), PREFIXES[0])
-
-
-def is_finite_number(value: Any) -> bool:
-    """Return whether an attribute is one finite number."""
-    try:
-        return not isinstance(value, str) and math.isfinite(value)
-    except TypeError:
-        return False
 
 
 def paper_ratios(known: Mapping[str, float]) -> dict[str, float]:

@@ -234,15 +234,20 @@ class HeldVoltageTest:
         """Return the ramp's state before a step, from a checkpoint; None at the start."""
         if step not in self.checkpoints and step:
             last = max((known for known in self.checkpoints if known < step), default=0)
-            run = self.begin(self.schedule)
-            try:
-                if last:
-                    run.set_state(self.checkpoints[last])
-                run.revolve(range(last, step))
-                self.checkpoints[step] = run.get_state()
-            finally:
-                run.master.close()
+            state = self.checkpoints[last] if last else None
+            self.checkpoints[step] = self.follow_schedule(self.schedule, state, range(last, step))
         return self.checkpoints.get(step)
+
+    def follow_schedule(self, schedule: Schedule, state: Table | None, steps: range) -> Table:
+        """Return the state after communication steps of a schedule, from a state or the start."""
+        run = self.begin(schedule)
+        try:
+            if state is not None:
+                run.set_state(state)
+            run.revolve(steps)
+            return run.get_state()
+        finally:
+            run.master.close()
 
     def hold_step(self, step: int) -> HeldPoint:
         """Hold the voltage that the ramp has at a step, from its state there."""
@@ -259,14 +264,8 @@ class HeldVoltageTest:
     def ramp_from(self, point: HeldPoint, voltage: float, rate: float) -> HeldPoint:
         """Ramp the voltage from a held point at a rate over K omega^2, and hold it then."""
         ramp = Ramp(point.voltage, voltage, rate * self.volts * self.omega, back=False)
-        run = self.begin(ramp)
-        try:
-            run.set_state(point.state)
-            run.revolve(range(math.ceil(ramp.duration / self.step)))
-            state = run.get_state()
-        finally:
-            run.master.close()
-        return self.hold_voltage(state, voltage)
+        steps = range(math.ceil(ramp.duration / self.step))
+        return self.hold_voltage(self.follow_schedule(ramp, point.state, steps), voltage)
 
     def hold_voltage(self, state: Table | None, voltage: float) -> HeldPoint:
         """Simulate a constant voltage from a state until the speed settles."""

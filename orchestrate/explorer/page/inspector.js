@@ -75,7 +75,7 @@ export class Inspector {
     this.mark("failed");
     this.at("sentence").textContent = `This motion cannot be computed: ${text}`;
     this.at("exponent").textContent = "–";
-    this.at("numbers").querySelectorAll(".told").forEach((row) => row.remove());
+    this.listNumbers({});
   }
 
   /** The same beam without its delamination, from rest. @param {Point} point */
@@ -122,12 +122,17 @@ export class Inspector {
   showNumbers() {
     const { point, level } = /** @type {Choice} */ (this.choice);
     const { response, motion } = /** @type {{response: Response, motion: Motion}} */ (this.found);
-    this.at("sentence").textContent = sentenceOf(response, this.exponent, motion.contact.some(Boolean)) + (response.impacts || response.peak > 0 ? "" : opensFrom(point, level));
+    this.at("sentence").textContent = sentenceOf(response, this.exponent, motion.contact.some(Boolean), opensFrom(point, level));
     this.at("average").textContent = averageWords(response.gaps.length);
     this.at("average").classList.toggle("absent", response.multiplicity > 0 || !response.impacts);
+    this.listNumbers(numbersOf(response, point, level));
+  }
+
+  /** Show numbers by name in place of those before. @param {Record<string, string>} numbers */
+  listNumbers(numbers) {
     const list = this.at("numbers");
     list.querySelectorAll(".told").forEach((row) => row.remove());
-    for (const [name, value] of Object.entries(numbersOf(response, point, level)).reverse()) {
+    for (const [name, value] of Object.entries(numbers).reverse()) {
       const row = document.createElement("div");
       row.className = "told";
       if (/[ξη]/.test(name)) row.title = this.at(name.includes("ξ") ? "help-xi" : "help-eta").textContent ?? "";

@@ -69,9 +69,9 @@ export function countOf(impacts, each = "a period") {
 /** The same of a motion: of periods that differ it is the mean. @param {number} impacts @param {number} multiplicity */
 export const meanCountOf = (impacts, multiplicity) => `${multiplicity === 1 ? "" : "on average "}${countOf(impacts)}`;
 
-/** A response in a sentence. @param {Response} response @param {Exponent | undefined} exponent if it is known @param {boolean} seen whether contact is among what is shown */
-export function sentenceOf({ impacts, contact, multiplicity, peak, gaps }, exponent, seen) {
-  if (!impacts) return peak > 0 ? "The halves never touch." : "The halves stay closed: no impact.";
+/** A response in a sentence. @param {Response} response @param {Exponent | undefined} exponent if it is known @param {boolean} seen whether contact is among what is shown @param {string} opening what is said of halves that stay closed */
+export function sentenceOf({ impacts, contact, multiplicity, peak, gaps }, exponent, seen, opening) {
+  if (!impacts) return peak > 0 ? "The halves never touch." : `The halves stay closed: no impact.${opening}`;
   const count = meanCountOf(impacts, multiplicity);
   if (multiplicity) {
     const every = multiplicity === 1 ? "every shaking period" : `after ${multiplicity} shaking periods`;
