@@ -18,10 +18,10 @@ one a ramp comes: the course tries ramps from before that end.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass, replace
-from itertools import pairwise, product
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -154,6 +154,8 @@ class HoldSettings:
         Longest first step of the voltage, over K omega, and
     max_stairs : int
         how many of them there are at most.
+    short : float
+        Longest step, over K omega, in which a motion is followed at first that a loss leads to.
     past : float
         How far past the passing of the ramp the steps go, over K omega.
     max_holds : int
@@ -177,6 +179,7 @@ class HoldSettings:
     by_chance: float = 2e-4
     stair: float = 4e-3
     max_stairs: int = 25
+    short: float = 5e-4
     past: float = 0.02
     max_holds: int = 200
     rates: tuple[float, ...] = (2e-4, 1e-4, 5e-5)
@@ -380,6 +383,8 @@ class HeldVoltageTest:
         found = self.find_left_motion(points, sign)
         if found is None:
             verdicts = self.bracket_changes(points, sign)
+            if any(self.retrace_landing(points, verdict, sign) for verdict in verdicts):
+                verdicts = self.bracket_changes(points, sign)
             found = self.find_left_motion(points, sign)  # halved steps show what longer ones hid
             if found is None:
                 return verdicts
@@ -397,67 +402,120 @@ class HeldVoltageTest:
     def find_left_motion(self, points: list[HeldPoint], sign: float) -> tuple[int, Verdict] | None:
         """Find a motion that ends against the way and may be left for one further along, or None.
 
+        Steps in which the speed falls back, or came back from further along, are halved: the course
+        takes up what the halves settle at, as a motion that exists in a narrow range of voltages.
+
         Returns
         -------
         (int, Verdict), optional
             Index of the last point before its end, and the end: ``LOST`` or ``UNDECIDED``.
         """
-        for i, pair in enumerate(pairwise(points)):
-            bracket = self.bracket_exchange(*pair, sign)
-            what = self.classify_landing(bracket[1], points[i:], sign) if bracket else FOLLOWS
-            if bracket and what != FOLLOWS:
-                return i, Verdict(what, bracket[0].voltage, bracket[1].voltage)
+        i = 0
+        while i + 1 < len(points):
+            points[i + 1 : i + 1] = self.halve_fall(points[i], points[i + 1], sign)
+            what = self.classify_landing(points[i:], sign)
+            if what != FOLLOWS:
+                return i, Verdict(what, points[i].voltage, points[i + 1].voltage)
+            i += 1
         return None
+
+    def retrace_landing(self, points: list[HeldPoint], end: Verdict, sign: float) -> bool:
+        """Follow the motion that a loss leads to in short steps; return whether it ends soon.
+
+        The course came there in long steps, which pass over the end of a motion. Where short ones
+        come to another motion than they did, the course goes on with that.
+        """
+        i = next((i for i, point in enumerate(points) if point.voltage == end.high), len(points))
+        landed, after = points[i : i + 1], points[i + 1 :]
+        if end.outcome != LOST or not after:
+            return False
+        far = (
+            j
+            for j in range(len(after))
+            if not self.is_within(*landed, after[j], self.settings.stair)
+        )
+        j = next(far, len(after) - 1)
+        path = self.climb_stairs(*landed, after[j].voltage, self.settings.short)
+        if path[-1].voltage != after[j].voltage:
+            return False
+        is_same = not self.differ(path[-1], after[j])
+        tail = after[j + 1 :] if is_same else self.climb_stairs(path[-1], after[-1].voltage)[1:]
+        points[i:] = path + tail
+        return not is_same or any(
+            self.may_be_a_loss(*pair, sign) or self.falls_back(*pair, sign)
+            for pair in pairwise(path)
+        )
 
     def falls_back(self, low: HeldPoint, high: HeldPoint, sign: float) -> bool:
         """Return whether the speed changes against the way of the voltage, by another motion's."""
         return sign * (high.speed - low.speed) < 0.0 and self.differ(low, high)
 
-    def bracket_exchange(
-        self, low: HeldPoint, high: HeldPoint, sign: float
-    ) -> tuple[HeldPoint, HeldPoint] | None:
-        """Halve a step in which the speed falls back; None unless a motion is lost there."""
-        if not self.falls_back(low, high, sign):
-            return None
-        while not self.is_within(low, high, self.settings.width):
-            middle = self.step_from(low, 0.5 * (low.voltage + high.voltage))
-            if not math.isfinite(middle.speed):
-                return None
-            stays = sign * (high.speed - middle.speed) < sign * (middle.speed - low.speed)
-            low, high = (middle, high) if stays else (low, middle)
-        apart = self.settings.two_motions + speed_difference_error(low, high)
-        is_other = sign * (high.speed - low.speed) < -apart
-        return (low, high) if is_other and self.classify_return(low, high) == LOST else None
+    def halve_fall(self, low: HeldPoint, high: HeldPoint, sign: float) -> list[HeldPoint]:
+        """Halve a step in which the speed falls back; return the points of a course between.
 
-    def classify_landing(self, landed: HeldPoint, points: list[HeldPoint], sign: float) -> int:
+        So where it came back from further along while the last voltage was held. The last points
+        are those before and past the end of the motion, unless the halves do not settle.
+        """
+        lows, last = [], high
+        if not (self.falls_back(low, high, sign) or self.passed_further(low, high, sign)):
+            return []
+        while not self.is_within(low, high, self.settings.width):
+            middle = self.settled_between(low, high)
+            if middle is None:
+                break
+            if self.falls_back(low, high, sign):
+                stays = sign * (high.speed - middle.speed) < sign * (middle.speed - low.speed)
+            else:
+                stays = not self.came_back(middle, sign)
+            low, high = (middle, high) if stays else (low, middle)
+            lows += [middle] if stays else []
+        return lows + ([high] if high is not last else [])
+
+    def passed_further(self, low: HeldPoint, high: HeldPoint, sign: float) -> bool:
+        """Return whether a speed came back from further along, but to no motion further along."""
+        return self.came_back(high, sign) and not self.may_be_a_loss(low, high, sign)
+
+    def classify_landing(self, points: list[HeldPoint], sign: float) -> int:
         """Return LOST if a ramp from a motion's end comes to one further along than the course.
 
         UNDECIDED if none does, but there is one to come to; else FOLLOWS.
 
         Parameters
         ----------
-        landed : HeldPoint
-            Past the end.
         points : list of HeldPoint
-            Of the course, from the last one before the end on.
+            Of the course: the last one before the end, the first one past it, and all after it.
         sign : float
         """
-        last, *points = points
-        if len(points) < 2:
+        last, landed, *after = points
+        if not after or not self.ends_against(last, landed, sign):
             return FOLLOWS
-        cut, _, beyond = largest_change(points, sign)
-        near = [  # and clear of the next end, where a ramp throws any motion out
-            point
-            for point in points[: cut + 1]
-            if self.is_within(last, point, self.settings.past)
-            and not self.is_within(point, beyond, self.settings.stair)
-        ]
-        for point, rate in product(near[:-3:-1], self.settings.rates):
-            if self.is_further(self.ramp_from(last, point.voltage, rate), point, sign):
-                return LOST
+        before_next, beyond = largest_change([landed, *after], sign)[1:]
+        for voltage in self.places_between(landed, before_next):
+            for rate in self.settings.rates:
+                others = [self.ramp_from(point, voltage, rate) for point in (last, landed)]
+                if self.is_further(*others, sign):
+                    return LOST
         back = self.climb_stairs(beyond, landed.voltage)[-1]
         is_there = back.voltage != landed.voltage or self.is_further(back, landed, sign)
         return UNDECIDED if is_there else FOLLOWS
+
+    def places_between(self, landed: HeldPoint, last: HeldPoint) -> list[float]:
+        """Return voltages at which a motion is met by ramps, V, clear of its end if there is room.
+
+        Near its end a ramp throws any motion out.
+        """
+        room = last.voltage - landed.voltage
+        clear = max(abs(room) - self.settings.stair * self.volts, 0.5 * abs(room))
+        far = math.copysign(min(clear, self.past_volts), room)
+        return [landed.voltage + part * far for part in (1.0, 0.5)] if room else []
+
+    def ends_against(self, low: HeldPoint, high: HeldPoint, sign: float) -> bool:
+        """Return whether a motion is lost in a short step for one less far along."""
+        return (
+            self.is_within(low, high, self.settings.width)
+            and self.is_further(low, high, sign)
+            and self.classify_return(low, high) == LOST
+        )
 
     def is_further(self, point: HeldPoint, other: HeldPoint, sign: float) -> bool:
         """Return whether a point is on a motion further along than another at its voltage."""
@@ -518,10 +576,13 @@ class HeldVoltageTest:
             last = back if math.isfinite(back.speed) else last
         return True
 
-    def climb_stairs(self, low: HeldPoint, target: float) -> list[HeldPoint]:
+    def climb_stairs(
+        self, low: HeldPoint, target: float, stair: float | None = None
+    ) -> list[HeldPoint]:
         """Step the voltage to a target; return the points at which it settled."""
         span = abs(target - low.voltage) / self.volts
-        count = max(1, min(math.ceil(span / self.settings.stair), self.settings.max_stairs))
+        stair = stair or self.settings.stair
+        count = max(1, min(math.ceil(span / stair), self.settings.max_stairs))
         points = [low]
         for voltage in np.linspace(low.voltage, target, count + 1)[1:].tolist():
             point = self.step_from(points[-1], voltage)
@@ -590,10 +651,7 @@ class HeldVoltageTest:
                     what = UNDECIDED
                 if what != FOLLOWS or self.is_within(low, high, self.settings.finest):
                     return Verdict(LOST if what == LOST else UNDECIDED, low.voltage, high.voltage)
-            middle = next(
-                (point for point in self.hold_between(low, high) if point.speed == point.speed),
-                None,
-            )
+            middle = self.settled_between(low, high)
             if middle is None:
                 lost = self.classify_return(low, high) == LOST
                 lasts = lost and not self.replace_if_lost(points, i)
@@ -608,10 +666,12 @@ class HeldVoltageTest:
             settings.smallest_jump + speed_difference_error(low, high), settings.largest_scatter
         )
 
-    def hold_between(self, low: HeldPoint, high: HeldPoint) -> Iterator[HeldPoint]:
-        """Hold voltages between two points and yield each result, the middle first."""
-        for part in (0.5, 0.25, 0.75):
-            yield self.step_from(low, low.voltage + part * (high.voltage - low.voltage))
+    def settled_between(self, low: HeldPoint, high: HeldPoint) -> HeldPoint | None:
+        """Hold voltages between two points until one settles, the middle first; None if none."""
+        parts = (0.5, 0.25, 0.75)
+        voltages = (low.voltage + part * (high.voltage - low.voltage) for part in parts)
+        points = (self.step_from(low, voltage) for voltage in voltages)
+        return next((point for point in points if math.isfinite(point.speed)), None)
 
     def classify_return(self, low: HeldPoint, high: HeldPoint) -> int:
         """Step back to the lower voltage; return LOST if its speed is another."""

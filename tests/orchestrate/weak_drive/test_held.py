@@ -204,7 +204,8 @@ class FallsBack(Scripted):
         return self.at(voltage, higher)._replace(origin=point.voltage)
 
     def ramp_from(self, point, voltage, rate):
-        is_thrown = voltage - point.voltage > self.throws
+        ends = point.speed == self.at(point.voltage).speed
+        is_thrown = ends and voltage - point.voltage > self.throws
         return self.at(voltage, 0.1) if is_thrown else self.step_from(point, voltage)
 
 
