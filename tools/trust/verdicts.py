@@ -281,18 +281,22 @@ def bracket_contradiction(system: System, answer: Answer, way: str) -> str:
 def bracket_problem(system: System, answer: Answer, way: str, rate: float) -> str:
     """Hold voltages around a bracket at one rate; return any contradiction.
 
-    An irregular motion may be lost before: so the first one is further away, and the speed past a
-    jump differs the more from the one there.
+    An irregular motion may be lost before: so the first two are further away. Where the speed does
+    not change over the bracket, it has to have changed from there to it by more than a branch does
+    that is as steep as between those two.
     """
     sign = 1.0 if way == "up" else -1.0
     stays, lost = sort_in_direction((answer.low, answer.high), way)
     far, past = stays - sign * EARLY, lost + sign * 0.5 * TOLERANCE
-    before, there, beyond, back = held_speeds(
-        system, course_start(system, way), (far, stays, past, stays), rate=rate
+    course = (far - sign * EARLY, far, stays, past, stays)
+    first, before, there, beyond, back = held_speeds(
+        system, course_start(system, way), course, rate=rate
     )
-    if abs(beyond - before) < SAME:
-        return f"lost at {stays:.5f}, but past it, held, the speed is that of {far:.5f}"
-    if abs(back - there) < SAME and abs(back - before) < SAME:
+    steep = abs(before - first) < CHANGE  # else a motion was lost between the two
+    expected = before + (before - first) * steep
+    if abs(beyond - there) < SAME and abs(beyond - expected) < SAME:
+        return f"lost at {stays:.5f}, but past it, held, the speed goes on as from {far:.5f}"
+    if abs(back - there) < SAME and abs(back - expected) < SAME:
         return f"lost at {stays:.5f}, but the speed comes back there"
     return ""
 

@@ -219,10 +219,28 @@ def test_a_bracket_is_refuted_where_nothing_is_lost(monkeypatch, way, place, off
     motions = Motions(monkeypatch)
     bracket = Answer("lost", place + off - 3e-5, place + off + 3e-5, True)
     assert ("past it, held" in verdicts.contradiction(SYSTEM, bracket, way)) is (off != 0.0)
-    far, stays, past, back = motions.courses[0]
+    _, far, stays, past, back = motions.courses[0]
     assert stays == back and min(far, past) < stays < max(far, past)
     Motions(monkeypatch, up=place, down=place)
     assert "comes back" in verdicts.contradiction(SYSTEM, bracket, way) or off != 0.0
+
+
+def speeds_held(monkeypatch, *speeds):
+    """Give the judge these speeds: 4e-3 and 2e-3 before a bracket, at it, past it, and back."""
+    monkeypatch.setattr(verdicts, "held_speeds", lambda *_, **__: np.array(speeds))
+    bracket = Answer("lost", 1.25, 1.25006, True)
+    return verdicts.contradiction(SYSTEM, bracket, "up")
+
+
+def test_a_bracket_on_a_steep_branch_is_refuted(monkeypatch):
+    """The branch alone changed by more there than two motions of the same speed: it was passed."""
+    assert "goes on" in speeds_held(monkeypatch, 1.0, 1.004, 1.0085, 1.0088, 1.0085)
+    assert not speeds_held(monkeypatch, 1.0, 1.004, 1.0085, 1.03, 1.029)
+
+
+def test_a_motion_that_ends_against_the_way_is_lost_whatever_speed_was_before(monkeypatch):
+    """Past its end the speed is that of a third motion, by chance the one of far before."""
+    assert not speeds_held(monkeypatch, 1.142, 1.1437, 1.1799, 1.1402, 1.1401)
 
 
 @pytest.mark.parametrize("way", verdicts.WAYS)
