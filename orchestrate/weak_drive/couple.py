@@ -51,6 +51,7 @@ from .losses import (
     empty_verdict_rows,
     further_jump_variables,
     gather_losses,
+    is_crossed,
     loss_verdicts,
     pick_jump,
     verdicts_from_rows,
@@ -197,13 +198,13 @@ class CoupleJob(CoupledRun):
         results = [(THROUGH, verdict) for verdict in course.further]
         known, volts = loss_verdicts(course), self.drive.volts(self.structure)
         sign = 1.0 if up else -1.0
-        crossed = sorted(known, key=lambda verdict: sign * verdict.low)[:-1]  # before the passing
+        crossed = sorted(known, key=lambda verdict: sign * verdict.low)
         Omega = np.abs(table["speed"]) / self.structure.omega
         for place, passing in enumerate(places[:MOST]):
             ends = [passing.before, passing.after]
             if passing.look == JUMP and not self.structure.bonded:
                 continue
-            if crossed and sign * (table["voltage"][passing.after] - crossed[0].low) > 0.0:
+            if is_crossed(crossed, table["voltage"][ends], sign):
                 crossed = crossed[1:]
                 results.append((place, Verdict(NOT_ASKED)))  # the course has met what is seen here
                 continue

@@ -93,6 +93,26 @@ def loss_verdicts(course: HeldCourse) -> list[Verdict]:
     ]
 
 
+def is_crossed(losses: Sequence[Verdict], ends: np.ndarray, sign: float) -> bool:
+    """Return whether the first loss of a held course may be what a record shows at a place.
+
+    The last one is what it shows at the passing of the resonance. A place that begins beyond all of
+    them is another loss.
+
+    Parameters
+    ----------
+    losses : sequence of Verdict
+        In the order of the ramp.
+    ends : ndarray, shape (2,)
+        Voltages where the place begins and ends, V.
+    sign : float
+    """
+    if len(losses) < 2:
+        return False
+    before, after = sign * (ends - np.array([losses[-1].high, losses[0].low]))
+    return bool(before <= 0.0 < after)
+
+
 def ramp_position(table: Table, rows: np.ndarray, voltage: float) -> Passing:
     """Return where on a ramp a given voltage is reached, as a doubtful passing."""
     voltages = table["voltage"][rows]
@@ -133,7 +153,8 @@ def gather_losses(
     at_end = [verdict for place, verdict in further if place == AT_END]
     main, others = None, losses_in_ramp_order(table, rows, [], at_end) if at_end else []
     if passing is not None:
-        *before, last = losses_in_ramp_order(table, rows, [*covered, passing], [primary, *through])
+        shown = sorted([*covered, passing])
+        *before, last = losses_in_ramp_order(table, rows, shown, [primary, *through])
         main, others = last, [*before, *others]
     for place, look in enumerate(places):
         about_place = [verdict for other, verdict in further if other == place]

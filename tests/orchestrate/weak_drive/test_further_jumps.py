@@ -13,12 +13,21 @@ from orchestrate.weak_drive.losses import (
     THROUGH,
     further_jump_variables,
     gather_losses,
+    is_crossed,
     pick_jump,
     verdicts_from_rows,
     verdicts_to_rows,
 )
 from orchestrate.weak_drive.schedule import Ramp
-from tools.trust.verdicts import RATES, WAYS, draw_with_folds, ramp_ends, run_couple
+from tools.trust.verdicts import (
+    RATES,
+    SLOPES,
+    WAYS,
+    draw_with_folds,
+    ramp_ends,
+    run_couple,
+    scale_to_slope,
+)
 
 from .test_held import H, Rotor, fold_of
 
@@ -136,6 +145,8 @@ MAIN = Passing(300, 290, 320, DOUBTFUL, 300.0)
 EARLY = Passing(110, 100, 130, DOUBTFUL, 110.0)
 LATE_LOSS, EARLY_LOSS = Verdict(LOST, 1.48, 1.4801), Verdict(LOST, 1.29, 1.2901)
 
+COURSE = EARLY_LOSS, LATE_LOSS
+
 
 def told(primary, look=DOUBTFUL, further=()):
     """The jump and the further ones of a ramp with the place ``EARLY`` before its passing."""
@@ -170,6 +181,17 @@ def test_a_loss_that_the_record_does_not_show_is_where_the_ramp_reaches_it():
     first, others = pick_jump(*losses, 1.0)
     assert TABLE["voltage"][first.passing.row] == pytest.approx(1.29, abs=2e-3)
     assert [loss.passing for loss in others] == [MAIN]
+
+
+@pytest.mark.parametrize(
+    ("ends", "crosses"), [((1.28, 1.30), True), ((1.27, 1.28), False), ((1.5, 1.52), False)]
+)
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_place_beyond_all_losses_of_the_course_is_none_of_them(ends, crosses, sign):
+    """A place far beyond the passing was taken for the first loss: the jump was told there."""
+    losses = [loss._replace(low=sign * loss.low, high=sign * loss.high) for loss in COURSE]
+    assert is_crossed(losses, sign * np.array(ends), sign) is crosses
+    assert not is_crossed(losses[:1], sign * np.array(ends), sign)
 
 
 @pytest.mark.parametrize("further", [[], [(0, Verdict(UNDECIDED))]])
@@ -279,6 +301,31 @@ def test_an_irregular_drive_jumps_nowhere_by_its_record(rate):
     speed = rate * volts * omega
     run = couple(structure, drive, voltage=ends, rate=speed, hold=1.0 / omega, progress=False)
     assert "by the record" not in {*run.decided.values, *run.further_decided.values.ravel()}
+
+
+def answer_up(system, rate):
+    """The answer of `couple` upward, on the delaminated structure, with its further jumps."""
+    answer = run_couple(system.of_kind("delaminated"), rate)[0]
+    return [(each.said, each.low, each.high) for each in (answer, *answer.further)]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rate", RATES)
+def test_a_drive_with_a_motion_in_a_narrow_range(rate):
+    """The jump to it, from 1.6799 on, was not told at 5e-5."""
+    found = answer_up(draw_with_folds(np.random.default_rng(198196246354768)), rate)
+    assert any(low <= 1.6799 <= high for said, low, high in found if said == "lost")
+    assert any(low <= 1.7199 <= high for _, low, high in found)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rate", RATES)
+def test_a_drive_with_two_motions_that_end_soon_after_each_other(rate):
+    """Ramps at 1e-6 too lose the first at 1.2298: some rates told the end of another alone."""
+    rng = np.random.default_rng(95547264317277)
+    found = answer_up(scale_to_slope(draw_with_folds(rng), float(rng.uniform(*SLOPES))), rate)
+    assert any(low <= 1.2299 and high >= 1.2297 for said, low, high in found if said == "lost")
+    assert any(low <= 1.2336 <= high + 1e-4 for _, low, high in found)
 
 
 @pytest.mark.slow

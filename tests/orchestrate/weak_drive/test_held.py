@@ -265,6 +265,88 @@ def test_a_speed_that_falls_and_comes_back_with_the_voltage_ends_no_motion():
     assert [verdict.outcome for verdict in dip.judge_course(points, 1.0)] == [FOLLOWS]
 
 
+class Hump(Scripted):
+    """A motion that ends at 1.519 and at 1.54; from the first end a second one lasts to 1.522.
+
+    A step over its range comes back from it, ``lower`` than before.
+    """
+
+    def __init__(self, lower):
+        super().__init__()
+        self.lower = lower
+
+    def step_from(self, point, voltage):
+        above = point.speed - self.at(point.voltage).speed
+        begins = 1.519 if above < 0.02 else 1.51
+        if voltage > 1.54 or above > 0.05 and voltage > 1.522:
+            higher = 0.1
+        elif begins < voltage <= 1.522:
+            higher = 0.03
+        else:
+            higher = -self.lower if voltage > 1.522 else 0.0
+        held = self.at(voltage, higher)._replace(origin=point.voltage)
+        passed = point.voltage <= 1.519 and 1.522 < voltage <= 1.54
+        return held._replace(most=held.speed + 0.03 * passed, least=held.speed)
+
+
+@pytest.mark.parametrize("lower", [0.0, 0.01])
+def test_a_motion_within_a_step_of_the_course(lower):
+    """The jump to it was not told where no held voltage was in its range."""
+    course = Hump(lower)
+    points = course.climb_stairs(course.at(1.5), 1.56)
+    assert not any(1.519 < point.voltage <= 1.522 for point in points)
+    verdicts = course.judge_course(points, 1.0)
+    assert [verdict.outcome for verdict in verdicts] == [LOST, LOST]
+    for verdict, place in zip(verdicts, (1.54, 1.519), strict=True):
+        assert verdict.low - 1e-9 <= place <= verdict.high + 1e-9
+
+
+class Landing(Scripted):
+    """A motion that ends at 1.5205 for one 0.03 above, which ends at 1.5211; there the first one
+    is again.
+
+    It lasts to 1.535 then; and from 1.5218 on there is one 0.032 above, where long steps come to.
+    """
+
+    def step_from(self, point, voltage):
+        is_above = point.speed - self.at(point.voltage).speed > 0.02
+        begins = 1.515 if is_above else 1.5205
+        if begins < voltage <= 1.5211:
+            higher = 0.03
+        elif voltage > 1.535 or (is_above or point.voltage <= 1.5205) and voltage >= 1.5218:
+            higher = 0.032
+        else:
+            higher = 0.0
+        return self.at(voltage, higher)._replace(origin=point.voltage)
+
+    def ramp_from(self, point, voltage, rate):
+        return self.step_from(point, voltage)
+
+
+def test_a_loss_leads_to_a_motion_that_ends_soon():
+    """The course passed over that end, and told nothing of the loss at 1.535."""
+    course = Landing()
+    points = course.climb_stairs(course.at(1.5), 1.56)
+    verdicts = course.judge_course(points, 1.0)
+    assert [verdict.outcome for verdict in verdicts] == [LOST, LOST]
+    for verdict, place in zip(verdicts, (1.535, 1.5205), strict=True):
+        assert verdict.low - 1e-9 <= place <= verdict.high + 1e-9
+
+
+@pytest.mark.parametrize("unsettled", [0.5, 0.25])
+def test_a_fall_is_halved_where_the_middle_does_not_settle(unsettled):
+    class Slow(FallsBack):
+        def step_from(self, point, voltage):
+            point = super().step_from(point, voltage)
+            middle = 1.518 + unsettled * 4e-3
+            return point._replace(speed=np.nan) if abs(voltage - middle) < 1e-9 else point
+
+    course = Slow(0.01, 1.5)
+    halved = course.halve_fall(course.at(1.518), course.at(1.522, -0.02), 1.0)
+    assert halved[-1].voltage - halved[-2].voltage <= 1e-4
+    assert halved[-2].voltage <= 1.52 < halved[-1].voltage
+
+
 class Window(Scripted):
     """An irregular motion that follows the voltage; up to 1.52 it may fall into a regular one.
 
