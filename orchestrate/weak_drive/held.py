@@ -145,11 +145,11 @@ class HoldSettings:
         Change of the speed between neighbours, over omega, that is never put down to the scatter of
         irregular motions: speeds that are known no better rule out no jump.
     again : int
-        How often the voltage of an irregular motion is held again before its end counts as a loss,
-        and how often a voltage is reached again from one.
+        How often a voltage is held again before the end of its motion counts as a loss, and how
+        often one is reached again from an irregular motion.
     by_chance : float
-        Range of voltages, over K omega, in which an irregular motion may end meanwhile: where it
-        does in a wider one, it ends by chance, and nothing is decided.
+        Range of voltages, over K omega, in which a motion may end meanwhile: where it does in a
+        wider one, it ends by chance or has long been unstable, and nothing is decided.
     stair : float
         Longest first step of the voltage, over K omega, and
     max_stairs : int
@@ -685,13 +685,13 @@ class HeldVoltageTest:
         return FOLLOWS if comes_back else UNDECIDED
 
     def hold_again(self, point: HeldPoint) -> HeldPoint:
-        """Hold an irregular motion again; return its new point if the speed differs.
+        """Hold a motion again; return its new point if the speed differs.
 
-        An irregular motion may be lost while its voltage is still held; other points are returned
-        unchanged.
+        An irregular motion may be lost while its voltage is still held, and one that is hardly
+        unstable leaves long after its speed seemed to settle; other points are returned unchanged.
         """
-        later, left = point, self.settings.again if point.error > 0.0 else 0
-        for _ in range(left):
+        later = point
+        for _ in range(self.settings.again):
             later = self.step_from(later, point.voltage)
             if self.differ(later, point):
                 return later
@@ -700,9 +700,10 @@ class HeldVoltageTest:
     def replace_if_lost(self, points: list[HeldPoint], i: int) -> bool:
         """Replace a point by a slower course's; return whether it is another motion.
 
-        The point's motion may end meanwhile, if it is irregular. And an irregular motion before may
-        have fallen into it by chance, where it exists in a narrow range of voltages: where it ends
-        then says nothing of the motion that a ramp follows. So it is reached anew from there.
+        The point's motion may end meanwhile, if it is irregular or hardly unstable. And an
+        irregular motion before may have fallen into it by chance, where it exists in a narrow range
+        of voltages: where it ends then says nothing of the motion that a ramp follows. So it is
+        reached anew from there.
         """
         irregular = [j for j in range(i) if self.is_irregular(points[j])]
         first = irregular[-1] if irregular else 0
