@@ -12,7 +12,8 @@ less from each of them to the next than it would between two motions that are to
 the steps go back: so the speed follows the voltage. What has not settled in the time that is given,
 comes back another way, or is still steep at the shortest step, decides nothing. Where the speed
 falls back against the way of the voltage a motion ends too, and chance may have it to which other
-one a ramp comes: the course tries ramps from before that end.
+one a ramp comes: the course tries ramps from before that end. A motion is held again before its end
+counts as a loss, and what a loss leads to is followed in short steps: it may end soon.
 """
 
 from __future__ import annotations
