@@ -23,7 +23,7 @@ from .job import Table
 
 log = logging.getLogger(__name__)
 ENDINGS = ("", "-wal", "-shm")  # files of a database
-ANEW = "remove it to start again"
+ANEW = "remove it and compute it again"
 
 
 def journal_path(result: Path, anew: bool = False) -> Path:

@@ -147,7 +147,7 @@ def test_rows_of_an_earlier_version_are_not_taken(interrupted, find):
     journal = Journal(journal_path(interrupted), {}, "")
     journal._query("DELETE FROM about WHERE name = 'sha256'")
     journal.close()
-    with pytest.raises(StoreError, match=r"earlier version.*remove it to start again"):
+    with pytest.raises(StoreError, match=r"earlier version.*remove it and compute it again"):
         answer(JOB, {"store": interrupted}, find)
 
 

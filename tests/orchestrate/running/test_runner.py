@@ -205,7 +205,7 @@ def test_a_file_of_others_is_never_replaced(find, tmp_path, kind):
         path.write_text("notes" * (kind == "text"))
     before = path.read_bytes()
     for force in (False, True):
-        with pytest.raises(StoreError, match=r"squares\.nc: .*remove it to start again"):
+        with pytest.raises(StoreError, match=r"squares\.nc: .*remove it and compute it again"):
             answer(Squares("squares"), {"store": path, "force": force}, find)
         assert path.read_bytes() == before
     assert sorted(p.name for p in tmp_path.iterdir()) == ["model.fmu", "squares.nc"]
@@ -250,7 +250,7 @@ def test_a_flipped_bit_of_the_journal(find, tmp_path, monkeypatch, place):
 def test_a_journal_that_is_none(find, tmp_path):
     path = tmp_path / "squares.nc"
     journal_path(path).write_bytes(b"not a database" * 1000)
-    with pytest.raises(StoreError, match="remove it to start again"):
+    with pytest.raises(StoreError, match="remove it and compute it again"):
         answer(Squares("squares"), {"store": path}, find)
 
 
