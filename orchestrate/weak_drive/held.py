@@ -491,7 +491,7 @@ class HeldVoltageTest:
         if not after or not self.ends_against(last, landed, sign):
             return FOLLOWS
         before_next, beyond = largest_change([landed, *after], sign)[1:]
-        for voltage in self.places_between(landed, before_next, beyond):
+        for voltage in self.places_between(landed, before_next):
             for rate in self.settings.rates:
                 others = [self.ramp_from(point, voltage, rate) for point in (last, landed)]
                 if self.is_further(*others, sign):
@@ -500,14 +500,13 @@ class HeldVoltageTest:
         is_there = back.voltage != landed.voltage or self.is_further(back, landed, sign)
         return UNDECIDED if is_there else FOLLOWS
 
-    def places_between(self, landed: HeldPoint, last: HeldPoint, beyond: HeldPoint) -> list[float]:
+    def places_between(self, landed: HeldPoint, last: HeldPoint) -> list[float]:
         """Return voltages at which ramps meet a motion, V, clear of its end if there is room.
 
-        Near its end, between the last point of it and the one beyond, a ramp throws any motion out.
+        Near its end a ramp throws any motion out.
         """
         stair, room = self.settings.stair * self.volts, abs(last.voltage - landed.voltage)
-        clear = max(abs(beyond.voltage - landed.voltage) - stair, 0.5 * room)
-        far = min(clear, room, self.past_volts)
+        far = min(max(room - stair, 0.5 * room), self.past_volts)
         way = math.copysign(1.0, last.voltage - landed.voltage)
         return [landed.voltage + way * part for part in (far, max(far - stair, 0.5 * far)) if room]
 

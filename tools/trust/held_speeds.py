@@ -12,10 +12,10 @@ from typing import NamedTuple
 import numpy as np
 
 from orchestrate import Drive, Structure, couple
-from orchestrate.weak_drive.schedule import Course
+from orchestrate.weak_drive.couple import schedule_from_arguments
+from orchestrate.weak_drive.schedule import Course, Ramp
 
 RATE = 5e-5  # of eta0 in a time 1/omega, between holds
-BEGIN = 600.0  # time over omega at the first voltage
 LONG, LONG_OF_ROTOR = 4000.0, 200.0  # of a hold, in 1/omega and in the rotor's time 1/b
 SETTLED = 1e-3  # of omega: mean speeds of the last two quarters of a hold
 
@@ -33,6 +33,21 @@ class System(NamedTuple):
         return self._replace(structure=structure)
 
 
+def begin_course(system: System, first: float, second: float) -> tuple[list[float], list[float]]:
+    """Return times over omega and voltages over K omega of how `couple` begins a ramp.
+
+    Where motions coexist another begin leads to another one.
+    """
+    structure, drive = system
+    omega, volts = structure.omega, drive.volts(structure)
+    ramp = schedule_from_arguments(structure, drive, (first * volts, second * volts))
+    assert isinstance(ramp, Ramp)
+    spin_up, settled = ramp.spin_up * omega, ramp.begin * omega
+    if not spin_up:
+        return [0.0, settled], [first, first]
+    return [0.0, spin_up, settled], [ramp.low / volts, first, first]
+
+
 def held_speeds(
     system: System,
     first: float,
@@ -46,7 +61,8 @@ def held_speeds(
     ----------
     system : System
     first : float
-        Voltage over K omega at which the motor begins, with its no-load speed.
+        Voltage over K omega at which the motor begins as on a ramp of `couple`: with its no-load
+        speed, or from below the resonance.
     voltages : sequence of float
         Those that are held, over K omega.
     part : float
@@ -61,7 +77,7 @@ def held_speeds(
     """
     structure, drive = system
     hold = part * (LONG + LONG_OF_ROTOR / drive.b(structure))
-    times, course, ends = [0.0, BEGIN], [first, first], []
+    times, course, ends = *begin_course(system, first, voltages[0]), []
     for voltage in voltages:
         arrival = times[-1] + max(abs(voltage - course[-1]) / rate, 1.0)
         times += [arrival, arrival + hold]

@@ -392,6 +392,24 @@ def matches_range(answer: Answer, place: tuple[float, float], way: str) -> bool:
     return place[0] - before <= answer.high and answer.low <= place[1] + after
 
 
+def ramp_jumps_before(system: System, answer: Answer, known: Truth, way: str, rate: float) -> bool:
+    """Return whether a jump of a record is that ramp's own, before a slow one loses its motion.
+
+    Where a motion ends, a slow ramp may come to another one beside it, and a faster one to that
+    beyond the resonance. Held where the record shows its jump, after the same ramp, the speed stays
+    on another motion then than on a course of held voltages.
+    """
+    sign = 1.0 if way == "up" else -1.0
+    if answer.held or answer.said != "lost" or sign * (known.low - answer.high) <= 0.0:
+        return False
+    start = course_start(system, way)
+    first = answer.high - sign * AROUND[0]
+    course = [*np.linspace(first, answer.high, 1 + round(AROUND[0] / GRID)).tolist()]
+    near = held_speeds(system, start, course, SHORT, rate=SLOW_RATE)[-1]
+    far = held_speeds(system, start, (answer.high,), rate=rate)[-1]
+    return bool(sign * (far - near) > CHANGE)
+
+
 def answers_without_truth(answer: Answer, known: Truth, way: str) -> list[Answer]:
     """Return the certain answers that the traced branches neither confirm nor deny."""
     sure = [each for each in (answer, *answer.further) if each.said == "lost"]
@@ -423,6 +441,8 @@ def check_answers(
             decided = answer.said in ("lost", "none")
             name = f"{answer.said} {by}" if decided else answer.said
             wrong = error_in_answer(answer, known[way], way)
+            if wrong and ramp_jumps_before(system, answer, known[way], way, rate):
+                name, wrong = "jump of this ramp alone", ""
             yield name, f"{kind}, {way}, rate {rate:g}: {wrong}" if wrong else ""
             for each in answer.further:
                 yield f"further jump {each.said}", ""
@@ -447,7 +467,9 @@ class Verdicts(Campaign):
         "8e-3 omega: a change to another motion of nearly the same speed is no jump. Where the "
         "branches do not say, such courses are held beside the bracket and back, or through the "
         "resonance and back, and must not speak against the answer, nor do so when the voltage "
-        "goes to them ten times as slowly. What is left undecided is counted."
+        "goes to them ten times as slowly. A jump in the record of a ramp, before a slow one loses "
+        "its motion, counts by itself: held from there, the speed stays on another motion than a "
+        "course of held voltages has. What is left undecided is counted."
     )
     unit, target, batch, package = "drives", 40, 1, True
 

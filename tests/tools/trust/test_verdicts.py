@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 
 from orchestrate.weak_drive import averaged
+from orchestrate.weak_drive.couple import schedule_from_arguments
 from tools.trust import held_speeds, verdicts
 from tools.trust.verdicts import (
     FOLD,
@@ -241,6 +242,35 @@ def test_a_bracket_on_a_steep_branch_is_refuted(monkeypatch):
 def test_a_motion_that_ends_against_the_way_is_lost_whatever_speed_was_before(monkeypatch):
     """Past its end the speed is that of a third motion, by chance the one of far before."""
     assert not speeds_held(monkeypatch, 1.142, 1.1437, 1.1799, 1.1402, 1.1401)
+
+
+@pytest.mark.parametrize(
+    ("far", "jump", "held", "is_own"),
+    [(1.1, 1.24, False, True), (1.0, 1.24, False, False), (1.1, 1.24, True, False)]
+    + [(1.1, 1.26, False, False)],
+)
+def test_a_jump_of_one_ramp_before_slow_ones_lose_the_motion(monkeypatch, far, jump, held, is_own):
+    """Held after the ramp, the speed stays on a motion that a held course does not have there."""
+
+    def speeds(_system, _first, voltages, *_, **__):
+        return np.full(len(voltages), far if len(voltages) == 1 else 1.0)
+
+    monkeypatch.setattr(verdicts, "held_speeds", speeds)
+    answer, known = Answer("lost", jump, jump, held), Truth(FOLD, 1.25, 1.25)
+    assert verdicts.ramp_jumps_before(SYSTEM, answer, known, "up", 1e-4) is is_own
+
+
+@pytest.mark.parametrize(("first", "second"), [(0.9, 1.0), (1.6, 1.7), (1.7, 1.6)])
+def test_a_held_course_begins_as_a_ramp_does(first, second):
+    """From its no-load speed, a course to 1.57 came to another motion than ramps."""
+    structure, drive = SYSTEM
+    volts = drive.volts(structure)
+    ramp = schedule_from_arguments(structure, drive, (first * volts, second * volts))
+    times, voltages = held_speeds.begin_course(SYSTEM, first, second)
+    assert (ramp.spin_up > 0.0) is (second > first > 1.5)
+    for time in np.linspace(0.0, times[-1], 7):
+        expected = ramp.voltage(time / structure.omega) / volts
+        assert np.interp(time, times, voltages) == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize("way", verdicts.WAYS)
