@@ -244,7 +244,10 @@ def test_a_drive_that_jumps_near_the_end_of_its_ramp(rate):
     ("seed", "jumps"), [(249286942736891, (1.22767, 1.3697)), (251, (1.3641, 1.4590))]
 )
 def test_drives_of_the_campaign_that_jump_twice(seed, jumps, rate):
-    """Of each the second one alone was told."""
+    """Of each the second one alone was told.
+
+    The first jump of one is by 0.0080 omega, the least that is told: at some rates it is undecided.
+    """
     structure, drive = draw_with_folds(np.random.default_rng(seed)).of_kind("delaminated")
     volts = drive.volts(structure)
     ends = tuple(end * volts for end in ramp_ends(draw_with_folds(np.random.default_rng(seed))))
@@ -253,10 +256,10 @@ def test_drives_of_the_campaign_that_jump_twice(seed, jumps, rate):
         jump="up"
     )
     assert up.held_verdict == LOST
-    assert float(up.held_jumps) / volts == pytest.approx(jumps[0], abs=2e-4)
+    told = np.array([up.held_jumps, *up.further_held]) / volts
+    assert np.nanmin(told) == pytest.approx(jumps[0], abs=2e-4)
     assert int(up.further_count) >= 1
-    late = [float(up.further_held.max()), float(up.further_jumps.max())]
-    assert np.nanmax(late) / volts > jumps[1] - 1e-3
+    assert np.nanmax([*told, *(up.further_jumps / volts)]) > jumps[1] - 1e-3
 
 
 @pytest.mark.slow
