@@ -47,12 +47,15 @@ class Truth(NamedTuple):
         Voltages over K omega between which it may be lost.
     further : tuple of float
         Voltages over K omega of other folds at which it jumps too.
+    against : tuple of float
+        Voltages over K omega of folds past which the speed falls back to that of another motion.
     """
 
     kind: str
     low: float = np.nan
     high: float = np.nan
     further: tuple[float, ...] = ()
+    against: tuple[float, ...] = ()
 
     @property
     def places(self) -> tuple[tuple[float, float], ...]:
@@ -208,15 +211,16 @@ def fold_that_is_met(system: System, branch: xr.Dataset, way: str) -> Truth:
     course = [voltage + side * sign * BESIDE for voltage, _ in folds for side in (-1.0, 1.0)]
     course = sort_in_direction(course, way)
     speeds = dict(zip(course, held_speeds(system, course_start(system, way), course), strict=True))
-    met = []
+    met, against = [], []
     for voltage, speed in folds:
         before, past = (speeds[voltage + side * sign * BESIDE] for side in (-1.0, 1.0))
-        if abs(before - speed) < CHANGE and sign * (past - before) > CHANGE:
-            met.append((sign * (past - before), voltage))
+        change = sign * (past - before)
+        if abs(before - speed) < CHANGE and abs(change) > CHANGE:
+            (met if change > 0.0 else against).append((change, voltage))
     if not met:
         return Truth(UNKNOWN)
     *others, largest = (voltage for _, voltage in sorted(met))
-    return Truth(FOLD, largest, largest, tuple(others))
+    return Truth(FOLD, largest, largest, tuple(others), tuple(voltage for _, voltage in against))
 
 
 def delaminated_folds(system: System, branch: xr.Dataset, way: str) -> list[tuple[float, float]]:
@@ -392,22 +396,14 @@ def matches_range(answer: Answer, place: tuple[float, float], way: str) -> bool:
     return place[0] - before <= answer.high and answer.low <= place[1] + after
 
 
-def ramp_jumps_before(system: System, answer: Answer, known: Truth, way: str, rate: float) -> bool:
-    """Return whether a jump of a record is that ramp's own, before a slow one loses its motion.
+def is_left_against_the_way(answer: Answer, known: Truth, way: str) -> bool:
+    """Return whether an answer tells the end of a motion past which chance has the next one.
 
-    Where a motion ends, a slow ramp may come to another one beside it, and a faster one to that
-    beyond the resonance. Held where the record shows its jump, after the same ramp, the speed stays
-    on another motion then than on a course of held voltages.
+    The held course that knows the truth came to a motion less far along there, and lost that one
+    later; a ramp may come to the motion beyond at once.
     """
-    sign = 1.0 if way == "up" else -1.0
-    if answer.held or answer.said != "lost" or sign * (known.low - answer.high) <= 0.0:
-        return False
-    start = course_start(system, way)
-    first = answer.high - sign * AROUND[0]
-    course = [*np.linspace(first, answer.high, 1 + round(AROUND[0] / GRID)).tolist()]
-    near = held_speeds(system, start, course, SHORT, rate=SLOW_RATE)[-1]
-    far = held_speeds(system, start, (answer.high,), rate=rate)[-1]
-    return bool(sign * (far - near) > CHANGE)
+    sure = [each for each in (answer, *answer.further) if each.said == "lost"]
+    return any(matches_range(each, (fold, fold), way) for each in sure for fold in known.against)
 
 
 def answers_without_truth(answer: Answer, known: Truth, way: str) -> list[Answer]:
@@ -441,9 +437,9 @@ def check_answers(
             decided = answer.said in ("lost", "none")
             name = f"{answer.said} {by}" if decided else answer.said
             wrong = error_in_answer(answer, known[way], way)
-            if wrong and ramp_jumps_before(system, answer, known[way], way, rate):
-                name, wrong = "jump of this ramp alone", ""
-            yield name, f"{kind}, {way}, rate {rate:g}: {wrong}" if wrong else ""
+            if wrong and is_left_against_the_way(answer, known[way], way):
+                name, wrong = "lost against the way", contradiction(system, answer, way)
+            yield name, f"{kind}, {way}, rate {rate:g}: {wrong}" * bool(wrong)
             for each in answer.further:
                 yield f"further jump {each.said}", ""
     for way in WAYS:
@@ -467,9 +463,10 @@ class Verdicts(Campaign):
         "8e-3 omega: a change to another motion of nearly the same speed is no jump. Where the "
         "branches do not say, such courses are held beside the bracket and back, or through the "
         "resonance and back, and must not speak against the answer, nor do so when the voltage "
-        "goes to them ten times as slowly. A jump in the record of a ramp, before a slow one loses "
-        "its motion, counts by itself: held from there, the speed stays on another motion than a "
-        "course of held voltages has. What is left undecided is counted."
+        "goes to them ten times as slowly. Where the course leaves a fold for a motion less far "
+        "along, a ramp may come to the one beyond at once: an answer that tells that fold is "
+        "right, if courses beside it do not speak against it, and is counted. What is left "
+        "undecided is counted."
     )
     unit, target, batch, package = "drives", 40, 1, True
 

@@ -245,19 +245,26 @@ def test_a_motion_that_ends_against_the_way_is_lost_whatever_speed_was_before(mo
 
 
 @pytest.mark.parametrize(
-    ("far", "jump", "held", "is_own"),
-    [(1.1, 1.24, False, True), (1.0, 1.24, False, False), (1.1, 1.24, True, False)]
-    + [(1.1, 1.26, False, False)],
+    ("place", "held", "is_told"),
+    [(1.25, True, True), (1.2502, True, True), (1.26, True, False), (1.26, False, True)]
+    + [(1.24, False, False)],
 )
-def test_a_jump_of_one_ramp_before_slow_ones_lose_the_motion(monkeypatch, far, jump, held, is_own):
-    """Held after the ramp, the speed stays on a motion that a held course does not have there."""
+def test_an_answer_on_a_fold_that_is_left_against_the_way(place, held, is_told):
+    """A held course came to a motion less far along there; ramps fell to the one beyond."""
+    known = Truth(FOLD, 1.3, 1.3, against=(1.25,))
+    answer = Answer("lost", place, place, held)
+    assert verdicts.is_left_against_the_way(answer, known, "up") is is_told
+    assert not verdicts.is_left_against_the_way(answer, Truth(FOLD, 1.3, 1.3), "up")
 
-    def speeds(_system, _first, voltages, *_, **__):
-        return np.full(len(voltages), far if len(voltages) == 1 else 1.0)
 
-    monkeypatch.setattr(verdicts, "held_speeds", speeds)
-    answer, known = Answer("lost", jump, jump, held), Truth(FOLD, 1.25, 1.25)
-    assert verdicts.ramp_jumps_before(SYSTEM, answer, known, "up", 1e-4) is is_own
+def test_a_fold_past_which_the_speed_falls_back_is_kept_apart(monkeypatch):
+    def fallen(_system, _first, voltages, *_, **__):
+        return np.array([1.1 + 0.01 * (v <= 1.25) + 0.2 * (v > 1.3) for v in voltages])
+
+    monkeypatch.setattr(verdicts, "held_speeds", fallen)
+    folds = branch_with_folds([(1.25, 1.11), (1.2, 1.0), (1.3, 1.1)])
+    known = verdicts.fold_that_is_met(SYSTEM, folds, "up")
+    assert known.low == pytest.approx(1.3) and known.against == (pytest.approx(1.25),)
 
 
 @pytest.mark.parametrize(("first", "second"), [(0.9, 1.0), (1.6, 1.7), (1.7, 1.6)])
