@@ -291,7 +291,7 @@ def bracket_problem(system: System, answer: Answer, way: str, rate: float) -> st
     """
     sign = 1.0 if way == "up" else -1.0
     stays, lost = sort_in_direction((answer.low, answer.high), way)
-    far, past = stays - sign * EARLY, lost + sign * 0.5 * TOLERANCE
+    far, past = stays - sign * EARLY, lost + sign * TOLERANCE
     course = (far - sign * EARLY, far, stays, past, stays)
     first, before, there, beyond, back = held_speeds(
         system, course_start(system, way), course, rate=rate
