@@ -365,10 +365,7 @@ class HeldVoltageTest:
         sign, test = 1.0 if up else -1.0, self.for_further_jumps()
         low = self.hold_step(steps[0])
         points = self.climb_stairs(low, self.ramp_voltage(steps[1]))
-        if not any(
-            test.may_be_a_loss(*pair, sign) or test.falls_back(*pair, sign)
-            for pair in pairwise(points)
-        ):
+        if not test.may_leave_a_motion(points, sign):
             return []  # so where the first voltage does not settle
         verdicts = test.judge_course(points, sign)
         return [verdict for verdict in verdicts if verdict.outcome != FOLLOWS]
@@ -442,9 +439,13 @@ class HeldVoltageTest:
         is_same = not self.differ(path[-1], after[j])
         tail = after[j + 1 :] if is_same else self.climb_stairs(path[-1], after[-1].voltage)[1:]
         points[i:] = path + tail
-        return not is_same or any(
+        return not is_same or self.may_leave_a_motion(path, sign)
+
+    def may_leave_a_motion(self, points: list[HeldPoint], sign: float) -> bool:
+        """Return whether the speed changes too much somewhere for one motion, either way."""
+        return any(
             self.may_be_a_loss(*pair, sign) or self.falls_back(*pair, sign)
-            for pair in pairwise(path)
+            for pair in pairwise(points)
         )
 
     def falls_back(self, low: HeldPoint, high: HeldPoint, sign: float) -> bool:
