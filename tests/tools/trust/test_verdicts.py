@@ -226,6 +226,15 @@ def test_a_bracket_is_refuted_where_nothing_is_lost(monkeypatch, way, place, off
     assert "comes back" in verdicts.contradiction(SYSTEM, bracket, way) or off != 0.0
 
 
+@pytest.mark.parametrize(("before", "is_refuted"), [(0.9, False), (1.1, True)])
+def test_a_bracket_may_lie_before_the_end_by_the_tolerance(monkeypatch, before, is_refuted):
+    """An irregular motion may be lost somewhat later when it is held by itself."""
+    Motions(monkeypatch)
+    high = FIRST_FOLD - before * verdicts.TOLERANCE
+    bracket = Answer("lost", high - 6e-5, high, True)
+    assert bool(verdicts.contradiction(SYSTEM, bracket, "up")) is is_refuted
+
+
 def speeds_held(monkeypatch, *speeds):
     """Give the judge these speeds: 4e-3 and 2e-3 before a bracket, at it, past it, and back."""
     monkeypatch.setattr(verdicts, "held_speeds", lambda *_, **__: np.array(speeds))
@@ -255,6 +264,19 @@ def test_an_answer_on_a_fold_that_is_left_against_the_way(place, held, is_told):
     answer = Answer("lost", place, place, held)
     assert verdicts.is_left_against_the_way(answer, known, "up") is is_told
     assert not verdicts.is_left_against_the_way(answer, Truth(FOLD, 1.3, 1.3), "up")
+
+
+@pytest.mark.parametrize("problem", ["", "the speed goes on"])
+def test_an_answer_against_the_way_is_counted_apart_and_held_by_itself(monkeypatch, problem):
+    """It is right if courses beside it do not speak against it, else a finding."""
+    left = Answer("lost", 1.25, 1.25006, True)
+    monkeypatch.setattr(verdicts, "run_couple", lambda *_: (left, NOTHING))
+    monkeypatch.setattr(verdicts, "contradiction", lambda *_: problem)
+    known = {"up": Truth(FOLD, 1.3, 1.3, against=(1.25,)), "down": Truth(NONE)}
+    up, down = verdicts.check_answers(SYSTEM, "delaminated", known, rates=[2e-4])
+    text = f"delaminated, up, rate 0.0002: {problem}" if problem else ""
+    assert up == ("lost against the way", text)
+    assert down == ("none by held voltages", "")
 
 
 def test_a_fold_past_which_the_speed_falls_back_is_kept_apart(monkeypatch):
