@@ -38,6 +38,7 @@ from .turning_points import rotate_to_phase_zero
 
 RESIDUAL = 1e-9  # of an orbit's equations in units of a eta^2, at most
 MARGIN = 1e-9  # by which the multipliers of a stable orbit are smaller than 1 at least
+RETURNS = 1e-6  # of the motion's size: where the FMU is again after the periods of an orbit
 NEAR = 0.1  # distance over the motion's size from which a response may be coming to an orbit
 SHRUNK = 0.1  # a deviation is followed until it should have become so much of itself
 ROUNDING = 1e-9  # a deviation over the motion's size that is no more than rounding
@@ -124,7 +125,7 @@ class MotionDecider:
                 unstable = True
                 continue
             motion = SettledMotion.from_orbit(self.point, orbit, free_phase)
-            if self.converges_to(response.end, motion):
+            if self.converges_to(response.end, motion) and self.repeats_in_fmu(motion):
                 return self.remember(motion), False
         return None, unstable
 
@@ -180,7 +181,8 @@ class MotionDecider:
         orbit, free_phase = self.orbit_near(state, periods)
         if orbit is None or largest_multiplier(orbit) >= 1.0 - MARGIN:
             return None
-        return self.remember(SettledMotion.from_orbit(self.point, orbit, free_phase))
+        motion = SettledMotion.from_orbit(self.point, orbit, free_phase)
+        return self.remember(motion) if self.repeats_in_fmu(motion) else None
 
     def converges_to(self, state: ArrayLike, motion: SettledMotion) -> bool:
         """Return whether the FMU's response from a state comes closer to a stable orbit.
@@ -282,6 +284,28 @@ class MotionDecider:
             return False
         self.plain.step(0.0, motion.multiplicity * excitation.period)
         return motion.free_states.nearest(self.plain.get(*STATE))[1] < ON_KNOWN_MOTION
+
+    def repeats_in_fmu(self, motion: SettledMotion) -> bool:
+        """Return whether the FMU, started on an orbit, has its impacts and comes back to it.
+
+        Newton's method solves for a given order of impacts. Where chattering ends in contact with
+        one impact more or less than there, by the restitution's threshold ``gamma``, the equations
+        have a root that is no motion of the FMU.
+        """
+        instance, orbit, states = self.eventful, motion.orbit, motion.free_states
+        assert instance is not None and orbit is not None, "no orbit"
+        begun = motion.free_phase / self.point.excitation.frequency
+        end = begun + motion.multiplicity * self.point.excitation.period
+        try:
+            begin_at_state(instance, self.point, orbit.form, motion.states[0])
+        except (FmuError, InputError):  # in contact the masses overlap within rounding
+            return False
+        if begun > 0.0:
+            instance.impacts(0.0, begun)
+        first = states.nearest(instance.read(*STATE))[0]
+        impacts = len(instance.impacts(begun, end).time)
+        last, away = states.nearest(instance.read(*STATE))
+        return impacts == orbit.sequence.impacts and last == first and away < RETURNS
 
 
 def largest_multiplier(orbit: PeriodicOrbit) -> float:

@@ -202,6 +202,23 @@ def test_an_irregular_response_that_nearly_repeats_is_irregular():
     assert (found.decided_by.values == IRREGULAR).all()
 
 
+CHATTERS = Structure(
+    m2=1.5321447410144347,
+    k2=0.4343997719460892,
+    d1=0.1119910034761803,
+    d2=0.028651252432709787,
+    e=0.13639711938433108,
+)
+CHATTERED = (-2.47883363e-04, 1.77404919e-02, -2.77914382e-01, -2.72764355e-01)
+
+
+def test_an_orbit_with_other_impacts_than_the_fmu_is_no_motion():
+    """Of 69 periods, with a multiplier of 0.04; chattering ends with one more impact in the FMU."""
+    settings = AttractorSettings(transient=2, settle=1.0, samples=140, longest=1000)
+    motion, _ = decided_from(CHATTERS, 3.845496239719113, CHATTERED, settings)
+    assert motion.decided != ORBIT
+
+
 LABELS = """
 import orchestrate
 paper = orchestrate.Structure.nondimensional()
