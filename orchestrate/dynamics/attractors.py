@@ -493,11 +493,12 @@ def attractors(
     The non-unique solutions of the paper's sections 3.2 and 4.1. A response is run on until its
     state repeats within ``converged``. Its impacts over just these periods are what Newton's method
     begins with (:func:`orchestrate.orbit`); the response is on the orbit found if that is a
-    possible motion, if its multipliers lie inside the unit circle, and if the response comes nearer
-    to it as they say. So multiplicity and impacts are those of the orbit, and two attractors are
-    two orbits. What has not repeated after ``longest`` periods is irregular, a torus or chaos; how
-    many of these there are depends on ``alike_irregular``. An FMU without events (FMI 2.0)
-    reports no impacts: there states that repeat decide.
+    possible motion, if the FMU repeats it with the same impacts, if its multipliers lie inside the
+    unit circle, and if the response comes nearer to it as they say. So multiplicity and impacts are
+    those of the orbit, and two attractors are two orbits. What has not repeated after ``longest``
+    periods is irregular, a torus or chaos; how many of these there are depends on
+    ``alike_irregular``. An FMU without events (FMI 2.0) reports no impacts: there states that
+    repeat decide.
 
     Global continuation (Datseris, Rossi and Wagemakers, Chaos 33, 073151, 2023): every attractor
     is carried to both neighbouring values, its state as a further start, or its orbit by Newton's

@@ -2,8 +2,9 @@
 
 A response is run on until its state repeats. Its impacts over exactly those periods, counted from a
 phase far from any impact, are what Newton's method begins with. The orbit it finds says what the
-response is, if its multipliers lie inside the unit circle, if it is a possible motion, and if the
-response comes nearer to it as the multipliers say. Copies of a shorter orbit are that orbit.
+response is, if its multipliers lie inside the unit circle, if it is a possible motion that the FMU
+repeats with the same impacts, and if the response comes nearer to it as the multipliers say. Copies
+of a shorter orbit are that orbit.
 """
 
 from __future__ import annotations
