@@ -5,6 +5,8 @@ the resonance the torque that the vibration takes grows with the speed. It is th
 turns the rotor faster. Where it falls on the way up, or rises on the way down, a motion may be
 lost there; so where the speed changes much faster than the voltage. What falls by less than half of
 the smallest further jump, or by no more than the scatter of an irregular motion, says nothing.
+What falls by less than twice that jump is asked at held voltages: a record tells no jump of nearly
+that size at every rate, and while the speed runs to the next motion the torque falls by more.
 
 Non-dimensional, as :mod:`.jumps`.
 """
@@ -32,6 +34,7 @@ from .jumps import (
 )
 
 SMALLEST = 8e-3  # change of the speed over omega from which on there is a further jump
+CLEAR = 2.0 * SMALLEST  # change from which on the record alone tells one
 LEAST = 0.5 * SMALLEST  # change of the torque, as a speed over omega, from which on one is sought
 LASTING = 10  # widths of the mean before and after, over which an irregular motion's torque falls
 APART = 4  # widths of the mean between two places; for fewer no scatter is known
@@ -85,14 +88,14 @@ def find_further_jumps(
         if fall > max(LEAST, noise) and lasts:
             rows = np.flatnonzero(torque[high : low + 1] < 0.5 * (torque[high] + torque[low]))
             half = float(before + rows[0])
-            look = JUMP if looks == {JUMP} and fall > SMALLEST else DOUBTFUL
+            look = JUMP if looks == {JUMP} and fall > CLEAR else DOUBTFUL
             passings.append(Passing(math.ceil(half), before, after, look, half))
     for before, after in true_stretches(fast, 0, len(fast)):
         last = min(after + 2 * width, len(leg.time) - 1)
         excess = sign * (leg.Omega[last] - leg.Omega[before]) - np.ptp(leg.eta0[before : last + 1])
         is_jump = classify_stretch(leg, means, b, sign, (before, after), limits) == JUMP
         if is_jump and excess > LEAST and lies_outside(before, last, taken_spans(passings, main)):
-            half, look = 0.5 * (before + after), JUMP if excess > SMALLEST else DOUBTFUL
+            half, look = 0.5 * (before + after), JUMP if excess > CLEAR else DOUBTFUL
             passings.append(Passing(math.ceil(half), before, last, look, half))
     return sorted(passings)
 

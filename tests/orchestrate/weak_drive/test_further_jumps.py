@@ -68,6 +68,12 @@ def test_one_jump_has_no_further_one(rate):
     assert places(ramp(rate, first=0.003)) == []  # less than two motions differ by
 
 
+@pytest.mark.parametrize(("first", "look"), [(0.009, DOUBTFUL), (0.012, DOUBTFUL), (0.03, JUMP)])
+def test_a_record_alone_tells_no_jump_of_nearly_the_smallest_size(first, look):
+    """A fast ramp does not show it at all: held voltages are asked on a slow one."""
+    assert [place.look for place in places(ramp(5e-6, first))] == [look]
+
+
 @pytest.mark.parametrize("start", [1.27, 1.28])
 @pytest.mark.parametrize("swing", [0.0, 0.05])
 def test_a_jump_at_the_begin_of_a_fast_ramp_is_seen(start, swing):
@@ -305,6 +311,15 @@ def test_an_irregular_drive_jumps_nowhere_by_its_record(rate):
     speed = rate * volts * omega
     run = couple(structure, drive, voltage=ends, rate=speed, hold=1.0 / omega, progress=False)
     assert "by the record" not in {*run.decided.values, *run.further_decided.values.ravel()}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rate", RATES[::3])
+def test_a_drive_whose_speed_falls_by_less_than_the_smallest_jump(rate):
+    """By 0.0063 omega at 1.512, at the end of its ramp: the record of 2e-5 told a jump."""
+    drawn = draw_with_folds(np.random.default_rng(237673316322565))
+    down = run_couple(drawn.of_kind("delaminated"), rate)[1]
+    assert "lost" not in {each.said for each in (down, *down.further)}
 
 
 def answer_up(system, rate):
