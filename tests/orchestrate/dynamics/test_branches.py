@@ -1,7 +1,6 @@
 """Branches and bifurcations against closed forms, and the branches that leave there."""
 
 import functools
-import time
 from pathlib import Path
 
 import numpy as np
@@ -240,13 +239,11 @@ def test_two_bifurcations_of_a_kind_within_a_step_are_found(longest):
         assert np.abs(truth.multipliers + 1.0).min() < 1e-9
 
 
-def test_the_branch_of_t_1_is_followed_quickly():
-    """From 1.37 both ways, the FMU's runs included: under 2 s where nothing else runs."""
-    start = orbit(PAPER, eta=1.37)
-    branch(PAPER, start=start, limits=(1.37, 1.4))
-    before = time.process_time()
-    branch(PAPER, start=start, limits=(0.9, 8.0))
-    assert time.process_time() - before < 8.0  # beside other work, on a slow machine
+def test_the_branch_of_t_1_is_followed_in_few_steps():
+    """From 1.37 both ways: 395 points; a time would be the machine's."""
+    found = branch(PAPER, start=orbit(PAPER, eta=1.37), limits=(0.9, 8.0))
+    assert found.sizes["point"] < 450
+    assert found.eta.min() < 1.3 < 7.0 < found.eta.max()
 
 
 def test_start_values_and_directions():
