@@ -1,21 +1,13 @@
-"""The same decisions on every machine: linear algebra rounds otherwise on another processor.
-
-OpenBLAS, which NumPy and SciPy bring along, has kernels for many processors and takes the ones that
-``OPENBLAS_CORETYPE`` names. So another machine's roundings can be had here, in a process of their
-own.
-"""
+"""The same decisions on every machine: linear algebra rounds otherwise on another processor."""
 
 import json
-import os
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
 
+from ..processors import printed_on_each
+
 PROCESSORS = ("Haswell", "SkylakeX", "Nehalem")
 AGREEMENT = 3e-6  # of places: a branch's last points lie where steps end, 1e-6 or so from there
-ROOT = Path(__file__).parents[2]
 
 
 def answers(which, processors=PROCESSORS):
@@ -23,20 +15,12 @@ def answers(which, processors=PROCESSORS):
 
     Skips where this machine's libraries do not take them.
     """
-    children = []
-    for processor in processors:
-        environment = {**os.environ, "OPENBLAS_CORETYPE": processor, "OPENBLAS_NUM_THREADS": "1"}
-        command = [sys.executable, "-m", "tests.orchestrate.processor_answers", which]
-        out = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-        children.append(subprocess.Popen(command, cwd=ROOT, env=environment, **out))
-    ends = [child.communicate(timeout=1800) for child in children]
-    for child, (_, errors) in zip(children, ends, strict=True):
-        assert child.returncode == 0, errors[-2000:]
-    found = [json.loads(text.splitlines()[-1]) for text, _ in ends]
-    for processor, one in zip(processors, found, strict=True):
+    printed = printed_on_each(["-m", "tests.orchestrate.processor_answers", which], processors)
+    found = {processor: json.loads(text.splitlines()[-1]) for processor, text in printed.items()}
+    for processor, one in found.items():
         if not one["kernels"] or set(one["kernels"]) != {processor}:
             pytest.skip(f"with OPENBLAS_CORETYPE={processor} kernels are {one['kernels']}")
-    return [one["answers"] for one in found]
+    return [one["answers"] for one in found.values()]
 
 
 def compare(found):

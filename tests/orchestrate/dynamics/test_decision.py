@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -31,6 +27,8 @@ from orchestrate.dynamics.settled_motion import (
 from orchestrate.response.questions import Point
 from orchestrate.response.sweep import sweep
 from orchestrate.structures import Excitation, Structure
+
+from ...processors import printed_on_each
 
 PAPER = Structure.nondimensional()
 USUAL = AttractorSettings()
@@ -232,14 +230,6 @@ print([near[word].values.tolist() for word in words])
 @pytest.mark.slow
 def test_labels_do_not_depend_on_the_processor():
     """Linear algebra has other last digits on other processors."""
-    found = set()
-    for core in ("Haswell", "SkylakeX", "Nehalem", "Zen"):
-        ended = subprocess.run(
-            [sys.executable, "-c", LABELS],
-            env={**os.environ, "OPENBLAS_CORETYPE": core},
-            capture_output=True,
-            check=True,
-            text=True,
-        )
-        found.add(ended.stdout)
+    printed = printed_on_each(["-c", LABELS], ("Haswell", "SkylakeX", "Nehalem", "Zen"))
+    found = set(printed.values())
     assert len(found) == 1 and "1.5" in found.pop()

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import functools
 import math
-import os
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -20,6 +17,7 @@ from orchestrate.dynamics import manifolds
 from orchestrate.dynamics.curve_growth import CurveGrower, CurvePoint, GrowthSettings
 from orchestrate.response.questions import make_point
 
+from ...processors import printed_on_each
 from .single_impact import GAP, RATE, SingleImpact
 
 PAPER = Structure.nondimensional()
@@ -248,13 +246,7 @@ def test_its_bits_are_the_same_with_the_kernels_of_any_processor():
         "m = o.manifold(o.Structure.nondimensional(), eta=3.0, length=1.0, progress=False);"
         "print(hashlib.sha256(m.state.values.tobytes()).hexdigest())"
     )
-    said = set()
-    for kernel in ("Haswell", "Nehalem"):
-        surroundings = {**os.environ, "OPENBLAS_CORETYPE": kernel}
-        command = [sys.executable, "-c", code]
-        done = subprocess.run(command, env=surroundings, capture_output=True, text=True, check=True)
-        said.add(done.stdout)
-    assert len(said) == 1
+    assert len(set(printed_on_each(["-c", code], ("Haswell", "Nehalem")).values())) == 1
 
 
 def test_pictures():
