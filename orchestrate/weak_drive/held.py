@@ -424,16 +424,16 @@ class HeldVoltageTest:
         come to another motion than they did, the course goes on with that.
         """
         i = next((i for i, point in enumerate(points) if point.voltage == end.high), len(points))
-        landed, after = points[i : i + 1], points[i + 1 :]
-        if end.outcome != LOST or not after:
+        if end.outcome != LOST or i + 1 >= len(points):
             return False
+        landed, after = points[i], points[i + 1 :]
         far = (
             j
             for j in range(len(after))
-            if not self.is_within(*landed, after[j], self.settings.stair)
+            if not self.is_within(landed, after[j], self.settings.stair)
         )
         j = next(far, len(after) - 1)
-        path = self.climb_stairs(*landed, after[j].voltage, self.settings.short)
+        path = self.climb_stairs(landed, after[j].voltage, self.settings.short)
         if path[-1].voltage != after[j].voltage:
             return False
         is_same = not self.differ(path[-1], after[j])
@@ -494,8 +494,8 @@ class HeldVoltageTest:
         before_next, beyond = largest_change([landed, *after], sign)[1:]
         for voltage in self.places_between(landed, before_next):
             for rate in self.settings.rates:
-                others = [self.ramp_from(point, voltage, rate) for point in (last, landed)]
-                if self.is_further(*others, sign):
+                left, beside = (self.ramp_from(point, voltage, rate) for point in (last, landed))
+                if self.is_further(left, beside, sign):
                     return LOST
         back = self.climb_stairs(beyond, landed.voltage)[-1]
         is_there = back.voltage != landed.voltage or self.is_further(back, landed, sign)
