@@ -233,6 +233,7 @@ export class App {
     this.waiting = !known;
     if (known) this.inspect(point.eta, known);
     else {
+      this.inspector.expect();
       this.tell("waits for the responses before it");
       this.write();
     }

@@ -57,11 +57,17 @@ export class Inspector {
 
   /** Show the motion of a response. @param {Choice} choice */
   choose(choice) {
+    this.expect();
+    this.choice = choice;
+    this.ask("motion", { ...choice, periods: this.periods, points: POINTS }, ([found]) => this.take(found), true);
+  }
+
+  /** Another motion is to come: the one before is no longer the chosen one. */
+  expect() {
     this.stop();
-    Object.assign(this, { choice, found: null, spectra: null, bonded: null, exponent: undefined });
+    Object.assign(this, { found: null, spectra: null, bonded: null, exponent: undefined, section: new Float64Array(0) });
     this.at("exponent").textContent = "…";
     this.mark("coming");
-    this.ask("motion", { ...choice, periods: this.periods, points: POINTS }, ([found]) => this.take(found), true);
   }
 
   /** Whether the chosen motion is there yet: until then what is seen of the one before pales. @param {"coming" | "there" | "failed"} state */

@@ -4,6 +4,8 @@ import { beamWords } from "./caption.js";
 import { saveCsv } from "./files.js";
 import { diagramCsv, driveCsv, impactsCsv, motionCsv, sectionCsv, spectrumCsv } from "./tables.js";
 
+const NOTHING = "nothing to save yet";
+
 /** @type {Record<string, string>} */
 const TITLES = {
   diagram: "Orbit diagram: the gap once a shaking period; below, impacts a period",
@@ -31,6 +33,7 @@ export function saveShown(words, { eta, regions, inspector, basin, drive }) {
   const [name, kind] = words.split(".");
   const { found, choice, section, spectra, pictures, animation } = inspector;
   const file = `${name}_eta${Number.isFinite(eta) ? Number(eta.toPrecision(7)) : ""}`;
+  if (!found && (name === "frame" || name in pictures.pictures)) return NOTHING; // what is seen is the motion before
   if (kind !== "csv") {
     /** @type {Record<string, import("./picture.js").Picture>} */
     const shown = { ...pictures.pictures, diagram: regions.view.picture, basin: basin.view.picture, drive: drive.picture, frame: animation.picture };
@@ -52,7 +55,7 @@ export function saveShown(words, { eta, regions, inspector, basin, drive }) {
     impacts: () => found && impactsCsv(found.motion),
   };
   const table = tables[name]();
-  if (!table) return "nothing to save yet";
+  if (!table) return NOTHING;
   void saveCsv(file, table);
   return `${file}.csv saved`;
 }

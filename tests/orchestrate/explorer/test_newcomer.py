@@ -147,6 +147,26 @@ def test_a_motion_that_cannot_be_computed_is_not_shown_as_the_one_before(opened)
     assert opened.run("return document.querySelector('main').dataset.motion") == "there"
 
 
+def test_a_motion_that_waits_for_others_is_not_shown_as_the_one_before(opened):
+    """At 1.7 of a new diagram the response goes on from those before: it waits for them."""
+    opened.until(MOVED)
+    waiting, found, state, said = opened.run("""
+        explorer.open(1.05, 1.95);
+        explorer.choose(1.7);
+        const saved = (name) => {
+          document.querySelector(`[data-save="${name}"]`).click();
+          return document.getElementById("status").textContent;
+        };
+        const { inspector, waiting } = explorer;
+        const said = ["history.png", "frame.svg", "section.csv", "impacts.csv"].map(saved);
+        return [waiting, inspector.found, document.querySelector("main").dataset.motion, said];
+    """)
+    assert (waiting, found, state) == (True, None, "coming")
+    assert said == ["nothing to save yet"] * 4
+    opened.until(MOVED)
+    assert abs(opened.run("return explorer.inspector.choice.point.eta") - 1.7) < 0.01
+
+
 def test_other_motions_of_a_frequency_are_not_hinted_at_with_another_beam(opened):
     """At 1.3 there are two; the pressed beam at 30 Hz has one."""
     opened.run("explorer.choose(1.3, true)")
