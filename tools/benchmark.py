@@ -23,6 +23,7 @@ import numpy as np
 
 from orchestrate.access import OSCILLATOR, Channel, Instance, find
 from orchestrate.constants import TURN
+from orchestrate.response.resonance import resonance
 from orchestrate.structures import Structure
 
 from . import c_host, sampled_solver
@@ -94,6 +95,24 @@ def time_figure_6(
     return seconds, impacts
 
 
+def time_resonance(fmu: str | PathLike[str], count: int = 500) -> tuple[float, float]:
+    """Return the seconds of resonance curves, and of the FMU alone for as many periods."""
+    etas = np.linspace(0.9, 1.5, count)
+    begin = time.process_time()
+    resonance(PAPER, eta=etas, transient=500, samples=60, progress=False, jobs=1, fmu=fmu)
+    asked, alone = time.process_time() - begin, 0.0
+    with Instance(fmu) as instance:
+        for bonded in (True, False):
+            for eta in (*etas, *etas[::-1]):
+                instance.reset()
+                drive = {"box_amplitude": 1.0 / eta**2, "box_frequency": eta}
+                instance.initialize(**drive, bonded=bonded, x_rel_max_on=False)
+                begin = time.process_time()
+                instance.step(0.0, 560 * TURN / eta)
+                alone += time.process_time() - begin
+    return asked, alone
+
+
 def fastest_of_each(
     measure: Callable[[Path], float], fmus: Sequence[Path], rounds: int
 ) -> list[float]:
@@ -140,6 +159,8 @@ def compare_solvers(count: int) -> None:
         print("".join(f"{value:12.4g}" for value in row), flush=True)
     quiet = time_quiet_step(native) * 1e9
     print(f"all: {seconds / impacts * 1e9:.0f} ns an impact; a step without one: {quiet:.0f} ns")
+    asked, alone = time_resonance(native)
+    print(f"resonance at 500 frequencies: {asked:.2f} s, {asked / alone:.2f} times the FMU's steps")
 
 
 def main() -> None:
