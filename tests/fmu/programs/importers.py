@@ -25,11 +25,11 @@ def simulate_fmu(path, values, names):
 def second_simulation_is_as_fast_as_the_first(path):
     values, seconds, ends = {"box_frequency": 1.13, "x_rel_max_on": False}, [], []
     for _ in range(4):
-        begin = time.perf_counter()
+        begin = time.process_time()
         result = fmpy.simulate_fmu(
             path, stop_time=2e4, output_interval=1e4, start_values=values, output=["x1"]
         )
-        seconds.append(time.perf_counter() - begin)
+        seconds.append(time.process_time() - begin)
         ends.append(float(result["x1"][-1]))
     return [seconds, ends, compiled()]
 

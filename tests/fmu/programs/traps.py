@@ -98,11 +98,11 @@ def instantiation_takes_less_than_a_second(path):
     )
     seconds = []
     for k in range(6):
-        begin = time.perf_counter()
+        begin = time.process_time()
         f = open_fmu(path, name=f"instance {k}")
-        made = time.perf_counter()
+        made = time.process_time()
         f.start().step(0.1)
-        seconds.append([made - begin, time.perf_counter() - begin])
+        seconds.append([made - begin, time.process_time() - begin])
     return seconds
 
 

@@ -102,13 +102,13 @@ def test_a_second_signal_ends_a_command_whose_fmu_hangs(
 ):
     process = under_way(commands, bad(kind, function))
     started = list(below(process.pid))
+    begun = time.monotonic()
     os.killpg(process.pid, number)  # as a terminal does
     time.sleep(2.0 * supervisor.HEARD)
     assert process.poll() is None
-    begun = time.monotonic()
     os.killpg(process.pid, number)
     done = end(process)
-    assert time.monotonic() - begun < 2.0
+    assert time.monotonic() - begun < supervisor.DEAF  # which one signal alone takes
     assert done.complaint(code=128 + number).startswith(f"{line}; what ran did not answer")
     assert all_end(started) and list(commands.temporary.iterdir()) == []
 

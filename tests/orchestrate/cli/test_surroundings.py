@@ -174,7 +174,7 @@ def run(_):
     thing = Thing()
     kept = weakref.ref(thing, lambda _: signal.raise_signal(signal.{signal}))
     del thing
-    time.sleep(10)
+    time.sleep(60)
 
 signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in the background
 cli.sweep.run = run
@@ -190,7 +190,7 @@ def test_a_signal_in_a_callback_ends_the_command(name, code, word):
     script = IN_A_CALLBACK.format(signal=name)
     begun = time.monotonic()
     done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True)
-    assert time.monotonic() - begun < 9.0
+    assert time.monotonic() - begun < 50.0
     assert (done.returncode, done.stdout) == (code, "")
     assert done.stderr.startswith(f"{word}: ")
     assert done.stderr.count("\n") == 1
