@@ -15,6 +15,7 @@ module                  idea
 :mod:`.run`             both FMU instances of a run, stepped together
 :mod:`.jumps`           where a ramp's record shows a jump of the speed
 :mod:`.further_jumps`   where a ramp's record suggests further jumps
+:mod:`.voltage_hold`    a voltage held until the speed has settled
 :mod:`.held`            where a jump is bracketed, by holding voltages
 :mod:`.jump_verdicts`   jump, none or undecided in each direction, and why
 :mod:`.ramp_record`     where a ramp's record passes the resonance, and suspected jumps

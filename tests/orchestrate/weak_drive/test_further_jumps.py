@@ -5,7 +5,7 @@ import pytest
 
 from orchestrate import couple
 from orchestrate.weak_drive.further_jumps import calmest_scatter, find_falls, find_further_jumps
-from orchestrate.weak_drive.held import LOST, UNDECIDED, HeldVoltageTest, HoldSettings, Verdict
+from orchestrate.weak_drive.held import LOST, UNDECIDED, HeldVoltageTest, Verdict
 from orchestrate.weak_drive.jumps import DOUBTFUL, JUMP, Passing, SweepLeg, find_passing
 from orchestrate.weak_drive.losses import (
     AT_END,
@@ -19,6 +19,7 @@ from orchestrate.weak_drive.losses import (
     verdicts_to_rows,
 )
 from orchestrate.weak_drive.schedule import Ramp
+from orchestrate.weak_drive.voltage_hold import HoldSettings
 from tools.trust.verdicts import (
     RATES,
     SLOPES,

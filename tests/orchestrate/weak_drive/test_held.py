@@ -5,18 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from orchestrate.weak_drive.held import (
-    FOLLOWS,
-    LEFT_BEFORE,
-    LOST,
-    UNDECIDED,
-    HeldPoint,
-    HeldVoltageTest,
-    HoldSettings,
-    settled_speed,
-)
+from orchestrate.weak_drive.held import FOLLOWS, LEFT_BEFORE, LOST, UNDECIDED, HeldVoltageTest
 from orchestrate.weak_drive.jumps import DOUBTFUL, Passing
 from orchestrate.weak_drive.schedule import Ramp
+from orchestrate.weak_drive.voltage_hold import HeldPoint, HoldSettings, settled_speed
 
 H = 5.0
 STIFF = 20.0
