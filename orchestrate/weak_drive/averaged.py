@@ -15,6 +15,7 @@ eta0 = U/(K omega).
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -27,6 +28,7 @@ from ..structures.drive import Drive
 from ..structures.structure import Structure
 
 FOLD, TORUS = bifurcations.FOLD.label, bifurcations.TORUS.label
+LOWEST = 0.1  # of the structure's resonance: a slower one of the box is far away
 
 
 class BifurcationPoint(NamedTuple):
@@ -111,8 +113,20 @@ def free_vibration_roots(structure: Structure, drive: Drive) -> np.ndarray:
     return np.asarray((box * (pull + masses) + pull * masses).roots())
 
 
+def calm_speed(structure: Structure, drive: Drive) -> float:
+    """Return the speed over omega that divides the box's own resonance from the structure's.
+
+    Where the vibration takes the least torque between both. The torque falls beyond each of them:
+    folds below this speed are of the box's own resonance, folds above it are of the structure's.
+    """
+    frequencies = np.abs(free_vibration_roots(structure, drive))
+    high = float(frequencies.max())
+    speeds = np.linspace(max(float(frequencies.min()), LOWEST * high), high, 2001)
+    return float(speeds[np.argmin(no_load_speed(structure, drive, speeds) - speeds)])
+
+
 def folds(
-    structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.0
+    structure: Structure, drive: Drive, low: float | None = None, high: float = math.inf
 ) -> list[BifurcationPoint]:
     """Find the folds of the averaged branch, where the speed jumps (Sommerfeld effect).
 
@@ -120,8 +134,8 @@ def folds(
     ----------
     structure : Structure
     drive : Drive
-    low, high : float
-        Range of Omega; the box's own resonance lies below it.
+    low, high : float, optional
+        Range of Omega; by default that of the structure's resonance, above :func:`calm_speed`.
 
     Returns
     -------
@@ -132,6 +146,7 @@ def folds(
     numerator, denominator = slope_polynomials(structure, drive)
     roots = numerator.roots()
     real = np.sort(roots.real[np.abs(roots.imag) < 1e-6 * np.abs(roots)])
+    low = calm_speed(structure, drive) if low is None else low
     speeds = [polish_root(numerator, root) for root in real if low <= root <= high]
     return [
         BifurcationPoint(float(no_load_speed(structure, drive, Omega)), Omega, FOLD)
@@ -165,22 +180,21 @@ def slope_polynomials(structure: Structure, drive: Drive) -> tuple[Polynomial, P
     return size**2 - factor * (torque.deriv() * size - torque * size.deriv()), size**2
 
 
-def smallest_slope(
-    structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.0, count: int = 10_001
-) -> float:
-    """Return the smallest slope d eta0 / d Omega in a range of speeds; negative with folds.
+def smallest_slope(structure: Structure, drive: Drive, count: int = 10_001) -> float:
+    """Return the smallest slope d eta0 / d Omega at the structure's resonance; negative with folds.
 
     Parameters
     ----------
     structure : Structure
     drive : Drive
-    low, high : float
-        Range of Omega.
     count : int
-        Speeds that are looked at.
+        Speeds that are looked at, from :func:`calm_speed` to twice the resonance's, and as many
+        within twenty half widths of it.
     """
     numerator, denominator = slope_polynomials(structure, drive)
-    speeds = np.linspace(low, high, count)
+    low, peak = calm_speed(structure, drive), resonance(structure, drive)
+    near = peak + resonance_half_width(structure, drive) * np.linspace(-20.0, 20.0, count)
+    speeds = np.concatenate([np.linspace(low, 2.0 * peak, count), near[near > low]])
     return float((numerator(speeds) / denominator(speeds)).min())
 
 
@@ -215,7 +229,7 @@ def growth_rates(structure: Structure, drive: Drive, Omega: float) -> np.ndarray
 
 
 def neimark_sacker_points(
-    structure: Structure, drive: Drive, low: float = 0.5, high: float = 3.0, count: int = 401
+    structure: Structure, drive: Drive, count: int = 151
 ) -> list[BifurcationPoint]:
     """Find the Neimark-Sacker points, where a slow oscillation of the speed starts to grow.
 
@@ -223,10 +237,8 @@ def neimark_sacker_points(
     ----------
     structure : Structure
     drive : Drive
-    low, high : float
-        Range of Omega.
     count : int
-        Speeds that are looked at.
+        Speeds that are looked at, from 0.8 to 1.5 times the structure's resonance.
     """
     from scipy.optimize import brentq
 
@@ -236,7 +248,8 @@ def neimark_sacker_points(
         sums = np.add.outer(roots, roots)[np.triu_indices(len(roots), 1)]
         return float(np.prod(-sums / np.abs(sums).max()).real)
 
-    speeds = np.linspace(low, high, count)
+    peak, low = resonance(structure, drive), calm_speed(structure, drive)
+    speeds = np.linspace(max(0.8 * peak, low), 1.5 * peak, count)
     signs = np.sign([hurwitz_product(Omega) for Omega in speeds])
     points = []
     for i in np.flatnonzero(signs[1:] != signs[:-1]):
@@ -283,7 +296,7 @@ def branch_stability(
         Of the motions below the first point, between each and the next, and beyond the last one.
     """
     speed = resonance(structure, drive)
-    torus = neimark_sacker_points(structure, drive, 0.8 * speed, 1.5 * speed, count=151)
+    torus = neimark_sacker_points(structure, drive)
     points = sorted([*folds(structure, drive), *torus], key=lambda point: point.Omega)
     speeds = [point.Omega for point in points]
     between = [0.5 * (low + high) for low, high in pairwise(speeds)]

@@ -37,6 +37,7 @@ from .held import (
 from .jump_verdicts import (
     averaged_predictions,
     check_against_theory,
+    check_further,
     describe_decision,
     explain_no_jump,
 )
@@ -70,6 +71,10 @@ if TYPE_CHECKING:
 MAX_STEPS = 1e9  # more is a typing error: it would run for weeks
 TOLERANCE = 1e-8  # of the step control: errors of the displacements are about ten times as large
 LONGEST, FIXED = 0.4, 0.1  # steps with the control and without, in 1/omega
+MIRRORED = {  # where the motor turns backward
+    *("jumps", "jump_speed", "jump_speed_before", "jump_speed_after", "jump_rate", "jump_lag"),
+    *("averaged_jumps", "held_jumps", "further_jumps", "further_held"),
+}
 HOLD, HOLD_OF_ROTOR = 4000.0, 200.0  # usual longest hold: in 1/omega, and in the rotor's time 1/b
 
 
@@ -169,7 +174,7 @@ class CoupleJob(CoupledRun):
                 return Run(replace(self, schedule=schedule), oscillator, shaker)
 
             units = (self.scheme.h, structure.omega, drive.volts(structure))
-            test = HeldVoltageTest(start_run, self.schedule, *units, self.hold)
+            test = HeldVoltageTest(start_run, self.schedule, *units, self.hold, sense=record.sense)
             test.add_checkpoints(table, every, self.steps())
             for i, doubt in enumerate(doubts):
                 course = HeldCourse(Verdict(NOT_ASKED))
@@ -199,12 +204,13 @@ class CoupleJob(CoupledRun):
         known, volts = loss_verdicts(course), self.drive.volts(self.structure)
         sign = 1.0 if up else -1.0
         crossed = sorted(known, key=lambda verdict: sign * verdict.low)
+        forward = record.forward()
         Omega = np.abs(table["speed"]) / self.structure.omega
         for place, passing in enumerate(places[:MOST]):
             ends = [passing.before, passing.after]
             if passing.look == JUMP and not self.structure.bonded:
                 continue
-            if is_crossed(crossed, table["voltage"][ends], sign):
+            if is_crossed(crossed, forward["voltage"][ends], sign):
                 crossed = crossed[1:]
                 results.append((place, Verdict(NOT_ASKED)))  # the course has met what is seen here
                 continue
@@ -263,10 +269,15 @@ class CoupleJob(CoupledRun):
         )
 
     def all_jump_variables(self, table: Table) -> dict[str, Variable]:
-        """Build the variables of the jump in each direction, or the reason for none."""
+        """Build the variables of the jump in each direction, or the reason for none.
+
+        What happens to a motor that turns backward is told in a mirror, and its signs at the end.
+        """
+        record = RampRecord(self, table)
+        table = record.forward()
         held = [Verdict(int(row[0]), *row[1:]) for row in table["verdicts"][-1]]
         theory = averaged_predictions(self.structure, self.drive)
-        losses = [self.collect_losses(table, i, held[i]) for i in range(len(UPWARD))]
+        losses = [self.collect_losses(record, i, held[i]) for i in range(len(UPWARD))]
         jump_and_further = [
             pick_jump(*pair, 1.0 if up else -1.0) for pair, up in zip(losses, UPWARD, strict=True)
         ]
@@ -281,16 +292,11 @@ class CoupleJob(CoupledRun):
         reasons = []
         for i, (first, _) in enumerate(jump_and_further):
             if first is None:
-                reasons.append(RampRecord(self, table).explain_no_passing(UPWARD[i]))
+                reasons.append(record.explain_no_passing(UPWARD[i]))
             elif jumps[i] is None:
-                ends = (
-                    RampRecord(self, table).explain_short_sweep(UPWARD[i])
-                    if held[i].outcome == UNDECIDED
-                    else ""
-                )
-                reasons.append(
-                    ends or explain_no_jump(first.passing, held[i], final[i], theory[i], self.hold)
-                )
+                ends = record.explain_short_sweep(UPWARD[i]) if held[i].outcome == UNDECIDED else ""
+                said = held[i].mirrored(record.sense)
+                reasons.append(ends or explain_no_jump(said, final[i], theory[i], self.hold))
             else:
                 reasons.append("")
         decided = [
@@ -300,23 +306,24 @@ class CoupleJob(CoupledRun):
         columns["no_jump"] = ("jump", reasons, {"long_name": "why there is no jump"})
         columns["decided"] = ("jump", decided, {"long_name": "how jump or none was told"})
         columns |= further_jump_variables(table, [further for _, further in jump_and_further])
-        return columns | held_voltage_variables(final)
+        columns |= held_voltage_variables(final)
+        for name in MIRRORED & columns.keys() if record.sense < 0.0 else ():
+            dims, values, attributes = columns[name]
+            columns[name] = (dims, np.negative(values), attributes)
+        return columns
 
     def collect_losses(
-        self, table: Table, i: int, primary: Verdict
+        self, record: RampRecord, i: int, primary: Verdict
     ) -> tuple[Loss | None, list[Loss]]:
         """Collect all losses of stability in a direction; that at the resonance first."""
         if self.control:
             return None, []
-        up, volts = UPWARD[i], self.drive.volts(self.structure)
+        up, volts, table = UPWARD[i], self.drive.volts(self.structure), record.forward()
         further = verdicts_from_rows(table["further_verdicts"][-1, i])
         if self.structure.bonded:
             theory = averaged_predictions(self.structure, self.drive)[i]
             primary = check_against_theory(primary, theory, volts)
-            further = [
-                (place, check_against_theory(verdict, theory, volts)) for place, verdict in further
-            ]
-        record = RampRecord(self, table)
+            further = [(place, check_further(verdict, theory, volts)) for place, verdict in further]
         rows, places = record.sweep_leg(up)[1], record.find_further_passings(up)
         return gather_losses(table, rows, record.resonance_passing(up), primary, places, further)
 
@@ -463,11 +470,14 @@ def schedule_from_arguments(
     rate = 1e-4 * volts * omega if rate is None else rate
     settle = 300.0 / omega if settle is None else settle
     first, last = ends
-    low = 0.9 * own_resonance.resonances(structure, drive)[0] * volts
+    low, sense = (
+        0.9 * own_resonance.resonances(structure, drive)[0] * volts,
+        math.copysign(1.0, last),
+    )
     if spin_up is None:  # a run up begins on the branch below the resonance
-        spin_up = 600.0 / omega if last > first > low / 0.9 else 0.0
+        spin_up = 600.0 / omega if sense * last > sense * first > low / 0.9 else 0.0
     ramp = Ramp(first, last, float(rate), float(settle), float(increment), bool(back))
-    return replace(ramp, spin_up=float(spin_up), low=low) if spin_up else ramp
+    return replace(ramp, spin_up=float(spin_up), low=sense * low) if spin_up else ramp
 
 
 def scheme_from_arguments(

@@ -57,6 +57,10 @@ class Verdict(NamedTuple):
     low: float = math.nan
     high: float = math.nan
 
+    def mirrored(self, sense: float) -> Verdict:
+        """Return the verdict with the voltages of a motor that turns in this sense, 1 or -1."""
+        return self._replace(low=sense * self.low, high=sense * self.high)
+
 
 class HeldCourse(NamedTuple):
     """Store the verdicts on the largest and on all other speed changes of a held course.

@@ -38,11 +38,14 @@ class AveragedPrediction(NamedTuple):
         Whether its folds are so close that there may be none.
     slope : float
         Least slope d eta0 / d Omega of all motions.
+    box_losses : tuple of float
+        The same as ``losses`` at the box's own resonance, below that of the structure.
     """
 
     losses: tuple[float, ...]
     narrow: bool
     slope: float
+    box_losses: tuple[float, ...] = ()
 
 
 @lru_cache(maxsize=64)
@@ -53,13 +56,16 @@ def averaged_predictions(
     folds = averaged.folds(structure, drive)
     narrow = bool(folds) and abs(folds[0].eta0 - folds[-1].eta0) < NARROW
     slope = averaged.smallest_slope(structure, drive)
+    box = averaged.folds(structure, drive, 0.0, averaged.calm_speed(structure, drive))
+    limits = averaged.stability_limits(structure, drive)
     up, down = (
         AveragedPrediction(
-            tuple(candidate.eta0 for candidate in (point, *fold) if candidate), narrow, slope
+            tuple(candidate.eta0 for candidate in (limits[i], *folds[end]) if candidate),
+            narrow,
+            slope,
+            tuple(fold.eta0 for fold in box[end]),
         )
-        for point, fold in zip(
-            averaged.stability_limits(structure, drive), (folds[:1], folds[-1:]), strict=True
-        )
+        for i, end in enumerate((slice(None, 1), slice(-1, None)))
     )
     return up, down
 
@@ -70,7 +76,7 @@ def is_doubtful(passing: Passing, bonded: bool, theory: AveragedPrediction) -> b
         return bonded and not theory.losses
     if passing.look == SMOOTH:
         return bool(theory.losses) or (not bonded and theory.slope < STEEP)
-    return passing.look == DOUBTFUL
+    return passing.look in (DOUBTFUL, UNFINISHED)
 
 
 def check_against_theory(verdict: Verdict, theory: AveragedPrediction, volts: float) -> Verdict:
@@ -87,14 +93,17 @@ def check_against_theory(verdict: Verdict, theory: AveragedPrediction, volts: fl
     return verdict._replace(outcome=UNDECIDED)
 
 
-def explain_no_jump(
-    passing: Passing, held: Verdict, final: Verdict, theory: AveragedPrediction, hold: float
-) -> str:
+def check_further(verdict: Verdict, theory: AveragedPrediction, volts: float) -> Verdict:
+    """Check a verdict on a further jump, which may be at the box's own resonance too."""
+    at_box = check_against_theory(verdict, theory._replace(losses=theory.box_losses), volts)
+    return at_box if at_box.outcome == LOST else check_against_theory(verdict, theory, volts)
+
+
+def explain_no_jump(held: Verdict, final: Verdict, theory: AveragedPrediction, hold: float) -> str:
     """Explain in words why a passage of the resonance is not reported as a jump.
 
     Parameters
     ----------
-    passing : Passing
     held, final : Verdict
         Of held voltages, before and after the averaged theory was asked.
     theory : AveragedPrediction
@@ -103,8 +112,6 @@ def explain_no_jump(
     """
     if final.outcome == UNDECIDED:
         return explain_undecided(held, theory, hold)
-    if passing.look == UNFINISHED:
-        return "the ramp ends while the speed passes the resonance"
     texts = {FOLLOWS: FOLLOWS_TEXT, LEFT_BEFORE: LEFT_BEFORE_TEXT}
     return texts.get(int(final.outcome), SMOOTH_TEXT)
 

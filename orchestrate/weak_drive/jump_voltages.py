@@ -3,7 +3,9 @@
 A ramp's jump comes late, about as rate^(2/3): so it is where a fold is passed at a finite rate. The
 time that the speed then takes on its way makes a term that grows as the rate itself. Both are
 fitted to the voltages; at rate 0 is the voltage of the fold. Of the bonded structure that is known,
-by the averaged theory: what its ramps miss, those of the delaminated one may miss as well.
+by the averaged theory: what its ramps miss, those of the delaminated one may miss as well. Where
+held voltages had to decide at every rate, as where folds are close, they know the voltage at rate 0
+themselves: it is taken from them.
 """
 
 from __future__ import annotations
@@ -24,6 +26,7 @@ from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged
 from .couple import couple_job, require_motor, schedule_from_arguments, scheme_from_arguments
+from .held import LOST
 from .master import Scheme
 from .schedule import Ramp, Schedule
 
@@ -76,6 +79,23 @@ def extrapolate(rates: np.ndarray, voltages: np.ndarray) -> tuple[float, float]:
     return value, float(np.hypot(scatter, 0.5 * (value - line)))
 
 
+def summarize_held(voltages: np.ndarray, errors: np.ndarray) -> np.ndarray:
+    """Return middle and error of the brackets that held voltages found at several rates.
+
+    Parameters
+    ----------
+    voltages, errors : ndarray, shape (n, m)
+        Middles and half widths of n brackets each, V.
+
+    Returns
+    -------
+    ndarray, shape (m, 2)
+        Middle of all brackets, and half of what they span together.
+    """
+    low, high = (voltages - errors).min(axis=0), (voltages + errors).max(axis=0)
+    return np.stack([0.5 * (low + high), 0.5 * (high - low)], axis=1)
+
+
 def fit_rate_powers(
     rates: np.ndarray, voltages: np.ndarray, exponents: tuple[float, ...]
 ) -> tuple[float, float]:
@@ -125,16 +145,18 @@ class JumpVoltagesJob(Job):
         for structure, schedule in items:
             job = couple_job(structure, self.drive, schedule, self.scheme)
             data = job.dataset(job.run_here(fmus), {})
-            rows.append([data.jumps.values, data.jump_speed_before.values])
-        return {"jumps": np.array(rows).reshape(-1, 2, len(DIRECTIONS))}
+            held = data[["held_jumps", "held_error"]].where(data.held_verdict == LOST)
+            columns = (data.jumps, data.jump_speed_before, held.held_jumps, held.held_error)
+            rows.append([column.values for column in columns])
+        return {"jumps": np.array(rows).reshape(-1, 4, len(DIRECTIONS))}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Build the dataset of jump voltages over the rate and at rate 0."""
         import xarray as xr
 
         rates = np.array([schedule.rate for schedule in self.schedules])
-        shaped = table["jumps"].reshape(len(rates), len(KINDS), 2, len(DIRECTIONS))
-        at_rates, speeds = shaped[:, :, 0], shaped[:, :, 1]
+        shaped = table["jumps"].reshape(len(rates), len(KINDS), 4, len(DIRECTIONS))
+        at_rates, speeds, held, held_errors = (shaped[:, :, column] for column in range(4))
         ends = np.array(
             [
                 [
@@ -145,6 +167,8 @@ class JumpVoltagesJob(Job):
             ]
         )
         ends[..., 1] = np.hypot(ends[..., 1], self.distance_from_folds(ends[0, :, 0]))
+        decided = np.isfinite(held).all(axis=0)
+        ends[decided] = summarize_held(held[:, decided], held_errors[:, decided])
         every, each = ("rate", "structure", "jump"), ("structure", "jump")
         late = "voltage at which the speed jumps on the ramp"
         before = "mean speed where it leaves its branch"
@@ -152,6 +176,7 @@ class JumpVoltagesJob(Job):
             "voltage": (every, at_rates, {"units": "V", "long_name": late}),
             "speed_before": (every, speeds, {"units": "rad/s", "long_name": before}),
             "jumps": (each, ends[..., 0], {"units": "V", "long_name": "the same at rate 0"}),
+            "held": (each, decided, {"long_name": "whether that is where held voltages lose it"}),
             "standard_error": (
                 each,
                 ends[..., 1],
@@ -214,7 +239,9 @@ def jump_voltages(
     -------
     xarray.Dataset
         ``jumps`` and ``standard_error`` (V) over ``structure`` and ``jump``, and the ``voltage`` of
-        each ramp over ``rate`` (V/s) too; NaN where there is no jump.
+        each ramp over ``rate`` (V/s) too; NaN where there is no jump. ``held`` says where held
+        voltages lost the motion at every rate: the middle of their brackets is told then, and half
+        of what these span as the error.
 
     Raises
     ------

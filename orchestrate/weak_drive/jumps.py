@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 JUMP, DOUBTFUL, SMOOTH, UNFINISHED = "jump", "doubtful", "smooth", "unfinished"
+SHARE = 0.3  # of the change of the slip in a jump: more than half its maximum where folds are close
 
 
 class SweepLeg(NamedTuple):
@@ -85,7 +86,12 @@ class Criterion(NamedTuple):
 
 
 def find_passing(
-    leg: SweepLeg, b: float, up: bool, threshold: float, criterion: Criterion | None = None
+    leg: SweepLeg,
+    b: float,
+    up: bool,
+    threshold: float,
+    criterion: Criterion | None = None,
+    calm: float = 0.0,
 ) -> Passing | None:
     """Find where the speed passes the resonance for good; None where it does not.
 
@@ -99,6 +105,8 @@ def find_passing(
     threshold : float
         Speed between the motions below and beyond the resonance.
     criterion : Criterion, optional
+    calm : float
+        Speed below which the box's own resonance takes the torque.
     """
     limits, sign = criterion or Criterion(), 1.0 if up else -1.0
     width = mean_width(leg, b)
@@ -116,7 +124,9 @@ def find_passing(
         cross = max(0, cross - 2 * width) + int(near[np.argmin(np.abs(near - 2 * width))])
     before, after = true_stretch_around(fast, cross) if fast[cross] else (cross, cross + width)
     last = min(after + 2 * width, len(leg.time) - 1)
-    half = half_slip_row(np.abs(leg.eta0 - leg.Omega), before, up)
+    slower = np.flatnonzero(leg.Omega[last:] < calm)  # where a ramp down leaves this resonance
+    end = last + int(slower[0]) if slower.size and not up else len(leg.time)
+    half = half_slip_row(np.abs(leg.eta0 - leg.Omega)[:end], before, last, up)
     half = float(cross + width) if half is None else half
     look = classify_stretch(leg, means, b, sign, (before, after), limits) if fast[cross] else SMOOTH
     return Passing(math.ceil(half), before, last, look, half)
@@ -219,10 +229,24 @@ def true_stretch_around(runs: np.ndarray, top: int) -> tuple[int, int]:
     )
 
 
-def half_slip_row(slip: np.ndarray, before: int, up: bool) -> float | None:
-    """Return the fractional row where the slip crosses half its maximum; None if it never does."""
+def half_slip_row(slip: np.ndarray, before: int, last: int, up: bool) -> float | None:
+    """Return the fractional row where the slip crosses half its maximum; None if it never does.
+
+    Where folds are close the slip is as large as that beyond the resonance too. It crosses
+    ``SHARE`` of the way from there to its maximum then, where that is more.
+
+    Parameters
+    ----------
+    slip : ndarray
+    before, last : int
+        Rows where the speed leaves its branch, and where it follows the voltage again.
+    up : bool
+        Whether the voltage rises.
+    """
     level = slip[before:]
-    highest, half = int(np.argmax(level)), 0.5 * float(level.max())
+    highest, largest = int(np.argmax(level)), float(level.max())
+    beyond = float(slip[min(last, len(slip) - 1)] if up else slip[before])
+    half = max(0.5 * largest, beyond + SHARE * (largest - beyond))
     first = highest + 1 if up else 0
     rows = first + np.flatnonzero((level[first:] < half) == up)
     if not rows.size:

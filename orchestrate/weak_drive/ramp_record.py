@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..running.job import Table
-from . import own_resonance
+from . import averaged, own_resonance
 from .further_jumps import find_further_jumps
 from .jump_verdicts import averaged_predictions, is_doubtful
 from .jumps import Passing, SweepLeg, explain_not_passed, find_passing
@@ -36,12 +36,26 @@ class RampRecord:
     job: CoupledRun
     table: Table
 
+    @property
+    def sense(self) -> float:
+        """Return the sense of rotation: -1 where the motor turns backward, else 1."""
+        voltage = self.table["voltage"]
+        return -1.0 if -voltage.min(initial=0.0) > voltage.max(initial=0.0) else 1.0
+
+    def forward(self) -> Table:
+        """Return the table of the mirror image of the run, in which the motor turns forward."""
+        signed = ("voltage", "speed")
+        return {**self.table, **{name: self.sense * self.table[name] for name in signed}}
+
     def sweep_leg(self, up: bool) -> tuple[SweepLeg, np.ndarray]:
-        """Return the revolutions with rising (or falling) voltage and their row indices."""
-        eta0 = np.abs(self.table["voltage"]) / self.job.drive.volts(self.job.structure)
+        """Return the revolutions with rising (or falling) voltage and their row indices.
+
+        A motor that turns backward is looked at in a mirror: its voltage rises from 0 too.
+        """
+        eta0 = self.sense * self.table["voltage"] / self.job.drive.volts(self.job.structure)
         Omega = np.abs(self.table["speed"]) / self.job.structure.omega
-        trend = self.job.schedule.trend(self.table["time"])
-        rows = np.flatnonzero(trend > 0 if up else trend < 0)
+        trend = self.sense * self.job.schedule.trend(self.table["time"])
+        rows = np.flatnonzero((trend > 0 if up else trend < 0) & (eta0 > 0.0))
         return SweepLeg(
             self.table["time"][rows] * self.job.structure.omega, eta0[rows], Omega[rows]
         ), rows
@@ -49,8 +63,10 @@ class RampRecord:
     def resonance_passing(self, up: bool) -> Passing | None:
         """Find how the speed passes the resonance in one direction; None if it does not."""
         leg, rows = self.sweep_leg(up)
-        threshold = own_resonance.dividing_speed(self.job.structure, self.job.drive)
-        rows_in_leg = find_passing(leg, self.job.drive.b(self.job.structure), up, threshold)
+        structure, drive = self.job.structure, self.job.drive
+        threshold = own_resonance.dividing_speed(structure, drive)
+        calm = averaged.calm_speed(structure, drive)
+        rows_in_leg = find_passing(leg, drive.b(structure), up, threshold, calm=calm)
         if rows_in_leg is None:
             return None
         row, before, after = (int(rows[index]) for index in rows_in_leg[:3])
@@ -105,12 +121,22 @@ class RampRecord:
         """Return first and last step of a stretch that may hide a loss; None where nothing does.
 
         The jump comes late, the more so the faster the ramp: near its last voltage it may come
-        after the end. None where the record shows a passing or a suspected jump there.
+        after the end. None where the record shows a passing or a suspected jump there. Of a bonded
+        structure the averaged theory knows whether and where.
         """
-        eta0, rows = self.sweep_leg(up)[0].eta0, self.sweep_leg(up)[1]
-        if self.job.control or self.job.structure.bonded or not rows.size:
+        (_, eta0, Omega), rows = self.sweep_leg(up)
+        if self.job.control or not rows.size:
             return None
-        far = np.flatnonzero(np.abs(eta0 - eta0[-1]) > LAST_STRETCH)
+        sign, end = 1.0 if up else -1.0, eta0[-1]
+        if self.job.structure.bonded:
+            theory = averaged_predictions(self.job.structure, self.job.drive)[UPWARD.index(up)]
+            losses = [at for at in theory.losses if eta0.min() <= at <= eta0.max()]
+            divide = averaged.dividing_speed(self.job.structure, self.job.drive)
+            began_beyond = bool((sign * (Omega - divide) > 0.0).all())
+            if not losses or began_beyond or self.resonance_passing(up):
+                return None
+            end = min(losses, key=lambda at: sign * at)
+        far = np.flatnonzero(sign * (end - eta0) > LAST_STRETCH)
         first = int(rows[far[-1]]) if far.size else int(rows[0])
         main = self.resonance_passing(up)
         if any(seen.after >= first for seen in (*places, *([main] if main else []))):

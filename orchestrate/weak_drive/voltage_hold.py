@@ -134,6 +134,8 @@ class HoldSettings:
 class VoltageHolder:
     """Restore states of a past ramp and hold voltages from there until speeds settle.
 
+    Voltages are those of the mirror image in which the motor turns forward.
+
     Parameters
     ----------
     begin : callable
@@ -147,6 +149,8 @@ class VoltageHolder:
     longest : float
         Time for which a voltage is held at most, s.
     settings : HoldSettings, optional
+    sense : float
+        Of the rotation: -1 where the motor turns backward, else 1.
     """
 
     def __init__(
@@ -158,9 +162,10 @@ class VoltageHolder:
         volts: float,
         longest: float,
         settings: HoldSettings | None = None,
+        sense: float = 1.0,
     ) -> None:
         """Store the ramp's schedule, its units and the settings of the test."""
-        self.begin, self.schedule, self.step = begin, schedule, step
+        self.begin, self.schedule, self.step, self.sense = begin, schedule, step, sense
         self.omega, self.volts, self.longest = omega, volts, longest
         self.settings = settings or HoldSettings()
         self.checkpoints: dict[int, Table] = {}
@@ -196,7 +201,7 @@ class VoltageHolder:
 
     def ramp_voltage(self, step: int) -> float:
         """Return the voltage of the ramp at a communication step, V."""
-        return self.schedule.voltage((step + 0.5) * self.step)
+        return self.sense * self.schedule.voltage((step + 0.5) * self.step)
 
     def step_from(self, point: HeldPoint, voltage: float) -> HeldPoint:
         """Change the voltage in one step from a held point, and hold it there."""
@@ -204,7 +209,8 @@ class VoltageHolder:
 
     def ramp_from(self, point: HeldPoint, voltage: float, rate: float) -> HeldPoint:
         """Ramp the voltage from a held point at a rate over K omega^2, and hold it then."""
-        ramp = Ramp(point.voltage, voltage, rate * self.volts * self.omega, back=False)
+        ends = self.sense * point.voltage, self.sense * voltage
+        ramp = Ramp(*ends, rate * self.volts * self.omega, back=False)
         steps = range(math.ceil(ramp.duration / self.step))
         return self.hold_voltage(self.follow_schedule(ramp, point.state, steps), voltage)
 
@@ -212,7 +218,8 @@ class VoltageHolder:
         """Simulate a constant voltage from a state until the speed settles."""
         count = math.ceil(self.longest / self.step)
         piece = max(1, round(150.0 / self.omega / self.step))
-        run, speeds = self.begin(Constant(voltage, count * self.step)), np.zeros(0)
+        held = Constant(self.sense * voltage, count * self.step)
+        run, speeds = self.begin(held), np.zeros(0)
         speed, error, means = math.nan, 0.0, np.zeros(0)
         try:
             if state is not None:

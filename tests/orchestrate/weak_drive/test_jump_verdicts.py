@@ -91,7 +91,7 @@ def test_no_record_makes_a_jump_of_a_vertical_branch():
 def test_what_has_not_settled_is_undecided():
     """And the answer says what helps; a longer hold does."""
     omega = CLOSE.structure.omega
-    found = down(CLOSE, 2e-4, hold=1000.0 / omega)
+    found = down(CLOSE, 2e-4, hold=700.0 / omega)
     assert found.held_verdict == UNDECIDED and found.decided == "undecided"
     assert found.held_verdict.attrs["flag_meanings"].split() == [
         "not_asked",
@@ -102,6 +102,30 @@ def test_what_has_not_settled_is_undecided():
     ]
     assert np.isnan(found.jumps)
     assert "undecided" in str(found.no_jump) and "longer hold" in str(found.no_jump.item())
+
+
+@pytest.mark.parametrize("last", [1.606, 1.59])
+def test_a_ramp_that_ends_during_the_jump_or_before_it_shows(last):
+    """Past the fold at 1.5831: it was said that there is none, and where the speed ends."""
+    quick = QUICK.as_bonded()
+    found = run(quick, (1.5, last), 1e-4, back=False, step=None).sel(jump="up")
+    told = found.held_jumps if np.isfinite(found.held_jumps) else found.further_held[0]
+    assert float(told) / quick.drive.volts(quick.structure) == pytest.approx(1.5831, abs=1e-4)
+    assert "by held voltages" in (found.decided, found.further_decided[0])
+
+
+def test_a_motor_that_turns_backward_has_the_mirrored_verdicts():
+    """It was said that it does not jump: up was where its voltage falls from 0."""
+    quick = QUICK.as_bonded()
+    volts = quick.drive.volts(quick.structure)
+    forward, backward = (run(quick, (way * 1.4, way * 1.65), 2e-4, step=None) for way in (1, -1))
+    assert np.isfinite(forward.jumps.values).all()
+    for name in ("jumps", "jump_speed_before", "jump_rate", "averaged_jumps", "jump_lag"):
+        mirrored = -backward[name].values
+        assert mirrored == pytest.approx(forward[name].values, rel=1e-3, abs=1e-6), name
+    ends = run(quick, (-1.5, -1.606), 1e-4, back=False, step=None).sel(jump="up")
+    assert ends.decided == "by held voltages"
+    assert float(ends.held_jumps) / volts == pytest.approx(-1.5831, abs=1e-4)
 
 
 def test_a_verdict_is_the_same_from_other_checkpoints_and_at_full_resolution():
@@ -144,7 +168,7 @@ def test_a_verdict_that_the_averaged_theory_contradicts_is_not_given(verdict, th
     final = check_against_theory(verdict, theory, 2.0)
     assert final.outcome == what
     if what == UNDECIDED:
-        text = explain_no_jump(Passing(1, 0, 2, DOUBTFUL, 1.0), verdict, final, theory, 5.0)
+        text = explain_no_jump(verdict, final, theory, 5.0)
         assert text.startswith("undecided: held voltages") and "averaged theory" in text
         assert math.isnan(verdict.low) or f"{0.5 * (verdict.low + verdict.high):.5g} V" in text
 
@@ -160,7 +184,8 @@ def test_a_verdict_that_the_averaged_theory_contradicts_is_not_given(verdict, th
         (SMOOTH, True, NONE, False),
         (SMOOTH, False, NONE, True),
         (SMOOTH, False, NONE._replace(slope=0.5), False),
-        (UNFINISHED, True, PLACE, False),
+        (UNFINISHED, True, PLACE, True),
+        (UNFINISHED, False, NONE, True),
     ],
 )
 def test_when_voltages_are_held(look, bonded, theory, doubtful):

@@ -56,7 +56,8 @@ def test_an_error_that_the_fit_alone_does_not_tell():
     """Down, terms of the lag cancel: the last one of the fit changes a tenth of what is missed."""
     rates = (1e-5, 3e-5, 1e-4)
     table = [[[RAMPS[kind, way][1][i] for way in DIRECTIONS] for kind in KINDS] for i in range(3)]
-    rows = np.stack([table, np.full_like(table, 1.3)], axis=2).reshape(-1, 2, len(DIRECTIONS))
+    speeds, held = np.full_like(table, 1.3), np.full_like(table, np.nan)
+    rows = np.stack([table, speeds, held, held], axis=2).reshape(-1, 4, len(DIRECTIONS))
     ramps = tuple(Ramp(1.4, 1.62, rate) for rate in rates)
     job = JumpVoltagesJob("jump_voltages", *QUICK, ramps, Scheme("rollback", 0.4))
     found = job.dataset({"jumps": rows}, {})
@@ -66,6 +67,24 @@ def test_an_error_that_the_fit_alone_does_not_tell():
         assert missed < 1.2 * float(at.standard_error) < 3e-4
         alone = extrapolate(np.array(rates), np.array(voltages))[1]
         assert (missed > 5.0 * alone) == (way == "down")
+
+
+def test_voltages_that_were_held_at_every_rate_are_those_at_rate_0():
+    """Where folds are close the ramps' voltages were extrapolated several errors past them."""
+    ramps = tuple(Ramp(1.4, 1.62, rate) for rate in (5e-5, 1e-4))
+    job = JumpVoltagesJob("jump_voltages", *QUICK, ramps, Scheme("rollback", 0.4))
+    rows = np.zeros((2, len(KINDS), 4, len(DIRECTIONS)))
+    rows[:, :, 0] = np.array([1.40, 1.39])[:, np.newaxis, np.newaxis]
+    rows[:, :, 2:] = np.nan
+    rows[:, 1, 2, 1], rows[:, 1, 3, 1] = (1.39490, 1.39492), (5e-5, 4e-5)
+    rows[0, 1, 2:, 0] = 1.41, 1e-5  # at one rate of two
+    found = job.dataset({"jumps": rows.reshape(-1, 4, len(DIRECTIONS))}, {})
+    assert found.held.values.tolist() == [[False, False], [False, True]]
+    at = found.sel(structure="delaminated", jump="down")
+    assert float(at.jumps) == pytest.approx(1.394905) and float(at.standard_error) == (
+        pytest.approx(5.5e-5)
+    )
+    assert float(found.jumps.sel(structure="delaminated", jump="up")) > 1.41
 
 
 def test_too_few_jumps_give_no_error():

@@ -4,7 +4,15 @@ import numpy as np
 import pytest
 
 from orchestrate.weak_drive import averaged
-from orchestrate.weak_drive.jumps import DOUBTFUL, JUMP, SMOOTH, Criterion, SweepLeg, find_passing
+from orchestrate.weak_drive.jumps import (
+    DOUBTFUL,
+    JUMP,
+    SMOOTH,
+    Criterion,
+    SweepLeg,
+    find_passing,
+    half_slip_row,
+)
 
 from .coupled import BEAM, QUICK
 from .test_couple import run
@@ -117,6 +125,18 @@ def way(speed, rate):
     time = np.arange(0.0, 0.4 / rate, 5.0)
     eta0 = 1.2 + rate * time
     return SweepLeg(time, eta0, speed(eta0, time))
+
+
+@pytest.mark.parametrize("up", [True, False])
+def test_where_folds_are_close_the_slip_is_large_on_both_sides(up):
+    """What it crosses rises without a step, from half of its largest value to all of that."""
+    beyond, rows = np.linspace(0.0, 0.99, 100), []
+    for least in beyond:
+        slip = np.interp(np.arange(60.0), [20.0, 40.0], [least, 1.0])
+        row = half_slip_row(slip[::-1] if up else slip, 10, 50, up)
+        rows.append(59.0 - row if up else row)
+    crossed = beyond + (1.0 - beyond) * (np.array(rows) - 20.0) / 20.0
+    assert crossed == pytest.approx(np.maximum(0.5, 0.3 + 0.7 * beyond))
 
 
 @pytest.mark.parametrize("rate", [1e-4, 1e-5])
