@@ -131,7 +131,7 @@ def masses_from_gap(
 
 
 class PlaneStart(NamedTuple):
-    """A start on the plane: point, state (m and m/s), and the box's phase (rad)."""
+    """A start on the plane: point at phase 0, state (m and m/s), and the box's phase (rad)."""
 
     point: Point
     state: tuple[float, ...]
@@ -173,11 +173,17 @@ class BasinJob(Question):
         return self.x.number * self.y.number + 1
 
     def items(self, inputs: Inputs) -> Sequence[PlaneStart | Point]:
-        """Return the items: every start, then the point, which stands for grouping."""
+        """Return the items: every start, then the point, which stands for grouping.
+
+        Its excitation begins at phase 0, as do the responses after each start has been brought
+        there; the phase of a start is its own.
+        """
         plane = self.plane(inputs)
         states, phases = plane.starts()
         rows = zip(map(tuple, states.tolist()), phases.tolist(), strict=True)
-        return [*(PlaneStart(plane.point, *row) for row in rows), plane.point]
+        structure, excitation = plane.point
+        point = Point(structure, excitation.replace(phase=0.0))
+        return [*(PlaneStart(point, *row) for row in rows), point]
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[PlaneStart | Point], previous: Table | None

@@ -79,7 +79,7 @@ def response_statistics(impacts: Impacts, item: FollowedResponse, periods: int) 
     eta = excitation.eta(structure)
     span = period_in_tau(eta)
     known: Exponent | None = (
-        None if len(impacts.time) else exact_exponent_without_impacts(structure)
+        None if len(impacts.time) else exact_exponent_without_impacts(item.point)
     )
     exponent = known or largest_exponent(impacts, periods * span, item.point)
     return {

@@ -21,6 +21,7 @@ from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import Variable, flags, variable
 from ..response.questions import Point, checked_positive, series_arguments
+from ..response.threshold import exceeds_threshold
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
@@ -96,14 +97,23 @@ def largest_exponent(
     return Exponent(*growth_by_batch_means(growth, batches))
 
 
-def exact_exponent_without_impacts(structure: Structure) -> Exponent | None:
-    """Return the exact exponent of a structure that never impacts; None if it may impact.
+def exact_exponent_without_impacts(point: Point) -> Exponent | None:
+    """Return the exact exponent of a response that never impacts; None if it may impact.
+
+    Parameters
+    ----------
+    point : Point
+        At which a response had no impact yet.
 
     Returns
     -------
     Exponent or None
-        Exact; None for all other structures.
+        Exact; None for all other structures, and above the level at which the linear response
+        opens or touches: there it will.
     """
+    structure = point.structure
+    if exceeds_threshold(*point):
+        return None
     mu, kappa = structure.mu, structure.kappa
     if structure.gap_offset > 0.0:
         each = decay_rate(structure.D1, 1.0), decay_rate(structure.D2, kappa / mu)
@@ -202,7 +212,7 @@ class LyapunovJob(ImpactsQuestion):
         InputError
             Where it has too few impacts.
         """
-        known = None if len(impacts.time) else exact_exponent_without_impacts(item.point.structure)
+        known = None if len(impacts.time) else exact_exponent_without_impacts(item.point)
         if known is not None:
             return known
         self.require_enough_impacts(impacts, item)

@@ -136,6 +136,7 @@ class MapJob(Question):
         if decided == REPEATED:
             turn = period_in_tau(item.excitation.eta(item.structure))
             rate = int((impacts.time <= n * turn).sum()) / n
+            decided = response.confirm(decided, rate)
         numbers = [rate, n, decided, response.x_rel_max / item.length, impulse]
         return (
             [*numbers, *self.exponent_at(eventful, item, response.end)]
@@ -159,9 +160,9 @@ class MapJob(Question):
         self, eventful: EventInstance, item: Point, start: ArrayLike
     ) -> tuple[float, float]:
         """Return a response's Lyapunov exponent and standard error; NaN with too few impacts."""
-        structure, eta = item.structure, item.excitation.eta(item.structure)
+        eta = item.excitation.eta(item.structure)
         impacts: Impacts = follow_impacts(eventful, item, start, self.periods)
-        known = None if len(impacts.time) else exact_exponent_without_impacts(structure)
+        known = None if len(impacts.time) else exact_exponent_without_impacts(item)
         return known or largest_exponent(impacts, self.periods * period_in_tau(eta), item)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:

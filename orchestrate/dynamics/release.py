@@ -1,15 +1,26 @@
-"""How long permanent contact lasts: root search for the first zero (19) of the contact force."""
+"""How long permanent contact lasts: root search for the first zero (19) of the contact force.
+
+The force is sampled. Where it nearly vanishes between two samples and they do not show it, its
+largest value there is found first: a contact may open and press again within a sample.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .closed_form import ClosedForm, Floats
 
 SAMPLES = 64  # of the contact force in a span at least, so that no short contact is passed over
 SAMPLES_PER_PERIOD = 16  # and in a period of the fastest oscillation: the force is a sum of two
+BEGIN = (0.0, 1 / 16, 1 / 8, 1 / 4, 1 / 2)  # samples before the first one, over its time
+BEYOND = 2  # samples after the span, which an impact may end right after a release
+MARGIN = 4.0  # times what a parabola rises above the samples: more than the force does
+
+Force = Callable[..., Floats]
 
 
 def contact_durations(
@@ -17,7 +28,8 @@ def contact_durations(
 ) -> Floats:
     """Return how long permanent contacts last, in tau; infinite if not released in the span.
 
-    The zero is bracketed by samples of the force, and solved for by Chandrupatla's method.
+    The zero is bracketed by samples of the force and by its largest values between them, and
+    solved for by Chandrupatla's method.
 
     Parameters
     ----------
@@ -43,11 +55,67 @@ def contact_durations(
 
     periods = form.fastest * float(spans.max()) / (2.0 * math.pi)
     count = max(SAMPLES, math.ceil(SAMPLES_PER_PERIOD * periods))
-    times = np.linspace(0.0, 1.0, count + 1)[1:] * spans[:, None]
-    begin = phase, position, velocity
-    opens = force(times, *(part[:, None] for part in begin)) >= 0.0  # below zero at first: pressed
-    first = opens.argmax(axis=1)
-    high = np.take_along_axis(times, first[:, None], 1)[:, 0]
-    root = find_root(force, (high - spans / count, high), args=begin)
+    times = np.array([*BEGIN, *range(1, count + 1 + BEYOND)]) / count * spans[:, None]
+    begin = np.array([phase, position, velocity])
+    forces = force(times, *begin[:, :, None])
+    opens = forces[:, 1:] >= 0.0  # below zero at first: pressed
+    first = np.where(opens.any(axis=1), opens.argmax(axis=1) + 1, times.shape[1])
+    ends = np.append(times, np.full((len(spans), 1), np.inf), axis=1)
+    rows = np.arange(len(spans))
+    low, high = ends[rows, first - 1], ends[rows, first]
+    for row, before, top in short_openings(force, begin, times, forces, first):
+        if top < high[row]:
+            low[row], high[row] = before, top
+    known = np.isfinite(high)
+    root = find_root(force, (low[known], high[known]), args=tuple(begin[:, known]))
     # where rounding leaves no change of sign in the bracket, its end is near enough
-    return np.where(opens.any(axis=1), np.where(root.success, root.x, high), np.inf)
+    high[known] = np.where(root.success, root.x, high[known])
+    return np.where(high <= spans, high, np.inf)
+
+
+def short_openings(
+    force: Force, begin: Floats, times: Floats, forces: Floats, first: NDArray[np.intp]
+) -> list[tuple[int, float, float]]:
+    """Find openings between samples that are all pressed: contact, last sample, largest force.
+
+    Parameters
+    ----------
+    force : callable
+        Of the time and of a contact's begin.
+    begin : ndarray, shape (3, n)
+    times, forces : ndarray, shape (n, m)
+        Of the samples.
+    first : ndarray, shape (n,)
+        Index of the first sample that is open.
+
+    Returns
+    -------
+    list of (int, float, float)
+        Index of the contact, time of the sample before, and of the largest force after it, >= 0.
+    """
+    from scipy.optimize.elementwise import find_minimum
+
+    left, middle, right = forces[:, :-2], forces[:, 1:-1], forces[:, 2:]
+    before, after = np.diff(times, axis=1)[:, :-1], np.diff(times, axis=1)[:, 1:]
+    rise, fall = (middle - left) / before, (middle - right) / after
+    with np.errstate(divide="ignore", invalid="ignore"):
+        slope = (rise * after - fall * before) / (before + after)
+        above = slope**2 * (before + after) / (4.0 * (rise + fall))  # of the parabola's vertex
+    tops = (rise >= 0.0) & (fall > 0.0) & (middle < 0.0) & (middle + MARGIN * above >= 0.0)
+    tops &= np.arange(1, times.shape[1] - 1) < first[:, None]
+    row, place = np.nonzero(tops)
+    if not len(row):
+        return []
+    bracket = tuple(times[row, place + shift] for shift in range(3))
+    found = find_minimum(
+        lambda time, *start: -force(time, *start), bracket, args=tuple(begin[:, row])
+    )
+    is_open = found.f_x <= 0.0
+    return list(
+        zip(
+            row[is_open].tolist(),
+            bracket[0][is_open].tolist(),
+            found.x[is_open].tolist(),
+            strict=True,
+        )
+    )

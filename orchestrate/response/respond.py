@@ -12,8 +12,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..access import STATE, Instance, begin, gap_between, last_samples, samples_per_step
 from ..structures import Excitation, Structure
-from .multiplicity import Decision, Repetition, decide_multiplicity, find_repetition, scale_states
+from .multiplicity import (
+    REPEATED,
+    UNDECIDED,
+    Decision,
+    Repetition,
+    decide_multiplicity,
+    find_repetition,
+    scale_states,
+)
 from .questions import Point
+from .threshold import exceeds_threshold
 
 
 @dataclass(frozen=True)
@@ -38,6 +47,8 @@ class Response:
         Within which a state repeats, over the motion's size: see :mod:`.multiplicity`.
     gap_offset : float
         The gap between unloaded springs, m.
+    has_to_impact : bool
+        Whether no response without impacts exists: the linear one would open or touch.
     """
 
     samples: NDArray[np.float64]
@@ -48,6 +59,7 @@ class Response:
     frequency: float
     tolerance: float
     gap_offset: float = 0.0
+    has_to_impact: bool = False
 
     @cached_property
     def states(self) -> NDArray[np.float64]:
@@ -68,7 +80,16 @@ class Response:
 
     def decision(self, tolerance: float) -> Decision:
         """Return the multiplicity as decided by how deviations decay, and how it was decided."""
-        return decide_multiplicity(self.states, tolerance)
+        n, decided = decide_multiplicity(self.states, tolerance)
+        return Decision(n, self.confirm(decided, self.impacts_per_period))
+
+    def confirm(self, decided: int, impacts: float) -> int:
+        """Return how a multiplicity was decided, undecided without impacts that there have to be.
+
+        Such a response is still on its way to them, by less than the tolerance.
+        """
+        has_settled = decided != REPEATED or bool(impacts) or not self.has_to_impact
+        return decided if has_settled else UNDECIDED
 
     @property
     def gap(self) -> NDArray[np.float64]:
@@ -167,6 +188,7 @@ def respond(
         frequency=excitation.frequency,
         tolerance=tolerance,
         gap_offset=structure.gap_offset,
+        has_to_impact=exceeds_threshold(structure, excitation),
     )
 
 

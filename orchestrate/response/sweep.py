@@ -123,6 +123,7 @@ class SweepJob(SeriesQuestion):
         if decided == REPEATED:
             done, end = ((first + count) * point.excitation.period for count in (span, n))
             impacts = count_impacts_until(instance, response.impact_count, done, end) / n
+            decided = response.confirm(decided, impacts)
         return {
             "gap": response.gap,
             "end": response.end,

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..checks import REQUIRES_DELAMINATED
 from ..errors import InputError
 from ..running.job import brief
-from ..structures import Structure
+from ..structures import Excitation, Structure
 from .labels import Variable, parameter_variable, variable
 from .questions import checked_numbers, checked_structure
 
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 GRID = 400  # frequencies between which minima of the threshold are bracketed
+ROUNDING = 1e-12  # of the level at which the linear response opens or touches
 ACCURACY = 1e-12  # of a frequency at a minimum; the level there is flat, and exact far earlier
 
 
@@ -64,6 +65,17 @@ def threshold_amplitudes(structure: Structure, frequency: Floats) -> Floats:
     with np.errstate(divide="ignore"):
         amplitudes: Floats = limit / np.abs(response)
     return amplitudes
+
+
+def exceeds_threshold(structure: Structure, excitation: Excitation) -> bool:
+    """Return whether the linear response opens or touches, so that no response can stay linear.
+
+    With a clearance only: without one the halves open at any level, unless they move alike.
+    """
+    if structure.gap_offset == 0.0:
+        return False
+    (level,) = threshold_amplitudes(structure, np.array([excitation.frequency])).tolist()
+    return bool(excitation.amplitude > level * (1.0 + ROUNDING))
 
 
 def threshold_variables(structure: Structure, along: str, frequency: Floats) -> dict[str, Variable]:
