@@ -19,6 +19,7 @@ counts as a loss, and what a loss leads to is followed in short steps: it may en
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from copy import copy
 from dataclasses import replace
 from itertools import pairwise
@@ -278,7 +279,8 @@ class HeldVoltageTest(VoltageHolder):
     def classify_landing(self, points: list[HeldPoint], sign: float) -> int:
         """Return LOST if a ramp from a motion's end comes to one further along than the course.
 
-        UNDECIDED if none does, but there is one to come to; else FOLLOWS.
+        UNDECIDED if none does, but there is one to come to, or if a ramp stays on the motion: an
+        irregular one ends by chance. Else FOLLOWS.
 
         Parameters
         ----------
@@ -290,14 +292,28 @@ class HeldVoltageTest(VoltageHolder):
         if not after or not self.ends_against(last, landed, sign):
             return FOLLOWS
         before_next, beyond = largest_change([landed, *after], sign)[1:]
-        for voltage in self.places_between(landed, before_next):
-            for rate in self.settings.rates:
-                left, beside = (self.ramp_from(point, voltage, rate) for point in (last, landed))
-                if self.is_further(left, beside, sign):
-                    return LOST
+        left_for = [
+            left
+            for voltage in self.places_between(landed, before_next)
+            for left in self.ramps_further(last, landed, voltage, sign)
+        ]
+        if any(self.may_be_a_loss(last, left, sign) for left in left_for):
+            return LOST
         back = self.climb_stairs(beyond, landed.voltage)[-1]
         is_there = back.voltage != landed.voltage or self.is_further(back, landed, sign)
-        return UNDECIDED if is_there else FOLLOWS
+        return UNDECIDED if left_for or is_there else FOLLOWS
+
+    def ramps_further(
+        self, last: HeldPoint, landed: HeldPoint, voltage: float, sign: float
+    ) -> Iterator[HeldPoint]:
+        """Ramp to a voltage from both sides of an end; yield where the first comes further along.
+
+        It may have left its motion for another one, or be on it still.
+        """
+        for rate in self.settings.rates:
+            left, beside = (self.ramp_from(point, voltage, rate) for point in (last, landed))
+            if self.is_further(left, beside, sign):
+                yield left
 
     def places_between(self, landed: HeldPoint, last: HeldPoint) -> list[float]:
         """Return voltages at which ramps meet a motion, V, clear of its end if there is room.

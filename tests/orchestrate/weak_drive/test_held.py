@@ -227,6 +227,24 @@ def test_a_motion_that_ends_against_the_way(throws, lasts, outcomes, place):
         assert verdict.high - verdict.low <= 1.01e-4
 
 
+def test_a_ramp_that_stays_on_an_irregular_motion_loses_none():
+    """By chance it fell into the motion beside it while it was held; ramps from before stay on it.
+
+    That they are further along than the other motion was taken for another one that they came to.
+    """
+
+    class Chance(FallsBack):
+        def ramp_from(self, point, voltage, rate):
+            higher = point.speed - self.at(point.voltage).speed
+            return self.at(voltage, higher)
+
+    course = Chance(1.0, 1.535)
+    points = course.climb_stairs(course.at(1.5), 1.56)
+    end, *others = course.judge_course(points, 1.0)
+    assert end.outcome == UNDECIDED and end.low - 1e-9 <= 1.52 <= end.high + 1e-9
+    assert [verdict.outcome for verdict in others] == [UNDECIDED]
+
+
 def test_a_ramp_from_a_held_point():
     """It goes on from the state there, and is held at its end."""
     test = HeldVoltageTest(
