@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
-from orchestrate.access import OSCILLATOR, REST, Instance, find, finder
+from orchestrate.access import OSCILLATOR, REST, STATE, Instance, begin, find, finder
 from orchestrate.dynamics.basins import (
     BasinJob,
     Plane,
@@ -104,6 +106,37 @@ def test_a_plane_over_the_phase_leads_where_its_starts_lead():
     found = basin(PAPER, eta=ETA, **plane, at=AT)
     fixed = basin(PAPER, eta=ETA, phase=2.5, x=("v_rel", -0.4, 0.0, 2), y=plane["y"], at=AT)
     assert fixed.attractor_of.values[:, 0].tolist() == found.attractor_of.values[:, 1].tolist()
+
+
+@pytest.mark.usefixtures("exported")
+def test_responses_of_a_plane_at_another_phase_are_those_of_its_starts():
+    """Labels and states were those of another excitation at any phase but 0."""
+    plane = {"x": ("x_rel", 0.0, 1.3, 4), "y": ("v_rel", -1.3, 1.3, 4)}
+    found = basin(PAPER, eta=ETA, phase=1.0, **plane)
+    excitation = Excitation.nondimensional(ETA, PAPER, phase=1.0)
+    states, _ = starts(plane["x"], plane["y"], REST)
+    labels = found.attractor_of.values
+    with Instance(find(OSCILLATOR).path) as instance:
+        for state, label in zip(states.reshape(-1, 4), labels.ravel(), strict=True):
+            n = int(found.multiplicity[label])
+            assert returns_after(instance, excitation, state, 3000) == n
+        still = excitation.replace(phase=0.0)
+        for state, n in zip(found.state.values, found.multiplicity.values, strict=True):
+            assert returns_after(instance, still, state, 0) == n
+    assert set(found.multiplicity.values) == {1.0, 2.0}
+
+
+def returns_after(instance, excitation, state, transient):
+    """After how many periods, 1 or 2, a motion is back where it is after a transient; else 0."""
+    begin(instance, PAPER, excitation, state)
+    instance.step(0.0, transient * excitation.period)
+    done = [transient, transient + 1, transient + 2]
+    points = [instance.get(*STATE)]
+    for first, last in pairwise(done):
+        instance.step(first * excitation.period, last * excitation.period)
+        points.append(instance.get(*STATE))
+    apart = np.abs(np.array(points[1:]) - points[0]).max(axis=1)
+    return next((n for n, most in enumerate(apart, 1) if most < 1e-6), 0)
 
 
 @pytest.mark.usefixtures("exported")
