@@ -24,8 +24,10 @@ from orchestrate.access import (
 from orchestrate.dynamics.closed_form import ClosedForm
 from orchestrate.dynamics.following import follow_impacts
 from orchestrate.dynamics.lyapunov import decay_rate
+from orchestrate.dynamics.release import contact_durations
 from orchestrate.dynamics.variational import contact_durations_after, monodromy, period_in_tau
 from orchestrate.response.questions import Point
+from orchestrate.response.threshold import threshold_amplitudes
 from orchestrate.structures import Excitation, Structure
 
 make = Structure.nondimensional
@@ -124,6 +126,23 @@ def test_contacts_shorter_than_a_look_are_seen(instances, eta):
         plain.step(0.0, tau)
         touching += plain.get("in_contact")
     assert touching == [True, False]
+
+
+@pytest.mark.parametrize("above", [1e-5, 5e-4])
+def test_short_openings_are_seen_wherever_a_contact_begins(above):
+    """On the common steady motion, which opens for less than a sample, by 400,000 of its phases."""
+    pressed = make(kappa=1.5, D=0.01).replace(clearance=-1.0)
+    (level,) = threshold_amplitudes(pressed, np.array([0.7]))
+    form = ClosedForm.from_structure(pressed, Excitation(frequency=0.7, amplitude=level * (1.0 + above)))
+    phases = np.linspace(0.0, 2.0 * np.pi, 400_001)
+    opened = phases[form.force(*form.common_response(phases)) >= 0.0]
+    assert 0.0 < np.ptp(opened) < 2.0 * np.pi / 64.0
+    begins = np.linspace(0.0, 2.0 * np.pi, 2000)
+    begins = begins[(begins < opened[0]) | (begins > opened[-1])]
+    spans = np.full(len(begins), period_in_tau(form.eta))
+    found = contact_durations(form, begins, *form.common_response(begins), spans)
+    expected = (opened[0] - begins) % (2.0 * np.pi) / form.eta
+    np.testing.assert_allclose(found, expected, atol=5e-5)
 
 
 def form_of(structure, eta=0.7):
