@@ -133,7 +133,9 @@ def test_short_openings_are_seen_wherever_a_contact_begins(above):
     """On the common steady motion, which opens for less than a sample, by 400,000 of its phases."""
     pressed = make(kappa=1.5, D=0.01).replace(clearance=-1.0)
     (level,) = threshold_amplitudes(pressed, np.array([0.7]))
-    form = ClosedForm.from_structure(pressed, Excitation(frequency=0.7, amplitude=level * (1.0 + above)))
+    form = ClosedForm.from_structure(
+        pressed, Excitation(frequency=0.7, amplitude=level * (1.0 + above))
+    )
     phases = np.linspace(0.0, 2.0 * np.pi, 400_001)
     opened = phases[form.force(*form.common_response(phases)) >= 0.0]
     assert 0.0 < np.ptp(opened) < 2.0 * np.pi / 64.0

@@ -116,10 +116,10 @@ def test_structures_of_a_chunk_do_not_mix():
     ],
 )
 def test_grazing_impacts_that_the_samples_do_not_show(clearance, numbers, eta):
-    """The gap just closes, between samples: the motion is the linear one but for a thousandth."""
+    """The gap just closes, between samples: the motion is nearly the linear one."""
     structure = Structure.nondimensional(**numbers).replace(clearance=clearance)
     found = sweep(structure, eta=[eta], transient=300, samples=60, progress=False)
     amplitude = Excitation.nondimensional(eta, structure).amplitude
     damping = 2.0j * structure.D1 * eta
     linear = abs((1.0 + damping) / (1.0 - eta**2 + damping)) * amplitude * eta**2
-    assert found.a1_max.values == pytest.approx(linear, rel=1e-3)
+    assert found.a1_max.values == pytest.approx(linear, rel=3e-3)
