@@ -127,18 +127,17 @@ class RampRecord:
         (_, eta0, Omega), rows = self.sweep_leg(up)
         if self.job.control or not rows.size:
             return None
-        sign, end = 1.0 if up else -1.0, eta0[-1]
+        sign, end, main = 1.0 if up else -1.0, eta0[-1], self.resonance_passing(up)
         if self.job.structure.bonded:
             theory = averaged_predictions(self.job.structure, self.job.drive)[UPWARD.index(up)]
             losses = [at for at in theory.losses if eta0.min() <= at <= eta0.max()]
             divide = averaged.dividing_speed(self.job.structure, self.job.drive)
             began_beyond = bool((sign * (Omega - divide) > 0.0).all())
-            if not losses or began_beyond or self.resonance_passing(up):
+            if not losses or began_beyond or main:
                 return None
             end = min(losses, key=lambda at: sign * at)
         far = np.flatnonzero(sign * (end - eta0) > LAST_STRETCH)
         first = int(rows[far[-1]]) if far.size else int(rows[0])
-        main = self.resonance_passing(up)
         if any(seen.after >= first for seen in (*places, *([main] if main else []))):
             return None
         times = self.table["time"][[first, rows[-1]]]
