@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 HOW_DECIDED = {  # of attractors; nothing is said where Newton's method confirms a stable orbit
     2: ", by repeated states alone",
-    4: ", undecided: near an unstable orbit",
+    4: ", undecided: near an unstable orbit, or before impacts that have to come",
 }
 FAR_RATIO = 25.0  # frequency ratio from which, or from whose inverse, there is little to be seen
 FAR_LEVEL = 200.0  # times the level from which a clearance is hardly meant

@@ -46,7 +46,7 @@ OF_ATTRACTORS = {
 MULTIPLIER = "largest absolute value of the orbit's Floquet multipliers"
 DECIDED_BY = (
     "how it was decided: by a stable orbit of Newton's method; by states that repeat; irregular; "
-    "undecided: states repeat nearly, near an unstable orbit"
+    "undecided: states repeat nearly, near an unstable orbit or before impacts that have to come"
 )
 COLUMNS = (*OF_ATTRACTORS, "multiplier", "how", "share", "state")
 SIZE_PERIODS, SAMPLES_PER_PERIOD = 8, 64  # of the response from rest, to measure its size
@@ -477,9 +477,9 @@ def attractors(
         does not exist; ``multiplier``, the largest absolute value of its Floquet multipliers;
         ``decided_by``, how it was decided, as CF flags: ``orbit`` (a stable orbit of Newton's
         method), ``repeated`` (states repeat, Newton's method finds no orbit), ``irregular`` or
-        ``undecided`` (states nearly repeat, near an unstable orbit), ``absent``; ``state`` on it
-        at phase 0 (x1, x2 in m, v1, v2 in m/s); ``first_found`` and ``last_found``, between which
-        values it is there. Over ``start``: ``attractor_of`` and the ``features`` of what a start
+        ``undecided`` (states nearly repeat, near an unstable orbit, or before impacts that have to
+        come at this level), ``absent``; ``state`` on it at phase 0 (x1, x2 in m, v1, v2 in m/s);
+        ``first_found`` and ``last_found``, between which values it is there. Over ``start``: ``attractor_of`` and the ``features`` of what a start
         has settled to.
 
     Raises

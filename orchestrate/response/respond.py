@@ -88,8 +88,11 @@ class Response:
 
         Such a response is still on its way to them, by less than the tolerance.
         """
-        has_settled = decided != REPEATED or bool(impacts) or not self.has_to_impact
-        return decided if has_settled else UNDECIDED
+        return UNDECIDED if decided == REPEATED and self.lacks_impacts(impacts) else decided
+
+    def lacks_impacts(self, impacts: float) -> bool:
+        """Return whether so many impacts, namely none, are too few for this response to last."""
+        return self.has_to_impact and not impacts
 
     @property
     def gap(self) -> NDArray[np.float64]:

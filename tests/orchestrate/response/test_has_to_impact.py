@@ -68,6 +68,27 @@ def test_impacts_before_the_periods_that_are_counted_decide_nothing(transient):
     assert int(mapped.multiplicity_decided[0, 0]) == UNDECIDED
 
 
+@pytest.mark.parametrize(
+    ("numbers", "frequency", "above"),
+    [
+        ((2.2377, 1.9017, 0.002134, 0.563394), 0.921523, 1e-7),
+        ((1.682877, 0.727029, 0.001105, 0.811389), 0.657125, 1e-8),
+    ],
+)
+def test_attractors_without_their_impacts_are_not_periodic(numbers, frequency, above):
+    """States repeat to the last digits that are compared, whatever the number of periods."""
+    structure = structure_with(1.0, *numbers)
+    level = orchestrate.contact_threshold(structure, frequency=frequency)
+    amplitude = float(level.threshold_amplitude[0]) * (1.0 + above)
+    found = orchestrate.attractors(
+        structure, frequency=frequency, amplitude=amplitude, starts=4, **QUIET
+    )
+    words = found.decided_by.attrs["flag_meanings"].split()
+    codes, impacts = (found[name].values.ravel() for name in ("decided_by", "impacts_per_period"))
+    said = {words[int(code)] for code in codes[impacts == 0.0]}
+    assert "undecided" in said and said <= {"undecided", "irregular"}
+
+
 @pytest.mark.parametrize("case", CASES)
 def test_it_has_no_exact_exponent(case):
     structure, (asked, _) = case[0], place_of(*case)
