@@ -479,8 +479,8 @@ def attractors(
         method), ``repeated`` (states repeat, Newton's method finds no orbit), ``irregular`` or
         ``undecided`` (states nearly repeat, near an unstable orbit, or before impacts that have to
         come at this level), ``absent``; ``state`` on it at phase 0 (x1, x2 in m, v1, v2 in m/s);
-        ``first_found`` and ``last_found``, between which values it is there. Over ``start``: ``attractor_of`` and the ``features`` of what a start
-        has settled to.
+        ``first_found`` and ``last_found``, between which values it is there. Over ``start``:
+        ``attractor_of`` and the ``features`` of what a start has settled to.
 
     Raises
     ------
