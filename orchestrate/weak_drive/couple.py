@@ -215,7 +215,7 @@ class CoupleJob(CoupledRun):
                 results.append((place, Verdict(NOT_ASKED)))  # the course has met what is seen here
                 continue
             middle = float(Omega[ends].mean())
-            held = test.for_further_jumps().classify(
+            held = test.for_suspected_jumps(record.end_voltage(up)).classify(
                 *record.to_steps(record.begin_earlier(passing, up), up), middle, up
             )
             new_verdicts = drop_known_losses(loss_verdicts(held), known, volts)
@@ -650,7 +650,8 @@ def couple(
     A further jump beside the passing of the resonance is looked for where the held voltages cross
     it, and where the torque that the vibration takes shows it in the record
     (:mod:`orchestrate.weak_drive.further_jumps`); voltages are held there too. It is one where the
-    speeds of two motions at one voltage differ by more than 8e-3 omega. A change of that torque by
+    speeds of two motions at one voltage differ by more than 8e-3 omega; one of less than 1.6e-2
+    that the record alone suggests is undecided, since fast ramps show none of it. A change of that torque by
     less than 4e-3, as a speed over omega, or by less than eight times its scatter, is none.
 
     Whatever the clearance, a passage of the resonance is one past the speed that divides the

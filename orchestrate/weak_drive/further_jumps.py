@@ -5,8 +5,8 @@ the resonance the torque that the vibration takes grows with the speed. It is th
 turns the rotor faster. Where it falls on the way up, or rises on the way down, a motion may be
 lost there; so where the speed changes much faster than the voltage. What falls by less than half of
 the smallest further jump, or by no more than the scatter of an irregular motion, says nothing.
-What falls by less than twice that jump is asked at held voltages: a record tells no jump of nearly
-that size at every rate, and while the speed runs to the next motion the torque falls by more.
+What falls by less than twice that jump is asked at held voltages, and undecided at most: fast ramps
+show no such jump, and while the speed runs to the next motion the torque falls by more.
 
 Non-dimensional, as :mod:`.jumps`.
 """
@@ -34,7 +34,10 @@ from .jumps import (
 )
 
 SMALLEST = 8e-3  # change of the speed over omega from which on there is a further jump
-CLEAR = 2.0 * SMALLEST  # change from which on the record alone tells one
+CLEAR = (
+    2.0 * SMALLEST
+)  # change from which on every usual rate shows one, and the record alone tells it
+LAST_STRETCH = 0.02  # of K omega, before the end of a ramp: a loss there may show after it
 LEAST = 0.5 * SMALLEST  # change of the torque, as a speed over omega, from which on one is sought
 LASTING = 10  # widths of the mean before and after, over which an irregular motion's torque falls
 APART = 4  # widths of the mean between two places; for fewer no scatter is known

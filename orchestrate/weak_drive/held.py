@@ -28,6 +28,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..running.job import Chunk
+from .further_jumps import LAST_STRETCH
 from .jumps import Passing
 from .voltage_hold import HeldPoint, VoltageHolder, speed_difference_error
 
@@ -90,6 +91,19 @@ class HeldVoltageTest(VoltageHolder):
         test.settings = replace(
             settings, two_motions=settings.further_motions, smallest_jump=settings.further_jump
         )
+        return test
+
+    def for_suspected_jumps(self, end: float) -> HeldVoltageTest:
+        """Return a copy with the settings for places where a record suggests a further jump.
+
+        Parameters
+        ----------
+        end : float
+            Voltage at which the ramp ends, V: shortly before it a jump need not show.
+        """
+        test = self.for_further_jumps()
+        settings = test.settings
+        test.settings = replace(settings, least_told=settings.suspected_jump, told_near=end)
         return test
 
     def classify(
@@ -452,14 +466,20 @@ class HeldVoltageTest(VoltageHolder):
                         continue  # it was lost before, as close as a bracket can tell
                     what = UNDECIDED
                 if what != FOLLOWS or self.is_within(low, high, self.settings.finest):
-                    return Verdict(LOST if what == LOST else UNDECIDED, low.voltage, high.voltage)
+                    return self.told(low, high, what == LOST)
             middle = self.settled_between(low, high)
             if middle is None:
                 lost = self.classify_return(low, high) == LOST
                 lasts = lost and not self.replace_if_lost(points, i)
-                return Verdict(LOST if lasts else UNDECIDED, low.voltage, high.voltage)
+                return self.told(low, high, lasts)
             points.insert(i + 1, middle)
         return Verdict(UNDECIDED, low.voltage, high.voltage)
+
+    def told(self, low: HeldPoint, high: HeldPoint, is_lost: bool) -> Verdict:
+        """Return the loss between two points; undecided if it is none for sure, or too small."""
+        near_end = abs(self.settings.told_near - low.voltage) <= LAST_STRETCH * self.volts
+        is_large = near_end or abs(high.speed - low.speed) >= self.settings.least_told
+        return Verdict(LOST if is_lost and is_large else UNDECIDED, low.voltage, high.voltage)
 
     def smallest_change(self, low: HeldPoint, high: HeldPoint) -> float:
         """Return the smallest speed change that may be a jump, over omega."""

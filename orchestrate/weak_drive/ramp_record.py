@@ -10,14 +10,13 @@ import numpy as np
 
 from ..running.job import Table
 from . import averaged, own_resonance
-from .further_jumps import find_further_jumps
+from .further_jumps import LAST_STRETCH, find_further_jumps
 from .jump_verdicts import averaged_predictions, is_doubtful
 from .jumps import Passing, SweepLeg, explain_not_passed, find_passing
 from .run import CoupledRun
 
 UPWARD = (True, False)  # both directions: whether the voltage rises
 LAST_REVOLUTIONS = 20  # of a ramp: their mean speed is where it ends
-LAST_STRETCH = 0.02  # of K omega, before the end of a ramp: a loss there may show after it
 LATE = 3.0  # of the rotor's time 1/b: how much later a ramp may show what it loses
 
 
@@ -143,6 +142,11 @@ class RampRecord:
         times = self.table["time"][[first, rows[-1]]]
         begin, end = (min(math.ceil(at / self.job.scheme.h), self.job.steps() - 1) for at in times)
         return begin, end
+
+    def end_voltage(self, up: bool) -> float:
+        """Return the voltage at which the ramp in a direction ends, V; NaN without one."""
+        eta0 = self.sweep_leg(up)[0].eta0
+        return float(eta0[-1]) * self.job.drive.volts(self.job.structure) if eta0.size else math.nan
 
     def explain_no_passing(self, up: bool) -> str:
         """Explain why the speed does not pass the resonance in a direction."""

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..running.job import Table
-from .further_jumps import SMALLEST
+from .further_jumps import CLEAR, SMALLEST
 from .run import Run
 from .schedule import Constant, Ramp, Schedule
 
@@ -85,8 +85,13 @@ class HoldSettings:
         differ by 2/sqrt(3) of what the speed jumps by at either, or less. So no steps find a jump
         that others rule out.
     further_motions, further_jump : float
-        The same two for jumps beside the largest one: a record shows none that is smaller at every
-        usual rate, so that whether it is told would depend on the rate.
+        The same two for jumps beside the largest one.
+    least_told, told_near : float
+        Change of the speed over omega at a loss below which it is undecided, and the voltage, V,
+        shortly before which it is told all the same: voltages are held there at every rate.
+    suspected_jump : float
+        The same where a record suggests a jump: fast ramps show none that is smaller, so that
+        whether it is told would depend on the rate.
     largest_scatter : float
         Change of the speed between neighbours, over omega, that is never put down to the scatter of
         irregular motions: speeds that are known no better rule out no jump.
@@ -120,6 +125,9 @@ class HoldSettings:
     smallest_jump: float = 4e-3
     further_motions: float = SMALLEST
     further_jump: float = 0.8 * SMALLEST
+    least_told: float = 0.0
+    told_near: float = math.nan
+    suspected_jump: float = CLEAR
     largest_scatter: float = 8e-3
     again: int = 3
     by_chance: float = 2e-4
