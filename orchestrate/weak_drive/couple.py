@@ -651,8 +651,9 @@ def couple(
     it, and where the torque that the vibration takes shows it in the record
     (:mod:`orchestrate.weak_drive.further_jumps`); voltages are held there too. It is one where the
     speeds of two motions at one voltage differ by more than 8e-3 omega; one of less than 1.6e-2
-    that the record alone suggests is undecided, since fast ramps show none of it. A change of that torque by
-    less than 4e-3, as a speed over omega, or by less than eight times its scatter, is none.
+    that the record alone suggests is undecided, since fast ramps show none of it. A change of that
+    torque by less than 4e-3, as a speed over omega, or by less than eight times its scatter, is
+    none.
 
     Whatever the clearance, a passage of the resonance is one past the speed that divides the
     motions of the bonded structure, by the averaged theory, moved with the resonance where that of
