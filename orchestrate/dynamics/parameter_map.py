@@ -135,8 +135,8 @@ class MapJob(Question):
         rate = response.impacts_per_period
         if decided == REPEATED:
             turn = period_in_tau(item.excitation.eta(item.structure))
-            rate = int((impacts.time <= n * turn).sum()) / n
-            decided = response.confirm(decided, rate)
+            count = int((impacts.time <= n * turn).sum())
+            rate, decided = count / n, response.confirm(Decision(n, decided), count)
         numbers = [rate, n, decided, response.x_rel_max / item.length, impulse]
         return (
             [*numbers, *self.exponent_at(eventful, item, response.end)]

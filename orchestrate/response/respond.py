@@ -81,14 +81,34 @@ class Response:
     def decision(self, tolerance: float) -> Decision:
         """Return the multiplicity as decided by how deviations decay, and how it was decided."""
         n, decided = decide_multiplicity(self.states, tolerance)
-        return Decision(n, self.confirm(decided, self.impacts_per_period))
+        is_late = decided == REPEATED and self.lacks_impacts(self.impacts_per_period)
+        return Decision(n, UNDECIDED if is_late else decided)
 
-    def confirm(self, decided: int, impacts: float) -> int:
-        """Return how a multiplicity was decided, undecided without impacts that there have to be.
+    def confirm(self, decision: Decision, impacts: int) -> int:
+        """Return how the multiplicity was decided, undecided if impacts speak against it.
 
-        Such a response is still on its way to them, by less than the tolerance.
+        A response that still converges, by less than the tolerance, may yet gain or lose some.
+
+        Parameters
+        ----------
+        decision : Decision
+        impacts : int
+            In as many periods as its multiplicity, after the samples.
         """
-        return UNDECIDED if decided == REPEATED and self.lacks_impacts(impacts) else decided
+        n, decided = decision
+        if decided == REPEATED and (self.lacks_impacts(impacts) or not self.repeats(impacts, n)):
+            return UNDECIDED
+        return decided
+
+    def repeats(self, impacts: int, n: int) -> bool:
+        """Return whether the samples have the impacts of a motion with so many in n periods.
+
+        One at phase 0 may be counted on either side of it.
+        """
+        count = len(self.samples)
+        whole, rest = divmod(count, n)
+        found = round(self.impacts_per_period * count)
+        return whole * impacts - 1 <= found <= (whole + (rest > 0)) * impacts + 1
 
     def lacks_impacts(self, impacts: float) -> bool:
         """Return whether so many impacts, namely none, are too few for this response to last."""

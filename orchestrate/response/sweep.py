@@ -17,7 +17,7 @@ from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
 from .labels import Dims, Variable, flags, nondimensional_state_coordinate, variable, yes_or_no
-from .multiplicity import DECIDED, REPEATED
+from .multiplicity import DECIDED, REPEATED, Decision
 from .peaks import PEAKS, peaks, periods_to_sample, sample_periods
 from .questions import Point, SeriesQuestion, checked_positive, checked_state, series_arguments
 from .respond import Response, count_impacts_until, follow_responses
@@ -122,8 +122,8 @@ class SweepJob(SeriesQuestion):
         impacts = response.impacts_per_period
         if decided == REPEATED:
             done, end = ((first + count) * point.excitation.period for count in (span, n))
-            impacts = count_impacts_until(instance, response.impact_count, done, end) / n
-            decided = response.confirm(decided, impacts)
+            count = count_impacts_until(instance, response.impact_count, done, end)
+            impacts, decided = count / n, response.confirm(Decision(n, decided), count)
         return {
             "gap": response.gap,
             "end": response.end,

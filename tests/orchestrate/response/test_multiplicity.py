@@ -16,13 +16,14 @@ from orchestrate.response.multiplicity import (
     MIN_RELATIVE_GAP,
     REPEATED,
     UNDECIDED,
+    Decision,
     decide_multiplicity,
     find_repetition,
     scale_states,
     spread_over_returns,
 )
 from orchestrate.response.questions import Point
-from orchestrate.response.respond import respond
+from orchestrate.response.respond import Response, respond
 from orchestrate.structures import Excitation, Structure
 
 TOLERANCE = 1e-2
@@ -357,3 +358,34 @@ def test_where_any_of_a_thousand_has_repeated_it_lies_on_such_an_orbit(samples):
     count, wrong = checked_by_newton(random_points(7 + samples, 1000), 500, samples)
     assert not wrong
     assert count > 700
+
+
+@pytest.mark.parametrize(
+    ("found", "impacts", "n", "same"),
+    [
+        (200, 1, 1, True),
+        (201, 1, 1, True),  # one at phase 0 may be counted on either side
+        (202, 1, 1, False),
+        (198, 1, 1, False),
+        (134, 2, 3, True),  # 66 whole responses, and two thirds of one
+        (131, 2, 3, True),
+        (130, 2, 3, False),
+        (136, 2, 3, False),
+        (0, 0, 1, True),
+        (4, 0, 1, False),
+    ],
+)
+def test_impacts_of_all_samples_are_those_of_the_response(found, impacts, n, same):
+    samples = np.arange(800.0).reshape(200, 4)
+    response = Response(
+        samples=samples,
+        x_rel_max=1.0,
+        impacts_per_period=found / 200,
+        impact_count=found,
+        permanent_contact=False,
+        frequency=1.0,
+        tolerance=TOLERANCE,
+    )
+    assert response.repeats(impacts, n) == same
+    assert response.confirm(Decision(n, REPEATED), impacts) == (REPEATED if same else UNDECIDED)
+    assert response.confirm(Decision(n, IRREGULAR), impacts) == IRREGULAR

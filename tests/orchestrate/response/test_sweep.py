@@ -203,6 +203,19 @@ def test_impacts_of_a_response_are_counted_over_its_own_period(numbers, eta, n, 
     assert motion.sizes["impact"] == impacts
 
 
+def test_a_response_whose_impacts_still_change_is_undecided():
+    """States repeat within the tolerance and converge, but of some small impacts most will go."""
+    slow = Structure.nondimensional(
+        mu=1.745243, kappa=2.351081, D1=0.0074778, D2=0.0029072, e=0.6487
+    )
+    slow = slow.replace(clearance=-0.0182273)
+    early, late = (sweep(slow, eta=[4.3113614], transient=most) for most in (1000, 4000))
+    assert early.multiplicity.values == late.multiplicity.values == 1
+    assert early.impacts_per_period.values != late.impacts_per_period.values == 7.0
+    assert early.multiplicity_decided.values.tolist() == [UNDECIDED]
+    assert late.multiplicity_decided.values.tolist() == [REPEATED]
+
+
 @pytest.mark.parametrize(
     ("asked", "text"),
     [
