@@ -33,7 +33,7 @@ from ..response.questions import (
     checked_structure,
     make_point,
 )
-from ..response.respond import Response, respond
+from ..response.respond import Response, count_impacts_until, respond
 from ..response.sweep import HOW_DECIDED
 from ..running.job import Inputs, Table, plain
 from ..running.options import Running, RunOptions
@@ -129,14 +129,9 @@ class MapJob(Question):
 
     def row(self, plain: Instance, eventful: EventInstance, item: Point) -> list[float]:
         """Return one point's results in the order of ``FIELDS``, and ``EXPONENT`` if asked for."""
-        response, (n, decided) = self.decided_response(plain, item)
+        response, (n, decided), rate = self.decided_response(plain, item)
         impacts = follow_impacts(eventful, item, response.end, self.samples // 2)
         impulse = impacts.impulse(item.structure, item.speed).max(initial=0.0) / item.structure.m1
-        rate = response.impacts_per_period
-        if decided == REPEATED:
-            turn = period_in_tau(item.excitation.eta(item.structure))
-            count = int((impacts.time <= n * turn).sum())
-            rate, decided = count / n, response.confirm(Decision(n, decided), count)
         numbers = [rate, n, decided, response.x_rel_max / item.length, impulse]
         return (
             [*numbers, *self.exponent_at(eventful, item, response.end)]
@@ -144,16 +139,24 @@ class MapJob(Question):
             else numbers
         )
 
-    def decided_response(self, instance: Instance, item: Point) -> tuple[Response, Decision]:
-        """Run a point on until its multiplicity is decided; return response and decision."""
+    def decided_response(self, instance: Instance, item: Point) -> tuple[Response, Decision, float]:
+        """Run a point on until its multiplicity is decided; return response, decision, impacts.
+
+        These are per period: of its own periods where it repeats, else of all samples.
+        """
         eta = item.excitation.eta(item.structure)
         dropped, done, start = transient_periods(self.transient, self.settle, eta), 0, self.start
         while True:
             response = respond(instance, *item, start, dropped, self.samples, self.tolerance)
-            decision = response.decision(self.tolerance)
+            decision, rate = response.decision(self.tolerance), response.impacts_per_period
+            if decision.decided == REPEATED:
+                n, period = decision.multiplicity, item.excitation.period
+                ends = ((dropped + self.samples + later) * period for later in (0, n))
+                count = count_impacts_until(instance, response.impact_count, *ends)
+                decision, rate = Decision(n, response.confirm(decision, count)), count / n
             done, start = done + dropped + self.samples, response.end
             if decision.decided != UNDECIDED or done >= self.longest:
-                return response, decision
+                return response, decision, rate
             dropped = min(done, self.longest - done)
 
     def exponent_at(
