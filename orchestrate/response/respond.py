@@ -81,8 +81,15 @@ class Response:
     def decision(self, tolerance: float) -> Decision:
         """Return the multiplicity as decided by how deviations decay, and how it was decided."""
         n, decided = decide_multiplicity(self.states, tolerance)
-        is_late = decided == REPEATED and self.lacks_impacts(self.impacts_per_period)
-        return Decision(n, UNDECIDED if is_late else decided)
+        is_doubtful = self.lacks_impacts(self.impacts_per_period) or self.still_swings(n)
+        return Decision(n, UNDECIDED if decided == REPEATED and is_doubtful else decided)
+
+    def still_swings(self, n: int) -> bool:
+        """Return whether it repeats after several periods without impacts, as no motion does.
+
+        Between impacts the system is linear: what does not repeat after each period is a transient.
+        """
+        return n > 1 and not self.impacts_per_period
 
     def confirm(self, decision: Decision, impacts: int) -> int:
         """Return how the multiplicity was decided, undecided if impacts speak against it.

@@ -107,6 +107,18 @@ def test_below_the_level_all_is_decided_as_before(case):
     assert float(found.impacts[0]) == 0.0 and float(found.exponent[0]) < 0.0
 
 
+def test_a_linear_response_doubles_no_period():
+    """Its transient swings at nearly half the excitation's frequency, within the tolerance."""
+    open_structure = structure_with(0.0598880476, 2.7116176646, 2.7427717642, 0.013, 0.6)
+    open_structure = open_structure.replace(D2=0.0029653560)
+    asked = {"eta": [2.0771284874], "progress": False}
+    early = orchestrate.sweep(open_structure, transient=623, samples=60, **asked)
+    late = orchestrate.sweep(open_structure, transient=5000, samples=60, **asked)
+    assert early.impacts_per_period.values == late.impacts_per_period.values == 0.0
+    assert early.multiplicity_decided.values.tolist() == [UNDECIDED]
+    assert late.multiplicity.values == 1 and late.multiplicity_decided.values == REPEATED
+
+
 @pytest.mark.parametrize("structure", [OPEN, PRESSED])
 def test_the_level_itself_is_not_exceeded(structure):
     for frequency in np.linspace(0.3, 2.0, 40) * structure.omega:
