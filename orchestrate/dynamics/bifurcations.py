@@ -16,6 +16,7 @@ class BifurcationKind(IntEnum):
     CONTACT_LOST = 5
     CONTACT_BEGUN = 6
     EARLIER_RELEASE = 7
+    HALVING = 8
 
     @property
     def label(self) -> str:
@@ -23,7 +24,8 @@ class BifurcationKind(IntEnum):
         return KINDS[self]
 
 
-FOLD, FLIP, TORUS, GRAZING, TOUCHING, CONTACT_LOST, CONTACT_BEGUN, EARLIER_RELEASE = BifurcationKind
+FOLD, FLIP, TORUS, GRAZING, TOUCHING, CONTACT_LOST, CONTACT_BEGUN = list(BifurcationKind)[:7]
+EARLIER_RELEASE, HALVING = list(BifurcationKind)[7:]
 KINDS: dict[int, str] = {
     FOLD: "fold",
     FLIP: "period doubling",
@@ -33,4 +35,5 @@ KINDS: dict[int, str] = {
     CONTACT_LOST: "loss of permanent contact",
     CONTACT_BEGUN: "begin of permanent contact",
     EARLIER_RELEASE: "earlier release",  # the contact force (18) falls to zero in permanent contact
+    HALVING: "period halving",  # it has become the orbit of half its period, which doubles there
 }

@@ -85,7 +85,7 @@ def why_no_motion(orbit: PeriodicOrbit) -> str:
     return ""
 
 
-def least_periods(orbit: PeriodicOrbit) -> int:
+def least_periods(orbit: PeriodicOrbit, within: float = SAME_ORBIT) -> int:
     """Return the orbit's least period in excitation periods, by comparing shifted nodes.
 
     Phases are compared on a circle, so that one at phase 0 may also be 2 pi.
@@ -102,7 +102,7 @@ def least_periods(orbit: PeriodicOrbit) -> int:
         away[:, PHASE] -= span * np.round(away[:, PHASE] / span)
         away[:, 1:] /= size
         same = (np.roll(kinds, -shift) == kinds).all()
-        if same and np.abs(away).max(initial=0.0) < SAME_ORBIT:
+        if same and np.abs(away).max(initial=0.0) < within:
             return part
     return periods
 

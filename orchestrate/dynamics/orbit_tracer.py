@@ -14,6 +14,7 @@ from .bifurcations import (
     FLIP,
     FOLD,
     GRAZING,
+    HALVING,
     KINDS,
     TORUS,
     TOUCHING,
@@ -23,12 +24,21 @@ from .chattering import add_or_remove_impacts, change_one_impact
 from .continuation import ArclengthStepper, NoConvergenceError, Root
 from .families import Family
 from .orbit_point import STICK_TOLERANCE, OrbitPoint
+from .orbit_search import least_periods
 from .periodic_orbit import POSITION
-from .tracer import NO_CONVERGENCE, BranchSegment, BranchStep, BranchTracer, ContinuationSettings
+from .tracer import (
+    NO_CONVERGENCE,
+    BranchSegment,
+    BranchStep,
+    BranchTracer,
+    ContinuationSettings,
+    LocatedBifurcation,
+)
 
 FIRST_STEP = 1e-3  # in unknowns over their scale: short, as the branch is not known yet
 AT_BEGIN = 1e-7  # of a step: a bifurcation nearer to its begin is the one that the branch leaves
 NO_CONTACT = 1e-6  # of a permanent contact, in units of tau: so little of it is none
+HALVED = 1e-4  # of an orbit's size: how far from itself after half its period at a halving
 SAME_SIZE = 0.5, 2.0  # size of the motion over the one that its unknowns are measured in
 
 
@@ -71,6 +81,28 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
     def confirms(self, kind: BifurcationKind, point: OrbitPoint, part: float) -> bool:
         """Return whether a located zero is a true bifurcation, and not the step's own start."""
         return part > AT_BEGIN and point.zero_is_bifurcation(kind)
+
+    def add_step(
+        self,
+        segment: BranchSegment[OrbitPoint],
+        step: BranchStep[OrbitPoint],
+        located: Sequence[LocatedBifurcation[OrbitPoint]],
+    ) -> None:
+        """Append a step; end the branch where its orbit becomes one of half the period.
+
+        There it turns as at a fold: beyond are the same orbits again, begun half their period
+        later.
+        """
+        halved = [i for i, each in enumerate(located) if is_halved(each, step.before)]
+        if not halved:
+            super().add_step(segment, step, located)
+            return
+        last = located[halved[0]]
+        for each in located[: halved[0]]:
+            segment.add_bifurcation(each.kind, each.point, each.position / last.position)
+        segment.add_bifurcation(HALVING, last.point, 1.0)
+        segment.points.append(last.point)
+        segment.end = KINDS[HALVING]
 
     def go_on_from(self, point: OrbitPoint) -> OrbitPoint:
         """Set the stepper to an orbit, rescaling unknowns if its size has changed; return it."""
@@ -119,3 +151,11 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
             segment.end = KINDS[CONTACT_LOST]
         else:
             segment.end = NO_CONVERGENCE
+
+
+def is_halved(located: LocatedBifurcation[OrbitPoint], before: OrbitPoint) -> bool:
+    """Return whether an orbit has half the period at a fold, of several that had not before."""
+    periods = before.orbit.sequence.periods
+    if located.kind != FOLD or least_periods(before.orbit) < periods:
+        return False
+    return least_periods(located.point.orbit, HALVED) < periods

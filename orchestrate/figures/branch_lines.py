@@ -12,6 +12,7 @@ from .style import BLUE, RED
 MARKERS = {  # by the bifurcation's kind
     "fold": "<",
     "period doubling": "s",
+    "period halving": "d",
     "Neimark-Sacker": "o",
     "grazing of an impact": "v",
     "grazing of a flight": "^",

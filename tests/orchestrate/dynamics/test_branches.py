@@ -8,6 +8,7 @@ import pytest
 import xarray as xr
 
 from orchestrate.access import OSCILLATOR, EventInstance, begin, find
+from orchestrate.dynamics.attractors import attractors
 from orchestrate.dynamics.branches import branch
 from orchestrate.dynamics.continuation import (
     NoConvergenceError,
@@ -25,6 +26,7 @@ from .single_impact import SingleImpact, border
 PAPER = Structure.nondimensional(e=0.7, D=0.005)
 DOCS = Path(__file__).resolve().parents[3] / "docs"
 FOLD, FLIP, TORUS, GRAZING, TOUCHING, CONTACT_LOST = range(6)
+HALVING = 8
 STARTS = {1: 1.5, 2: 4.0, 3: 6.0, 4: 8.0}
 PERIODS = ordinary(STARTS, 2)  # of those that last longer nothing is written otherwise
 WALL_RATE = 1e5  # of mass 2 where it is a wall: the difference is 1e-10
@@ -133,6 +135,28 @@ def test_a_doubled_branch_leaves_at_a_period_doubling():
     later = found.isel(point=slice(3, None))
     assert (np.abs(later.xi.values[:, :2] - later.xi.values[:, 2:]).max(axis=(1, 2)) > 1e-6).all()
     assert later.fmu_same_impacts.values.mean() > 0.9
+
+
+DOUBLED = Structure.nondimensional(mu=2.28789, kappa=1.83161, D1=0.0228225, D2=0.0282898, e=0.2628)
+DOUBLED = DOUBLED.replace(e_slope=0.0434816)
+
+
+def test_a_doubled_branch_ends_where_it_has_half_its_period_again():
+    """It turns there, and was said to fold; beyond are the same orbits, begun a period later."""
+    eta = 2.6198833
+    found = attractors(DOUBLED, eta=[eta], starts=6)
+    twice = orbit(DOUBLED, eta=eta, period=2, guess=found.state.values[0, 0])
+    over = {"over": "e", "limits": (0.06, 0.46)}
+    doubled = branch(DOUBLED, start=twice, **over)
+    assert doubled.attrs["first_end"] == "period halving"
+    (place,) = values(doubled, HALVING)
+    assert not len(values(doubled, FOLD))
+    below = DOUBLED.replace(e=float(place) - 0.02)
+    single = branch(below, start=orbit(below, eta=eta, period=1), **over)
+    (expected,) = values(single, FLIP)
+    assert place == pytest.approx(expected, abs=1e-7)
+    away = np.abs(doubled.state.values[:, 0] - doubled.state.values[:, 1]).max(axis=-1)
+    assert away.argmin() == 0 and (doubled.e.values > place - 1e-6).all()
 
 
 def test_an_orbit_with_one_impact_more_leaves_at_a_grazing():
