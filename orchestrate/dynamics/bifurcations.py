@@ -24,8 +24,8 @@ class BifurcationKind(IntEnum):
         return KINDS[self]
 
 
-FOLD, FLIP, TORUS, GRAZING, TOUCHING, CONTACT_LOST, CONTACT_BEGUN = list(BifurcationKind)[:7]
-EARLIER_RELEASE, HALVING = list(BifurcationKind)[7:]
+FOLD, FLIP, TORUS, GRAZING, TOUCHING, *_ = BifurcationKind
+*_, CONTACT_LOST, CONTACT_BEGUN, EARLIER_RELEASE, HALVING = BifurcationKind
 KINDS: dict[int, str] = {
     FOLD: "fold",
     FLIP: "period doubling",

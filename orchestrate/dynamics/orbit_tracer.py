@@ -52,7 +52,12 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
     """
 
     kinds = (FOLD, FLIP, TORUS, GRAZING, TOUCHING, EARLIER_RELEASE)
-    ending_kinds = (GRAZING, TOUCHING, EARLIER_RELEASE)  # beyond them the impacts are others
+    ending_kinds = (
+        GRAZING,
+        TOUCHING,
+        EARLIER_RELEASE,
+        HALVING,
+    )  # beyond are other impacts, or copies
     finds_pairs = True
 
     def __init__(self, start: OrbitPoint, settings: ContinuationSettings) -> None:
@@ -82,27 +87,17 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         """Return whether a located zero is a true bifurcation, and not the step's own start."""
         return part > AT_BEGIN and point.zero_is_bifurcation(kind)
 
-    def add_step(
-        self,
-        segment: BranchSegment[OrbitPoint],
-        step: BranchStep[OrbitPoint],
-        located: Sequence[LocatedBifurcation[OrbitPoint]],
-    ) -> None:
-        """Append a step; end the branch where its orbit becomes one of half the period.
+    def locate(self, step: BranchStep[OrbitPoint]) -> list[LocatedBifurcation[OrbitPoint]]:
+        """Locate the bifurcations in a step, up to where its orbit becomes one of half the period.
 
-        There it turns as at a fold: beyond are the same orbits again, begun half their period
-        later.
+        There the branch turns as at a fold: beyond are the same orbits again, begun half their
+        period later.
         """
-        halved = [i for i, each in enumerate(located) if is_halved(each, step.before)]
-        if not halved:
-            super().add_step(segment, step, located)
-            return
-        last = located[halved[0]]
-        for each in located[: halved[0]]:
-            segment.add_bifurcation(each.kind, each.point, each.position / last.position)
-        segment.add_bifurcation(HALVING, last.point, 1.0)
-        segment.points.append(last.point)
-        segment.end = KINDS[HALVING]
+        located = super().locate(step)
+        for i, each in enumerate(located):
+            if is_halved(each, step.before):
+                return [*located[:i], replace(each, kind=HALVING)]
+        return located
 
     def go_on_from(self, point: OrbitPoint) -> OrbitPoint:
         """Set the stepper to an orbit, rescaling unknowns if its size has changed; return it."""

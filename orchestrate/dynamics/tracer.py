@@ -104,7 +104,7 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
     kinds : tuple of BifurcationKind
         Those with a test function.
     ending_kinds : tuple of BifurcationKind
-        Those of ``kinds`` beyond which there are no points.
+        Those beyond which there are no points.
     finds_pairs : bool
         Whether two bifurcations of a kind in one step are sought: it takes further roots.
     """
@@ -211,7 +211,8 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
         NoConvergenceError
             Where no root is found on the way.
         """
-        ends = self.locate_kinds(step, self.ending_kinds)[:1]
+        tested = [kind for kind in self.kinds if kind in self.ending_kinds]
+        ends = self.locate_kinds(step, tested)[:1]
         if ends:
             length = ends[0].position * BEFORE_END
             step = replace(step, after=step.point(length), length=length)
