@@ -150,7 +150,7 @@ class MotionDecider:
             return motion, state
         states = response.samples[-n:].copy()
         impacts = count_impacts_from_pause(self.plain, self.point, response.end, n) / n
-        decided = UNDECIDED if unstable or response.lacks_impacts(impacts) else REPEATED
+        decided = UNDECIDED if unstable or response.lacks_impacts(impacts, n) else REPEATED
         motion = SettledMotion(self.point, decided, states, n, impacts, response.x_rel_max)
         self.known.append(motion)
         return motion, state

@@ -81,15 +81,8 @@ class Response:
     def decision(self, tolerance: float) -> Decision:
         """Return the multiplicity as decided by how deviations decay, and how it was decided."""
         n, decided = decide_multiplicity(self.states, tolerance)
-        is_doubtful = self.lacks_impacts(self.impacts_per_period) or self.still_swings(n)
-        return Decision(n, UNDECIDED if decided == REPEATED and is_doubtful else decided)
-
-    def still_swings(self, n: int) -> bool:
-        """Return whether it repeats after several periods without impacts, as no motion does.
-
-        Between impacts the system is linear: what does not repeat after each period is a transient.
-        """
-        return n > 1 and not self.impacts_per_period
+        is_late = decided == REPEATED and self.lacks_impacts(self.impacts_per_period, n)
+        return Decision(n, UNDECIDED if is_late else decided)
 
     def confirm(self, decision: Decision, impacts: int) -> int:
         """Return how the multiplicity was decided, undecided if impacts speak against it.
@@ -103,7 +96,7 @@ class Response:
             In as many periods as its multiplicity, after the samples.
         """
         n, decided = decision
-        if decided == REPEATED and (self.lacks_impacts(impacts) or not self.repeats(impacts, n)):
+        if decided == REPEATED and (self.lacks_impacts(impacts, n) or not self.repeats(impacts, n)):
             return UNDECIDED
         return decided
 
@@ -117,9 +110,12 @@ class Response:
         found = round(self.impacts_per_period * count)
         return whole * impacts - 1 <= found <= (whole + (rest > 0)) * impacts + 1
 
-    def lacks_impacts(self, impacts: float) -> bool:
-        """Return whether so many impacts, namely none, are too few for this response to last."""
-        return self.has_to_impact and not impacts
+    def lacks_impacts(self, impacts: float, n: int) -> bool:
+        """Return whether so many impacts, namely none, are too few for n periods to last.
+
+        Between impacts the system is linear: what repeats after several periods is a transient.
+        """
+        return not impacts and (self.has_to_impact or n > 1)
 
     @property
     def gap(self) -> NDArray[np.float64]:

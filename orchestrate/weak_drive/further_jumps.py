@@ -34,9 +34,7 @@ from .jumps import (
 )
 
 SMALLEST = 8e-3  # change of the speed over omega from which on there is a further jump
-CLEAR = (
-    2.0 * SMALLEST
-)  # change from which on every usual rate shows one, and the record alone tells it
+CLEAR = 2.0 * SMALLEST  # change from which on the record shows one at every usual rate
 LAST_STRETCH = 0.02  # of K omega, before the end of a ramp: a loss there may show after it
 LEAST = 0.5 * SMALLEST  # change of the torque, as a speed over omega, from which on one is sought
 LASTING = 10  # widths of the mean before and after, over which an irregular motion's torque falls

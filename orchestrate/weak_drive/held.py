@@ -306,16 +306,15 @@ class HeldVoltageTest(VoltageHolder):
         if not after or not self.ends_against(last, landed, sign):
             return FOLLOWS
         before_next, beyond = largest_change([landed, *after], sign)[1:]
-        left_for = [
-            left
-            for voltage in self.places_between(landed, before_next)
-            for left in self.ramps_further(last, landed, voltage, sign)
-        ]
-        if any(self.may_be_a_loss(last, left, sign) for left in left_for):
-            return LOST
+        stays = False
+        for voltage in self.places_between(landed, before_next):
+            for left in self.ramps_further(last, landed, voltage, sign):
+                if self.may_be_a_loss(last, left, sign):
+                    return LOST
+                stays = True
         back = self.climb_stairs(beyond, landed.voltage)[-1]
         is_there = back.voltage != landed.voltage or self.is_further(back, landed, sign)
-        return UNDECIDED if left_for or is_there else FOLLOWS
+        return UNDECIDED if stays or is_there else FOLLOWS
 
     def ramps_further(
         self, last: HeldPoint, landed: HeldPoint, voltage: float, sign: float

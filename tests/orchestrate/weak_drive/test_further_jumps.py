@@ -262,7 +262,7 @@ def test_drives_of_the_campaign_that_jump_twice(seed, jumps, rate):
     up = couple(structure, drive, voltage=ends, rate=speed, back=False, progress=False).sel(
         jump="up"
     )
-    assert up.held_verdict == LOST or seed == 249286942736891
+    assert up.held_verdict in ((LOST, UNDECIDED) if seed == 249286942736891 else (LOST,))
     told = np.array([up.held_jumps, *up.further_held]) / volts
     assert np.nanmin(told) == pytest.approx(jumps[0], abs=2e-4)
     assert int(up.further_count) >= 1
