@@ -30,7 +30,7 @@ from .branches import (
 )
 from .closed_form import Floats
 from .codimension_two import POINT_KINDS, locate_points
-from .continuation import NoConvergenceError, Root, newton_correct, unit_vector
+from .continuation import SOLVER_ERRORS, Root, newton_correct, unit_vector
 from .families import ACCELERATION, Family, Setting, check_parameters, require_delaminated
 from .orbit_point import OrbitPoint
 from .orbit_records import (
@@ -149,7 +149,7 @@ def start_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
         curve.update_border(guess)
         second = unit_vector(len(guess), curve.first_parameter + 1)
         return curve, newton_correct(curve, guess, second)
-    except NoConvergenceError as reason:
+    except SOLVER_ERRORS as reason:
         expected = "expected a branch of this structure"
         raise InputError(f"start: no bifurcation found there ({reason}); {expected}") from None
 

@@ -23,7 +23,7 @@ from ..structures import Structure
 from ..structures.ranges import OF_LENGTH
 from .bifurcations import KINDS
 from .branch_switching import leaving_branch
-from .continuation import NoConvergenceError
+from .continuation import SOLVER_ERRORS
 from .families import ACCELERATION, Setting, check_parameters, require_delaminated
 from .orbit_point import OrbitPoint
 from .orbit_records import (
@@ -127,7 +127,7 @@ def trace_branch(job: BranchJob) -> list[OrbitSegment]:
         starts = (
             [start.reversed(), start] if job.switch < 0 else [leaving_branch(job.switch, start)]
         )
-    except NoConvergenceError as reason:
+    except SOLVER_ERRORS as reason:
         expected = "expected an orbit of this structure"
         raise InputError(f"start: no orbit found from there ({reason}); {expected}") from None
     return [OrbitTracer(point, settings).trace(point) for point in starts]

@@ -24,7 +24,14 @@ from ..errors import InputError
 from .bifurcation_curve import BifurcationCurve
 from .bifurcations import FLIP, FOLD, GRAZING, TORUS, TOUCHING
 from .closed_form import Floats
-from .continuation import ArclengthStepper, NoConvergenceError, Root, solve_linear
+from .continuation import (
+    SOLVER_ERRORS,
+    ArclengthStepper,
+    NoConvergenceError,
+    Root,
+    solve_between,
+    solve_linear,
+)
 from .families import central_difference
 from .periodic_orbit import CLOSING, PeriodicOrbit
 from .turning_points import nearest_miss, turning_points
@@ -153,8 +160,6 @@ def points_between(
     curve: BifurcationCurve, before: Root, after: Root, number: float
 ) -> Iterator[CodimensionTwoPoint]:
     """Yield the codimension-two points between two neighbouring roots, by sign changes."""
-    from scipy.optimize import brentq
-
     curve.update_border(before.unknowns)
     chord = (after.unknowns - before.unknowns) / curve.scale
     before, after = (
@@ -164,7 +169,7 @@ def points_between(
     stepper = ArclengthStepper(curve, before, length, length)
     try:
         known = [characteristic_polynomial(curve, root.unknowns) for root in (before, after)]
-    except NoConvergenceError:
+    except SOLVER_ERRORS:
         return
     for kind in ON_CURVE.get(curve.kind, ()):
 
@@ -183,12 +188,13 @@ def points_between(
                 continue
             if not ends[0] * value(length) < 0.0:  # rounding alone: no sign is certain there
                 continue
-            position = float(brentq(value, 0.0, length, **TOLERANCE))
+            position = solve_between(value, 0.0, length, **TOLERANCE)
             root = stepper.root_after(position)
             residual = abs(test_function_value(curve, root, kind))
-        except NoConvergenceError:
+            is_point = residual < LOCATED and is_point_of_kind(curve, root, kind)
+        except SOLVER_ERRORS:
             continue
-        if residual < LOCATED and is_point_of_kind(curve, root, kind):
+        if is_point:
             unknowns = root.unknowns[: curve.family.size + 2]
             yield CodimensionTwoPoint(kind, unknowns, number + position / length, residual)
 
@@ -271,7 +277,7 @@ def end_points(
         return
     try:
         yield solve_end(curve, root, kind, reason, position)
-    except (NoConvergenceError, InputError, np.linalg.LinAlgError):
+    except (*SOLVER_ERRORS, InputError):
         return
 
 

@@ -33,7 +33,10 @@ EASY_COSINE, EASY_ITERATIONS = 0.993, 4
 
 
 class NoConvergenceError(Exception):
-    """Newton's method has not converged to a root near its start."""
+    """An iteration has not converged to a root near its start."""
+
+
+SOLVER_ERRORS = NoConvergenceError, np.linalg.LinAlgError  # of iterations, on the way along a curve
 
 
 class Curve(Protocol):
@@ -70,6 +73,21 @@ class Root:
     def reversed(self) -> Root:
         """Return the same root with its tangent reversed."""
         return replace(self, tangent=-self.tangent)
+
+
+def solve_between(
+    function: Callable[[float], float], low: float, high: float, **tolerances: float
+) -> float:
+    """Solve by Brent's method for the zero of a function between two numbers."""
+    from scipy.optimize import brentq
+
+    try:
+        position, result = brentq(function, low, high, full_output=True, disp=False, **tolerances)
+    except ValueError as error:  # no change of sign, or no number
+        raise NoConvergenceError(str(error)) from None
+    if not result.converged:
+        raise NoConvergenceError(f"no root after {result.iterations} iterations")
+    return float(position)
 
 
 def newton_correct(

@@ -22,7 +22,7 @@ from ..response.questions import Point
 from ..response.respond import Response, respond
 from ..response.response_loop import stroboscopic_samples
 from .clusters import AttractorSettings, run_until_settled
-from .continuation import NoConvergenceError
+from .continuation import SOLVER_ERRORS
 from .families import Setting
 from .guesses import Guess, begin_at_state, guess_from_impacts
 from .orbit_search import least_periods, solve_orbit, why_no_motion
@@ -201,7 +201,7 @@ class MotionDecider:
             return None
         try:
             family, root = solve_orbit(self.system, guess, self.values)
-        except NoConvergenceError:
+        except SOLVER_ERRORS:
             return None
         orbit = family.orbit(root.unknowns)
         if root.residual > RESIDUAL or why_no_motion(orbit):

@@ -21,7 +21,7 @@ from ..running.runner import answer
 from ..structures import Structure
 from .branches import acceleration_at_start, complete_excitation, require_orbit_dataset
 from .closed_form import Floats
-from .continuation import NoConvergenceError, fix_sign
+from .continuation import SOLVER_ERRORS, fix_sign
 from .curve_growth import (
     CONVERGED,
     LENGTH,
@@ -154,7 +154,7 @@ class ManifoldJob(SingleOrbitQuestion):
         guess = self.start.sequence(self.period), np.array(self.start.nodes).reshape(-1, 4)
         try:
             family, root = solve_orbit(self.setting, guess, self.values)
-        except NoConvergenceError as reason:
+        except SOLVER_ERRORS as reason:
             expected = "expected an orbit of this structure"
             raise InputError(f"start: no orbit found from there ({reason}); {expected}") from None
         saddle = Saddle.from_orbit(family.orbit(root.unknowns))

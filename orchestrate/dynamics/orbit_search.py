@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..access import EventInstance
 from ..constants import TURN
 from .closed_form import ClosedForm, Floats
-from .continuation import NoConvergenceError, Root, newton_correct, unit_vector
+from .continuation import SOLVER_ERRORS, NoConvergenceError, Root, newton_correct, unit_vector
 from .families import Family, Setting
 from .guesses import Guess, begin_at_state, guess_from_phases
 from .periodic_orbit import CLOSING, IMPACT, PHASE, RELEASE, STICK, ImpactSequence, PeriodicOrbit
@@ -132,7 +132,7 @@ def first_possible_orbit(
     for guess in guesses:
         try:
             family, root = solve_orbit(setting, guess, values)
-        except NoConvergenceError as error:
+        except SOLVER_ERRORS as error:
             reason = reason or str(error)
             continue
         orbit = family.orbit(root.unknowns)

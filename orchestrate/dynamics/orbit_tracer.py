@@ -53,6 +53,8 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         TOUCHING,
         EARLIER_RELEASE,
         HALVING,
+        CONTACT_LOST,
+        CONTACT_BEGUN,
     )  # beyond are other impacts, or copies
     finds_pairs = True
 
@@ -108,8 +110,8 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         return point
 
     def finish_step(
-        self, segment: BranchSegment[OrbitPoint], step: BranchStep[OrbitPoint]
-    ) -> OrbitPoint:
+        self, step: BranchStep[OrbitPoint]
+    ) -> tuple[OrbitPoint, BifurcationKind | None]:
         """Return the step's last orbit, with impacts added or removed as chattering (17) needs.
 
         Where permanent contact is lost or begins, the branch ends: infinitely many impacts would
@@ -117,9 +119,9 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         """
         after = step.after
         if not after.wrong_contact:
-            return after
+            return after, None
         try:
-            return add_or_remove_impacts(after)
+            return add_or_remove_impacts(after), None
         except NoConvergenceError:  # too far on: go back to where the first impact comes or goes
             lost = after.contact_margin(CONTACT_LOST) <= -STICK_TOLERANCE
             kind = CONTACT_LOST if lost else CONTACT_BEGUN
@@ -127,12 +129,10 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         try:
             changed = add_or_remove_impacts(change_one_impact(first))
         except NoConvergenceError:
-            segment.add_bifurcation(kind, first, 1.0)
-            segment.end = KINDS[kind]
-            return first
+            return first, kind
         self.stepper.length = max(position, 2.0 * self.stepper.min_length)
-        segment.end = ""
-        return changed
+        step.at_limit = False
+        return changed, None
 
     def end_without_root(self, segment: BranchSegment[OrbitPoint]) -> None:
         """Set why a branch ends where Newton fails: contact lost, or no convergence."""

@@ -21,7 +21,7 @@ from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
 from .closed_form import Floats
-from .continuation import NoConvergenceError
+from .continuation import SOLVER_ERRORS
 from .families import ACCELERATION, Setting, require_delaminated
 from .guesses import Guess, close_returns, guess_from_phases, guess_from_state
 from .orbit_records import OrbitRecord, orbit_coordinates, orbit_table, orbit_variables
@@ -140,7 +140,7 @@ def find_orbit(instance: EventInstance, job: OrbitJob) -> OrbitRecord:
     try:
         tried = orbit_guesses(instance, job, setting, values)
         family, root = first_possible_orbit(setting, tried, values, stable=job.guess is None)
-    except NoConvergenceError as reason:
+    except SOLVER_ERRORS as reason:
         expected = "another guess" if job.guess else "another period, or a guess"
         raise InputError(
             f"period = {job.period}: no orbit found ({reason}); expected {expected}"

@@ -18,7 +18,7 @@ from typing import Any, ClassVar, Generic, TypeVar
 import numpy as np
 
 from .bifurcations import KINDS, BifurcationKind
-from .continuation import AnyCurve, ArclengthStepper, NoConvergenceError, Root
+from .continuation import SOLVER_ERRORS, AnyCurve, ArclengthStepper, Root, solve_between
 
 LIMIT, NO_CONVERGENCE, MAX_POINTS = "limit", "no convergence", "most points"  # ends of branches
 SHORTENED = 0.3  # of a step in which a bifurcation could not be located
@@ -107,9 +107,9 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
         """Return why the branch ends within a step (empty if not), and its last points."""
         return "", ()
 
-    def finish_step(self, segment: BranchSegment[Point], step: BranchStep[Point]) -> Point:
-        """Return the point that a step appends; subclasses may add bifurcations or an end."""
-        return step.after
+    def finish_step(self, step: BranchStep[Point]) -> tuple[Point, BifurcationKind | None]:
+        """Return the point that a step appends, and the bifurcation there if it ends the branch."""
+        return step.after, None
 
     def end_without_root(self, segment: BranchSegment[Point]) -> None:
         """Set the reason why a segment ends where no step converges, however short."""
@@ -123,37 +123,40 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
 
     def trace(self, start: Point) -> BranchSegment[Point]:
         """Trace the branch from a start point until it ends; return the segment."""
-        segment = BranchSegment([start])
-        before, rates = self.go_on_from(start), dict.fromkeys(self.kinds, np.inf)
-        while True:
-            if len(segment.points) > self.max_points:
-                segment.end = MAX_POINTS
-                return segment
-            try:
+        segment, rates = BranchSegment([start]), dict.fromkeys(self.kinds, np.inf)
+        try:
+            while not segment.end:
+                if len(segment.points) > self.max_points:
+                    segment.end = MAX_POINTS
+                    break
+                before = self.go_on_from(segment.points[-1])
                 step, located = self.next_step(before, rates)
-            except NoConvergenceError:
-                self.end_without_root(segment)
-                return segment
-            rates = {kind: step.mean_slope(kind) for kind in self.kinds}
-            self.add_step(segment, step, located)
-            if segment.end:
-                return segment
-            before = self.go_on_from(segment.points[-1])
+                rates = {kind: step.mean_slope(kind) for kind in self.kinds}
+                self.add_step(segment, step, located)
+        except SOLVER_ERRORS:
+            self.end_without_root(segment)
+        return segment
 
     def next_step(
         self, before: Point, rates: Mapping[BifurcationKind, float]
     ) -> tuple[BranchStep[Point], list[LocatedBifurcation[Point]]]:
-        """Take a step, shortened until its bifurcations can be located; return it and these."""
+        """Take a step, shortened until all in it can be solved for; return its bifurcations too."""
         stepper = self.stepper
         while True:
             root, length, at_limit = stepper.step_within(*self.limits(), self.accepts)
-            step = BranchStep(self, before, self.point(root), length, at_limit, rates)
-            step.end, step.last_points = self.end_before(step)
-            if step.end:
-                return step, []
             try:
-                return step, self.locate(step)
-            except NoConvergenceError:
+                step = BranchStep(self, before, self.point(root), length, at_limit, rates)
+                step.end, step.last_points = self.end_before(step)
+                if step.end:
+                    return step, []
+                located = self.locate(step)
+                if not (located and located[-1].kind in self.ending_kinds):
+                    last, kind = self.finish_step(step)
+                    step.end, step.last_points = LIMIT if step.at_limit else "", [last]
+                    if kind is not None:
+                        located = [*located, LocatedBifurcation(kind, step.length, last)]
+                return step, located
+            except SOLVER_ERRORS:
                 stepper.length = SHORTENED * length
                 if stepper.length < stepper.min_length:
                     raise
@@ -190,11 +193,7 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
         step: BranchStep[Point],
         located: Sequence[LocatedBifurcation[Point]],
     ) -> None:
-        """Append a step's bifurcations and end point to a segment, and the reason if it ends."""
-        if step.end:
-            segment.points += step.last_points
-            segment.end = step.end
-            return
+        """Append a step's bifurcations and last points to a segment, and the reason if it ends."""
         for each in located:
             ends = each.kind in self.ending_kinds
             part = 1.0 if ends else each.position / step.length
@@ -203,8 +202,8 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
                 segment.points.append(each.point)
                 segment.end = KINDS[each.kind]
                 return
-        segment.end = LIMIT if step.at_limit else ""
-        segment.points.append(self.finish_step(segment, step))
+        segment.points += step.last_points
+        segment.end = step.end
 
 
 @dataclass(frozen=True)
@@ -228,8 +227,8 @@ class BranchStep(Generic[Point]):
     at_limit: bool = False  # whether it ends at a limit of a parameter
     # how fast each test function changed in the step before; infinite where that is not known
     rates: Mapping[BifurcationKind, float] = field(default_factory=dict)
-    end: str = ""  # why the branch ends before the step's end; empty where it does not
-    last_points: Iterable[Point] = ()  # to add to the branch then
+    end: str = ""  # why the branch ends with this step; empty where it does not
+    last_points: Iterable[Point] = ()  # to add to the branch
 
     def __post_init__(self) -> None:
         self.known = {0.0: self.before, self.length: self.after}
@@ -283,7 +282,7 @@ class BranchStep(Generic[Point]):
         tests = self.tracer.test
         try:
             change = tests(self.point(near), kind) - tests(self.point(position), kind)
-        except NoConvergenceError:
+        except SOLVER_ERRORS:
             return 0.0
         return change / (near - position) if np.isfinite(change) else 0.0
 
@@ -304,10 +303,10 @@ class BranchStep(Generic[Point]):
         self, kind: BifurcationKind, low: float, high: float, level: float = 0.0
     ) -> tuple[float, Point]:
         """Solve by Brent's method for where a test has a level; return position, point."""
-        from scipy.optimize import brentq
-
-        tolerances = self.tracer.location_tolerances(self.length)
-        position = float(
-            brentq(lambda position: self.test(position, kind) - level, low, high, **tolerances)
+        position = solve_between(
+            lambda position: self.test(position, kind) - level,
+            low,
+            high,
+            **self.tracer.location_tolerances(self.length),
         )
         return position, self.point(position)

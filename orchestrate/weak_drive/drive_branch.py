@@ -21,7 +21,7 @@ from ..access.instance import Instance
 from ..access.models import OSCILLATOR, SHAKER
 from ..checks import checked_integer
 from ..dynamics.bifurcations import FLIP, FOLD, GRAZING, KINDS, TORUS, TOUCHING
-from ..dynamics.continuation import NoConvergenceError
+from ..dynamics.continuation import SOLVER_ERRORS
 from ..dynamics.tracer import LIMIT, Bifurcation, BranchSegment, ContinuationSettings
 from ..errors import InputError
 from ..running.job import Inputs, Job, Table
@@ -150,7 +150,7 @@ class DriveBranchJob(Job):
         """Trace the leg of twice the period from a period doubling."""
         try:
             return trace_branch(shooter, double_period(shooter, flip), speeds, self.settings)
-        except NoConvergenceError:
+        except SOLVER_ERRORS:
             return Leg(end=NO_START)
 
     def trace_leg(self, shooter: Shooter, speeds: tuple[float, float], up: bool) -> Leg:
@@ -172,7 +172,7 @@ class DriveBranchJob(Job):
                     shooter.repeat_after(part)
                     start = motion_near(shooter, start.root.unknowns, up)
                     break
-        except NoConvergenceError:
+        except SOLVER_ERRORS:
             return Leg(end=NO_START)
         return trace_branch(shooter, start, speeds, self.settings)
 
