@@ -29,7 +29,7 @@ class FollowedResponse(NamedTuple):
     """A response to follow: structure, excitation, and its state at phase 0 (m, m/s)."""
 
     point: Point
-    start: State
+    start: State  # zeros mean rest, with a preload too, until the FMU has begun there
     # whether the masses are in permanent contact where the periods followed begin, and where they
     # end
     touching: tuple[bool, bool] = (False, False)
@@ -77,10 +77,11 @@ class ImpactsQuestion(StartStatesQuestion, ABC):
         with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
             for item in items:
                 start = state_after_transient(plain, item, self.transient)
-                first = starts_in_contact(eventful, item.point, start)
+                begin(eventful, *item.point, start)
+                first, state = eventful.flag("in_contact")(), tuple(eventful.get(*STATE))
                 impacts = follow_impacts(eventful, item.point, start, self.periods)
                 last = eventful.flag("in_contact")()
-                rows.append(self.row(impacts, FollowedResponse(item.point, start, (first, last))))
+                rows.append(self.row(impacts, FollowedResponse(item.point, state, (first, last))))
         return {"rows": np.array(rows, dtype=float)}
 
     @abstractmethod
@@ -124,12 +125,6 @@ def state_after_transient(instance: Instance, item: FollowedResponse, transient:
     begin(instance, *item.point, item.start)
     instance.step(0.0, transient * item.point.excitation.period)
     return tuple(instance.get(*STATE))
-
-
-def starts_in_contact(instance: EventInstance, point: Point, start: ArrayLike) -> bool:
-    """Return whether a state at phase 0 is in permanent contact, by the FMU."""
-    begin(instance, *point, start)
-    return instance.flag("in_contact")()
 
 
 def follow_impacts(

@@ -72,6 +72,8 @@ def contact_of(structure, eta, periods, start=None):
         (Structure.nondimensional(e=0.0), 1.3, 10),  # contact at the end too
         (Structure.nondimensional(e=0.0, mu=0.4, kappa=1.7), 0.6, 4),
         (OWN, 1.5, 10),
+        (Structure.nondimensional(mu=0.8, kappa=1.5, D=0.02, e=0.5, clearance=-1.0), 1.1, 10),
+        (OWN.replace(clearance=-0.05), 1.5, 5),  # pressed together at rest
     ],
 )
 def test_the_share_of_permanent_contact_is_the_fmu_s(structure, eta, periods):
