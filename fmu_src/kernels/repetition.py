@@ -1,8 +1,8 @@
 """How often a response repeats: the rule of :mod:`.multiplicity`, written once for Python and C.
 
 In the subset of Python that :mod:`fmu_src.export.translation` translates, over a flat memory: a
-head, the stroboscopic states as they come, the later half of them over the motion's size, a row for
-each co-ordinate, and room for deviations.
+head, the stroboscopic states as they come, some of them over the motion's size, a row for each
+co-ordinate, and room for deviations.
 """
 
 # slots of the head, then the states
@@ -28,7 +28,7 @@ def memory_size(count: int) -> int:
 
 def decide(m, time):
     """Decide a response's multiplicity: its deviations must have died or be decaying."""
-    scale(m)
+    scale(m, int(m[COUNT] / 2))
     count, limit, tolerance = int(m[LATER]), longest(m), m[TOLERANCE]
     many = int(count / 4)
     nearly, drifting, n = 0, 0, next_repetition(m, 0, limit, tolerance)
@@ -66,6 +66,9 @@ def decide(m, time):
     for shorter in range(1, last + 1):
         if contraction_ratio(m, shorter) < ratio:
             return conclude(m, shorter, UNDECIDED)
+    if nearly == 0 and drifting == 0:  # of all samples: few states come back after so many periods
+        scale(m, 0)
+        nearly = next_repetition(m, limit, int(m[COUNT]) - limit, tolerance)
     if nearly > 0:
         return conclude(m, nearly, UNDECIDED)
     return conclude(m, 0, IRREGULAR)
@@ -73,7 +76,7 @@ def decide(m, time):
 
 def repeat(m, time):
     """Find the least multiplicity within the tolerance, and the largest deviation from it."""
-    scale(m)
+    scale(m, int(m[COUNT] / 2))
     n = next_repetition(m, 0, longest(m), m[TOLERANCE])
     m[DEVIATION] = INFINITE
     if n > 0:
@@ -96,14 +99,13 @@ def longest(m):
     return quarter
 
 
-def scale(m):
-    """Divide the later half of the states by the motion's size, which makes it homogeneous.
+def scale(m, first):
+    """Divide the states from one on by the motion's size, which makes them homogeneous.
 
-    The length is the largest of all displacements, and velocities over the frequency, in that half.
+    The length is the largest of all displacements, and velocities over the frequency, among them.
     The gap is compared with the largest gap, and its rate with the larger one of that and itself.
     """
     count = int(m[COUNT])
-    first = int(count / 2)
     later = count - first
     m[LATER] = later
     states = HEAD + STATE * first

@@ -79,7 +79,9 @@ def decide_multiplicity(
 
     Deviations in the later half of the samples are compared, those early in it with those late.
     Where n is above a quarter of them a state comes back too seldom for that: such a deviation
-    counts as none below a thousandth of the tolerance.
+    counts as none below a thousandth of the tolerance. Where no n up to a quarter of all samples
+    repeats, but one up to three quarters does within the tolerance, its period is longer than the
+    samples can show: undecided.
     """
     memory = apply_rule("decide", samples, (frequency, gap, tolerance))
     return Decision(int(memory[repetition.MULTIPLICITY]), int(memory[repetition.DECIDED]))

@@ -297,6 +297,18 @@ def test_noise_narrower_than_the_tolerance_is_undecided_and_wider_irregular():
     assert wide == {(0, IRREGULAR)}
 
 
+@pytest.mark.parametrize(
+    ("n", "expected"),
+    [(16, UNDECIDED), (18, UNDECIDED), (45, UNDECIDED), (46, IRREGULAR)],  # of 60 samples
+)
+def test_a_period_longer_than_the_samples_can_show_is_undecided(n, expected):
+    states = np.random.default_rng(4).normal(size=(n, 4))
+    found = decide(repeat(states, 60))
+    assert found == (n if expected == UNDECIDED else 0, expected)
+    chaotic = np.random.default_rng(5).normal(size=(60, 4))
+    assert decide(chaotic) == (0, IRREGULAR)
+
+
 @given(st.integers(0, 2**32 - 1))
 def test_compiled_and_in_python_the_rule_is_the_same(seed):
     random = np.random.default_rng(seed)
