@@ -16,7 +16,13 @@ from .options import (
     read_amplitude,
     read_excitation,
 )
-from .question import answer_question, format_parameter, parameter_parts, read_earlier_result
+from .question import (
+    answer_question,
+    format_parameter,
+    has_flag,
+    parameter_parts,
+    read_earlier_result,
+)
 from .start_file import keep_file_name, read_structure_and_question
 
 if TYPE_CHECKING:
@@ -95,8 +101,9 @@ def print_result(data: xr.Dataset) -> None:
     from ..flags import flag_words
 
     name = str(data.attrs["over"])
-    stable = int(data.stable.sum())
-    print(f"{data.sizes['point']} orbits, {stable} of them stable")
+    stable, undecided = int(data.stable.sum()), int(has_flag(data.stability, "undecided").sum())
+    unsure = f", {undecided} undecided (the FMU has other impacts)" if undecided else ""
+    print(f"{data.sizes['point']} orbits, {stable} of them stable{unsure}")
     low, high = float(data[name].min()), float(data[name].max())
     print(f"from {format_parameter(data, name, low)} to {format_parameter(data, name, high)}")
     count = data.sizes.get("bifurcation", 0)

@@ -60,8 +60,10 @@ def orbit_title(orbit: xr.Dataset, motion: xr.Dataset) -> str:
 
 
 def stability(orbit: xr.Dataset) -> str:
-    """Return "stable" or "unstable"."""
-    return "stable" if bool(orbit.stable) else "unstable"
+    """Return "stable", "unstable" or "undecided"."""
+    from ..flags import flag_words
+
+    return flag_words(orbit.stability.attrs)[int(orbit.stability)]
 
 
 def print_result(data: xr.Dataset) -> None:
@@ -69,6 +71,10 @@ def print_result(data: xr.Dataset) -> None:
     parts = data.multipliers.transpose("multiplier", "part").values
     size = max(abs(complex(*pair)) for pair in parts)
     print(f"{stability(data)}: the largest of its multipliers has the absolute value {size:.6f}")
+    if stability(data) == "undecided":
+        print(
+            "the FMU, started on it, has other impacts: it may be no motion"
+        )
     print("multipliers " + ", ".join(f"{real:.6f}{imaginary:+.6f}i" for real, imaginary in parts))
     times = data.impact_time.values
     for time, speed in zip(times, data.impact_velocity.values, strict=True):

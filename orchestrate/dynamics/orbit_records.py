@@ -18,6 +18,7 @@ from ..response.labels import (
     variable,
     yes_or_no,
 )
+from ..response.multiplicity import UNDECIDED
 from ..response.questions import Point
 from ..running.job import Table
 from .closed_form import Floats
@@ -32,6 +33,7 @@ from .turning_points import (
     turning_points,
 )
 
+STABILITY = {0: "unstable", 1: "stable", UNDECIDED: "undecided"}
 KINDS = {-1: "none", 0: "impact", 1: "impact_into_contact", 2: "release"}
 PARTS = np.array(["real", "imaginary"])
 
@@ -208,15 +210,20 @@ def impact_variables(
 
 
 def stability_variables(table: Table, eta: Floats, row: str) -> dict[str, Variable]:
-    """Return dataset variables of multipliers, their product, stability and exponents."""
+    """Return dataset variables of multipliers, their product, stability and exponents.
+
+    Multipliers inside the unit circle decide nothing where the FMU has other impacts.
+    """
     multipliers, time = table["multipliers"], table["zero"].shape[1] * 2.0 * np.pi / eta
     size = np.hypot(*np.moveaxis(multipliers, -1, 0))
     with np.errstate(divide="ignore"):
         exponent = np.log(size[:, 0]) / time
+    inside, same = size[:, 0] < 1.0 - ON_CIRCLE, table["same"]
     texts = {
         "multipliers": "Floquet multipliers, the largest first",
         "multiplier_product": "their product as dampers and impacts dictate it",
-        "stable": "whether all multipliers lie in the unit circle",
+        "stable": "whether all multipliers lie in the unit circle, with the FMU's own impacts",
+        "stability": "stability, undecided where stable by its multipliers with other impacts",
         "exponent": "largest Lyapunov exponent, per unit of tau, from the multipliers",
     }
     along = (row, "multiplier", "part")
@@ -224,7 +231,10 @@ def stability_variables(table: Table, eta: Floats, row: str) -> dict[str, Variab
     return {
         "multipliers": variable(along, multipliers, "1", texts["multipliers"]),
         "multiplier_product": variable(row, product, "1", texts["multiplier_product"]),
-        "stable": yes_or_no(row, size[:, 0] < 1.0 - ON_CIRCLE, texts["stable"]),
+        "stable": yes_or_no(row, inside & same, texts["stable"]),
+        "stability": flags(
+            row, np.where(inside & ~same, UNDECIDED, inside), texts["stability"], STABILITY
+        ),
         "exponent": variable(row, exponent, "1", texts["exponent"]),
     }
 

@@ -253,7 +253,9 @@ def orbit(
     -------
     xarray.Dataset
         ``state`` (SI) and ``xi`` at each phase 0; ``impact_time`` and ``impact_velocity``;
-        ``multipliers``, with real and imaginary parts; ``stable``; ``exponent``, the largest
+        ``multipliers``, with real and imaginary parts; ``stable``, and ``stability``, which is
+        *undecided* where the multipliers lie inside the unit circle but the FMU runs through other
+        impacts; ``exponent``, the largest
         Lyapunov exponent that follows; ``permanent_contact``; amplitudes ``xi1_max``, ``xi2_max``,
         ``xi_rel_max``; ``residual`` of Newton's method; ``fmu_same_impacts`` and ``fmu_return``,
         how the FMU runs through it; and its nodes, what Newton's method

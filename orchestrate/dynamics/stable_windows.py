@@ -24,7 +24,7 @@ class StableWindow(NamedTuple):
 
 
 def stable_windows(branch: xr.Dataset) -> list[StableWindow]:
-    """Return the stable parameter intervals of a branch dataset, in order along the branch.
+    """Return the parameter intervals of a branch dataset that are stable by the multipliers.
 
     Examples
     --------
@@ -44,7 +44,7 @@ def stable_windows(branch: xr.Dataset) -> list[StableWindow]:
     ends = list(zip(map(float, values), reasons, strict=True))
     windows = []
     for i, (first, last) in enumerate(zip(places[:-1], places[1:], strict=True)):
-        inside = branch.stable.values[int(np.ceil(first + 1e-9)) : int(np.floor(last - 1e-9)) + 1]
+        inside = branch.stability.values[int(np.ceil(first + 1e-9)) : int(np.floor(last - 1e-9)) + 1]
         if inside.size and inside.all():
             (low, below), (high, above) = sorted(ends[i : i + 2])
             windows.append(StableWindow(low, high, below, above))

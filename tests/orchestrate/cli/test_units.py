@@ -11,6 +11,8 @@ import xarray as xr
 from orchestrate.cli import map as map_command
 from orchestrate.cli import orbit as orbit_command
 from orchestrate.cli.question import print_attractors
+from orchestrate.dynamics.orbit_records import STABILITY
+from orchestrate.response.labels import flags
 from orchestrate.units import with_units
 
 BEAM = ("--structure", "beam", "--set", "clearance=-2e-5")
@@ -125,7 +127,8 @@ def test_the_largest_gap_is_a_length_where_the_motion_of_the_box_is_known(comman
         words = {"flag_values": [0, 1], "flag_meanings": "repeated undecided"}
         map_command.print_result(data.assign(multiplicity_decided=("e", [0], words)))
     elif command == "orbit":
-        more = {"stable": 1, "multipliers": (("multiplier", "part"), [[0.5, 0.0]])}
+        more = {"stability": flags((), 1, "stability", STABILITY)}
+        more |= {"multipliers": (("multiplier", "part"), [[0.5, 0.0]])}
         more |= {"impact_time": ("impact", []), "impact_velocity": ("impact", [])}
         orbit_command.print_result(data.assign({**more, "state": ("sample", [])}))
     else:
@@ -136,6 +139,7 @@ def test_the_largest_gap_is_a_length_where_the_motion_of_the_box_is_known(comman
 
 def test_the_picture_of_an_orbit_says_whether_it_is_stable():
     motion = xr.Dataset(attrs={"e": 0.7, "eta": 3.0})
-    for stable, word in ((1, "stable"), (0, "unstable")):
-        title = orbit_command.orbit_title(xr.Dataset({"stable": stable}), motion)
+    for number, word in STABILITY.items():
+        stability = flags((), number, "stability", STABILITY)
+        title = orbit_command.orbit_title(xr.Dataset({"stability": stability}), motion)
         assert title == f"{word} orbit, $e$ = 0.7, $\\eta$ = 3"

@@ -11,11 +11,13 @@ from orchestrate.dynamics import orbits
 from orchestrate.dynamics.lyapunov import lyapunov
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.errors import InputError
+from orchestrate.flags import flag_words
 from orchestrate.structures import Excitation, Structure
 
 from .single_impact import SingleImpact
 
 PAPER = Structure.nondimensional(e=0.7, D=0.005)
+UNDECIDED = "undecided"
 CONTACT = 0.4  # eta at which chattering ends in permanent contact
 
 
@@ -280,3 +282,15 @@ def test_an_impact_that_grazes_by_rounding_decides_nothing(monkeypatch, part, sa
         lambda instance, *rest: check(OneImpactMore(instance, part), *rest),
     )
     assert bool(orbit(PAPER, eta=1.5).fmu_same_impacts) == same
+
+
+def test_a_stable_root_whose_impacts_are_not_those_of_the_fmu_is_undecided():
+    """With a larger gamma the FMU ends the chattering earlier than the orbit it is begun with."""
+    structure = PAPER.replace(e=0.3)
+    own = orbit(structure, eta=0.7)
+    assert bool(own.stable) and int(own.stability) == 1
+    other = orbit(structure.replace(gamma=0.05), eta=0.7, guess=own)
+    assert np.abs(multipliers(other)).max() < 0.95 and not other.fmu_same_impacts
+    assert not other.stable and flag_words(other.stability.attrs)[int(other.stability)] == UNDECIDED
+    unstable = known(3.0)
+    assert not unstable.stable and int(unstable.stability) == 0
