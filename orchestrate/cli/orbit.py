@@ -72,9 +72,7 @@ def print_result(data: xr.Dataset) -> None:
     size = max(abs(complex(*pair)) for pair in parts)
     print(f"{stability(data)}: the largest of its multipliers has the absolute value {size:.6f}")
     if stability(data) == "undecided":
-        print(
-            "the FMU, started on it, has other impacts: it may be no motion"
-        )
+        print("the FMU, started on it, has other impacts: it may be no motion")
     print("multipliers " + ", ".join(f"{real:.6f}{imaginary:+.6f}i" for real, imaginary in parts))
     times = data.impact_time.values
     for time, speed in zip(times, data.impact_velocity.values, strict=True):

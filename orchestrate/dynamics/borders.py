@@ -14,7 +14,7 @@ from ..access import OSCILLATOR, EventInstance, finder
 from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import Variable, flags, variable
-from ..response.questions import checked_numbers, checked_structure
+from ..response.questions import EXCITATION_PARAMETERS, checked_numbers, checked_structure
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
@@ -301,4 +301,8 @@ def second_start_value(
     """Return the second parameter's start value: of excitation, structure or acceleration."""
     if name == ACCELERATION:
         return box_acceleration
+    if name in EXCITATION_PARAMETERS and name not in dict(arguments):
+        forms = "; ".join(f"{given} = {value!r}" for given, value in arguments)
+        expected = "eta alone" if name == "eta" else "frequency and amplitude in place of eta"
+        raise InputError(f"over = {name!r} with {forms}: expected {expected}")
     return dict(arguments)[name] if name in dict(arguments) else structure.get(name)

@@ -359,7 +359,8 @@ def complete_excitation(
     """
     over, names = varied[0], [name for name, _ in arguments]
     if start is not None and not arguments:
-        wanted = ("frequency", "amplitude") if over in ("frequency", "amplitude") else ("eta",)
+        by_frequency = not {"frequency", "amplitude"}.isdisjoint(varied)
+        wanted = ("frequency", "amplitude") if by_frequency else ("eta",)
         levels = structure.has_scale or not {*OF_LENGTH, "amplitude"}.isdisjoint(varied)
         eta, amplitude = (float(start[name].values.flat[0]) for name in ("eta", "amplitude"))
         if levels and not math.isclose(amplitude * eta**2, 1.0, rel_tol=1e-12):

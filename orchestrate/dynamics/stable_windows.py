@@ -44,7 +44,8 @@ def stable_windows(branch: xr.Dataset) -> list[StableWindow]:
     ends = list(zip(map(float, values), reasons, strict=True))
     windows = []
     for i, (first, last) in enumerate(zip(places[:-1], places[1:], strict=True)):
-        inside = branch.stability.values[int(np.ceil(first + 1e-9)) : int(np.floor(last - 1e-9)) + 1]
+        inner = slice(int(np.ceil(first + 1e-9)), int(np.floor(last - 1e-9)) + 1)
+        inside = branch.stability.values[inner]
         if inside.size and inside.all():
             (low, below), (high, above) = sorted(ends[i : i + 2])
             windows.append(StableWindow(low, high, below, above))

@@ -108,6 +108,23 @@ def test_what_cannot_be_asked(question, words):
     assert "expected" in str(caught.value)
 
 
+@pytest.mark.parametrize("second", ["amplitude", "frequency"])
+def test_the_excitation_of_a_branch_begun_with_eta_is_followed_by_its_frequency_and_amplitude(
+    monkeypatch, second
+):
+    monkeypatch.setattr(borders, "answer", lambda job, *rest: job)
+    structure = PAPER.replace(clearance=0.5)
+    start = branch(structure, over="clearance", eta=2.6, limits=(0.0, 0.6))
+    question = {"start": start, "bifurcation": 0, "over": ("clearance", second)}
+    limits = {"amplitude": (0.05, 0.5), "frequency": (2.0, 3.0)}
+    job = border(structure, **question, limits=[(0.0, 0.6), limits[second]])
+    box = {"frequency": 2.6, "amplitude": 1.0 / 2.6**2}
+    assert job.values[1] == pytest.approx(box.pop(second), rel=1e-15)
+    assert dict(job.setting.excitation) == pytest.approx(box, rel=1e-15)
+    with pytest.raises(InputError, match=f"over = '{second}' with eta = 2.6: expected frequency"):
+        border(structure, **question, limits=[(0.0, 0.6), limits[second]], eta=2.6)
+
+
 def test_one_direction_does_not_depend_on_the_other(monkeypatch):
     """Each begins with the matrix bordered at the start, not at the far end of the other one."""
     monkeypatch.setattr(borders, "answer", lambda job, *rest: job)
