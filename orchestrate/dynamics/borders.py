@@ -41,7 +41,6 @@ from .orbit_records import (
     prefixed_variables,
     record_with_check,
 )
-from .orbit_search import solve_orbit
 from .orbits import FirstGuess, OneItemQuestion, excitation_arguments, finite_number
 from .tracer import BranchSegment, ContinuationSettings
 
@@ -137,15 +136,18 @@ def codimension_two_variables(setting: Setting, table: Table) -> dict[str, Varia
 
 
 def start_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
-    """Solve for the bifurcation at which a border curve begins; return equations and root."""
-    setting, nodes = job.setting, np.array(job.start.nodes).reshape(-1, 4)
-    sequence, values = job.start.sequence(job.period), np.array(job.values)
+    """Solve for the bifurcation at which a border curve begins; return equations and root.
+
+    Orbit and bifurcation together: at a fold the orbit alone, at a fixed parameter, is no simple
+    root, and beyond it there is none.
+    """
+    nodes, values = np.array(job.start.nodes).reshape(-1, 4), np.array(job.values)
+    family = Family.from_nodes(job.setting, job.start.sequence(job.period), nodes)
+    orbit = np.append(nodes.ravel(), values)
     try:
-        alone = setting.with_first_varying(values)
-        point = OrbitPoint(*solve_orbit(alone, (sequence, nodes), values[:1]))
-        family = Family.from_nodes(setting, sequence, point.orbit.nodes)
+        point = OrbitPoint(family, Root(orbit, np.zeros_like(orbit), np.inf, 0))
         curve = BifurcationCurve.from_orbit(family, point, job.kind)
-        guess = np.concatenate([point.orbit.nodes.ravel(), values, curve.extra])
+        guess = np.append(orbit, curve.extra)
         curve.update_border(guess)
         second = unit_vector(len(guess), curve.first_parameter + 1)
         return curve, newton_correct(curve, guess, second)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
@@ -74,19 +73,6 @@ class Setting:
         point = self.point(values)
         point.excitation.check(point.structure)
         return ClosedForm.from_structure(*point, self.acceleration(values))
-
-    def with_first_varying(self, values: Floats) -> Setting:
-        """Return a setting in which only the first parameter varies, the others fixed."""
-        fixed = dict(zip(self.over[1:], map(float, values[1:]), strict=True))
-        acceleration = fixed.pop(ACCELERATION, self.box_acceleration)
-        excitation = {
-            **dict(self.excitation),
-            **{k: v for k, v in fixed.items() if k in EXCITATION_PARAMETERS},
-        }
-        changes: dict[str, Any] = {k: v for k, v in fixed.items() if k not in EXCITATION_PARAMETERS}
-        structure = self.structure.replace(**changes)
-        rest = tuple(excitation.items())
-        return Setting(structure, rest, self.over[:1], self.limits[:1], acceleration)
 
 
 def require_delaminated(structure: Structure) -> Structure:
