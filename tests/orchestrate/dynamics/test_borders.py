@@ -1,6 +1,7 @@
 """Bifurcations over two parameters against closed forms."""
 
 import functools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -123,6 +124,29 @@ def test_the_excitation_of_a_branch_begun_with_eta_is_followed_by_its_frequency_
     assert dict(job.setting.excitation) == pytest.approx(box, rel=1e-15)
     with pytest.raises(InputError, match=f"over = '{second}' with eta = 2.6: expected frequency"):
         border(structure, **question, limits=[(0.0, 0.6), limits[second]], eta=2.6)
+
+
+FOLDED = Structure.nondimensional(D=0.02, clearance=3.0)
+
+
+@functools.cache
+def folded_branch():
+    box = {"frequency": 1.12, "amplitude": 1.12**-2}
+    return branch(FOLDED, over="frequency", **box, limits=(1.1, 1.36), longest=0.3)
+
+
+@pytest.mark.parametrize("beyond", [-1e-7, 0.0, 1e-7])
+def test_a_fold_is_found_from_either_side_of_it(monkeypatch, beyond):
+    """Beyond there is no orbit, and what is known of a fold is known to its accuracy."""
+    monkeypatch.setattr(borders, "answer", lambda job, *rest: job)
+    start = folded_branch()
+    (at,) = np.flatnonzero(start.bifurcation_kind.values == 0)
+    value = float(start.bifurcation_value[at])
+    question = {"over": ("frequency", "e"), "limits": [(1.2, 1.4), (0.6, 0.8)]}
+    job = border(FOLDED, start=start, bifurcation=at, **question)
+    job = replace(job, values=(value + beyond, 0.7))
+    curve, root = borders.start_root(job)
+    assert root.unknowns[curve.first_parameter :] == pytest.approx([value, 0.7], abs=1e-11)
 
 
 def test_one_direction_does_not_depend_on_the_other(monkeypatch):
