@@ -252,9 +252,9 @@ def branch(
     -----
     Pseudo-arclength continuation of the equations of
     :mod:`orchestrate.dynamics.periodic_orbit`. Bifurcations are located by Brent's method to
-    rounding, but the loss and the begin of permanent contact to 1e-7 only. A branch ends where the sequence of impacts does: where an impact or a flight grazes,
-    or where permanent contact is lost or begins. Impacts of a chattering that come and go by (17)
-    are followed.
+    rounding, but the loss and the begin of permanent contact to about 1e-7 only. A branch ends
+    where the sequence of impacts does: where an impact or a flight grazes, or where permanent
+    contact is lost or begins. Impacts of a chattering that come and go by (17) are followed.
 
     Examples
     --------
