@@ -158,6 +158,11 @@ def check_number(value: float, printed: str, digits: int, why: str = "") -> Find
 
 
 def check_parts(parts: Iterable[bool], value: str, why: str = "") -> Finding:
-    """Return a finding from several true or false parts: yes, in part, or no."""
+    """Return a finding from several true or false parts: yes, in part, or no.
+
+    Without any part nothing is decided.
+    """
     parts = list(parts)
+    if not parts:
+        return Finding(value, UNDECIDED, why)
     return Finding(value, YES if all(parts) else PARTLY if any(parts) else NO, why)

@@ -13,7 +13,7 @@ from ...dynamics.stable_windows import StableWindow
 from ..cases import CASES
 from ..largest_exponents import LargestExponent, largest_exponent
 from ..regions import Region, list_regions, nearest_window
-from ..sweep_windows import runs
+from ..sweep_windows import longest_run, runs
 
 Edges = tuple[float, float]  # two neighbouring frequencies
 
@@ -140,6 +140,55 @@ def impacts_in_response(data: xr.Dataset) -> np.ndarray:
     ).astype(int)
 
 
+class ImpactRun(NamedTuple):
+    """Adjacent frequencies with T-periodic responses of the same number of impacts.
+
+    Attributes
+    ----------
+    impacts : int
+    low, high : float
+        First and last eta.
+    """
+
+    impacts: int
+    low: float
+    high: float
+
+    def text(self) -> str:
+        """Return the number of impacts with the frequencies it holds at."""
+        return f"{self.impacts} ({self.low:.3f} to {self.high:.3f})"
+
+
+def impact_runs(data: xr.Dataset) -> list[ImpactRun]:
+    """Return the runs of T-periodic responses with impacts, by rising eta, one a number."""
+    etas, n = data.eta.values, data.multiplicity.values
+    counts = np.round(n * data.impacts_per_period.values)
+    counts = np.where(n == 1, counts, 0).astype(int)
+    ends = np.flatnonzero(np.diff(counts, append=-1))
+    begins = np.append(0, ends[:-1] + 1)
+    listed = zip(counts[begins].tolist(), etas[begins], etas[ends], strict=True)
+    return [ImpactRun(count, float(low), float(high)) for count, low, high in listed if count > 0]
+
+
+def impacts_in_turn(found: list[ImpactRun]) -> list[int]:
+    """Return the numbers of impacts one after the other, each change of the number once."""
+    return [
+        a.impacts
+        for a, b in zip(found, [None, *found], strict=False)
+        if a.impacts != (b and b.impacts)
+    ]
+
+
+def decreases(numbers: list[int]) -> bool:
+    """Return whether each number is less than the one before; there must be two."""
+    return len(numbers) > 1 and all(a > b for a, b in zip(numbers, numbers[1:], strict=False))
+
+
+def irregular_between(data: xr.Dataset, low: float, high: float) -> bool:
+    """Return whether some responses between two frequencies do not repeat."""
+    return bool((between(data, low, high).multiplicity.values == 0).any())
+
+
 def etas_where_sweeps_differ(results: Results, case: str, low: float, high: float) -> np.ndarray:
     """Return the frequencies between two at which up- and down-sweep differ in their impacts."""
     up, down = results.up(case), results.down(case)
@@ -175,8 +224,10 @@ def lower_edge(data: xr.Dataset, flags: np.ndarray, inside: float) -> Edges:
 
 def longest_edges(data: xr.Dataset, flags: np.ndarray) -> tuple[Edges, Edges]:
     """Return lower and upper edge of the longest run of true flags, each as two etas."""
-    first, last = max(runs(flags), key=lambda run: run[1] - run[0])
-    etas = data.eta.values
+    found = longest_run(flags)
+    if found is None:
+        return (np.nan, np.nan), (np.nan, np.nan)
+    (first, last), etas = found, data.eta.values
     lower = float(etas[max(first - 1, 0)]), float(etas[first])
     return lower, (float(etas[last]), float(etas[min(last + 1, len(etas) - 1)]))
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...response.curves import CONTACT, FLIGHT
-from .claim import NO, PARTLY, YES, Check, Finding, register_claim
+from .claim import NO, PARTLY, YES, Check, Finding, check_parts, register_claim
 from .results import Results
 
 if TYPE_CHECKING:
@@ -187,7 +187,7 @@ def check_next_state(results: Results) -> Finding:
         f"state, {later / largest:.2g} at the beginning of the (k+2)th"
     )
     why = "With i = 2 (20) would be an impact's beginning: (k+1)."
-    return Finding(text, YES if abs(later) < first * largest else NO, why)
+    return check_parts([] if math.isnan(later) else [abs(later) < first * largest], text, why)
 
 
 @register_misprint("(22)", "T = eta/2 pi")

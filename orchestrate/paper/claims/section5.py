@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..cases import CASES
-from .claim import NO, YES, Finding, check_parts, register_claim
+from .claim import Finding, check_parts, register_claim
 from .results import Results
 
 SAME_PLACE = 0.01  # in eta
@@ -82,9 +82,12 @@ def check_two_impacts_each(results: Results) -> Finding:
         )
         for case in CASES
     ]
-    return Finding(
-        ", ".join(f"{count:.0f}" for count in counts),
-        YES if all(abs(count - 2.0) < 0.02 for count in counts) else NO,
+    periods = [int(up.multiplicity[up.xi_rel_max.values.argmax()]) for up in map(results.up, CASES)]
+    return check_parts(
+        [abs(count - 2.0) < 0.02 and n == 1 for count, n in zip(counts, periods, strict=True)],
+        ", ".join(
+            f"{count:.0f} in T, {n}T-periodic" for count, n in zip(counts, periods, strict=True)
+        ),
     )
 
 

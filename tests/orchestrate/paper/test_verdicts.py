@@ -15,9 +15,10 @@ from orchestrate.paper.claims import (
     section2,
     section3,
     section3_influence,
+    section4,
     section5,
 )
-from orchestrate.paper.claims.claim import NO, PARTLY, YES
+from orchestrate.paper.claims.claim import NO, PARTLY, UNDECIDED, YES, check_parts
 from orchestrate.paper.claims.results import Results
 from orchestrate.paper.later_responses import classify_changes
 from orchestrate.response.curves import CONTACT, FLIGHT
@@ -352,3 +353,111 @@ def test_the_largest_impulse_of_a_map_is_that_of_a_longer_run():
     text = answers.describe_largest_impulse(chart, run_on, "e")
     assert "55.3 m_1 omega a eta^2 at most in 10000 periods of the irregular response" in text
     assert "(50.9 in those of the map)" in text and "at eta = 1.05." in text
+
+
+# -- checks that can fail --------------------------------------------------------------------------
+
+
+def one_period(etas, impacts):
+    """T-periodic responses with these numbers of impacts, 0: irregular; as swept and as settled."""
+    counts = np.array(impacts)
+    columns = {"multiplicity": (counts > 0).astype(int), "impacts_per_period": np.array(impacts)}
+    data = along_eta(etas, xi_rel_max=np.arange(len(etas)), **columns)
+    return data.assign(xi_rel=(("eta", "sample"), np.zeros((len(etas), 201))))
+
+
+TO_AND_FRO = one_period(np.linspace(0.5, 0.6, 10), [5, 5, 4, 5, 0, 7, 8, 7, 3, 2])
+
+
+def test_impacts_that_rise_in_between_do_not_decrease():
+    """A number that had been there before was dropped before the numbers were compared."""
+    found = section3_influence.check_impacts_decrease(Results({UP: TO_AND_FRO}))
+    assert found.verdict == PARTLY
+    assert "5, 4, 5, 7, 8, 7, 3, 2 impacts" in found.value
+    falling = one_period([0.5, 0.51, 0.52, 0.6], [5, 0, 5, 3])
+    assert section3_influence.check_impacts_decrease(Results({UP: falling})).verdict == YES
+    damped = one_period(np.linspace(0.5, 0.6, 5), [7, 5, 6, 3, 2])
+    verdict = section4.check_seven_to_two(Results({"orbit_e0.7_D0.05_up": damped}))
+    assert verdict.verdict == PARTLY and verdict.value == "7, 5, 6, 3, 2"
+
+
+def test_each_number_of_impacts_has_its_own_frequencies():
+    """A window of several numbers had been called by its first one."""
+    data = {"settled_e0.7_D0.005_up": TO_AND_FRO}
+    data["exponent_e0.7_D0.005"] = along_eta(TO_AND_FRO.eta, verdict=np.full(10, PERIODIC))
+    text = section3_influence.check_alternation(Results(data)).value
+    assert "5 (0.500 to 0.511), 4 (0.522 to 0.522), 5 (0.533 to 0.533), 7 (0.556" in text
+
+
+def one_kind(n, impacts):
+    """A world in which all responses of all cases repeat after nT with so many impacts."""
+    etas = np.round(np.arange(0.1, 8.0, 0.01), 6)
+    columns = {
+        "multiplicity": np.full(len(etas), n),
+        "impacts_per_period": np.full(len(etas), impacts / max(n, 1)),
+        "xi_rel_max": np.linspace(1.0, 2.0, len(etas)),
+        "permanent_contact": np.full(len(etas), n == 1),
+        "verdict": np.full(len(etas), PERIODIC if n else CHAOTIC),
+        **dict.fromkeys(("xi1_max", "xi2_max"), np.linspace(2.0, 1.0, len(etas))),
+        **dict.fromkeys(("exponent", "standard_error"), np.zeros(len(etas))),
+        **dict.fromkeys(("impacts", "contacts"), np.full(len(etas), 1.0 * impacts)),
+        **dict.fromkeys(("closing_max", "closing_min"), np.linspace(1.0, 3.0, len(etas))),
+        **dict.fromkeys(("distance_min", "distance_max"), np.full(len(etas), 0.3)),
+        "periods": np.full(len(etas), 100.0),
+    }
+    data = along_eta(etas, **columns).assign_attrs(transient=500)
+    data = data.assign(xi_rel=(("eta", "sample"), np.tile(np.linspace(1, 2, 201), (len(etas), 1))))
+    kinds = ("orbit_{}_up", "orbit_{}_down", "steady_{}_up", "settled_{}_up", "exponent_{}")
+    return {kind.format(case.label()): data for kind in kinds for case in CASES.values()}
+
+
+@pytest.mark.parametrize(("n", "impacts"), [(1, 5), (0, 3)])
+@pytest.mark.parametrize(
+    "check",
+    [
+        section3.check_windows_in_order,
+        section3.check_one_impact_everywhere,
+        section3.check_impact_distance,
+        section3.check_other_regions,
+        section3_influence.check_impacts_decrease,
+        section3_influence.check_one_impact_beside,
+        section3_influence.check_decay,
+        section4.make_alternation_check("damped", 1.33, 2.6),
+        section4.check_seven_to_two,
+        section4.check_non_unique,
+        section4.check_more_contact,
+        section5.check_two_impacts_each,
+    ],
+)
+def test_nothing_is_borne_out_where_all_responses_are_of_one_kind(check, n, impacts):
+    same = xr.concat([limits().assign(case=("window", [case] * 6)) for case in CASES], "window")
+    world = Results({**one_kind(n, impacts), "limits": same})
+    try:
+        verdict = check(world).verdict
+    except (IndexError, ValueError):  # what it measures is not there at all
+        verdict = NO
+    assert verdict != YES
+
+
+def test_masses_that_never_influence_each_other_are_no_exception():
+    def verdict(*impacts):
+        rows = {"mu": [1.0, 2.0, 2.0], "kappa": [1.0, 2.0, 2.2], "impacts": list(impacts)}
+        data = xr.Dataset({name: ("motion", np.array(row)) for name, row in rows.items()})
+        return section3.check_only_equal(Results({"low_speed": data})).verdict
+
+    assert verdict(0, 0, 9) == PARTLY  # as it is
+    assert verdict(0, 9, 9) == YES
+    assert verdict(9, 0, 9) == PARTLY and verdict(9, 0, 0) == NO
+
+
+def test_a_contact_that_is_not_there_is_no_agreement():
+    data = loops(15, True)
+    data.state[data.state[:, 3] == 0.0, 3] = 0.01  # no impact slower than gamma
+    for gammas, verdict in (([0.417, 0.417], PARTLY), ([0.417, np.nan], NO)):
+        limit = xr.Dataset({"last_contact": (("case", "gamma"), [gammas])})
+        found = section3.check_gamma_scale(Results({"figure5": data, "gamma": limit}))
+        assert found.verdict == verdict, gammas
+
+
+def test_without_any_part_nothing_is_decided():
+    assert check_parts([], "").verdict == UNDECIDED
