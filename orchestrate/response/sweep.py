@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
@@ -19,8 +19,14 @@ from ..structures import Structure
 from .labels import Dims, Variable, flags, nondimensional_state_coordinate, variable, yes_or_no
 from .multiplicity import DECIDED, REPEATED, Decision
 from .peaks import PEAKS, peaks, periods_to_sample, sample_periods
-from .questions import Point, SeriesQuestion, checked_positive, checked_state, series_arguments
-from .respond import Response, count_impacts_until, follow_responses
+from .questions import (
+    Point,
+    SeriesQuestion,
+    checked_positive,
+    series_arguments,
+    start_states,
+)
+from .respond import Response, count_impacts_until, follow_responses, respond
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -103,12 +109,16 @@ class SweepJob(SeriesQuestion):
             start, offset = previous["end"][-1], float(previous["gap_offset"][-1])
         settings = self.transient, self.samples, self.tolerance, offset
         with Instance(fmus[OSCILLATOR]) as instance:
-            rows = [
-                self.row(instance, point, response)
-                for point, response in zip(
-                    items, follow_responses(instance, items, start, *settings), strict=True
-                )
-            ]
+            return self.table(instance, items, follow_responses(instance, items, start, *settings))
+
+    def table(
+        self, instance: Instance, items: Sequence[Point], responses: Iterable[Response]
+    ) -> Table:
+        """Return a chunk's table from its responses, each read while the FMU stands at its end."""
+        rows = [
+            self.row(instance, point, response)
+            for point, response in zip(items, responses, strict=True)
+        ]
         spans, orbits = ([row.pop(name) for row in rows] for name in ("span", "orbit"))
         table = {name: np.array([row[name] for row in rows]) for name in rows[0]}
         return {**table, **peaks(items, spans, np.array(orbits))}
@@ -203,6 +213,31 @@ class SweepJob(SeriesQuestion):
         return f"Responses along {self.series.name}, {self.direction}: {self.structure.label()}"
 
 
+@dataclass(frozen=True, kw_only=True)
+class RunOnJob(SweepJob):
+    """Job of :func:`orchestrate.sweep` from another sweep: each value has a start of its own."""
+
+    chunk_size: ClassVar[int] = 20
+    sequential: ClassVar[bool] = False
+    warmup_items: ClassVar[int] = 0
+
+    def items(self, inputs: Inputs) -> Sequence[Any]:
+        """Return operating point and start state of each response."""
+        points = self.series.points
+        states = np.broadcast_to(np.reshape(self.start, (-1, 4)), (len(points), 4))
+        return list(zip(points, map(tuple, states.tolist()), strict=True))
+
+    def work(self, fmus: Mapping[str, Path], items: Sequence[Any], previous: Table | None) -> Table:
+        """Compute a chunk of responses, each from its own start."""
+        settings = self.transient, self.samples, self.tolerance
+        with Instance(fmus[OSCILLATOR]) as instance:
+            responses = (
+                respond(instance, point.structure, point.excitation, start, *settings)
+                for point, start in items
+            )
+            return self.table(instance, [point for point, _ in items], responses)
+
+
 def multiplicity_variables(along: Dims, table: Table) -> dict[str, Variable]:
     """Return dataset variables of the multiplicity and of how it was decided."""
     return {
@@ -223,7 +258,7 @@ def sweep(
     transient: int = 500,
     samples: int = 200,
     tolerance: float = 1e-2,
-    start: ArrayLike | None = None,
+    start: ArrayLike | xr.Dataset | None = None,
     peak_periods: int = 8,
     **running: Unpack[Running],
 ) -> xr.Dataset:
@@ -250,9 +285,10 @@ def sweep(
         Periods kept after them, a stroboscopic sample each.
     tolerance : float
         Part of the motion's size within which a state counts as repeated.
-    start : array_like of 4 floats, optional
+    start : array_like or xarray.Dataset, optional
         State that the first value starts from, at phase 0: x1, x2 in m, v1, v2 in m/s; at rest
-        by default.
+        by default. Or one state for each value, or a sweep over the same values in one direction,
+        whose responses are run on: then no value depends on another, whatever the ``direction``.
     peak_periods : int
         Amplitudes and accelerations are looked for over the periods after which the response
         repeats, at most so many; over half as many where it does not repeat.
@@ -312,14 +348,19 @@ def sweep(
     >>> found.impacts_per_period.values
     array([10., 30.])
     """
-    job = SweepJob(
-        **series_arguments(structure, eta, frequency, amplitude, over, values),
-        name=f"sweep_{structure.label()}_{direction}",
+    question = series_arguments(structure, eta, frequency, amplitude, over, values)
+    name, kind = f"sweep_{structure.label()}_{direction}", SweepJob
+    states = start_states(start, SweepJob(name=name, direction=direction, **question))
+    if len(states) > 4:
+        kind, direction = RunOnJob, "given"
+    job = kind(
+        **question,
+        name=name,
         direction=direction,
         transient=checked_integer("transient", transient, 0),
         samples=checked_integer("samples", samples, 1),
         tolerance=checked_positive("tolerance", tolerance),
-        start=checked_state("start", start, structure),
+        start=states,
         peak_periods=checked_integer("peak_periods", peak_periods, 1),
     )
     return answer(job, running, finder(running))
