@@ -9,68 +9,33 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Resolution:
-    """Numbers of frequencies, periods, starts and grid points of all computations.
-
-    Attributes
-    ----------
-    name : str
-    transient, samples : int
-        Number of the first sample at each eta of a sweep, and of periods sampled after it.
-    steady : int
-        Periods after the sweep followed impact by impact.
-    skip, keep : int
-        Periods dropped and kept for phase curves (section 3.2).
-    long_run : int
-        Periods of the long runs that decide between regular and chaotic.
-    longest : int
-        Periods up to which a response is run on that does not repeat.
-    part : int
-        Periods of each part of the runs that give the largest exponents.
-    later, latest : int
-        Number n of the first sample at which the sweep's responses are looked at again: at all
-        frequencies, and at a few.
-    ramp_rate : float
-        Of the motor's no-load speed over omega, in a time 1/omega.
-    attractor_step, fine_step : float
-        Of eta, where coexisting attractors are looked for; the fine one where sweeps up and down
-        differ.
-    starts : int
-        Random starts at each.
-    basin : int
-        Starts along each side of the basin picture.
-    settle, settle_most : int
-        Periods before a response from a random start counts as settled; up to which it is run on.
-    map_etas, map_rows : int
-        Values along the sides of a parameter map.
-    map_settle, map_keep : int
-        Periods dropped and kept at each of its points.
-    """
+    """Numbers of frequencies, periods, starts and grid points of all computations."""
 
     name: str = "full"
-    transient: int = 500
-    samples: int = 200
-    steady: int = 100
-    skip: int = 2000
-    keep: int = 500
-    long_run: int = 2500
-    longest: int = 100_000
-    part: int = 10_000
-    later: int = 5000
-    latest: int = 50_000
-    ramp_rate: float = 2e-5
-    attractor_step: float = 0.005
-    fine_step: float = 0.002
-    starts: int = 60
-    basin: int = 160
-    settle: int = 400
-    settle_most: int = 8000
-    map_etas: int = 181
+    transient: int = 500  # number n of the first sample at each eta of a sweep
+    samples: int = 200  # periods sampled after it
+    steady: int = 100  # periods after the sweep followed impact by impact
+    skip: int = 2000  # periods dropped for phase curves (section 3.2)
+    keep: int = 500  # and kept
+    long_run: int = 2500  # periods that decide between regular and chaotic
+    stages: tuple[int, ...] = (0, 400, 3000, 15_000, 81_000)  # run on for while nothing repeats
+    part: int = 10_000  # periods; five times that for the largest exponents
+    later: int = 5000  # n of the first sample at which all the sweep's responses are seen again
+    latest: int = 50_000  # and a few
+    ramp_rate: float = 2e-5  # of the motor's no-load speed over omega, in a time 1/omega
+    attractor_step: float = 0.005  # of eta, where coexisting attractors are searched
+    fine_step: float = 0.002  # and where sweeps up and down differ
+    starts: int = 60  # random starts at each
+    basin: int = 160  # starts along each side of the basin picture
+    settle: int = 400  # periods before a response from a random start counts as settled
+    settle_most: int = 8000  # up to which it is run on
+    map_etas: int = 181  # values along the sides of a parameter map
     map_rows: int = 51
-    map_settle: int = 300
+    map_settle: int = 300  # periods dropped and kept at each of its points
     map_keep: int = 60
 
     def etas(self) -> tuple[float, ...]:
-        """Return the frequency ratios of the sweeps: 0.1 to 8.0, by 0.001 in full."""
+        """Return the frequency ratios of the sweeps: 0.1 to 8.0 by 0.001."""
         return tuple(float(eta) for eta in np.arange(100, 8001) / 1000.0)
 
     def attractor_etas(self) -> tuple[float, ...]:
@@ -82,7 +47,7 @@ class Resolution:
 
     @property
     def decides(self) -> bool:
-        """Return whether transients have the paper's 500 periods, which claims need."""
+        """Whether transients have the paper's 500 periods, which claims need."""
         return self.transient >= 500
 
 
@@ -95,7 +60,7 @@ QUICK = Resolution(
     skip=300,
     keep=100,
     long_run=400,
-    longest=2000,
+    stages=(0, 400, 1500),
     part=500,
     later=500,
     latest=2000,

@@ -1,0 +1,114 @@
+"""The paper's claims: a table, measures of its rows, and one rule from a measure to a verdict."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from importlib import resources
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from .readable import plain
+
+if TYPE_CHECKING:
+    from .datasets import Datasets
+
+YES, PARTLY, NO, UNDECIDED = "yes", "partly", "no", "undecided"
+WORDS = {
+    YES: "borne out",
+    PARTLY: "in part",
+    NO: "not borne out",
+    UNDECIDED: "not decided at this resolution",
+}
+
+
+class Measured(NamedTuple):
+    """What was measured: a text with the numbers, and which parts of the claim hold."""
+
+    found: str
+    parts: Sequence[bool]
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A row of the table ``claims.csv``.
+
+    Attributes
+    ----------
+    section, text, printed : str
+        What the paper says where, and its value.
+    measure : str
+        Name of a function of :mod:`.measures`, from the datasets and the claim.
+    arguments : str
+        Keywords of the measure.
+    how, tolerance : str
+        How it is measured, for people.
+    full : str
+        Not empty: it takes the paper's 500 periods, or many starts, to decide.
+    why : str
+        What a reader has to know where it differs.
+    """
+
+    section: str
+    text: str
+    printed: str
+    measure: str
+    arguments: str
+    how: str
+    tolerance: str
+    full: str
+    why: str
+
+    def keywords(self) -> dict[str, Any]:
+        """Return the measure's further arguments, numbers as floats."""
+        pairs = (word.split("=") for word in self.arguments.split())
+        return {name: float(x) if x[0].isdigit() and "T" not in x else x for name, x in pairs}
+
+    @property
+    def slack(self) -> float:
+        """Half a unit of the printed number's last digit, the tolerance of rounding."""
+        return 0.5 * 10.0 ** -len(self.printed.partition(".")[2]) + 1e-9
+
+    def rounds(self, value: float) -> bool:
+        """Return whether a value rounds to the printed number."""
+        return abs(value - float(self.printed)) <= self.slack
+
+
+def read_table() -> list[Claim]:
+    """Return the paper's claims, in its order."""
+    text = resources.files("orchestrate.paper").joinpath("claims.csv").read_text("utf-8")
+    return [Claim(**row) for row in csv.DictReader(text.splitlines())]
+
+
+def judge(parts: Iterable[bool], decides: bool = True) -> str:
+    """Return the verdict of a claim from the parts of it that hold.
+
+    - Undecided: nothing was measured, or it takes the full resolution.
+    - Borne out: all parts hold.
+    - In part: some do.
+    - Not borne out: none does.
+    """
+    parts = [bool(part) for part in parts]
+    if not parts or not decides:
+        return UNDECIDED
+    return YES if all(parts) else PARTLY if any(parts) else NO
+
+
+def check_claims(claims: Iterable[Claim], data: Datasets) -> list[dict[str, str]]:
+    """Measure and judge each claim; return a row of texts for each."""
+    from .measures import find_measure
+
+    rows = []
+    for claim in claims:
+        measured = find_measure(claim.measure)(data, claim, **claim.keywords())
+        verdict = judge(measured.parts, data.size.decides or not claim.full)
+        names = ("section", "text", "printed", "how", "tolerance")
+        rows.append(
+            {
+                **{name: getattr(claim, name) for name in names},
+                "found": plain(measured.found),
+                "verdict": verdict,
+                "why": claim.why if verdict in (NO, PARTLY) else "",
+            }
+        )
+    return rows
