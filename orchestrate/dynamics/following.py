@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..access import OSCILLATOR, REST, STATE, EventInstance, Impacts, Instance, begin
-from ..response.questions import Point, SeriesQuestion, State, end_states
+from ..response.questions import Point, SeriesQuestion, State
 from ..running.job import Inputs, Table
 from .variational import nondimensional_impacts
 
@@ -43,23 +43,14 @@ class StartStatesQuestion(SeriesQuestion, ABC):
     start : tuple of float
         One state at phase 0 after the other, x1, x2 in m, v1, v2 in m/s: one for all values of the
         parameter, or one for each.
-    follows : str
-        Name of a sweep over the same parameter whose responses are followed instead.
     """
 
     start: tuple[float, ...] = REST
-    follows: str = ""
-
-    def needs(self) -> tuple[str, ...]:
-        """Return the name of the sweep that gives the starts; an empty tuple without one."""
-        return (self.follows,) if self.follows else ()
 
     def items(self, inputs: Inputs) -> Sequence[FollowedResponse]:
         """Return for each parameter value the response to follow, with its start state."""
         series = self.series
         rows = np.reshape(self.start, (-1, 4))
-        if self.follows:
-            rows = end_states(inputs[self.follows], series)
         starts = np.broadcast_to(rows, (len(series.points), 4)).tolist()
         return [
             FollowedResponse(*item) for item in zip(series.points, map(tuple, starts), strict=True)

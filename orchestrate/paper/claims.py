@@ -6,12 +6,7 @@ import csv
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from importlib import resources
-from typing import TYPE_CHECKING, Any, NamedTuple
-
-from .readable import plain
-
-if TYPE_CHECKING:
-    from .datasets import Datasets
+from typing import Any, NamedTuple
 
 YES, PARTLY, NO, UNDECIDED = "yes", "partly", "no", "undecided"
 WORDS = {
@@ -92,23 +87,3 @@ def judge(parts: Iterable[bool], decides: bool = True) -> str:
     if not parts or not decides:
         return UNDECIDED
     return YES if all(parts) else PARTLY if any(parts) else NO
-
-
-def check_claims(claims: Iterable[Claim], data: Datasets) -> list[dict[str, str]]:
-    """Measure and judge each claim; return a row of texts for each."""
-    from .measures import find_measure
-
-    rows = []
-    for claim in claims:
-        measured = find_measure(claim.measure)(data, claim, **claim.keywords())
-        verdict = judge(measured.parts, data.size.decides or not claim.full)
-        names = ("section", "text", "printed", "how", "tolerance")
-        rows.append(
-            {
-                **{name: getattr(claim, name) for name in names},
-                "found": plain(measured.found),
-                "verdict": verdict,
-                "why": claim.why if verdict in (NO, PARTLY) else "",
-            }
-        )
-    return rows

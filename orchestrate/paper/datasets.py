@@ -328,10 +328,11 @@ class Datasets:
         """Return a slow voltage ramp of the set ``rig`` up to its fold, bonded or delaminated."""
         structure, drive = Structure.from_file(RIG), Drive.from_file(RIG)
         volts = drive.volts(structure)
-        fold = averaged.folds(structure, drive)[0].eta0 * volts
+        fold = averaged.folds(structure, drive)[0].eta0
+        ends = 0.55 * fold * volts, 1.02 * fold * volts
         rate = self.size.ramp_rate * volts * structure.omega
         one = structure.as_bonded() if kind == "bonded" else structure.as_delaminated()
-        more = {"voltage": (0.55 * fold, 1.02 * fold), "rate": rate, "back": False}
+        more = {"voltage": ends, "rate": rate, "back": False}
         return self.get(f"ramp_{kind}", orchestrate.couple, one, drive, **more)
 
 

@@ -13,8 +13,9 @@ from ..errors import InputError
 from ..figures.files import save
 from ..files import open_folder, write_whole
 from .answers import answer_sentences, region_rows
-from .claims import check_claims, read_table
+from .claims import read_table
 from .datasets import Datasets
+from .measures import check_claims
 from .pictures import PARTS, picture_name
 from .report import write_report
 from .resolution import Resolution
@@ -59,7 +60,8 @@ def reproduce(
     open_folder(output)
     data = Datasets(output, resolution, running)
     found = write_claims(data) if CLAIMS in parts else {"claims": [], "regions": [], "answers": []}
-    pictures = draw_all([name for name in parts if name != CLAIMS], data)
+    shown = {name: PARTS[name].results(data) for name in parts if name != CLAIMS}
+    pictures = draw_all(shown, output)
     return Reproduction(found, pictures, write_report(output, pictures, found, resolution, fmu))
 
 
@@ -85,10 +87,10 @@ def write_claims(data: Datasets) -> dict[str, Any]:
     return checked
 
 
-def draw_all(parts: Sequence[str], data: Datasets) -> dict[str, Path]:
+def draw_all(results: Mapping[str, Sequence[Any]], output: Path) -> dict[str, Path]:
     """Draw parts from their results; return the paths of the PNG files."""
     paths = {}
-    for name in parts:
-        figure = PARTS[name].draw(*PARTS[name].results(data))
-        paths[name] = save(figure, data.folder / picture_name(name), ("png", "pdf"))[0]
+    for name, data in results.items():
+        figure = PARTS[name].draw(*data)
+        paths[name] = save(figure, output / picture_name(name), ("png", "pdf"))[0]
     return paths

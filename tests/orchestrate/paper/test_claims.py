@@ -16,12 +16,11 @@ from orchestrate.paper.claims import (
     UNDECIDED,
     YES,
     Claim,
-    check_claims,
     judge,
     read_table,
 )
 from orchestrate.paper.curves import CONTACT, FLIGHT
-from orchestrate.paper.measures import equations, find_measure, limits, setup
+from orchestrate.paper.measures import check_claims, equations, find_measure, limits, setup
 from orchestrate.paper.reading import impacts_in_turn
 from orchestrate.paper.resolution import QUICK
 
