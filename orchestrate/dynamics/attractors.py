@@ -150,7 +150,7 @@ class AttractorsJob(SeriesQuestion):
             states = random_starts(self.starts, scale, seed, point.structure)
         else:
             size = size_from_rest(instance, point, self.settings)
-            gap = scale or self.width * (size.gap or point.length)
+            gap = self.width * (size.gap or point.length)
             states = starts_in_both_boxes(self.starts, gap, size, seed, point)
         for item in group:
             yield states[item.number]

@@ -279,7 +279,7 @@ class Datasets:
         up, etas = self.up("elastic"), np.arange(8001, 9001) / 1000.0
         more = {"start": up.end_state[-1].values, **self.protocol()}
         beyond = self.get("orbit_beyond", orchestrate.sweep, ELASTIC, eta=etas, **more)
-        return xr.concat([up.drop_dims("sample"), beyond.drop_dims("sample")], "eta")
+        return xr.concat([up, beyond], "eta", join="exact")  # the same samples
 
     # -- beyond the paper --------------------------------------------------------------------------
 
