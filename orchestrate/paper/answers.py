@@ -60,7 +60,9 @@ def describe_largest_impulse(data: Datasets, parameter: str) -> str:
     here = (1.0 + structure.e) * structure.mu / (1.0 + structure.mu) * run_on.closing_max.item()
     irregular = run_on.exponent.item() > 3.0 * run_on.standard_error.item()
     etas = impulses.eta.values[(impulses.max(parameter) > 0.5 * impulses.max()).values]
-    extent = f"eta = {etas.min():.2f}" + f" to {etas.max():.2f}" * (etas.max() > etas.min())
+    extent = f"eta = {etas.min():.2f}"
+    if len(etas) > 1:
+        extent += f" to {etas.max():.2f}"
     return (
         f"Over (eta, {parameter}) impulses are largest at eta = {float(best.eta[0]):.2f}, "
         f"{parameter} = {float(best[parameter][0]):.3g}: {here:.3g} m_1 omega a eta^2 at most in "

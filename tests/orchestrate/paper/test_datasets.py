@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 
 import orchestrate
+from orchestrate.paper.answers import describe_largest_impulse
 from orchestrate.paper.cases import CASES, MAPS, map_values
 from orchestrate.paper.curves import CONTACT, FLIGHT, SEQUENCE, Panel, trace
 from orchestrate.paper.datasets import Datasets, most_even
@@ -134,6 +135,9 @@ def test_the_largest_impulse_of_a_map_is_followed_longer(data):
     found = data.map_peak("e")
     assert found.eta.values.tolist() == [1.05] and found.attrs["periods"] == QUICK.part
     assert float(found.exponent[0]) > 3.0 * float(found.standard_error[0])  # chaos, at e = 0.95
+    text = describe_largest_impulse(data, "e")
+    assert "impulses are largest at eta = 1.05, e = 0.95: " in text and text.endswith("1.05.")
+    assert f"in {QUICK.part} periods of the irregular response there" in text
 
 
 def test_the_frequency_at_which_two_attractors_share_starts_most_evenly():
