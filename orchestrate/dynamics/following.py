@@ -18,33 +18,21 @@ from .variational import nondimensional_impacts
 
 
 class FollowedResponse(NamedTuple):
-    """A response to follow: structure, excitation, and its state at phase 0 (m, m/s).
-
-    Attributes
-    ----------
-    point : Point
-    start : tuple of float
-    touching : tuple of bool
-        Whether the masses are in permanent contact where the periods followed begin, and where they
-        end.
-    """
+    """A response to follow: structure, excitation, and its state at phase 0 (m, m/s)."""
 
     point: Point
     start: State
+    # whether the masses are in permanent contact where the periods followed begin, and where they
+    # end
     touching: tuple[bool, bool] = (False, False)
 
 
 @dataclass(frozen=True, kw_only=True)
 class StartStatesQuestion(SeriesQuestion, ABC):
-    """Base of jobs along a parameter whose responses start from given or swept states.
+    """Base of jobs along a parameter whose responses start from given or swept states."""
 
-    Attributes
-    ----------
-    start : tuple of float
-        One state at phase 0 after the other, x1, x2 in m, v1, v2 in m/s: one for all values of the
-        parameter, or one for each.
-    """
-
+    # one state at phase 0 after the other, x1, x2 in m, v1, v2 in m/s: one for all values of the
+    # parameter, or one for each
     start: tuple[float, ...] = REST
 
     def items(self, inputs: Inputs) -> Sequence[FollowedResponse]:
@@ -59,14 +47,9 @@ class StartStatesQuestion(SeriesQuestion, ABC):
 
 @dataclass(frozen=True, kw_only=True)
 class ImpactsQuestion(StartStatesQuestion, ABC):
-    """Base of jobs that evaluate the impacts of responses after a transient.
+    """Base of jobs that evaluate the impacts of responses after a transient."""
 
-    Attributes
-    ----------
-    transient, periods : int
-        Periods dropped, and followed after them.
-    """
-
+    # periods dropped, and followed after them
     transient: int = 500
     periods: int = 100
 
@@ -86,15 +69,7 @@ class ImpactsQuestion(StartStatesQuestion, ABC):
 
     @abstractmethod
     def row(self, impacts: Impacts, item: FollowedResponse) -> Sequence[float]:
-        """Return the numbers that one response's impacts give; subclasses choose them.
-
-        Parameters
-        ----------
-        impacts : Impacts
-            Non-dimensional, of ``periods`` periods.
-        item : FollowedResponse
-            From the state that the periods begin with.
-        """
+        """Return the numbers that one response's impacts give; subclasses choose them."""
 
 
 def state_after_transient(instance: Instance, item: FollowedResponse, transient: int) -> State:

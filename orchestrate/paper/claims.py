@@ -26,33 +26,19 @@ class Measured(NamedTuple):
 
 @dataclass(frozen=True)
 class Claim:
-    """A row of the table ``claims.csv``.
+    """A row of the table ``claims.csv``."""
 
-    Attributes
-    ----------
-    section, text, printed : str
-        What the paper says where, and its value.
-    measure : str
-        Name of a function of :mod:`.measures`, from the datasets and the claim.
-    arguments : str
-        Keywords of the measure.
-    how, tolerance : str
-        How it is measured, for people.
-    full : str
-        Not empty: it takes the paper's 500 periods, or many starts, to decide.
-    why : str
-        What a reader has to know where it differs.
-    """
-
+    # what the paper says where, and its value
     section: str
     text: str
     printed: str
-    measure: str
-    arguments: str
+    measure: str  # name of a function of measures, from the datasets and the claim
+    arguments: str  # keywords of the measure
+    # how it is measured, for people
     how: str
     tolerance: str
-    full: str
-    why: str
+    full: str  # not empty: it takes the paper's 500 periods, or many starts, to decide
+    why: str  # what a reader has to know where it differs
 
     def keywords(self) -> dict[str, Any]:
         """Return the measure's further arguments, numbers as floats."""

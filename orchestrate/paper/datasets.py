@@ -39,16 +39,7 @@ Answer = Callable[..., xr.Dataset]
 
 
 class Datasets:
-    """The paper's datasets by what they are; what is stored is read, what is not is computed.
-
-    Parameters
-    ----------
-    folder : Path
-        Of the stored results.
-    size : Resolution
-    running : mapping
-        Keywords of :class:`orchestrate.running.options.Running` but ``store``.
-    """
+    """The paper's datasets by what they are; what is stored is read, what is not is computed."""
 
     def __init__(self, folder: Path, size: Resolution, running: Mapping[str, Any]) -> None:
         self.folder, self.size, self.running = folder, size, dict(running)

@@ -38,25 +38,15 @@ CURVES = (
 
 @dataclass(frozen=True)
 class Part:
-    """A part of the report: a picture, its texts, and the results it shows.
+    """A part of the report: a picture, its texts, and the results it shows."""
 
-    Attributes
-    ----------
-    title, text, method : str
-        ``method`` says how it was computed.
-    draw : callable
-    results : callable
-        The datasets that are drawn.
-    files : tuple of str
-        Their files' names.
-    """
-
+    # `method` says how it was computed
     title: str
     text: str
     method: str
     draw: Callable[..., Figure]
-    results: Callable[[Datasets], list[Any]]
-    files: tuple[str, ...]
+    results: Callable[[Datasets], list[Any]]  # the datasets that are drawn
+    files: tuple[str, ...]  # their files' names
 
 
 def orbit_diagram_part(number: str, case: str) -> Part:

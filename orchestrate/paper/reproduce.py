@@ -38,23 +38,7 @@ def reproduce(
     figures: Sequence[str] | None,
     running: Mapping[str, Any],
 ) -> Reproduction:
-    """Compute the paper, or some parts; take stored results; write pictures, claims and report.
-
-    Parameters
-    ----------
-    output : Path
-        Folder of the results.
-    resolution : Resolution
-    figures : sequence of str, optional
-        Names of parts: ``claims``, or of :data:`.pictures.PARTS`; all by default.
-    running : mapping
-        Keywords of :class:`orchestrate.running.options.Running` but ``store``.
-
-    Raises
-    ------
-    InputError
-        Where there is no part of a name.
-    """
+    """Compute the paper, or some parts; take stored results; write pictures, claims and report."""
     parts = choose_parts(figures)
     fmu = finder(running)(OSCILLATOR)
     open_folder(output)
