@@ -27,8 +27,10 @@ CLAIMS = "claims"  # the part that is no picture
 class Reproduction:
     """Claims with verdicts, regions and answers; paths of the pictures and of the report."""
 
+    # `claims` and `regions`, lists of texts by name, and `answers`, sentences; empty where they
+    # were not asked for
     found: Mapping[str, Any]
-    pictures: Mapping[str, Path]
+    pictures: Mapping[str, Path]  # PNG files by the names of their parts
     report: Path
 
 
