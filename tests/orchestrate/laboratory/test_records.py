@@ -13,6 +13,7 @@ from scipy.io import wavfile
 
 from orchestrate import InputError, Sampled, read_record, record, write_record
 from orchestrate.laboratory import record_files, record_mat
+from orchestrate.laboratory.record_checks import clipped_share
 
 from ...sparing import ordinary
 
@@ -430,3 +431,22 @@ def test_edited_files_are_read_or_refused_in_one_line(tmp_path, ending):
             refused += 1
             assert "\n" not in str(error) and str(path) in str(error)
     assert refused > 50
+
+
+def test_repeated_extreme_values_are_those_of_a_saturated_channel():
+    """Digits, tones of few samples a period, pulses from rest and noise are no saturation."""
+    time, rng = np.arange(20_000) / 1000.0, np.random.default_rng(2)
+    sweep = 4.0 * np.sin(2.0 * np.pi * (30.0 * time + 0.2 * time**2))
+    passed = sweep * (0.1 + np.exp(-(((time - 9.0) / 1.5) ** 2)))
+    pulse = np.where(time < 0.011, np.sin(np.pi * time / 0.011), 0.0)
+    tones = [np.sin(2.0 * np.pi * hertz * time) for hertz in (50.0, 5.0)]
+    sound = [rng.normal(size=20_000), pulse, *tones, *(np.round(sweep, n) for n in (0, 1, 2, 3))]
+    assert [clipped_share(values) for values in sound] == [0.0] * len(sound)
+    for noise in (0.0, 0.05):
+        values = passed + rng.normal(0.0, noise, len(passed))
+        peak = np.abs(values).max()
+        limited = [np.clip(values, -share * peak, share * peak) for share in (0.8, 0.5)]
+        assert clipped_share(values) == 0.0 and clipped_share(limited[0]) > 0.01
+        assert clipped_share(limited[1]) == pytest.approx(
+            np.mean(np.abs(limited[1]) == 0.5 * peak), rel=0.02
+        )
