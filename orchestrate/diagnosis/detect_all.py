@@ -80,7 +80,7 @@ def checked_job(
         It names the record.
     """
     try:
-        data = checked_data(record)
+        data = checked_data(record, guess)
     except InputError as error:
         raise InputError(f"{name}: {error}") from None
     return DetectJob(name=name, data=data, guess=guess, free=free)

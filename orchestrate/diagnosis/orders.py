@@ -174,6 +174,13 @@ class RecordOrders:
         """Amplitude of the base's order 1, m/s2, shape (windows,)."""
         return np.abs(self.order(1.0, BOX))
 
+    @property
+    def resonance(self) -> float:
+        """Frequency at which a sensor moves most for the base's amplitude, Hz."""
+        rows = [self.channels.names.index(name) for name in self.sensors]
+        response = (np.abs(self.amplitude[rows, 0]) / self.level).max(axis=0)
+        return float(self.windows.frequency[np.argmax(response)])
+
 
 def record_orders(record: xr.Dataset) -> RecordOrders:
     """Compute the orders of a record of a swept or stepped sine.

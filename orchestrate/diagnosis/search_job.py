@@ -18,7 +18,7 @@ from ..laboratory.record import record as made_record
 from ..running.job import Inputs, Job, Table
 from ..structures import Structure
 from .curve_evidence import CurveData
-from .decision_rule import SOUND_DESCRIBES
+from .decision_rule import SETTINGS
 from .errors import estimate
 from .even_orders import even_orders
 from .evidence import Evidence
@@ -137,7 +137,7 @@ def may_be_delaminated(evidence: Evidence, bonded_motion: Floats, sound_misfit: 
         Lowest misfit of a sound hypothesis.
     """
     even = even_orders(evidence, evidence.fitted_orders(bonded_motion))
-    return even.is_opening_seen or sound_misfit > SOUND_DESCRIBES
+    return even.is_opening_seen or sound_misfit > SETTINGS.sound
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -207,7 +207,7 @@ class SearchJob(Job):
         search = Search(self.hypotheses[position], self.evidence)
         starts = search.hypothesis.starts(self.evidence)
         found = search.best_minima(starts, keep=3, coarse=10, fine=20)
-        if found[0].misfit > SOUND_DESCRIBES:  # a jump of the response makes it rugged
+        if found[0].misfit > SETTINGS.sound:  # a jump of the response makes it rugged
             found[0] = search.polish(found[0])
         return solutions_table(position, found, search.evaluations)
 

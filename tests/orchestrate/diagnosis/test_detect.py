@@ -1,5 +1,7 @@
 """Verdicts and fits on short records of structures that are known."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -10,7 +12,7 @@ from orchestrate.diagnosis.fitting import Search, Solution
 from orchestrate.diagnosis.hypotheses import FREE
 from tools.benches.bench import Bench
 from tools.benches.excitation import Swept
-from tools.benches.lumped import Faces, Halves
+from tools.benches.lumped import Faces, Halves, Torsion
 from tools.benches.sensors import Sensor
 
 from .records import BEAM, RATE, SWEEP, guess, record
@@ -108,7 +110,7 @@ def test_a_history_without_its_impacts_spikes_is_refused():
         orchestrate.signs(history)
 
 
-def test_a_structure_that_friction_locks_is_not_seen_to_open():
+def test_of_a_structure_that_friction_locks_no_resonance_is_seen_and_nothing_is_decided():
     """Faces pressed together rub: on a bench of its own, whose contact is no model of ours."""
     faces = Faces(law="linear", frequency=900.0, clearance=-4e-3, friction=0.3)
     halves = Halves(m1=1.5, m2=1.2, f1=37.5, f2=34.7, zeta1=0.007, zeta2=0.005)
@@ -119,7 +121,51 @@ def test_a_structure_that_friction_locks_is_not_seen_to_open():
     locked, motion = bench.measure(halves.delaminated(faces), seed=3)
     assert motion.largest_gap.max() < 0.0
     answer = orchestrate.detect(locked, guess(f1=38.0, f2=34.0), **LIMIT)
-    assert str(answer.verdict.values) == "no opening seen", answer.attrs["reason"]
+    assert str(answer.verdict.values) == "undecided"
+    assert "does not pass the resonance" in answer.attrs["reason"]
+
+
+def test_a_sound_beam_that_twists_between_two_sensors_is_not_delaminated():
+    """A torsion mode 8 % above bending, and sensors that are not exactly opposite."""
+    halves = Halves(f1=46.0, f2=46.0)
+    sensor = Sensor(noise=0.02)
+    torsion = Torsion(ratio=1.08, participation=0.5, offset=0.2)
+    bench = Bench(
+        excitation=Swept(36.0, 60.0, 6.0, 3.0), box=sensor, face1=sensor, face2=sensor, rate=700.0
+    )
+    twisted, _ = bench.measure(halves.bonded_with_torsion(torsion), seed=3)
+    answer = orchestrate.detect(twisted, guess(f1=42.0, f2=50.0), **LIMIT)
+    assert float(answer.faces_apart) > 10.0 and float(answer.ratio) > 1.05
+    assert str(answer.verdict.values) == "undecided"
+    assert "two modes of a sound beam" in answer.attrs["reason"]
+    assert answer.value.isnull().all() and answer.standard_error.isnull().all()
+
+
+QUIET_CASES = {  # of a bonded beam at 33.8 Hz: clip, end of the sweep in s, factor of the times
+    "saturated": (0.8, 10.0, 1.0, "saturated"),
+    "too short": (np.inf, 3.5, 1.0, "does not pass the resonance"),
+    "in ms": (np.inf, 10.0, 1e3, "a factor of"),
+}
+
+
+@pytest.mark.parametrize("name", QUIET_CASES)
+def test_no_opening_is_seen_only_in_a_record_that_can_show_one(name):
+    share, end, factor, reason = QUIET_CASES[name]
+    whole = record(BEAM.as_bonded(), noise=0.02)
+    part = whole.sel(time=slice(0.0, end))
+    peak = float(abs(part.acceleration1).max())
+    cut = orchestrate.record(
+        box_acceleration=part.box_acceleration,
+        acceleration1=np.clip(part.acceleration1, -share * peak, share * peak),
+        acceleration2=part.acceleration2,
+        sample_rate=RATE / factor,
+    )
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        answer = orchestrate.detect(cut, guess(), **LIMIT)
+    assert str(answer.verdict.values) == "undecided"
+    assert reason in answer.attrs["reason"]
+    assert any("are the times in s" in str(one.message) for one in caught) == (factor > 1.0)
 
 
 def test_of_halves_that_may_change_places_the_guess_decides():
