@@ -275,6 +275,11 @@ class SearchJob(Job):
     def refine_best(self, search: Search, starts: Sequence[Solution]) -> list[Solution]:
         """Refine the best coarse solutions, first near the resonance, then on the whole record."""
         coarse = Search(search.hypothesis, cached_coarse_evidence(self.data), search.player)
+        hypothesis = search.hypothesis
+        assert isinstance(hypothesis, Delaminated)
+        guessed = hypothesis.values_from_structure(self.guess, self.evidence)
+        both = [guessed, with_halves_exchanged(guessed)]
+        starts = [*starts, *coarse.rank_starts(both)]
         chosen = without_neighbours(self.sort_by_misfit_and_guess(search, starts))[
             :CONTINUED_STARTS
         ]
@@ -375,15 +380,28 @@ class SearchJob(Job):
         }
 
 
+def with_halves_exchanged(values: Mapping[str, float]) -> dict[str, float]:
+    """Return the numbers of a delaminated structure whose halves have changed places."""
+    zeta1, zeta2 = values["log_zeta1"], values["log_zeta2"]
+    return {**values, "split": -values["split"], "log_zeta1": zeta2, "log_zeta2": zeta1}
+
+
 def without_neighbours(solutions: Sequence[Solution]) -> list[Solution]:
-    """Drop the solutions that have nearly the split and clearance of a better one."""
+    """Drop the solutions that have nearly the split and clearance of a better one.
+
+    Halves that change places are another solution, however near each other their frequencies are.
+    """
     found: list[Solution] = []
     for one in solutions:
-        steps = ((one.values.get(n, 0.0), s, n) for n, s in MIN_DISTANCES.items())
-        sizes = [[abs(v - other.values.get(n, 0.0)) / s for other in found] for v, s, n in steps]
-        if all(max(distances) > 1.0 for distances in zip(*sizes, strict=True)):
+        if not any(is_neighbour(one.values, other.values) for other in found):
             found.append(one)
     return found
+
+
+def is_neighbour(one: Mapping[str, float], other: Mapping[str, float]) -> bool:
+    """Return whether two solutions have the same half below and nearly the same numbers."""
+    near = all(abs(one.get(n, 0.0) - other.get(n, 0.0)) <= s for n, s in MIN_DISTANCES.items())
+    return near and one.get("split", 0.0) * other.get("split", 0.0) >= 0.0
 
 
 def solutions_table(position: int, solutions: Sequence[Solution], evaluations: int) -> Table:

@@ -10,6 +10,7 @@ from orchestrate.diagnosis.detect import DetectJob, sweep_direction
 from orchestrate.diagnosis.fit import checked_data
 from orchestrate.diagnosis.fitting import Search, Solution
 from orchestrate.diagnosis.hypotheses import FREE
+from orchestrate.diagnosis.search_job import without_neighbours
 from tools.benches.bench import Bench
 from tools.benches.excitation import Swept
 from tools.benches.lumped import Faces, Halves, Torsion
@@ -166,6 +167,27 @@ def test_no_opening_is_seen_only_in_a_record_that_can_show_one(name):
     assert str(answer.verdict.values) == "undecided"
     assert reason in answer.attrs["reason"]
     assert any("are the times in s" in str(one.message) for one in caught) == (factor > 1.0)
+
+
+def test_halves_that_change_places_are_two_solutions():
+    """However near each other: both are searched on."""
+    one, near, other = (Solution("x", {"split": s, "e": 0.5}, 0.2) for s in (0.015, 0.02, -0.015))
+    assert without_neighbours([one, near, other]) == [one, other]
+
+
+@pytest.mark.slow
+def test_a_fit_to_both_faces_has_the_right_half_above():
+    """Halves 3 % apart, from the exact guess: it ended with them exchanged, further away."""
+    numbers = {"m1": 1.5, "m2": 1.955, "f1": 46.894, "f2": 45.514, "zeta1": 0.0088, "zeta2": 0.0088}
+    sensor = Sensor(noise=0.01)
+    faces = Faces(frequency=1324.6, restitution=0.6455)
+    sweep = Swept(32.34, 66.99, 12.0, 4.0)
+    bench = Bench(excitation=sweep, box=sensor, face1=sensor, face2=sensor, rate=700.0)
+    measured, _ = bench.measure(Halves(**numbers).delaminated(faces), seed=1)
+    exact = orchestrate.Structure.from_halves(**numbers, e=0.6)
+    answer = orchestrate.fit(measured, exact, **LIMIT)
+    f1, f2 = answer.value.sel(parameter=["f1", "f2"]).values
+    assert (f1, f2) == (pytest.approx(46.894, abs=0.1), pytest.approx(45.514, abs=0.1))
 
 
 def test_of_halves_that_may_change_places_the_guess_decides():
