@@ -90,24 +90,29 @@ def detect(
         ``frequency_low``, ``frequency_high`` in Hz); of the whole record ``sample_rate``,
         ``record_duration``, ``sweep_low`` and ``sweep_high``; ``order2`` and its
         ``order2_threshold`` over ``window``. Over ``hypothesis``: ``misfit``, ``evaluations``,
-        ``minima``, ``value`` and ``standard_error`` of its parameters, ``misfit_at`` and the
-        ``fitted`` orders over ``window``, beside what is ``measured``. Attributes ``reason``,
-        ``settle``, ``simulated``, ``seen_up_to``, ``assumed`` and ``direction`` of the sweep.
+        ``minima``, ``value`` and ``standard_error`` of its parameters (NaN but of the hypotheses
+        that the verdict is about and that describe the record), ``misfit_at`` and the ``fitted``
+        orders over ``window``, beside what is ``measured``. Attributes ``reason``, ``settle``, ``simulated``, ``seen_up_to``, ``assumed`` and ``direction`` of the sweep.
 
     Raises
     ------
     InputError
-        Where the record is none of a swept or stepped sine.
+        Where the record is none of a swept or stepped sine, or sampled too slowly for order 2.
+
+    Warns
+    -----
+    UserWarning
+        Where the resonance is a factor of 2 or more from the guess's frequencies.
 
     Notes
     -----
     Sound hypotheses are one mass on a linear spring, on one that hardens or softens, with dry
-    friction, or with a stop on one side. "Delaminated" needs order 2 at five times the noise and at
-    half a hundredth of order 1 (or two faces whose order 1 differs), and a misfit 1.5 times smaller
-    than that of the best sound hypothesis, in nine of ten records put together of its blocks; 1.05
-    times is enough where two faces are seen to move apart, as those of no sound structure do. Where
-    bursts once a period at high frequencies tell of impacts, and nothing else opens, the word is
-    "undecided".
+    friction, or with a stop on one side. The rule is that of
+    :meth:`orchestrate.diagnosis.decision_rule.Findings.verdict`: "delaminated" needs order 2 at
+    five times the noise and at half a hundredth of order 1 and a misfit 1.5 times smaller than that
+    of the best sound hypothesis, in nine of ten records put together of its blocks. 1.05 times is
+    enough where two faces are seen to move apart as well, and 5 times are needed where that is all:
+    a torsion mode of a sound beam does it too. What stopped a verdict is in ``reason``.
     Where a number is near its border, records of the best sound and of the best delaminated fit are
     simulated and both are fitted to each: the odds are the ratio of the densities of the ratio of
     misfits, under both, at the measured one. Elsewhere they are the shares of resampled records.
