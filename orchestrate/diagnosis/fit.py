@@ -227,7 +227,7 @@ class FitJob(SearchJob):
         position = len(self.hypotheses) - 1
         every, coordinates = results.comparison()
         made = xr.Dataset(
-            {**every, **results.parameters([True] * len(self.hypotheses))}, coordinates
+            {**every, **results.parameters(np.full(len(self.hypotheses), True))}, coordinates
         ).isel(hypothesis=position)
         name = self.hypotheses[position].name
         named = made.drop_vars("hypothesis").dropna("parameter", how="all", subset=["asked"])
