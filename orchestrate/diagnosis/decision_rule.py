@@ -23,43 +23,31 @@ UNSURE = (0.02, 0.98)  # shares of resampled records between which the ratio is 
 
 @dataclass(frozen=True)
 class Settings:
-    """Thresholds of :meth:`Findings.verdict`.
+    """Thresholds of :meth:`Findings.verdict`."""
 
-    Attributes
-    ----------
-    ratio, ratio_apart, ratio_difference : float
-        By which the delaminated misfit has to be smaller than the best sound one: where order 2 is
-        seen, where two faces move apart as well, and where their difference is all that is seen.
-    sound, delaminated, delaminated_apart : float
-        Largest misfit of a sound hypothesis, and of a delaminated one, that describes a record; the
-        last where order 2 or bursts show as well that two faces part: real contacts are not the
-        model's.
-    share, odds : float
-        Share of the resampled records in which the ratio has to be exceeded, and least odds of
-        delaminated against sound.
-    hidden : float
-        Largest order 2 that noise may hide, over order 1.
-    clipped : float
-        Share of a channel's samples at repeated extreme values from which it counts as saturated.
-    end_response : float
-        Response at an end of the sweep, over the largest one, above which the resonance counts as
-        not passed.
-    guess_factor : float
-        Factor between the resonance and the guess's frequencies from which they do not belong
-        together.
-    """
-
+    # by which the delaminated misfit has to be smaller than the best sound one: where order 2 is
+    # seen, where two faces move apart as well, and where their difference is all that is seen
     ratio: float = 1.5
     ratio_apart: float = 1.05
     ratio_difference: float = 5.0
+    # largest misfit of a sound hypothesis, and of a delaminated one, that describes a record; the
+    # last where order 2 or bursts show as well that two faces part: real contacts are not the
+    # model's
     sound: float = 1.2
     delaminated: float = 3.0
     delaminated_apart: float = 4.0
+    # share of the resampled records in which the ratio has to be exceeded, and least odds of
+    # delaminated against sound
     share: float = 0.9
     odds: float = 1.0
-    hidden: float = 0.1
+    hidden: float = 0.1  # largest order 2 that noise may hide, over order 1
+    # share of a channel's samples at repeated extreme values from which it counts as saturated
     clipped: float = 1e-4
+    # response at an end of the sweep, over the largest one, above which the resonance counts as not
+    # passed
     end_response: float = 0.7
+    # factor between the resonance and the guess's frequencies from which they do not belong
+    # together
     guess_factor: float = 2.0
 
 
@@ -68,84 +56,47 @@ SETTINGS = Settings()
 
 @dataclass(frozen=True)
 class Condition:
-    """Hold whether a condition of a verdict is fulfilled, and what to say where it is not.
-
-    Attributes
-    ----------
-    holds : bool
-    otherwise : str
-        A sentence: what stops the verdict.
-    advice : str
-        The measurement that would settle it, where that is not the usual one.
-    """
+    """Hold whether a condition of a verdict is fulfilled, and what to say where it is not."""
 
     holds: bool
-    otherwise: str
-    advice: str = ""
+    otherwise: str  # A sentence: what stops the verdict
+    advice: str = ""  # the measurement that would settle it, where that is not the usual one
 
 
 @dataclass(frozen=True)
 class Findings:
-    """Hold the quantities that the decision rule needs.
+    """Hold the quantities that the decision rule needs."""
 
-    Attributes
-    ----------
-    excess : float
-        Order 2 over its detection threshold, the largest of all windows; above 1 it is seen.
-    order2 : float
-        Its size there, over order 1.
-    apart : float
-        Difference of two sensors over its detection threshold; 0 with one sensor.
-    bursts : float
-        Power of one-sided bursts at high frequencies over its detection threshold; NaN where the
-        record is sampled too slowly to tell.
-    sound, delaminated : str
-        Names of the best hypotheses of both kinds.
-    sound_misfit, delaminated_misfit : float
-    share : float
-        Of resampled records in which the delaminated one is better by the ratio that decides.
-    sensors : int
-    low, high : float
-        Level of the base, m/s2.
-    first, last : float
-        Frequencies, Hz.
-    smallest : float
-        Smallest opening at the sensor that would have been seen at every frequency, m.
-    hidden : float
-        Largest order 2 that would not have been seen, over order 1.
-    clipped : float
-        Share of samples at repeated extreme values, of the channel that has most.
-    end_response : float
-        Response at an end of the sweep over the largest one, the larger of both ends.
-    resonance : float
-        Frequency of that largest one, Hz.
-    guessed : (float, float)
-        Lower and higher frequency of the guess's halves, Hz.
-    simulated_odds : float
-        Odds of delaminated against sound by simulated records; NaN where there are none.
-    settings : Settings
-    """
-
+    # order 2 over its detection threshold, the largest of all windows; above 1 it is seen
     excess: float
-    order2: float
-    apart: float
+    order2: float  # its size there, over order 1
+    apart: float  # difference of two sensors over its detection threshold; 0 with one sensor
+    # power of one-sided bursts at high frequencies over its detection threshold; NaN where the
+    # record is sampled too slowly to tell
     bursts: float
+    # names of the best hypotheses of both kinds
     sound: str
     sound_misfit: float
     delaminated: str
     delaminated_misfit: float
+    # of resampled records in which the delaminated one is better by the ratio that decides
     share: float
     sensors: int
+    # level of the base, m/s2
     low: float
     high: float
+    # frequencies, Hz
     first: float
     last: float
+    # smallest opening at the sensor that would have been seen at every frequency, m
     smallest: float
-    hidden: float
-    clipped: float
+    hidden: float  # largest order 2 that would not have been seen, over order 1
+    clipped: float  # share of samples at repeated extreme values, of the channel that has most
+    # response at an end of the sweep over the largest one, the larger of both ends
     end_response: float
-    resonance: float
-    guessed: tuple[float, float]
+    resonance: float  # frequency of that largest one, Hz
+    guessed: tuple[float, float]  # lower and higher frequency of the guess's halves, Hz
+    # odds of delaminated against sound by simulated records; NaN where there are none
     simulated_odds: float = math.nan
     settings: Settings = SETTINGS
 
@@ -421,14 +372,7 @@ def factor_outside(value: float, low: float, high: float) -> float:
 
 
 def resampled_share(sound: Floats, delaminated: Floats, ratio: float) -> float:
-    """Return the share of block-bootstrap samples in which the ratio of misfits is exceeded.
-
-    Parameters
-    ----------
-    sound, delaminated : ndarray, shape (sensors, 4, windows)
-        Residuals of the best of both.
-    ratio : float
-    """
+    """Return the share of block-bootstrap samples in which the ratio of misfits is exceeded."""
     one, other = (soft_squares(values).mean(axis=(0, 1)) for values in (sound, delaminated))
     blocks = np.array_split(np.arange(len(one)), min(BLOCKS, len(one)))
     sums = np.array([[one[block].sum(), other[block].sum()] for block in blocks])

@@ -57,41 +57,22 @@ HEADING = re.compile(r"^(?P<name>.*?)[\s_]*[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
 
 @dataclass(frozen=True)
 class Column:
-    """Hold a column of a file: its name, unit and numbers.
-
-    Attributes
-    ----------
-    name : str
-    unit : str
-        As it stands there; empty where there is none.
-    values : ndarray
-    """
+    """Hold a column of a file: its name, unit and numbers."""
 
     name: str
-    unit: str
+    unit: str  # as it stands there; empty where there is none
     values: Floats
 
 
 @dataclass(frozen=True)
 class Columns:
-    """Hold all columns of a file.
-
-    Attributes
-    ----------
-    path : str
-    columns : list of Column
-    sample_rate : float or None
-        Hz, where the file says it.
-    first_row : int
-        Number of the first values in the file's own count.
-    attributes : dict
-        What a record written by this package says of itself.
-    """
+    """Hold all columns of a file."""
 
     path: str
     columns: list[Column]
-    sample_rate: float | None = None
-    first_row: int = 0
+    sample_rate: float | None = None  # hz, where the file says it
+    first_row: int = 0  # number of the first values in the file's own count
+    # what a record written by this package says of itself
     attributes: dict[str, Any] = field(default_factory=dict)
 
 
@@ -128,12 +109,7 @@ def is_unit(text: str) -> bool:
 
 
 def si_factor(label: str, unit: str, known: Mapping[str, float]) -> float:
-    """Return the factor that converts a unit to SI.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the factor that converts a unit to SI."""
     if plain_unit(unit) not in known:
         usual = ("g", "mg", "ms", "rad/s", "deg")
         names = ", ".join(list(known)[:1] + [name for name in usual if name in known])
@@ -152,18 +128,6 @@ def converted_channels(
 
     How they were read are attributes of a record: ``columns``, which column was taken for what;
     ``unit`` of the accelerations; and ``unit_in_file``, where ``unit`` was taken in its place.
-
-    Parameters
-    ----------
-    table : Columns
-    columns : mapping, sequence or None
-        Which column, by name or number from 0, each channel and the time are in.
-    unit : str or None
-        Of accelerations without a unit, or with a wrong one.
-
-    Raises
-    ------
-    InputError
     """
     known = channels_by_name(table) if columns is None else {}
     places = known or channel_places(table, columns)
@@ -264,22 +228,7 @@ def places_asked_for(
     order: Sequence[str],
     names: Sequence[str],
 ) -> dict[str, int]:
-    """Return the column index of each quantity that a caller asks for, by the quantity's name.
-
-    Parameters
-    ----------
-    table : Columns
-    columns : mapping or sequence
-        Which column each quantity is in, by name or number.
-    order : sequence of str
-        Quantities that a sequence of columns stands for, one by one.
-    names : sequence of str
-        All quantities that a mapping may ask for.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the column index of each quantity that a caller asks for, by the quantity's name."""
     if not isinstance(columns, Mapping):
         if isinstance(columns, str) or len(columns) > len(order):
             raise InputError(f"columns = {columns!r}: expected {', '.join(order)} in that order")

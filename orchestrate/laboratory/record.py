@@ -122,12 +122,7 @@ def checked_record(
 
 
 def checked_numbers(name: str, given: Any, first_row: int = 0) -> Floats:
-    """Return a list as an array of floats; raise with the row where one is not finite.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return a list as an array of floats; raise with the row where one is not finite."""
     try:
         values = np.array(given, dtype=float)
     except (TypeError, ValueError):
@@ -144,13 +139,7 @@ def checked_numbers(name: str, given: Any, first_row: int = 0) -> Floats:
 
 
 def checked_rate(times: Floats, rate: float | None, first_row: int = 0) -> float:
-    """Return the sampling rate of equally spaced times, Hz; raise if they are not.
-
-    Raises
-    ------
-    InputError
-        Where they are not, or do not fit the rate that was given.
-    """
+    """Return the sampling rate of equally spaced times, Hz; raise if they are not."""
     falling = np.flatnonzero(np.diff(times) <= 0.0)
     if len(falling):
         row = int(falling[0]) + 1

@@ -28,18 +28,11 @@ BYTE_ORDERS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
 
 @dataclass(frozen=True)
 class Dialect:
-    """Describe how numbers are written in a text file: separator, decimal sign, first row.
-
-    Attributes
-    ----------
-    separator, decimal : str
-    first : int
-        Line of the first numbers, counted from 0.
-    """
+    """Describe how numbers are written in a text file: separator, decimal sign, first row."""
 
     separator: str
     decimal: str
-    first: int
+    first: int  # line of the first numbers, counted from 0
 
     def fields(self, line: str) -> list[str]:
         """Split a line into its fields; a separator at its end is dropped."""
@@ -51,18 +44,7 @@ class Dialect:
 
 
 def read_csv(path: Path, gaps: bool = False) -> Columns:
-    """Read all columns of a text file.
-
-    Parameters
-    ----------
-    path : Path
-    gaps : bool
-        Whether fields may be empty: NaN then.
-
-    Raises
-    ------
-    InputError
-    """
+    """Read all columns of a text file."""
     data = path.read_bytes()
     text = decode_text(path, data)
     lines = text.split("\n", MOST_HEADING + 1)[: MOST_HEADING + 1]
@@ -150,13 +132,7 @@ def fill_gaps(text: str, dialect: Dialect, columns: int) -> str:
 
 
 def parse_numbers(path: Path, text: str, dialect: Dialect, names: list[str]) -> NDArray[np.float64]:
-    """Parse the numbers, shape (rows, columns).
-
-    Raises
-    ------
-    InputError
-        Where something is no number; it names line and column.
-    """
+    """Parse the numbers, shape (rows, columns)."""
     body = text.split("\n", dialect.first)[dialect.first]
     numbers = body.replace(",", ".") if dialect.decimal == "," else body
     separator = None if dialect.separator == " " else dialect.separator
@@ -174,12 +150,7 @@ def parse_numbers(path: Path, text: str, dialect: Dialect, names: list[str]) -> 
 
 
 def refuse_first_bad_field(path: Path, body: str, dialect: Dialect, names: list[str]) -> None:
-    """Raise an error that names the first field that is not a number.
-
-    Raises
-    ------
-    InputError
-    """
+    """Raise an error that names the first field that is not a number."""
     pattern = COMMA if dialect.decimal == "," else POINT
     for number, line in enumerate(body.split("\n"), dialect.first + 1):
         fields = [field.strip() for field in dialect.fields(line)]

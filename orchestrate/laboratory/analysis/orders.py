@@ -35,29 +35,14 @@ NO_SINE = 0.5  # rms of what the box does beside its sine, over the rms of the s
 
 @dataclass(frozen=True)
 class Window:
-    """One window of a record, in which the orders are fitted.
+    """One window of a record, in which the orders are fitted."""
 
-    Attributes
-    ----------
-    part : slice
-        Samples.
-    weights : ndarray
-        Of the squares, Hann's over the phase.
-    offset : ndarray
-        Time from the middle, in half lengths of the window.
-    phase : ndarray
-        rad.
-    time : float
-        Of the middle, s.
-    frequency, rate : float
-        In the middle, Hz, and its derivative, Hz/s.
-    """
-
-    part: slice
-    weights: Floats
-    offset: Floats
-    phase: Floats
-    time: float
+    part: slice  # samples
+    weights: Floats  # of the squares, Hann's over the phase
+    offset: Floats  # time from the middle, in half lengths of the window
+    phase: Floats  # rad
+    time: float  # of the middle, s
+    # in the middle, Hz, and its derivative, Hz/s
     frequency: float
     rate: float
 
@@ -153,20 +138,7 @@ def fit_windows(
     periods: float,
     overlap: float,
 ) -> tuple[list[Window], Floats, Floats]:
-    """Fit orders in windows of a record by least squares; return windows, amplitudes, residuals.
-
-    Returns
-    -------
-    windows : list of Window
-    amplitudes : ndarray, shape (channels, orders, windows)
-        Complex, see :func:`fit`.
-    residual : ndarray, shape (channels, windows)
-
-    Raises
-    ------
-    InputError
-        As :func:`track_orders`.
-    """
+    """Fit orders in windows of a record by least squares; return windows, amplitudes, residuals."""
     measured = phase is None
     angle = measured_phase(channels) if measured else given_phase(channels, phase)
     if isinstance(phase, SteppedSine):
@@ -187,12 +159,7 @@ def fit_windows(
 
 
 def checked_orders(orders: int | Sequence[float]) -> tuple[float, ...]:
-    """Return the orders to track as floats, 1 always first; raise if they are no orders.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the orders to track as floats, 1 always first; raise if they are no orders."""
     expected = f"expected a whole number of 1 to {MOST_ORDERS}, or orders > 0 with 1 among them"
     try:
         if np.ndim(orders) == 0:
@@ -212,12 +179,7 @@ def checked_orders(orders: int | Sequence[float]) -> tuple[float, ...]:
 
 
 def given_phase(channels: Channels, phase: SweptSine | SteppedSine | ArrayLike | None) -> Floats:
-    """Return the excitation's phase at each sample as the user gives it, rad.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the excitation's phase at each sample as the user gives it, rad."""
     if isinstance(phase, (SweptSine, SteppedSine)):
         return phase.phase(channels.time)
     try:
@@ -235,12 +197,7 @@ def given_phase(channels: Channels, phase: SweptSine | SteppedSine | ArrayLike |
 
 
 def measured_phase(channels: Channels) -> Floats:
-    """Return the phase of the box's acceleration as a sine, by its analytic signal; rad.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the phase of the box's acceleration as a sine, by its analytic signal; rad."""
     from scipy.signal import hilbert
 
     box = channels.box - channels.box.mean()
@@ -255,13 +212,7 @@ def measured_phase(channels: Channels) -> Floats:
 def against_box(
     channels: Channels, amplitudes: Floats, residual: Floats, orders: tuple[float, ...]
 ) -> Floats:
-    """Refer complex amplitudes to the phase of the box's own order 1.
-
-    Raises
-    ------
-    InputError
-        Where the box does much beside its orders.
-    """
+    """Refer complex amplitudes to the phase of the box's own order 1."""
     row, first = channels.names.index(BOX), orders.index(1.0)
     box = amplitudes[row, first]
     beside = float(np.median(residual[row] / np.maximum(np.abs(box) * 0.5**0.5, 1e-300)))
@@ -280,19 +231,7 @@ def against_box(
 def divide(
     channels: Channels, phase: Floats, periods: float, overlap: float, smooth: bool
 ) -> Iterator[Window]:
-    """Divide a record into windows of equal phase.
-
-    Parameters
-    ----------
-    channels : Channels
-    phase : ndarray, shape (n,)
-        rad.
-    periods : float
-        In a window.
-    overlap : float
-    smooth : bool
-        Whether the phase is measured: it is replaced by a polynomial in each window.
-    """
+    """Divide a record into windows of equal phase."""
     edge = EDGE * TURN if smooth else 0.0
     length = TURN * periods
     grown = np.maximum.accumulate(phase)
@@ -306,13 +245,7 @@ def divide(
 
 
 def dwells(channels: Channels, stepped: SteppedSine, phase: Floats) -> Iterator[Window]:
-    """Yield a stepped sine's windows: the measured part of each frequency recorded whole.
-
-    Raises
-    ------
-    InputError
-        Where it has none.
-    """
+    """Yield a stepped sine's windows: the measured part of each frequency recorded whole."""
     step = 0.5 / channels.sample_rate
     ends = stepped.measured_times()
     inside = (ends[:, 0] >= channels.time[0] - step) & (ends[:, 1] <= channels.time[-1] + step)
