@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
 from ..response.labels import variable
+from .record_checks import doubtful_channels
 from .signals import HERTZ, checked
 
 if TYPE_CHECKING:
@@ -25,7 +26,6 @@ CHANNELS = {  # long names
 SHORT_NAMES = {"box_acceleration": "base", "acceleration1": "face 1", "acceleration2": "face 2"}
 FEWEST = 4
 UNEVEN = 0.05  # largest distance of a time from equal steps, parts of a step
-PLAUSIBLE = (0.05, 2e5)  # largest absolute values that accelerometers read in tests, m/s2
 
 
 def record(
@@ -70,7 +70,8 @@ def record(
     Warns
     -----
     UserWarning
-        Where the numbers look as if they had another unit.
+        Where a channel looks as if it had another unit, is saturated, keeps one value while the
+        base moves, or is the same as another.
 
     Examples
     --------
@@ -111,9 +112,9 @@ def checked_record(
         if len(one) != len(times):
             raise InputError(f"{name}: {len(one)} values; expected {len(times)}, as the times")
     rate = checked_rate(times, rate, first_row)
-    for name, one in values.items():
-        if attributes.get("source") != "simulated":  # whose unit is known
-            warn_if_implausible(name, one)
+    if attributes.get("source") != "simulated":
+        for name, what, advice in doubtful_channels(times, values):
+            warnings.warn(f"{channel_label(name)}: {what}; {advice}", UserWarning, stacklevel=4)
     return xr.Dataset(
         {name: variable("time", one, "m/s2", CHANNELS[name]) for name, one in values.items()},
         {"time": variable("time", times, "s", "time")},
@@ -171,22 +172,6 @@ def checked_rate(times: Floats, rate: float | None, first_row: int = 0) -> float
     if abs(own - rate) > 0.01 * rate:
         raise InputError(f"sample_rate = {rate!r} Hz: expected {own:.6g}, as the times have")
     return rate
-
-
-def warn_if_implausible(name: str, values: Floats) -> None:
-    """Warn where a channel looks as if it were not in m/s2."""
-    peak, low, high = float(np.abs(values).max()), *PLAUSIBLE
-    mean, spread = abs(float(values.mean())), float(values.std())
-    if 0.0 < peak < low:
-        text = f"no more than {peak:.3g} m/s2: are these numbers in g, or in V"
-    elif peak > high:
-        text = f"up to {peak:.3g} m/s2: are these numbers in mV, or counts"
-    elif abs(mean - 1.0) < 0.03 and spread < 0.5 * mean:
-        text = f"a mean of {mean:.3g} m/s2, as gravity has in g: are these numbers in g"
-    else:
-        return
-    text = f"{channel_label(name)}: {text}? expected m/s2"
-    warnings.warn(text, UserWarning, stacklevel=5)
 
 
 def channel_label(name: str) -> str:

@@ -2,12 +2,75 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from itertools import combinations
+
 import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+PLAUSIBLE = (0.05, 2e5)  # largest absolute values that accelerometers read in tests, m/s2
+CLIPPED = 5e-4  # share of samples at repeated extremes from which a channel is saturated
+CONSTANT = 0.02  # share of the samples, in a row, from which one value is no reading
+FEWEST_CONSTANT = 20  # samples
+MOVING = 0.1  # rms over the usual one from which another channel moves there
+SAME = 1e-9  # of the peak: two sensors never differ so little
 BAND = 1e-3  # of the peak-to-peak value: readings so close to an extreme are at it
 PLATEAU = 3  # samples in a row at an extreme that no sine has
+
+
+def doubtful_channels(time: Floats, channels: Mapping[str, Floats]) -> list[tuple[str, str, str]]:
+    """Return what makes channels doubtful, each as (channel, what it is, what to do).
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,)
+        s.
+    channels : mapping of str to ndarray
+        m/s2, the base first where there is one.
+    """
+    doubts = []
+    for name, values in channels.items():
+        others = [one for other, one in channels.items() if other != name][:1]
+        wrong_unit, share = implausible_unit(values), clipped_share(values)
+        constant = constant_part(values, others[0]) if others else None
+        if wrong_unit:
+            doubts.append((name, wrong_unit, "expected m/s2"))
+        if share > CLIPPED:
+            text = f"saturated: {100.0 * share:.2g} % of its samples repeat its extreme values"
+            doubts.append((name, text, "record it again with a wider range"))
+        if constant is not None:
+            first, last = time[constant.start], time[constant.stop - 1]
+            text = f"keeps the value {values[constant.start]:.4g} from {first:.4g} to {last:.4g} s"
+            doubts.append((name, text, "expected a reading: look for a loose cable"))
+    for (name, values), (other, same) in combinations(channels.items(), 2):
+        if np.ptp(values) > 0.0 and np.abs(values - same).max() <= SAME * np.abs(values).max():
+            doubts.append((other, f"the same values as {name}", "expected a channel each"))
+    return doubts
+
+
+def implausible_unit(values: Floats) -> str:
+    """Return a question on the unit of numbers that are hardly in m/s2; empty if they may be."""
+    peak, low, high = float(np.abs(values).max()), *PLAUSIBLE
+    mean, spread = abs(float(values.mean())), float(values.std())
+    if 0.0 < peak < low:
+        return f"no more than {peak:.3g} m/s2: are these numbers in g, or in V?"
+    if peak > high:
+        return f"up to {peak:.3g} m/s2: are these numbers in mV, or counts?"
+    if abs(mean - 1.0) < 0.03 and spread < 0.5 * mean:
+        return f"a mean of {mean:.3g} m/s2, as gravity has in g: are these numbers in g?"
+    return ""
+
+
+def constant_part(values: Floats, other: Floats) -> slice | None:
+    """Return the longest part in which a channel keeps one value while another one moves."""
+    changes = np.flatnonzero(np.diff(values)) + 1
+    ends = np.concatenate([[0], changes, [len(values)]])
+    longest = int(np.argmax(np.diff(ends)))
+    part = slice(int(ends[longest]), int(ends[longest + 1]))
+    if part.stop - part.start < max(CONSTANT * len(values), FEWEST_CONSTANT):
+        return None
+    return part if other[part].std() > MOVING * other.std() else None
 
 
 def clipped_share(values: Floats) -> float:

@@ -108,6 +108,30 @@ def test_implausible_units_warn(values, words):
         record(acceleration1=values, sample_rate=100.0)
 
 
+SWEPT = 4.0 * np.sin(2.0 * np.pi * (30.0 + 2.0 * np.arange(4000) / 1000.0) * np.arange(4000) / 1e3)
+
+
+@pytest.mark.parametrize(
+    ("face", "words"),
+    [
+        (3.0 * SWEPT[::-1].clip(-2.0, 2.0), "saturated: 67 % of its samples repeat"),
+        (np.where(np.arange(4000) < 3000, SWEPT[::-1], 0.0), "keeps the value 0 from 3 to 3.999 s"),
+        (SWEPT.copy(), "the same values as box_acceleration"),
+    ],
+)
+def test_a_saturated_dead_or_doubled_channel_warns(face, words):
+    with pytest.warns(UserWarning, match=words) as caught:
+        record(box_acceleration=SWEPT, acceleration1=face, sample_rate=1000.0)
+    assert len(caught) == 1 and "acceleration1" in str(caught[0].message)
+
+
+def test_silence_of_a_whole_record_does_not_warn(recwarn):
+    swept = np.concatenate([SWEPT, np.zeros(2000), SWEPT])
+    record(box_acceleration=swept, acceleration1=np.roll(swept, 7), sample_rate=1000.0)
+    record(box_acceleration=SWEPT, acceleration1=SWEPT, sample_rate=1000.0, source="simulated")
+    assert not recwarn
+
+
 def test_plausible_units_do_not_warn(recwarn):
     for peak in (0.2, 9.8, 5000.0):
         record(acceleration1=peak * np.sin(np.arange(99.0)), sample_rate=100.0)
