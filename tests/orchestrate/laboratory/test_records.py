@@ -52,6 +52,26 @@ def test_times_with_few_digits_are_even():
     assert alone.attrs["sample_rate"] == pytest.approx(25_600.0, rel=1e-5)
 
 
+def five_digits(count=12_000, rate=1024.0):
+    time = np.arange(count) / rate
+    return np.array([float(f"{one:.5g}") for one in time]), np.sin(300.0 * time)
+
+
+def test_rounded_times_say_so_and_a_sampling_rate_corrects_them():
+    time, values = five_digits()
+    with pytest.raises(InputError, match=r"rounded to 0.001 s, give sample_rate="):
+        record(time=time, acceleration1=values)
+    data = record(time=time, acceleration1=values, sample_rate=1024.0)
+    assert (data.time.values == np.arange(len(time)) / 1024.0).all()
+    with pytest.raises(
+        InputError, match=r"sample_rate = 1000.0 Hz: expected 102\d.*, as the times"
+    ):
+        record(time=time, acceleration1=values, sample_rate=1000.0)
+    kept = np.delete(np.arange(len(time)), [5000, 7000, 9000])
+    with pytest.raises(InputError, match="time, row"):
+        record(time=time[kept], acceleration1=values[kept], sample_rate=1024.0)
+
+
 def changed(column, row, value):
     data = drawn(50)
     columns = {name: data[name].values.copy() for name in ("time", *CHANNELS)}
