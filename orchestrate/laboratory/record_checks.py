@@ -15,6 +15,7 @@ CONSTANT = 0.02  # share of the samples, in a row, from which one value is no re
 FEWEST_CONSTANT = 20  # samples
 MOVING = 0.1  # rms over the usual one from which another channel moves there
 SAME = 1e-9  # of the peak: two sensors never differ so little
+COUNTING = 0.9  # share of equal steps in a counter
 BAND = 1e-3  # of the peak-to-peak value: readings so close to an extreme are at it
 PLATEAU = 3  # samples in a row at an extreme that no sine has
 
@@ -71,6 +72,26 @@ def constant_part(values: Floats, other: Floats) -> slice | None:
     if part.stop - part.start < max(CONSTANT * len(values), FEWEST_CONSTANT):
         return None
     return part if other[part].std() > MOVING * other.std() else None
+
+
+def ascends(values: Floats) -> bool:
+    """Return whether values ascend from first to last, as times and counters do."""
+    steps = np.diff(values)
+    return bool((steps >= 0.0).all() and (steps > 0.0).any())
+
+
+def first_hole(values: Floats) -> int | None:
+    """Return the row after which a counter goes on that misses some; None if it is none, or whole.
+
+    A counter has equal steps up in nine of ten rows or more; where it falls it begins again.
+    """
+    steps = np.diff(values)
+    usual = float(np.median(steps)) if len(steps) else 0.0
+    equal = np.abs(steps - usual) <= 0.5 * usual
+    if not usual > 0.0 or equal.mean() < COUNTING:
+        return None
+    holes = np.flatnonzero(steps > 1.5 * usual)
+    return int(holes[0]) + 1 if len(holes) else None
 
 
 def clipped_share(values: Floats) -> float:
