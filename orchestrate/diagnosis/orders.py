@@ -287,10 +287,7 @@ def sine_windows(channels: Channels) -> tuple[OrderWindows, Complexes]:
         for one in overlapping_windows(channels, phase)
         if one.frequency * channels.duration > 1.0
     ]
-    highest = (
-        NYQUIST * channels.sample_rate / min(OFF_ORDERS)
-    )  # without a floor order 1 says little
-    usable = [one for one in usable if one.frequency < highest]
+    usable = [one for one in usable if one.frequency < NYQUIST * channels.sample_rate]
     if len(usable) < MIN_WINDOWS:
         text = f"{EXPECTED}, of {MIN_WINDOWS * MIN_PERIODS / 2:g} periods or more"
         lacking = f"no sine of moving frequency in {channels.duration:.4g} s"
