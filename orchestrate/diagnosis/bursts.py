@@ -97,13 +97,7 @@ def mean_power(signal: Floats, turns: NDArray[np.intp], width: int) -> Floats:
     """Return the mean square of a signal in intervals of about ``width`` samples, half overlapping.
 
     Powers of single periods above that of all but ``IN_PERIODS`` of them count no more than it.
-
-    Parameters
-    ----------
-    signal : ndarray, shape (n,)
-    turns : ndarray, shape (n,)
-        Number of the period of each sample.
-    width : int
+    Arguments are shape (n,): the signal, and the number of the period of each sample.
     """
     count = np.maximum(np.bincount(turns), 1)
     power = np.bincount(turns, signal**2) / count

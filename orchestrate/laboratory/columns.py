@@ -94,46 +94,23 @@ CURVE_NAMES = {
 
 @dataclass(frozen=True)
 class Column:
-    """Hold a column of a file: its name, unit and numbers.
-
-    Attributes
-    ----------
-    name : str
-    unit : str
-        As it stands there; empty where there is none.
-    values : ndarray
-        NaN in a column of texts.
-    text : str
-        The first text of such a column.
-    """
+    """Hold a column of a file: its name, unit and numbers."""
 
     name: str
-    unit: str
-    values: Floats
-    text: str = ""
+    unit: str  # as it stands there; empty where there is none
+    values: Floats  # NaN in a column of texts
+    text: str = ""  # the first one of such a column
 
 
 @dataclass(frozen=True)
 class Columns:
-    """Hold all columns of a file.
-
-    Attributes
-    ----------
-    path : str
-    columns : list of Column
-    sample_rate : float or None
-        Hz, where the file says it.
-    first_row : int
-        Number of the first values in the file's own count.
-    attributes : dict
-        What a record written by this package says of itself.
-    """
+    """Hold all columns of a file."""
 
     path: str
     columns: list[Column]
-    sample_rate: float | None = None
-    first_row: int = 0
-    attributes: dict[str, Any] = field(default_factory=dict)
+    sample_rate: float | None = None  # Hz, where the file says it
+    first_row: int = 0  # number of the first values in the file's own count
+    attributes: dict[str, Any] = field(default_factory=dict)  # what our own records say
 
 
 def split_heading(heading: str) -> tuple[str, str]:
@@ -176,12 +153,7 @@ def is_unit(text: str) -> bool:
 
 
 def si_factor(label: str, unit: str, known: Mapping[str, float]) -> float:
-    """Return the factor that converts a unit to SI.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the factor that converts a unit to SI."""
     if plain_unit(unit) not in known:
         usual = ("g", "mg", "ms", "rad/s", "deg")
         names = ", ".join(list(known)[:1] + [name for name in usual if name in known])
@@ -312,13 +284,7 @@ def channel_places(
 
 
 def places_by_order(table: Columns, wanted: Sequence[str]) -> dict[str, int]:
-    """Return the column index of each quantity by their order, without texts and counters.
-
-    Raises
-    ------
-    InputError
-        Where there are more columns, or three directions of one sensor.
-    """
+    """Return the column index of each quantity by order; refuse directions and further columns."""
     numbers = [i for i, one in enumerate(table.columns) if not one.text]
     if "time" in wanted:
         numbers = sorted({0, *numbers})  # a time that is a text is refused later
@@ -337,12 +303,7 @@ def places_by_order(table: Columns, wanted: Sequence[str]) -> dict[str, int]:
 
 
 def check_counters(table: Columns, places: Mapping[str, int]) -> None:
-    """Check that no column beside the channels is a counter that misses samples.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that no column beside the channels is a counter that misses samples."""
     for i, column in enumerate(table.columns):
         row = None if i in places.values() or column.text else first_hole(column.values)
         if row is not None:
@@ -404,13 +365,7 @@ def places_asked_for(
 
 
 def channels_by_name(table: Columns) -> dict[str, int]:
-    """Return the column index of time and channels by their usual names; empty if no channel.
-
-    Raises
-    ------
-    InputError
-        Where the columns are functions of the frequency.
-    """
+    """Return the column index of time and channels by their usual names; empty if no channel."""
     known = places_by_name(table, NAMES)
     if "time" not in known and not table.sample_rate:
         units = [plain_unit(one.unit) for one in table.columns]
@@ -424,13 +379,7 @@ def channels_by_name(table: Columns) -> dict[str, int]:
 
 
 def places_by_name(table: Columns, names: Mapping[str, str]) -> dict[str, int]:
-    """Return the column index of each quantity by the patterns of its usual names.
-
-    Raises
-    ------
-    InputError
-        Where several columns have a usual name of one quantity, and none is called as it is here.
-    """
+    """Return the column index of each quantity by its usual names; raise where several have one."""
     plain = [re.sub(r"[\W_]", "", column.name.lower()) for column in table.columns]
     places = {}
     for name, pattern in names.items():

@@ -124,12 +124,7 @@ def checked_record(
 
 
 def checked_numbers(name: str, given: Any, first_row: int = 0) -> Floats:
-    """Return a list as an array of floats; raise with the row where one is not finite.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return a list as an array of floats; raise with the row where one is not finite."""
     try:
         values = np.array(given, dtype=float)
     except (TypeError, ValueError):
@@ -146,19 +141,13 @@ def checked_numbers(name: str, given: Any, first_row: int = 0) -> Floats:
 
 
 def checked_times(times: Floats, rate: float | None, first_row: int = 0) -> tuple[Floats, float]:
-    """Return times in equal steps and their sampling rate, Hz; a stated rate corrects rounded ones.
-
-    Raises
-    ------
-    InputError
-        Where they are not in equal steps, or do not fit the rate that was given.
-    """
+    """Return equally spaced times and their rate, Hz; a stated rate corrects rounded times."""
     count, resolution = np.arange(len(times)), time_resolution(times)
     if rate is not None:
-        off, error = times - count / rate, rounding_error(resolution, 1.0 / rate)
-        if np.ptp(off) <= UNEVEN / rate:
+        spread = float(np.ptp(times - count / rate))
+        if spread <= UNEVEN / rate:
             return times, rate
-        if np.ptp(off) <= error:
+        if spread <= rounding_error(resolution, 1.0 / rate):
             return times[0] + count / rate, rate
     step = float(times[-1] - times[0]) / (len(times) - 1)
     off = float(np.abs(times - times[0] - step * count).max())

@@ -21,20 +21,12 @@ PLATEAU = 3  # samples in a row at an extreme that no sine has
 
 
 def doubtful_channels(time: Floats, channels: Mapping[str, Floats]) -> list[tuple[str, str, str]]:
-    """Return what makes channels doubtful, each as (channel, what it is, what to do).
-
-    Parameters
-    ----------
-    time : ndarray, shape (n,)
-        s.
-    channels : mapping of str to ndarray
-        m/s2, the base first where there is one.
-    """
+    """Return what makes channels, the base first, doubtful: (channel, what it is, what to do)."""
     doubts = []
     for name, values in channels.items():
-        others = [one for other, one in channels.items() if other != name][:1]
+        other = next((one for key, one in channels.items() if key != name), values)
         wrong_unit, share = implausible_unit(values), clipped_share(values)
-        constant = constant_part(values, others[0]) if others else None
+        constant = constant_part(values, other)
         if wrong_unit:
             doubts.append((name, wrong_unit, "expected m/s2"))
         if share > CLIPPED:
@@ -44,9 +36,10 @@ def doubtful_channels(time: Floats, channels: Mapping[str, Floats]) -> list[tupl
             first, last = time[constant.start], time[constant.stop - 1]
             text = f"keeps the value {values[constant.start]:.4g} from {first:.4g} to {last:.4g} s"
             doubts.append((name, text, "expected a reading: look for a loose cable"))
-    for (name, values), (other, same) in combinations(channels.items(), 2):
-        if np.ptp(values) > 0.0 and np.abs(values - same).max() <= SAME * np.abs(values).max():
-            doubts.append((other, f"the same values as {name}", "expected a channel each"))
+    for first, second in combinations(channels, 2):
+        values, off = channels[first], np.abs(channels[first] - channels[second])
+        if np.ptp(values) > 0.0 and off.max() <= SAME * np.abs(values).max():
+            doubts.append((second, f"the same values as {first}", "expected a channel each"))
     return doubts
 
 

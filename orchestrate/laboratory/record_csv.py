@@ -33,21 +33,12 @@ BYTE_ORDERS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
 
 @dataclass(frozen=True)
 class Dialect:
-    """Describe how numbers are written in a text file: separator, decimal sign, first row.
-
-    Attributes
-    ----------
-    separator, decimal : str
-    first : int
-        Line of the first numbers, counted from 0.
-    texts : frozenset of int
-        Columns of texts.
-    """
+    """Describe how numbers are written in a text file: separator, decimal sign, first row."""
 
     separator: str
     decimal: str
-    first: int
-    texts: frozenset[int] = frozenset()
+    first: int  # line of the first numbers, counted from 0
+    texts: frozenset[int] = frozenset()  # columns of texts
 
     def fields(self, line: str) -> list[str]:
         """Split a line into its fields; a separator at its end is dropped."""
@@ -59,18 +50,7 @@ class Dialect:
 
 
 def read_csv(path: Path, gaps: bool = False) -> Columns:
-    """Read all columns of a text file.
-
-    Parameters
-    ----------
-    path : Path
-    gaps : bool
-        Whether fields may be empty: NaN then.
-
-    Raises
-    ------
-    InputError
-    """
+    """Read all columns of a text file; with ``gaps`` fields may be empty, which makes them NaN."""
     data = path.read_bytes()
     text = decode_text(path, data)
     lines = text.split("\n", MOST_HEADING + 1)[: MOST_HEADING + 1]
@@ -103,13 +83,7 @@ def decode_text(path: Path, data: bytes) -> str:
 
 
 def dialect_of(path: Path, lines: list[str]) -> Dialect:
-    """Detect separator, decimal sign, first row and columns of texts from a file's first lines.
-
-    Raises
-    ------
-    InputError
-        Where there are no numbers; it names what stands in their place.
-    """
+    """Detect how a file's first lines write numbers; raise naming what stands in their place."""
     for has_texts in (False, True):
         for number in range(len(lines)):
             for separator, decimal in product(SEPARATORS, NUMBERS):
@@ -138,16 +112,16 @@ def dialect_texts(dialect: Dialect, lines: list[str], has_texts: bool) -> frozen
         return None
     more = [line for line in lines[1:] if line.strip()][: TEXT_LINES if has_texts else 0]
     rows = [[one.strip() for one in dialect.fields(line)] for line in (lines[0], *more)]
-    numbers, count = NUMBERS[dialect.decimal], len(rows[0])
-    texts = [{i for i, one in enumerate(row) if one and not numbers.fullmatch(one)} for row in rows]
-    same = all(len(row) == count and one == texts[0] for row, one in zip(rows, texts, strict=True))
-    full = sum(bool(one) for one in rows[0]) - len(texts[0])
-    are_texts = has_texts and all(TEXT.fullmatch(rows[0][i]) for i in texts[0])
-    several = count > 1 or dialect.separator == " "
-    enough = full >= max(0.5 * (count - len(texts[0])), 1)
-    return (
-        frozenset(texts[0]) if several and enough and same and (are_texts or not texts[0]) else None
-    )
+    number, row = NUMBERS[dialect.decimal], rows[0]
+    texts = [{i for i, one in enumerate(r) if one and not number.fullmatch(one)} for r in rows]
+    full, others = sum(map(bool, row)) - len(texts[0]), len(row) - len(texts[0])
+    is_row = (len(row) > 1 or dialect.separator == " ") and full >= max(0.5 * others, 1)
+    if texts[0]:
+        same = all(
+            len(r) == len(row) and one == texts[0] for r, one in zip(rows, texts, strict=True)
+        )
+        is_row = is_row and has_texts and same and all(TEXT.fullmatch(row[i]) for i in texts[0])
+    return frozenset(texts[0]) if is_row else None
 
 
 def settle_decimal_sign(dialect: Dialect, lines: list[str]) -> Dialect:
@@ -188,13 +162,7 @@ def fill_gaps(text: str, dialect: Dialect, columns: int) -> str:
 
 
 def parse_numbers(path: Path, text: str, dialect: Dialect, names: list[str]) -> NDArray[np.float64]:
-    """Parse the numbers, shape (rows, columns).
-
-    Raises
-    ------
-    InputError
-        Where something is no number; it names line and column.
-    """
+    """Parse the numbers, shape (rows, columns); raise naming line and column of another field."""
     body = text.split("\n", dialect.first)[dialect.first]
     numbers = body.replace(",", ".") if dialect.decimal == "," else body
     if dialect.separator == dialect.decimal:
@@ -206,7 +174,10 @@ def parse_numbers(path: Path, text: str, dialect: Dialect, names: list[str]) -> 
     try:
         found = np.loadtxt(
             StringIO(numbers),
-            **{"delimiter": separator, "comments": None, "quotechar": '"', "ndmin": 2},
+            delimiter=separator,
+            comments=None,
+            quotechar='"',
+            ndmin=2,
             usecols=columns if dialect.texts else None,
         )
     except ValueError:
@@ -219,12 +190,7 @@ def parse_numbers(path: Path, text: str, dialect: Dialect, names: list[str]) -> 
 
 
 def refuse_first_bad_field(path: Path, body: str, dialect: Dialect, names: list[str]) -> None:
-    """Raise an error that names the first field that is not a number.
-
-    Raises
-    ------
-    InputError
-    """
+    """Raise an error that names the first field that is not a number."""
     pattern = NUMBERS[dialect.decimal]
     for number, line in enumerate(body.split("\n"), dialect.first + 1):
         fields = [field.strip() for field in dialect.fields(line)]

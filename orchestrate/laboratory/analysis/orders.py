@@ -272,13 +272,7 @@ def moves_as_sine(
     residual: Floats,
     orders: tuple[float, ...],
 ) -> NDArray[np.bool_]:
-    """Return a mask of the windows in which the box moves as a sine: not those of silence.
-
-    Raises
-    ------
-    InputError
-        Where these are less than half of the time.
-    """
+    """Return a mask of the windows in which the box is a sine; raise if less than half the time."""
     row, first = channels.names.index(BOX), orders.index(1.0)
     rms = np.abs(amplitudes[row, first]) * 0.5**0.5
     beside = residual[row] / np.maximum(rms, 1e-300)
