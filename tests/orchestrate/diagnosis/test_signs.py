@@ -214,11 +214,11 @@ def test_a_record_without_a_response_is_refused():
 
 
 @pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize("rate", [1000.0, 143.0])
+@pytest.mark.parametrize("rate", [1000.0, 120.0])
 def test_two_sweeps_with_silence_between_have_signs_at_any_sampling_rate(rate):
     """Silence has no frequency, and at a low rate no window may resolve an order between orders."""
     time, rng = np.arange(int(8.0 * rate)) / rate, np.random.default_rng(4)
-    sweep = 2.0 * np.sin(2.0 * np.pi * (26.0 * time + 2.75 * time**2))
+    sweep = 2.0 * np.sin(2.0 * np.pi * (26.0 * time + 1.5 * time**2))
     box = np.concatenate([sweep, np.zeros(int(2.0 * rate)), sweep])
     data = {"box_acceleration": box, "acceleration1": np.zeros_like(box)}
     base = xr.Dataset(
