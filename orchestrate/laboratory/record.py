@@ -115,7 +115,8 @@ def checked_record(
     times, rate = checked_times(times, rate, first_row)
     if attributes.get("source") != "simulated":
         for name, what, advice in doubtful_channels(times, values):
-            warnings.warn(f"{channel_label(name)}: {what}; {advice}", UserWarning, stacklevel=4)
+            text = f"{what}{'' if what.endswith('?') else ';'} {advice}"
+            warnings.warn(f"{channel_label(name)}: {text}", UserWarning, stacklevel=4)
     return xr.Dataset(
         {name: variable("time", one, "m/s2", CHANNELS[name]) for name, one in values.items()},
         {"time": variable("time", times, "s", "time")},
