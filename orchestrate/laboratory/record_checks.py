@@ -57,7 +57,7 @@ def implausible_unit(values: Floats) -> str:
 
 
 def constant_part(values: Floats, other: Floats) -> slice | None:
-    """Return the longest part in which a channel keeps one value while another one moves."""
+    """Return the longest part with one value in which another channel moves; None without one."""
     changes = np.flatnonzero(np.diff(values)) + 1
     ends = np.concatenate([[0], changes, [len(values)]])
     longest = int(np.argmax(np.diff(ends)))
