@@ -14,13 +14,7 @@ REQUIRES_DELAMINATED = "bonded = True: expected a delaminated structure (bonded 
 
 
 def checked_integer(name: str, value: Any, minimum: int, maximum: int = MAX_COUNT) -> int:
-    """Return ``value`` as int; raise ``InputError`` unless whole and from minimum to maximum.
-
-    Raises
-    ------
-    InputError
-        Where it is none, or out of the range.
-    """
+    """Return ``value`` as int; raise ``InputError`` unless whole and from minimum to maximum."""
     is_integer = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
     if not is_integer or not minimum <= value <= maximum:
         raise InputError(f"{name} = {value!r}: expected a whole number from {minimum} to {maximum}")
@@ -28,12 +22,8 @@ def checked_integer(name: str, value: Any, minimum: int, maximum: int = MAX_COUN
 
 
 def checked_word(name: str, value: Any, known: Iterable[str]) -> str:
-    """Return ``value`` as a string; raise ``InputError`` unless it is one of the ``known`` words.
-
-    Raises
-    ------
-    InputError
-        Where it is none.
+    """Return ``value`` as a string; raise ``InputError`` unless it is one of the ``known``
+    words.
     """
     words = tuple(known)
     if value not in words:

@@ -18,23 +18,7 @@ PROBE = ".writable"
 
 
 def write_whole(path: str | os.PathLike[str], write: Callable[[Path], object]) -> Path:
-    """Write a file atomically: ``write`` fills a temporary file, which is then renamed.
-
-    Parameters
-    ----------
-    path : path-like
-    write : callable
-        Writes the file it is given the path of.
-
-    Returns
-    -------
-    Path
-
-    Raises
-    ------
-    StoreError
-        Where it cannot be written; what stood there before still does.
-    """
+    """Write a file atomically: ``write`` fills a temporary file, which is then renamed."""
     path = Path(path)
     remove_dead_temporaries(path)
     temporary = path.with_name(f"{path.name}.{os.getpid()}.tmp")
@@ -52,13 +36,7 @@ def write_whole(path: str | os.PathLike[str], write: Callable[[Path], object]) -
 
 @contextmanager
 def made_once(path: Path) -> Iterator[None]:
-    """Hold a file lock in a ``with`` block, so that only one process makes a file at a time.
-
-    Raises
-    ------
-    StoreError
-        Where its folder cannot be written.
-    """
+    """Hold a file lock in a ``with`` block, so that only one process makes a file at a time."""
     open_folder(path.parent)
     from filelock import FileLock, Timeout  # brings asyncio: describing a structure is to be quick
 
@@ -77,21 +55,7 @@ def made_once(path: Path) -> Iterator[None]:
 
 
 def read_text(path: str | os.PathLike[str], most: int) -> str:
-    """Return a regular file's text; raise for devices, pipes and over ``most`` bytes.
-
-    Parameters
-    ----------
-    path : path-like
-    most : int
-        Bytes that it may have.
-
-    Raises
-    ------
-    OSError
-        Where it cannot be read.
-    ValueError
-        Where it is no ordinary file, longer, or not UTF-8.
-    """
+    """Return a regular file's text; raise for devices, pipes and over ``most`` bytes."""
     path = Path(path)
     if not stat.S_ISREG(path.stat().st_mode):
         raise ValueError("no ordinary file")
@@ -146,12 +110,7 @@ def is_process_alive(pid: int) -> bool:
 
 
 def open_folder(folder: str | os.PathLike[str]) -> Path:
-    """Create a folder if it is missing and return it; raise unless it is writable.
-
-    Raises
-    ------
-    StoreError
-    """
+    """Create a folder if it is missing and return it; raise unless it is writable."""
     folder = Path(folder)
     probe = folder / f"{PROBE}.{os.getpid()}.tmp"
     try:

@@ -11,11 +11,6 @@ import numpy as np
 def flag_words(attributes: Mapping[Any, Any]) -> dict[int, str]:
     """Return a dict from number to word, read from ``flag_values`` and ``flag_meanings`` (CF).
 
-    Parameters
-    ----------
-    attributes : mapping
-        Of the variable, with CF's ``flag_values`` and ``flag_meanings``.
-
     Examples
     --------
     >>> flag_words({"flag_values": [0, 1], "flag_meanings": "irregular period_doubling"})

@@ -37,11 +37,6 @@ def run_supervised(work: Callable[[], int]) -> int:
     """Fork, run ``work()`` in the child, wait for it; return its exit code, report a crash.
 
     Where there is no fork, and where there is no room for another process, it is computed here.
-
-    Parameters
-    ----------
-    work : callable
-        Returns an exit code, or raises ``SystemExit``.
     """
     pipes: list[int] = []
     parent = os.getpid()
@@ -113,15 +108,7 @@ def die_with_parent(parent: int) -> None:
 
 
 class Supervisor:
-    """Parent's side of a child process: waits, passes signals on, returns the exit code.
-
-    Parameters
-    ----------
-    child : int
-        Its process id.
-    reader : int
-        Where it says what it does.
-    """
+    """Parent's side of a child process: waits, passes signals on, returns the exit code."""
 
     def __init__(self, child: int, reader: int) -> None:
         self.child, self.reader = child, reader

@@ -61,16 +61,7 @@ class TimedChunks:
 def simulate_schedule(
     job: SweepJob, workers: int, clockwork: TimedChunks, each: float
 ) -> tuple[float, int]:
-    """Return the seconds a job would take on some workers, and the wasted guessed values.
-
-    Parameters
-    ----------
-    job : SweepJob
-    workers : int
-    clockwork : TimedChunks
-    each : float
-        Seconds that handing out a chunk and taking its result cost beside.
-    """
+    """Return the seconds a job would take on some workers, and the wasted guessed values."""
     progress = Progress(job, Memory(), {}, {OSCILLATOR: find(OSCILLATOR)})
     progress.start({})
     busy: list[tuple[float, int, Task, Done]] = []

@@ -17,27 +17,16 @@ MODELS = Path(__file__).resolve().parents[1] / "fmu_src" / "models"
 
 @dataclass(frozen=True)
 class Reference:
-    """A model's reference run: inputs, outputs and times.
+    """A model's reference run: inputs, outputs and times."""
 
-    Attributes
-    ----------
-    model, folder : str
-        Model name, and its folder below ``fmu_src/models``.
-    inputs, outputs : tuple of str
-    input_at : callable
-        Inputs from a time on.
-    jumps : tuple of float
-        Communication points at which they change, s.
-    step, stop : float
-        s.
-    """
-
+    # model name, and its folder below `fmu_src/models`
     model: str
     folder: str
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
-    input_at: Callable[[float], tuple[float, ...]]
-    jumps: tuple[float, ...]
+    input_at: Callable[[float], tuple[float, ...]]  # inputs from a time on
+    jumps: tuple[float, ...]  # communication points at which they change, s
+    # s
     step: float
     stop: float
 

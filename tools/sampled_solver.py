@@ -74,25 +74,7 @@ def simulate_from_rest(
     scale: float = 1.0,
     rate: float | None = None,
 ) -> tuple[float, int]:
-    """Integrate the structure from rest; return processor seconds and number of impacts.
-
-    Parameters
-    ----------
-    structure : Structure
-    acceleration : callable
-        Of the box, m/s2, from the time in s.
-    end : float
-        s.
-    scale : float
-        Of the displacements, m: tolerances are over it.
-    rate : float, optional
-        At which the motion is recorded as well, Hz.
-
-    Returns
-    -------
-    seconds : float
-    impacts : int
-    """
+    """Integrate the structure from rest; return processor seconds and number of impacts."""
     flight, contact = equations_of_motion(structure, acceleration)
     gap, pressed = event_functions(structure)
     begin = time.process_time()

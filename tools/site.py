@@ -25,13 +25,7 @@ TAKEN = {"script": "src", "link": "href", "img": "src", "iframe": "src", "source
 
 @dataclass
 class Page(HTMLParser):
-    """HTML parser that collects a page's links, resources and anchors.
-
-    Attributes
-    ----------
-    path : Path
-    links, taken, places : list or set of str
-    """
+    """HTML parser that collects a page's links, resources and anchors."""
 
     path: Path
     links: list[str] = field(default_factory=list)
@@ -55,12 +49,7 @@ class Page(HTMLParser):
 
 @dataclass
 class Site:
-    """A folder of HTML pages.
-
-    Attributes
-    ----------
-    folder : Path
-    """
+    """A folder of HTML pages."""
 
     folder: Path
 

@@ -12,20 +12,7 @@ MAX_BYTES = 1 << 30  # unpacked; the same
 
 
 def check_archive(data: bytes) -> None:
-    """Raise if an FMU's zip has paths outside its folder, too many files or too many bytes.
-
-    Parameters
-    ----------
-    data : bytes
-        The archive.
-
-    Raises
-    ------
-    ValueError
-        With the reason, in a line.
-    zipfile.BadZipFile
-        Where it is no archive.
-    """
+    """Raise if an FMU's zip has paths outside its folder, too many files or too many bytes."""
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         entries = archive.infolist()
     if len(entries) > MAX_FILES:
@@ -47,11 +34,6 @@ def check_archive(data: bytes) -> None:
 
 
 def check_identifier(name: str) -> None:
-    """Raise ValueError unless an FMU's modelIdentifier has only letters, digits and ``_``.
-
-    Raises
-    ------
-    ValueError
-    """
+    """Raise ValueError unless an FMU's modelIdentifier has only letters, digits and ``_``."""
     if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
         raise ValueError(f"modelIdentifier {name[:100]!r}, expected letters, digits and _")

@@ -23,27 +23,7 @@ def begin(
     start: ArrayLike = REST,
     **values: float,
 ) -> None:
-    """Reset an oscillator FMU; initialise it at time 0 by structure, excitation and start state.
-
-    Parameters
-    ----------
-    instance : Instance
-    structure : Structure
-    excitation : Excitation
-    start : array-like of 4 floats
-        x1, x2 in m from the unloaded springs, v1, v2 in m/s. All zero, ``REST``: at rest, with a
-        preload at ``structure.at_rest``.
-    **values
-        Further start values and inputs, by the FMU's names. ``x_rel_max`` is off unless asked for
-        here (``x_rel_max_on=True``).
-
-    Raises
-    ------
-    InputError
-        Where ``start`` has another length, or the FMU lacks a variable.
-    FmuError
-        Where the FMU refuses a value; masses that overlap among them.
-    """
+    """Reset an oscillator FMU; initialise it at time 0 by structure, excitation and start state."""
     start_state = from_rest(structure, four_numbers(start))
     state = dict(zip(START_PARAMETERS, start_state, strict=True))
     start_values = {**structure.parameters(), **state, **excitation.inputs(), "x_rel_max_on": False}
@@ -63,19 +43,7 @@ def from_rest(structure: Structure, state: list[float]) -> list[float]:
 
 
 def gap_between(states: NDArray[np.float64], gap_offset: ArrayLike = 0.0) -> NDArray[np.float64]:
-    """Return the gap x2 - x1 + offset of states (..., 4); rounding beside an offset is 0.
-
-    Parameters
-    ----------
-    states : ndarray, shape (..., 4)
-        x1, x2 from the unloaded springs, v1, v2.
-    gap_offset : array-like
-        The gap between unloaded springs, see :attr:`.Structure.gap_offset`; in the states' unit.
-
-    Returns
-    -------
-    ndarray, shape (...)
-    """
+    """Return the gap x2 - x1 + offset of states (..., 4); rounding beside an offset is 0."""
     x1, x2 = states[..., 0], states[..., 1]
     gap: NDArray[np.float64] = x2 - x1
     if not np.any(gap_offset):
@@ -99,21 +67,7 @@ def four_numbers(start: ArrayLike) -> list[float]:
 
 
 def sampled(instance: Instance, time: float, target: float, count: int) -> NDArray[np.float64]:
-    """Step an FMU from ``time`` to ``target``; return ``count`` equidistant states (count, 4).
-
-    Parameters
-    ----------
-    instance : Instance
-        At ``time``.
-    time, target : float
-        s.
-    count : int
-
-    Returns
-    -------
-    ndarray, shape (count, 4)
-        x1, x2 in m, v1, v2 in m/s.
-    """
+    """Step an FMU from ``time`` to ``target``; return ``count`` equidistant states (count, 4)."""
     step_capacity = samples_per_step(instance)
     states, width = np.empty((count, len(SAMPLE_SERIES))), (target - time) / count
     for done in range(0, count, step_capacity):

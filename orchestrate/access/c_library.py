@@ -23,21 +23,7 @@ PACKAGE = Path(__file__).resolve().parents[1]
 
 
 def library(source: Path, folder: str | PathLike[str] | None = None) -> Path | None:
-    """Return the path of a C source's shared library, compiled if missing; None if it cannot be.
-
-    Parameters
-    ----------
-    source : Path
-        The C file.
-    folder : path-like, optional
-        Build folder; by default that of a clone, without a clone what came with the package and
-        the user's cache folder.
-
-    Returns
-    -------
-    Path, or None
-        None where there is none and none can be made or written here.
-    """
+    """Return the path of a C source's shared library, compiled if missing; None if it cannot be."""
     platform = this_machine()
     if platform not in PLATFORMS:
         return None
@@ -79,18 +65,7 @@ def has_token(path: Path, token: bytes) -> bool:
 def build_libraries(
     folder: str | PathLike[str] | None = None, platforms: Iterable[str] = ()
 ) -> list[Path]:
-    """Compile all C sources of the package for the platforms; return the paths of those made.
-
-    Parameters
-    ----------
-    folder, platforms
-        As of :func:`.exported.build`.
-
-    Returns
-    -------
-    list of Path
-        The libraries written.
-    """
+    """Compile all C sources of the package for the platforms; return the paths of those made."""
     target, made = default_folder() if folder is None else Path(folder), []
     for source in sorted(PACKAGE.glob("*/*.c")):
         for platform in chosen(platforms) or usual():

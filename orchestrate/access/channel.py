@@ -16,37 +16,20 @@ from .instance import Instance
 
 
 class Pointers(NamedTuple):
-    """Addresses that compiled code needs to call an FMI 3.0 instance directly.
-
-    Attributes
-    ----------
-    instance : int
-    functions : tuple of int
-        Addresses of ``fmi3SetFloat64``, ``fmi3GetFloat64``, ``fmi3DoStep``, ``fmi3GetFMUState``
-        and ``fmi3SetFMUState``.
-    inputs, outputs : array of c_uint
-        Value references.
-    saved_state : c_void_p
-        Handle of the saved state; the channel frees it.
-    """
+    """Addresses that compiled code needs to call an FMI 3.0 instance directly."""
 
     instance: int
+    # addresses of `fmi3SetFloat64`, `fmi3GetFloat64`, `fmi3DoStep`, `fmi3GetFMUState` and
+    # `fmi3SetFMUState`
     functions: tuple[int, ...]
+    # value references
     inputs: Array[c_uint]
     outputs: Array[c_uint]
-    saved_state: c_void_p
+    saved_state: c_void_p  # handle of the saved state; the channel frees it
 
 
 class Channel:
-    """Fast set, get, step and save/restore of an FMU instance, with fixed lists of variables.
-
-    Parameters
-    ----------
-    instance : Instance
-        Initialised, or about to be.
-    inputs, outputs : sequence of str
-        Names of the variables that :meth:`put` sets and :meth:`get` reads, in this order.
-    """
+    """Fast set, get, step and save/restore of an FMU instance, with fixed lists of variables."""
 
     def __init__(self, instance: Instance, inputs: Sequence[str], outputs: Sequence[str]) -> None:
         self.instance = instance

@@ -19,34 +19,19 @@ SI_UNITS = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 @dataclass(frozen=True)
 class Description:
-    """Content of an FMU's ``modelDescription.xml`` as used here: names, GUID, variables.
-
-    Attributes
-    ----------
-    path : Path
-    name, guid, fmi_version : str
-        The name of the model, its GUID or instantiation token, and ``"2.0"`` or ``"3.0"``.
-    variables : mapping of str to fmpy.model_description.ScalarVariable
-        By name.
-    needs_tool : bool
-        Whether it needs a tool of its own, such as a Python.
-    identifier : str
-        Name of its binary for co-simulation; empty where it has none.
-    units : mapping of str to mapping of str to int
-        Exponents of SI units, by name of the unit; those that are not 0.
-    digest : str
-        Of the file's bytes.
-    """
+    """Content of an FMU's ``modelDescription.xml`` as used here: names, GUID, variables."""
 
     path: Path
+    # the name of the model, its GUID or instantiation token, and `"2.0"` or `"3.0"`
     name: str
     guid: str
     fmi_version: str
-    variables: Mapping[str, Any]
-    needs_tool: bool = False
-    identifier: str = ""
+    variables: Mapping[str, Any]  # by name
+    needs_tool: bool = False  # whether it needs a tool of its own, such as a Python
+    identifier: str = ""  # name of its binary for co-simulation; empty where it has none
+    # exponents of SI units, by name of the unit; those that are not 0
     units: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
-    digest: str = ""
+    digest: str = ""  # of the file's bytes
 
     @property
     def is_fmi3(self) -> bool:
@@ -54,12 +39,8 @@ class Description:
         return self.fmi_version.startswith("3")
 
     def variable(self, name: str) -> Any:
-        """Return FMPy's description of the variable with a name; raise ``InputError`` if unknown.
-
-        Raises
-        ------
-        InputError
-            Where there is none of that name.
+        """Return FMPy's description of the variable with a name; raise ``InputError`` if
+        unknown.
         """
         try:
             return self.variables[name]
@@ -69,23 +50,7 @@ class Description:
 
 
 def describe(path: str | PathLike[str], model: str | None = None) -> Description:
-    """Return an FMU file's :class:`Description`; raise if it is no FMU, or of another model.
-
-    Parameters
-    ----------
-    path : path-like
-    model : str, optional
-        Name that the FMU's model must have.
-
-    Returns
-    -------
-    Description
-
-    Raises
-    ------
-    InputError
-        Where there is no such file, or it is no FMU of that model for co-simulation.
-    """
+    """Return an FMU file's :class:`Description`; raise if it is no FMU, or of another model."""
     path = Path(path)
     if not path.is_file():
         raise InputError(f"FMU {path}: no such file; expected one that `vibroimpact build` writes")

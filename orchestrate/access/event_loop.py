@@ -38,19 +38,10 @@ MAX_STEPS = 200_000  # of one call: between two of them an interrupt is heard
 
 
 class Played(NamedTuple):
-    """Result of an event loop: outputs and contact flags at the sampling times, and all impacts.
+    """Result of an event loop: outputs and contact flags at the sampling times, and all impacts."""
 
-    Attributes
-    ----------
-    rows : ndarray, shape (n, number of outputs)
-        The outputs at each time.
-    touching : ndarray of bool, shape (n,)
-        Whether the masses were in permanent contact.
-    impacts : Impacts
-    """
-
-    rows: Floats
-    touching: NDArray[np.bool_]
+    rows: Floats  # the outputs at each time
+    touching: NDArray[np.bool_]  # whether the masses were in permanent contact
     impacts: Impacts
 
 
@@ -107,16 +98,7 @@ def event_loop_of(
 
 
 class EventLoop:
-    """Steps an FMU through its events, setting inputs at nodes; collects samples and impacts.
-
-    Parameters
-    ----------
-    instance : SteppingInstance
-    inputs : sequence of str
-        Real variables that are set where a piece of the input begins.
-    outputs : sequence of str
-        Real variables that are read.
-    """
+    """Steps an FMU through its events, setting inputs at nodes; collects samples and impacts."""
 
     def __init__(
         self, instance: SteppingInstance, inputs: Sequence[str] = (), outputs: Sequence[str] = ()
@@ -130,21 +112,6 @@ class EventLoop:
 
         A piece's input is set where it begins and runs on; a time of reading that is a node belongs
         to the piece that begins there. Each time of reading, and each impact, ends a step.
-
-        Parameters
-        ----------
-        nodes : ndarray, shape (n + 1,)
-            Where the pieces begin and where the last one ends, s; the instance is at the first.
-        derivatives : ndarray, shape (n, number of inputs)
-            Values of the inputs.
-        samples : ndarray
-            When the motion is read: from the first node to the last, ascending, s.
-
-        Raises
-        ------
-        FmuError
-            With what the FMU says where it answers another status than OK; where a number that it
-            answers is not finite.
         """
         step, handle = self.instance.stepper(), self.instance.event_handler()
         touch = self.instance.flag("in_contact")

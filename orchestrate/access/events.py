@@ -21,19 +21,7 @@ NO_INPUT, NO_TIMES = np.empty((1, 0)), np.empty(0)
 
 
 class EventInstance(SteppingInstance):
-    """FMI 3.0 FMU instance that stops at each impact, so that all impacts can be read exactly.
-
-    Parameters
-    ----------
-    path : path-like
-    name : str
-        Instance name.
-
-    Raises
-    ------
-    InputError
-        Also where the FMU is not FMI 3.0: 2.0 knows no events.
-    """
+    """FMI 3.0 FMU instance that stops at each impact, so that all impacts can be read exactly."""
 
     EVENTS = {"eventModeUsed": True, "earlyReturnAllowed": True}
 

@@ -35,32 +35,8 @@ def build(
     names: Iterable[str] = MODELS,
     platforms: Iterable[str] = (),
 ) -> list[Path]:
-    """Export FMUs of the given models, forms (FMI versions) and platforms; return the files' paths.
-
-    Parameters
-    ----------
-    folder : path-like, optional
-        The build folder; :func:`default_folder` where none is given.
-    forms : iterable of str
-        Of ``FORMS`` or ``PLAIN_FORMS``, or what :func:`sources_of` makes of them. Those with
-        binaries are left out, and said to be, where there is no compiler.
-    names : iterable of str
-        Of ``MODELS``.
-    platforms : iterable of str
-        That the native FMUs get binaries for: names such as ``"aarch64-linux"``, ``"all"``,
-        ``"this"``. By default Linux and Windows on x86-64, and this machine.
-
-    Returns
-    -------
-    list of Path
-        The FMUs written.
-
-    Raises
-    ------
-    InputError
-        Where a name is unknown, or none of the FMUs can be made here.
-    StoreError
-        Where the folder cannot be written.
+    """Export FMUs of the given models, forms (FMI versions) and platforms; return the files'
+    paths.
     """
     forms = tuple(forms)
     pairs = [(form, name) for name in names for form in forms]
@@ -95,22 +71,8 @@ def export(
     platforms: tuple[str, ...] = (),
     level: int = logging.INFO,
 ) -> Path:
-    """Export one model in one form to ``folder/FORM/NAME.fmu`` atomically; return the file's path.
-
-    Parameters
-    ----------
-    name, form : str
-    folder : Path
-    platforms : tuple of str
-    level : int
-        At which it is said that this takes long.
-
-    Raises
-    ------
-    CannotExport
-        Where a package or a compiler is missing.
-    StoreError
-        Where the folder cannot be written.
+    """Export one model in one form to ``folder/FORM/NAME.fmu`` atomically; return the file's
+    path.
     """
     check(name, form)
     open_folder(folder)
@@ -187,29 +149,6 @@ def find(
 ) -> Description:
     """Return the description of a model's FMU: a given file, an up-to-date one, or a new export.
 
-    Parameters
-    ----------
-    model : str
-        Of ``MODELS``.
-    form : str
-        Of ``FORMS``; where no native FMU can be made here, the one by pythonfmu serves instead.
-    folder : path-like, optional
-        Build folder to look in and to export to. By default that of a clone; without a clone, the
-        FMUs that came with the package, and the user's cache folder.
-    fmu : path-like, optional
-        The user's own FMU, taken as it is.
-    level : int
-        Of :mod:`logging`, at which an export says that it takes long.
-
-    Returns
-    -------
-    Description
-
-    Raises
-    ------
-    InputError
-        Where ``fmu`` is not of that model, or none can be made here.
-
     Examples
     --------
     >>> find("TwoMassImpactOscillator").fmi_version
@@ -243,20 +182,7 @@ def warn_once(line: str) -> None:
 
 
 def finder(running: Mapping[str, Any]) -> Callable[[str], Description]:
-    """Return a function from model name to FMU description, made of a question's keywords.
-
-    Parameters
-    ----------
-    running : mapping
-        ``fmu``: the user's own FMU, or a mapping of model names to them. ``build_folder``: as
-        ``folder`` of :func:`find`. ``progress``: whether an export says that it takes long in a
-        plain script too, whose log shows warnings alone.
-
-    Returns
-    -------
-    callable
-        Model name to :class:`.description.Description`.
-    """
+    """Return a function from model name to FMU description, made of a question's keywords."""
     user_fmu, folder = running.get("fmu"), running.get("build_folder")
     level = logging.WARNING if running.get("progress", True) else logging.INFO
     if isinstance(user_fmu, Mapping):

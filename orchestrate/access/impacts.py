@@ -15,24 +15,12 @@ EVENT_OUTPUTS = (*STATE, "impact_velocity")
 
 @dataclass(frozen=True)
 class Impacts:
-    """The impacts of a motion in time order, as arrays: time, state, closing velocity, sticking.
+    """The impacts of a motion in time order, as arrays: time, state, closing velocity, sticking."""
 
-    Attributes
-    ----------
-    time : ndarray, shape (n,)
-        s.
-    state : ndarray, shape (n, 4)
-        x1, x2 in m, v1, v2 in m/s just after each.
-    closing : ndarray, shape (n,)
-        Closing speed before it, m/s, >= 0.
-    sticks : ndarray of bool, shape (n,)
-        Whether permanent contact follows (17).
-    """
-
-    time: NDArray[np.float64]
-    state: NDArray[np.float64]
-    closing: NDArray[np.float64]
-    sticks: NDArray[np.bool_]
+    time: NDArray[np.float64]  # s
+    state: NDArray[np.float64]  # x1, x2 in m, v1, v2 in m/s just after each
+    closing: NDArray[np.float64]  # closing speed before it, m/s, >= 0
+    sticks: NDArray[np.bool_]  # whether permanent contact follows (17)
 
     @classmethod
     def from_table(cls, table: NDArray[np.float64]) -> Impacts:
@@ -52,12 +40,6 @@ class Impacts:
         """Return each impact's impulse on each mass, N s, (n,) (15); plastic if contact begins.
 
         Of non-dimensional impacts it is over omega a eta^2, so that its unit is that of a mass.
-
-        Parameters
-        ----------
-        structure : Structure
-        speed : float
-            What the impacts' speeds are over, m/s.
         """
         m1, m2 = structure.m1, structure.m2
         restitution = np.where(self.sticks, 0.0, structure.restitution(speed * self.closing))

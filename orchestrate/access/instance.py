@@ -24,41 +24,15 @@ Prepared = Callable[[], None]
 
 
 class Transfer(NamedTuple):
-    """A prepared FMI set or get call for several variables of one type, with its value buffer.
-
-    Attributes
-    ----------
-    call : callable
-    values : ctypes.Array
-        Where they travel.
-    positions : list of int
-        Of them among all that are set or read together.
-    """
+    """A prepared FMI set or get call for several variables of one type, with its value buffer."""
 
     call: Prepared
-    values: Any
-    positions: list[int]
+    values: Any  # where they travel
+    positions: list[int]  # of them among all that are set or read together
 
 
 class Instance:
     """Co-simulation instance of an FMI 2.0 or 3.0 FMU, as a context manager.
-
-    Parameters
-    ----------
-    path : path-like
-    name : str
-        Instance name.
-
-    Attributes
-    ----------
-    description : orchestrate.access.description.Description
-
-    Raises
-    ------
-    InputError
-        Where there is no FMU, or none for this machine.
-    StoreError
-        Where it cannot be unpacked.
 
     Notes
     -----
@@ -184,12 +158,6 @@ class Instance:
 
         FMPy and ctypes take longer to convert arguments than the FMU to answer. Here they are made
         once: C numbers, whose values may change from call to call, and arrays.
-
-        Parameters
-        ----------
-        function : str
-        *arguments
-            After the instance, of the types of C that the function expects: nothing is converted.
         """
         call = partial(self._fmu.dll[function], c_void_p(self._fmu.component), *arguments)
         messages = self._messages
@@ -300,19 +268,7 @@ class Instance:
         self._step()
 
     def read(self, *names: str) -> NDArray[np.float64]:
-        """Return all values of Real variables or arrays, concatenated, by one FMI call.
-
-        Parameters
-        ----------
-        *names : str
-            The name of a series (``x1_sample``) stands for all its elements: indexed scalars in
-            FMI 2.0, one array in FMI 3.0.
-
-        Returns
-        -------
-        ndarray
-            In the order of ``names``, valid until the next call with them.
-        """
+        """Return all values of Real variables or arrays, concatenated, by one FMI call."""
         transfer, values = self._reader(names)
         transfer.call()
         return values

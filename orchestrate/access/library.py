@@ -14,14 +14,7 @@ _loaded: dict[tuple[str, str], Any] = {}  # by folder and binary
 
 
 def loaded(description: Description, name: str) -> Any:
-    """Return FMPy's FMU object for a new, not yet instantiated instance; the binary is cached.
-
-    Parameters
-    ----------
-    description : Description
-    name : str
-        Of the instance.
-    """
+    """Return FMPy's FMU object for a new, not yet instantiated instance; the binary is cached."""
     key = str(unpacked(description)), description.identifier
     if key not in _loaded:
         _loaded[key] = load(description, key[0])

@@ -40,14 +40,7 @@ class Player(EventInstance):
     """
 
     def start(self, structure: Structure, start: ArrayLike = REST) -> None:
-        """Initialise a structure's motion at time 0 from a start state, its box at rest.
-
-        Parameters
-        ----------
-        structure : Structure
-        start : array-like of 4 floats
-            x1, x2 in m, v1, v2 in m/s.
-        """
+        """Initialise a structure's motion at time 0 from a start state, its box at rest."""
         begin(self, structure, Excitation(frequency=structure.omega, amplitude=0.0), start)
 
     def play(
@@ -57,22 +50,5 @@ class Player(EventInstance):
         samples: NDArray[np.float64],
         outputs: Sequence[str] = PLAYED,
     ) -> Played:
-        """Simulate under a box acceleration of consecutive cubics; return samples and impacts.
-
-        Parameters
-        ----------
-        nodes : ndarray, shape (n + 1,)
-            Where the cubics begin and where the last one ends, s; the motion is at the first.
-        derivatives : ndarray, shape (n, 4)
-            Of each at its beginning, m/s2 to m/s5.
-        samples : ndarray
-            When the motion is read: from the first node to the last, ascending, s.
-        outputs : sequence of str
-            What is read; each takes its time.
-
-        Returns
-        -------
-        Played
-            Its rows in the order of ``outputs``.
-        """
+        """Simulate under a box acceleration of consecutive cubics; return samples and impacts."""
         return self.event_loop(CUBIC, tuple(outputs)).run(nodes, derivatives, samples)

@@ -17,15 +17,7 @@ _lock = threading.RLock()
 
 
 def unpacked(description: Description) -> Path:
-    """Return the folder with an FMU's unpacked files; unpack it there once per process.
-
-    Raises
-    ------
-    InputError
-        Where the file is not the one described any more.
-    StoreError
-        Where there is no room for it.
-    """
+    """Return the folder with an FMU's unpacked files; unpack it there once per process."""
     with _lock:
         try:
             folder = process_folder() / description.digest[:32]

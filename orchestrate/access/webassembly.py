@@ -23,45 +23,21 @@ FORM = "wasm"
 
 @dataclass(frozen=True)
 class WebKernel:
-    """Kernel of a model for a web page: WebAssembly bytes, slots and start values of its variables.
-
-    Attributes
-    ----------
-    module : bytes
-        The WebAssembly module.
-    slots : dict of str to int
-        Place of each variable in an instance's memory, and ``SIZE``, ``TIME``, ``STOP``, the place
-        of the flag that ends a step at its first event, and ``SET``, that of the flag to be raised
-        when an input from the places ``CUBIC`` to ``CUBIC_END`` is set, the last not included.
-    starts : dict of str to float
-        Start values of variables, where they are not zero.
-    guid : str
-        Of the module.
+    """Kernel of a model for a web page: WebAssembly bytes, slots and start values of its
+    variables.
     """
 
-    module: bytes
+    module: bytes  # the WebAssembly module
+    # place of each variable in an instance's memory, and `SIZE`, `TIME`, `STOP`, the place of the
+    # flag that ends a step at its first event, and `SET`, that of the flag to be raised when an
+    # input from the places `CUBIC` to `CUBIC_END` is set, the last not included
     slots: dict[str, int]
-    starts: dict[str, float]
-    guid: str
+    starts: dict[str, float]  # start values of variables, where they are not zero
+    guid: str  # of the module
 
 
 def web_kernel(model: str, folder: str | PathLike[str] | None = None) -> WebKernel:
     """Return a model's kernel as WebAssembly; compile it first unless the present one is there.
-
-    Parameters
-    ----------
-    model : str
-        Of ``MODELS``.
-    folder : path-like, optional
-        Build folder; by default that of a clone, without a clone what came with the package and
-        the user's cache folder.
-
-    Raises
-    ------
-    InputError
-        Where there is none and it cannot be made here.
-    StoreError
-        Where the folder cannot be written.
 
     Examples
     --------
@@ -94,17 +70,8 @@ def read_module(path: Path, guid: str) -> bytes:
 
 
 def build_web_kernels(folder: str | PathLike[str] | None = None) -> list[Path]:
-    """Compile all models' kernels to WebAssembly files in a folder; return the paths of those made.
-
-    Parameters
-    ----------
-    folder : path-like, optional
-        As of :func:`.exported.build`.
-
-    Returns
-    -------
-    list of Path
-        The modules written.
+    """Compile all models' kernels to WebAssembly files in a folder; return the paths of those
+    made.
     """
     target, made = default_folder() if folder is None else Path(folder), []
     for model in MODELS:

@@ -75,13 +75,7 @@ def program_name() -> str:
 
 
 def make_parser(words: Collection[str] | None = None) -> argparse.ArgumentParser:
-    """Return the ``argparse`` parser of the command line, with one subparser per command.
-
-    Parameters
-    ----------
-    words : collection of str, optional
-        Of a command line: only functions of commands among them are imported for their options.
-    """
+    """Return the ``argparse`` parser of the command line, with one subparser per command."""
     program = program_name()
     parser = argparse.ArgumentParser(
         prog=program,
@@ -121,17 +115,8 @@ def set_up_logging() -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line on a list of arguments; print errors in one line; return the exit code.
-
-    Parameters
-    ----------
-    arguments : sequence of str, optional
-        By default those of the process.
-
-    Returns
-    -------
-    int
-        Exit code: 0 success, 1 a failure, 2 a user's mistake, 130 interrupted, 143 terminated.
+    """Run the command line on a list of arguments; print errors in one line; return the exit
+    code.
     """
     try:
         with safe_outputs() as output, handled_signals():

@@ -47,21 +47,11 @@ READING = ("unit", "columns", "sample_rate", "scale")
 
 @dataclass(frozen=True)
 class Analysis:
-    """One analysis that ``--show`` names: its public function, its options and its title.
+    """One analysis that ``--show`` names: its public function, its options and its title."""
 
-    Attributes
-    ----------
-    function : str
-        Of the public face.
-    options : tuple of str
-        Of the command that it takes.
-    text : str
-        What it shows.
-    """
-
-    function: str
-    options: tuple[str, ...]
-    text: str
+    function: str  # of the public face
+    options: tuple[str, ...]  # of the command that it takes
+    text: str  # what it shows
 
 
 ANALYSES = {
@@ -245,12 +235,7 @@ def read_record_file(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
 
 
 def apply_sensor(history: xr.Dataset, text: str) -> xr.Dataset:
-    """Return what accelerometers of ``--sensor HZ[:RATE]`` would read of a simulated motion.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return what accelerometers of ``--sensor HZ[:RATE]`` would read of a simulated motion."""
     from .. import Sensor, measure
 
     try:
@@ -264,12 +249,7 @@ def apply_sensor(history: xr.Dataset, text: str) -> xr.Dataset:
 
 
 def parse_columns(text: str) -> dict[str, str | int]:
-    """Parse ``CHANNEL=COLUMN,...`` into a dict from channel to column name or number.
-
-    Raises
-    ------
-    InputError
-    """
+    """Parse ``CHANNEL=COLUMN,...`` into a dict from channel to column name or number."""
     pairs = [part.partition("=") for part in text.split(",")]
     if not all(name.strip() and equals and column.strip() for name, equals, column in pairs):
         raise InputError(f"--columns {text}: expected CHANNEL=COLUMN,... such as acceleration1=4")
@@ -298,17 +278,8 @@ def write_files(
     plots: tuple[str, ...],
     units: str = "",
 ) -> None:
-    """Write each record's result to NetCDF and other formats, and one picture of all; print paths.
-
-    Parameters
-    ----------
-    place : Path
-    results, shown : dict of xarray.Dataset
-        By label, as they are stored, and as tables and pictures have them.
-    formats, plots : tuple of str
-        Endings.
-    units : str
-        In the names of tables and pictures.
+    """Write each record's result to NetCDF and other formats, and one picture of all; print
+    paths.
     """
     from ..figures.analysis import draw
     from ..files import open_folder

@@ -268,17 +268,7 @@ def folds_crossed(branches: xr.Dataset | None, structure: Structure, drive: Driv
 
 
 def print_results(results: dict[str, xr.Dataset], volts: float, folds: Folds | None = None) -> None:
-    """Print a line per structure: revolutions, speeds, jumps and lags; then the run's accuracy.
-
-    Parameters
-    ----------
-    results : dict of xarray.Dataset
-        By structure.
-    volts : float
-        Voltage at eta0 = 1.
-    folds : dict of float, optional
-        Voltages at which slow ramps jump, as :func:`folds_crossed` gives them, V.
-    """
+    """Print a line per structure: revolutions, speeds, jumps and lags; then the run's accuracy."""
     bonded = results.get("bonded")
     for name, data in results.items():
         texts = []
@@ -303,19 +293,7 @@ def format_revolutions(data: xr.Dataset) -> str:
 def format_jump(
     at: xr.Dataset, volts: float, bonded: xr.Dataset | None, fold: float | None = None
 ) -> str:
-    """Format a direction's jump with its voltage and lag, or why there is none.
-
-    Parameters
-    ----------
-    at : xarray.Dataset
-        Of one direction.
-    volts : float
-        Voltage at eta0 = 1.
-    bonded : xarray.Dataset, optional
-        Of the bonded structure in that direction, whose lag the averaged theory gives.
-    fold : float, optional
-        Voltage at which a slow ramp jumps, by the branch of stationary motions, V.
-    """
+    """Format a direction's jump with its voltage and lag, or why there is none."""
     voltage, jump = float(at.jumps), at.jump.item()
     if at.decided.item() == "undecided":
         why = str(at.no_jump.item()).replace("a longer hold", "a longer --hold")

@@ -122,13 +122,7 @@ def file_checksum(path: Path) -> str:
 
 
 def read_guess(arguments: argparse.Namespace) -> Structure:
-    """Return the user's guess of the beam as a ``Structure``; raise without ``--structure``.
-
-    Raises
-    ------
-    InputError
-        Where there is none: no usual structure is a guess of somebody's beam.
-    """
+    """Return the user's guess of the beam as a ``Structure``; raise without ``--structure``."""
     if arguments.structure is None:
         text = "expected a TOML file with a guess of the beam, within some 10 %"
         raise InputError(f"--structure: nothing given; {text}")
@@ -136,13 +130,7 @@ def read_guess(arguments: argparse.Namespace) -> Structure:
 
 
 def read_all_records(arguments: argparse.Namespace) -> tuple[dict[Path, xr.Dataset], list[str]]:
-    """Read all record files; return a dict of records, and an error line per refused file.
-
-    Raises
-    ------
-    InputError
-        Where there is one record alone, and it is refused.
-    """
+    """Read all record files; return a dict of records, and an error line per refused file."""
     from ..diagnosis.fit import checked_data
 
     records: dict[Path, xr.Dataset] = {}
@@ -177,12 +165,7 @@ def read_one_record(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
 
 
 def parse_columns(arguments: argparse.Namespace) -> dict[str, str | int] | None:
-    """Parse ``--columns A,B,...`` into a dict from channel to column; None if it is not given.
-
-    Raises
-    ------
-    InputError
-    """
+    """Parse ``--columns A,B,...`` into a dict from channel to column; None if it is not given."""
     if arguments.columns is None:
         return None
     texts = [text.strip() for text in arguments.columns.split(",")]

@@ -95,19 +95,7 @@ def print_result(data: xr.Dataset) -> None:
 
 
 def format_ramp_effect(data: xr.Dataset, paths: dict[str, RampPath], i: int, direction: str) -> str:
-    """Format what a slow ramp does at a bifurcation: jump, go on, or not meet it; may be empty.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Whose units speeds are shown in.
-    paths : dict of Path
-        Of ramps ``"up"`` and ``"down"``.
-    i : int
-        The bifurcation's place.
-    direction : str
-        Which way the speed jumps at this fold; empty where a stable motion does not end there.
-    """
+    """Format what a slow ramp does at a bifurcation: jump, go on, or not meet it; may be empty."""
     for name, path in paths.items():
         if i in path.slow_losses:
             return f": a slow ramp {name} that nothing disturbs goes on to the fold"

@@ -310,20 +310,7 @@ def answer_each_structure(
     draw: Callable[[dict[str, xr.Dataset]], Any],
     print_result: Callable[[str, xr.Dataset], None],
 ) -> None:
-    """Call a command's public function for each structure; print, write files, draw one picture.
-
-    Parameters
-    ----------
-    arguments : argparse.Namespace
-    structure : Structure
-    drive : Drive
-    question : mapping
-        Keywords of the public function that has the command's name.
-    draw : callable
-        From the results by structure to a picture.
-    print_result : callable
-        Says what came out for a structure of a name.
-    """
+    """Call a command's public function for each structure; print, write files, draw one picture."""
     import orchestrate
 
     ask = getattr(orchestrate, arguments.command.replace("-", "_"))

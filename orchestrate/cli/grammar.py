@@ -28,11 +28,8 @@ SET_UNITS: dict[tuple[str, ...], dict[str, str]] = {  # of parameters in --set, 
 
 
 def check_digits(text: str) -> None:
-    """Raise ``ValueError`` unless a text has plain digits: no ``1_000``, no other scripts' digits.
-
-    Raises
-    ------
-    ValueError
+    """Raise ``ValueError`` unless a text has plain digits: no ``1_000``, no other scripts'
+    digits.
     """
     if not text.isascii() or "_" in text:
         raise ValueError(text)
@@ -54,14 +51,7 @@ plain_float.__name__, plain_int.__name__ = "float", "int"  # what argparse calls
 
 
 def parse(option: str, text: str, expected: str, reader: Callable[[str], Parsed]) -> Parsed:
-    """Call ``reader`` on an option's text; turn its ``ValueError`` into an ``InputError``.
-
-    Parameters
-    ----------
-    option, text, expected : str
-        For the message.
-    reader : callable
-    """
+    """Call ``reader`` on an option's text; turn its ``ValueError`` into an ``InputError``."""
     try:
         return reader(text)
     except ValueError:
@@ -71,12 +61,7 @@ def parse(option: str, text: str, expected: str, reader: Callable[[str], Parsed]
 def parse_floats(
     text: str, separator: str, counts: Collection[int] = (), positive: bool = False
 ) -> tuple[float, ...]:
-    """Parse numbers between separators; raise unless there are as many as one of ``counts``.
-
-    Raises
-    ------
-    ValueError
-    """
+    """Parse numbers between separators; raise unless there are as many as one of ``counts``."""
     numbers = tuple(plain_float(part) for part in text.split(separator))
     if counts and len(numbers) not in counts:
         raise ValueError(text)
@@ -163,16 +148,7 @@ def parse_breakpoints(option: str, text: str) -> tuple[tuple[float, float], ...]
 
 
 def parse_values(option: str, text: str, zero: bool = False) -> tuple[tuple[float, ...], bool]:
-    """Parse ``FIRST:LAST:STEP`` or ``A,B,...``; return the numbers, and whether it was a range.
-
-    Parameters
-    ----------
-    option : str
-        Its name, for messages.
-    text : str
-    zero : bool
-        Whether a number may be 0.
-    """
+    """Parse ``FIRST:LAST:STEP`` or ``A,B,...``; return the numbers, and whether it was a range."""
     is_range = ":" in text
     try:
         check_digits(text)
@@ -198,14 +174,7 @@ def is_single_number(text: str) -> bool:
 
 
 def parse_one_or_more(option: str, text: str, one: bool = False) -> float | tuple[float, ...]:
-    """Parse one number as float, a range or list as tuple; with ``one``, one number only.
-
-    Parameters
-    ----------
-    option, text : str
-    one : bool
-        Whether it must be one number.
-    """
+    """Parse one number as float, a range or list as tuple; with ``one``, one number only."""
     return (
         parse_single_number(option, text)
         if one or is_single_number(text)

@@ -77,39 +77,19 @@ QUANTITIES = f"""quantities:
 
 @dataclass(frozen=True)
 class Commands:
-    """Registry of the commands' parsers: adds each command with its help and common options.
-
-    Attributes
-    ----------
-    subparsers : argparse._SubParsersAction
-    program : str
-        How the command line was called, for examples.
-    wanted : collection of str, optional
-        Commands whose functions are imported for their options; all by default.
-    asked : list of argparse.ArgumentParser
-        Parsers to which the options of a result are to be added, after their own.
-    """
+    """Registry of the commands' parsers: adds each command with its help and common options."""
 
     subparsers: Any
-    program: str
+    program: str  # how the command line was called, for examples
+    # commands whose functions are imported for their options; all by default
     wanted: Collection[str] | None = None
+    # parsers to which the options of a result are to be added, after their own
     asked: list[argparse.ArgumentParser] = field(default_factory=list)
 
     def add(
         self, name: str, run: Callable[[argparse.Namespace], None], text: str, examples: str
     ) -> argparse.ArgumentParser:
-        """Add a command with its help text, examples and run function; return its parser.
-
-        Parameters
-        ----------
-        name : str
-        run : callable
-            Carries it out.
-        text : str
-            What it does, in a line.
-        examples : str
-            For ``--help``, with ``{program}`` for how the command line was called.
-        """
+        """Add a command with its help text, examples and run function; return its parser."""
         parser: argparse.ArgumentParser = self.subparsers.add_parser(
             name,
             help=text,
@@ -133,19 +113,7 @@ class Commands:
         usual: str = "",
         from_file: bool = False,
     ) -> FunctionOptions:
-        """Add a command on responses to harmonic excitation; return its ``FunctionOptions``.
-
-        Parameters
-        ----------
-        name, run, text, examples
-            As in :meth:`add`.
-        several : bool
-            Whether frequencies may be a range or a list.
-        usual : str
-            What is asked where no frequency is given.
-        from_file : bool
-            Whether the structure is by default that of a stored result, ``--start``.
-        """
+        """Add a command on responses to harmonic excitation; return its ``FunctionOptions``."""
         parser = self.add(name, run, text, examples)
         add_structure_options(parser, "--start" if from_file else "")
         add_excitation_options(parser, several, usual)
@@ -180,20 +148,12 @@ class Commands:
 
 @dataclass
 class FunctionOptions:
-    """Options of a command that are arguments of the public function of the same name.
-
-    Attributes
-    ----------
-    command : str
-    wanted : bool
-        Whether the function is imported for its options.
-    readers : dict of callable
-        What reads the texts of options, by their names; None where they stand as they are.
-    """
+    """Options of a command that are arguments of the public function of the same name."""
 
     command: str
-    wanted: bool
+    wanted: bool  # whether the function is imported for its options
     group: Any = None
+    # what reads the texts of options, by their names; None where they stand as they are
     readers: dict[str, Callable[[str, Any], Any] | None] = field(default_factory=dict)
 
     def add(
@@ -240,15 +200,7 @@ def list_shipped_sets() -> str:
 
 
 def add_structure_options(parser: argparse.ArgumentParser, stored: str = "") -> None:
-    """Add ``--structure`` and ``--set``.
-
-    Parameters
-    ----------
-    parser : argparse.ArgumentParser
-    stored : str
-        The option or argument with a stored result, whose structure is the default; None then
-        stands for an option that was not given.
-    """
+    """Add ``--structure`` and ``--set``."""
     group = parser.add_argument_group("structure")
     usual = f"that of {stored}, else paper" if stored else "%(default)s"
     group.add_argument(
@@ -347,13 +299,7 @@ def read_drive_options(arguments: argparse.Namespace) -> tuple[Structure, Drive]
 
 
 def check_masses(source: str, changes: Mapping[str, Any]) -> None:
-    """Raise if a beam's frequencies are set but its masses are not: the motor feels them.
-
-    Raises
-    ------
-    InputError
-        Where they would be those of a set without dimensions.
-    """
+    """Raise if a beam's frequencies are set but its masses are not: the motor feels them."""
     unknown = {"m1", "m2"} - changes.keys() - ({"m2"} if "mu" in changes else set())
     named = next((name for name in ("f1", "f2") if name in changes), None)
     if named and unknown and source in ("paper", "quick"):
@@ -395,16 +341,7 @@ def read_datasheet(arguments: argparse.Namespace, changes: Mapping[str, float]) 
 def add_excitation_options(
     parser: argparse.ArgumentParser, several: bool = True, usual: str = ""
 ) -> None:
-    """Add ``--hz``, ``--rpm``, ``--frequency``, ``--eta``, ``--amplitude`` and ``--g``.
-
-    Parameters
-    ----------
-    parser : argparse.ArgumentParser
-    several : bool
-        Whether frequencies may be a range or a list.
-    usual : str
-        What is asked where no frequency is given.
-    """
+    """Add ``--hz``, ``--rpm``, ``--frequency``, ``--eta``, ``--amplitude`` and ``--g``."""
     values = "VALUES" if several else "VALUE"
     levels = "; several levels at one frequency" if several else ""
     form = ", FIRST:LAST:STEP with both ends or a list A,B,..." if several else ""
@@ -430,20 +367,7 @@ def read_excitation(
     one: bool = False,
     level: bool = True,
 ) -> dict[str, Any]:
-    """Return frequency and amplitude of the box's motion as keywords of the public API.
-
-    Parameters
-    ----------
-    arguments : argparse.Namespace
-    structure : Structure
-    si : bool
-        Whether the answer is in m and m/s2, so that an amplitude of 1/eta^2 m says nothing of a
-        structure whose omega is not 1 rad/s.
-    one : bool
-        Whether it must be one frequency.
-    level : bool
-        Whether ``--g`` may tell the amplitude.
-    """
+    """Return frequency and amplitude of the box's motion as keywords of the public API."""
     from ..constants import GRAVITY
     from ..structures.sections import TO_RAD_S
 
@@ -548,16 +472,7 @@ def add_over_options(question: FunctionOptions, twice: bool = False) -> None:
 def varied_arguments(
     arguments: argparse.Namespace, structure: Structure, usual: str | None = None
 ) -> tuple[dict[str, Any], bool]:
-    """Return excitation and varied parameter as keywords, and whether a range was given.
-
-    Parameters
-    ----------
-    arguments : argparse.Namespace
-        With the options of :func:`add_excitation_options` and :func:`add_over_options`.
-    structure : Structure
-    usual : str, optional
-        Of ``--eta``, where no frequency is given.
-    """
+    """Return excitation and varied parameter as keywords, and whether a range was given."""
     over, values = arguments.over, arguments.values
     if over is None and arguments.g is not None and not is_single_number(arguments.g):
         box = excitation_by_level(arguments, structure, one=True)
@@ -583,13 +498,7 @@ def varied_arguments(
 def excitation_by_level(
     arguments: argparse.Namespace, structure: Structure, one: bool = False
 ) -> dict[str, Any]:
-    """Return frequency and level (m/s2) of the box from ``--g``, each a number or a tuple.
-
-    Parameters
-    ----------
-    arguments, structure, one
-        As in :func:`read_excitation`.
-    """
+    """Return frequency and level (m/s2) of the box from ``--g``, each a number or a tuple."""
     from ..constants import GRAVITY
 
     check_one_level(arguments)
@@ -600,15 +509,7 @@ def excitation_by_level(
 
 
 def parse_varied(name: str, limits: str) -> tuple[str, tuple[float, float]]:
-    """Return a continued parameter's name in the public API, and its limits in that one's unit.
-
-    Parameters
-    ----------
-    name : str
-        As ``--over`` has it: a frequency by its unit too.
-    limits : str
-        FIRST:LAST of ``--limits``.
-    """
+    """Return a continued parameter's name in the public API, and its limits in that one's unit."""
     from ..structures.sections import TO_RAD_S
 
     if name == "g":

@@ -36,16 +36,7 @@ PREPARE_AFTER = 1.0  # s: after so much computing, a picture is prepared beside 
 def add_result_options(
     parser: argparse.ArgumentParser, store: bool = True, several: bool = False
 ) -> None:
-    """Add the options of files (``--format`` ...) and of running (``--jobs`` ...).
-
-    Parameters
-    ----------
-    parser : argparse.ArgumentParser
-    store : bool
-        Whether there is one result, which may have a file of its own.
-    several : bool
-        Whether FMUs of several models compute it.
-    """
+    """Add the options of files (``--format`` ...) and of running (``--jobs`` ...)."""
     add_file_options(parser, store)
     add_running_options(parser, several=several)
 
@@ -56,18 +47,7 @@ def add_running_options(
     shown: str = "results",
     several: bool = False,
 ) -> None:
-    """Add ``--output``, ``--force``, ``--jobs``, ``--cluster``, ``--fmu`` and the like.
-
-    Parameters
-    ----------
-    parser : argparse.ArgumentParser
-    output : Path, optional
-        Default of ``--output``.
-    shown : str
-        The same, for people.
-    several : bool
-        Whether FMUs of several models compute it.
-    """
+    """Add ``--output``, ``--force``, ``--jobs``, ``--cluster``, ``--fmu`` and the like."""
     option = parser.add_argument_group("results and running").add_argument
     text = f"folder of the results (default: {shown})"
     option("--output", type=Path, default=output, metavar="FOLDER", help=text)
@@ -129,12 +109,7 @@ def unit_note(attributes: Mapping[Any, Any]) -> str:
 
 
 def refuse_units(arguments: argparse.Namespace, reason: str) -> None:
-    """Raise if ``--units`` is given to a command whose output has no units.
-
-    Raises
-    ------
-    InputError
-    """
+    """Raise if ``--units`` is given to a command whose output has no units."""
     if str(read_units(arguments)):
         raise InputError(f"--units {arguments.units}: {reason}; expected the command without it")
 
@@ -234,15 +209,6 @@ def result_name(
 ) -> str:
     """Return a result's file name: command, structure, main arguments and a digest of all.
 
-    Parameters
-    ----------
-    command : str
-    structure : Structure
-    question : mapping
-        Keywords of the public function.
-    unit : str
-        Of frequencies, as the question was asked: Hz, rpm, rad/s or eta.
-
     Examples
     --------
     >>> from orchestrate.structures import Structure
@@ -316,38 +282,19 @@ def argument_in_file_name(name: str, value: Any, unit: str, structure: Structure
 
 @dataclass(frozen=True)
 class Files:
-    """Paths of one result: its NetCDF file, and tables and pictures beside it.
-
-    Attributes
-    ----------
-    result : Path
-    formats, plots : tuple of str
-        Endings.
-    fresh : bool
-        Whether the result is to be computed: then what stands beside it is made anew too.
-    units : str
-        Of ``--units``: tables and pictures in these have them in their names.
-    over : str
-        Suffix of the pictures' names, where other data lie over the result.
-    """
+    """Paths of one result: its NetCDF file, and tables and pictures beside it."""
 
     result: Path
+    # endings
     formats: tuple[str, ...]
     plots: tuple[str, ...]
-    fresh: bool
-    units: str = ""
-    over: str = ""
+    fresh: bool  # whether the result is to be computed: then what stands beside it is made anew too
+    units: str = ""  # of `--units`: tables and pictures in these have them in their names
+    over: str = ""  # suffix of the pictures' names, where other data lie over the result
 
     @classmethod
     def from_options(cls, arguments: argparse.Namespace, name: str, over: str = "") -> Files:
-        """Return the ``Files`` of a result by the options; raise if they cannot be written.
-
-        Raises
-        ------
-        InputError
-            Where a folder cannot be written, a format is unknown, or the place of ``--store`` has
-            files of the same name that belong to something else.
-        """
+        """Return the ``Files`` of a result by the options; raise if they cannot be written."""
         formats = parse_endings("--format", arguments.format, FORMATS)
         plots = parse_endings("--plot", arguments.plot, PLOTS)
         store = getattr(arguments, "store", None)
@@ -390,13 +337,8 @@ class Files:
         return any(self.fresh or not path.exists() for path in self.picture_paths())
 
     def write(self, data: xr.Dataset, draw: Callable[[], Any] | None) -> None:
-        """Write missing tables and pictures beside the NetCDF file; print the paths of all files.
-
-        Parameters
-        ----------
-        data : xarray.Dataset
-        draw : callable, optional
-            Gives a :class:`matplotlib.figure.Figure`; none where there is nothing to draw.
+        """Write missing tables and pictures beside the NetCDF file; print the paths of all
+        files.
         """
         print(f"{self.result}{'' if self.fresh else ': complete already'}")
         others = export_formats(data, self.table_path, self.formats, self.fresh)
@@ -430,18 +372,7 @@ def importing_matplotlib(needed: bool) -> Iterator[None]:
 def export_formats(
     data: xr.Dataset, result: Path, formats: tuple[str, ...], fresh: bool
 ) -> list[Path]:
-    """Write a result as CSV, MAT or Excel if it is new or they are missing; return the paths.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-    result : Path
-        Of the NetCDF file.
-    formats : tuple of str
-        Of ``FORMATS``.
-    fresh : bool
-        Whether the result is new.
-    """
+    """Write a result as CSV, MAT or Excel if it is new or they are missing; return the paths."""
     from ..running.formats import write
 
     paths = [result.with_suffix(f".{ending}") for ending in formats if ending != "nc"]
@@ -464,19 +395,7 @@ def existing_files(path: Path) -> list[Path]:
 def draw_picture(
     path: Path, plots: tuple[str, ...], fresh: bool, draw: Callable[[], Any]
 ) -> list[Path]:
-    """Call ``draw`` and save its figure if new or missing; return the pictures' paths.
-
-    Parameters
-    ----------
-    path : Path
-        Its ending is replaced.
-    plots : tuple of str
-        Of ``PLOTS``.
-    fresh : bool
-        Whether the result is new.
-    draw : callable
-        Gives a :class:`matplotlib.figure.Figure`.
-    """
+    """Call ``draw`` and save its figure if new or missing; return the pictures' paths."""
     files = [path.with_suffix(f".{ending}") for ending in plots]
     missing = [file.suffix.lstrip(".") for file in files if fresh or not file.exists()]
     if missing:

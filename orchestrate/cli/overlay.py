@@ -30,14 +30,7 @@ def add_overlay_option(question: FunctionOptions) -> None:
 def drawing_function(
     arguments: argparse.Namespace, structure: Structure, question: Mapping[str, Any]
 ) -> tuple[Draw | None, str]:
-    """Return the function that draws a result (None: no curve), and a picture-name ending.
-
-    Raises
-    ------
-    InputError
-        Where a branch of ``--overlay`` is of something else than the answer will be; before
-        anything is computed.
-    """
+    """Return the function that draws a result (None: no curve), and a picture-name ending."""
     if not arguments.overlay:
         return draw_result if is_curve(question) else None, ""
     if not is_curve(question):

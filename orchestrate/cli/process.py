@@ -28,13 +28,7 @@ class Terminated(KeyboardInterrupt):
 
 
 class SafeStream:
-    """Text stream that never raises: errors of the stream below are kept, not raised.
-
-    Attributes
-    ----------
-    error : Exception or None
-        Why the stream below failed.
-    """
+    """Text stream that never raises: errors of the stream below are kept, not raised."""
 
     def __init__(self, stream: Any) -> None:
         self._stream = stream
@@ -121,14 +115,7 @@ def handled_signals() -> Iterator[None]:
 
 
 def resend_signal(otherwise: Callable[[Any], object], lost: sys.UnraisableHookArgs) -> None:
-    """Send a signal again whose exception Python dropped in a callback (an unraisable hook).
-
-    Parameters
-    ----------
-    otherwise : callable
-        The hook for all other exceptions.
-    lost : sys.UnraisableHookArgs
-    """
+    """Send a signal again whose exception Python dropped in a callback (an unraisable hook)."""
     global _ending
     if issubclass(lost.exc_type, KeyboardInterrupt):
         _ending = False

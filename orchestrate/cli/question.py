@@ -66,30 +66,7 @@ def answer_question(
     function: str = "",
     over: str = "",
 ) -> xr.Dataset:
-    """Call a command's public function; print its result; write files; return the dataset.
-
-    Parameters
-    ----------
-    arguments : argparse.Namespace
-    structure : Structure
-    question : mapping
-        All other keywords of the function.
-    print_result : callable
-        Prints what came out.
-    draw : callable, optional
-        From the result to a picture; none where there is nothing to draw.
-    ending : str
-        Of the files' names, where their pictures show more than this result.
-    function : str
-        Its name in the public face; by default the command's.
-    over : str
-        Ending of the pictures' names alone.
-
-    Returns
-    -------
-    xarray.Dataset
-        The answer.
-    """
+    """Call a command's public function; print its result; write files; return the dataset."""
     import orchestrate
 
     command = function or arguments.command
@@ -330,20 +307,7 @@ def has_flag(values: xr.DataArray, word: str) -> xr.DataArray:
 
 
 def format_ranges(data: xr.Dataset, name: str, values: Any, flags: Any, max_ranges: int = 8) -> str:
-    """Format the parameter ranges in which flags are true: ``0.4 to 0.6, 0.8``.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Whose units they are shown in.
-    name : str
-        Of the parameter.
-    values : array_like
-        In increasing order.
-    flags : array_like of bool
-    max_ranges : int
-        Runs that are listed; the longest ones.
-    """
+    """Format the parameter ranges in which flags are true: ``0.4 to 0.6, 0.8``."""
     runs: list[tuple[int, int]] = []
     for index, holds in enumerate(flags):
         if holds and runs and runs[-1][1] == index - 1:
@@ -363,14 +327,8 @@ def format_ranges(data: xr.Dataset, name: str, values: Any, flags: Any, max_rang
 
 
 def format_largest_gap(data: xr.Dataset, form: str = ".6g") -> str:
-    """Format a response's largest gap over a eta^2 and, where the box's motion is known, as length.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        With ``xi_rel_max`` of one response.
-    form : str
-        Of the ratio.
+    """Format a response's largest gap over a eta^2 and, where the box's motion is known, as
+    length.
     """
     from ..units import length_of_ratio, text_of
 
@@ -382,15 +340,7 @@ def format_largest_gap(data: xr.Dataset, form: str = ".6g") -> str:
 
 
 def print_attractors(data: xr.Dataset, whole: str) -> None:
-    """Print attractors with share, period, impacts and a state, two lines each.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        With variables over ``attractor`` alone.
-    whole : str
-        What the shares are of.
-    """
+    """Print attractors with share, period, impacts and a state, two lines each."""
     for number in range(data.sizes["attractor"]):
         attractor = data.isel(attractor=number)
         if math.isnan(float(attractor.multiplicity)):
@@ -408,13 +358,7 @@ def print_attractors(data: xr.Dataset, whole: str) -> None:
 
 
 def read_earlier_result(option: str, path: Path) -> xr.Dataset:
-    """Read the NetCDF result of an earlier command; raise naming the option if it is none.
-
-    Raises
-    ------
-    InputError
-        Where the file is none.
-    """
+    """Read the NetCDF result of an earlier command; raise naming the option if it is none."""
     from ..running.store import load
 
     if not path.is_file():

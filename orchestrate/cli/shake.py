@@ -111,12 +111,7 @@ def run(arguments: argparse.Namespace) -> None:
 def read_excitation(
     arguments: argparse.Namespace,
 ) -> Random | Sampled | Shock | SteppedSine | SweptSine:
-    """Return the excitation that the options describe, such as a ``SweptSine``.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the excitation that the options describe, such as a ``SweptSine``."""
     from .. import Random, Shock, SteppedSine, SweptSine
 
     kind = excitation_kind(arguments)

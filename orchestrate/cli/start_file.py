@@ -30,11 +30,6 @@ def read_structure_and_question(
     The structure is that of ``--structure``, else that of the result of ``--start``, else the
     paper's, with ``--set``. If the result was computed for another structure than the one asked
     for, a printed line says so.
-
-    Raises
-    ------
-    InputError
-        Where the file of ``--start`` is no result, or has no structure.
     """
     if arguments.start is None:
         arguments.structure = arguments.structure or "paper"

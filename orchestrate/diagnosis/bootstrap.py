@@ -43,17 +43,10 @@ RESAMPLES = 200  # of simulated ratios, for the error of the odds
 
 @dataclass(frozen=True)
 class Bootstrap:
-    """Hold the ratios of misfits of simulated records, beside that of the measured record.
+    """Hold the ratios of misfits of simulated records, beside that of the measured record."""
 
-    Attributes
-    ----------
-    observed : float
-        Misfit of the best sound fit over that of the delaminated one.
-    sound, delaminated : ndarray, shape (records,)
-        The same in records of the best sound fit and in records of the delaminated one.
-    """
-
-    observed: float
+    observed: float  # misfit of the best sound fit over that of the delaminated one
+    # the same in records of the best sound fit and in records of the delaminated one
     sound: Floats
     delaminated: Floats
 
@@ -112,13 +105,6 @@ def log_density(at: float, samples: Floats, scale: float) -> float:
 
     A wide normal distribution takes part with a share of ``WIDE_SHARE``: samples that are few
     exclude nothing far away.
-
-    Parameters
-    ----------
-    at : float
-    samples : ndarray, shape (n,)
-    scale : float
-        Range in which anything lies, which the wide one covers.
     """
     low, high = np.quantile(samples, (0.25, 0.75))
     spread = min(float(np.std(samples)), float(high - low) / 1.34)
@@ -136,18 +122,7 @@ def bootstrap(
     delaminated: Fitted,
     player: Player,
 ) -> Bootstrap:
-    """Simulate records of the best sound and of the delaminated fit, and fit both kinds to each.
-
-    Parameters
-    ----------
-    evidence, coarse : Evidence
-        Of the record, and of its part near the resonance.
-    sound : sequence of Fitted
-        All sound hypotheses.
-    delaminated : Fitted
-        The better one of both.
-    player : Player
-    """
+    """Simulate records of the best sound and of the delaminated fit, and fit both kinds to each."""
     best = min(sound, key=lambda one: one.misfit)
     kept = [one for one in sound if one.misfit <= WIDE * best.misfit]
     kinds = (kept, [delaminated])

@@ -38,20 +38,8 @@ FINER = 4  # samples of the finer grid on which a signal half a period later is 
 
 
 def burst_excess(channels: Channels, highest: float) -> float:
-    """Return the power of bursts once a period, over the threshold from which they count as seen.
-
-    Parameters
-    ----------
-    channels : Channels
-        The whole record, not decimated.
-    highest : float
-        Highest frequency of the excitation, Hz.
-
-    Returns
-    -------
-    float
-        Of the sensor that shows most, above 1 where bursts are seen; NaN where the record is
-        sampled too slowly, or too short.
+    """Return the power of bursts once a period, over the threshold from which they count as
+    seen.
     """
     edge = default_band_edge(channels, highest)
     phase = np.maximum.accumulate(measured_phase(channels))

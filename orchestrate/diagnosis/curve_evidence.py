@@ -46,42 +46,23 @@ HALF_POWER = 0.5**0.5
 
 @dataclass(frozen=True)
 class CurveData:
-    """Hold a resonance curve as plain tuples, in the order in which its frequencies are played.
+    """Hold a resonance curve as plain tuples, in the order in which its frequencies are played."""
 
-    Attributes
-    ----------
-    frequency, level : tuple of float
-        Hz, m/s2.
-    sensors : tuple of str
-        ``acceleration1``, ``acceleration2`` or both.
-    amplitude : tuple, shape (sensors, 3, n)
-        m/s2; None where an order was not measured, as below.
-    phase, floor : tuple, shape (sensors, n)
-        rad, m/s2.
-    relative : bool
-        Whether the amplitudes are those of the motion relative to the base.
-    damping : float
-        Damping ratio by which the motion settles.
-    """
-
+    # hz, m/s2
     frequency: tuple[float, ...]
     level: tuple[float, ...]
-    sensors: tuple[str, ...]
+    sensors: tuple[str, ...]  # `acceleration1`, `acceleration2` or both
+    # m/s2; None where an order was not measured, as below
     amplitude: tuple[tuple[Numbers, ...], ...]
+    # rad, m/s2
     phase: tuple[Numbers, ...]
     floor: tuple[Numbers, ...]
-    relative: bool
-    damping: float
+    relative: bool  # whether the amplitudes are those of the motion relative to the base
+    damping: float  # damping ratio by which the motion settles
 
     @classmethod
     def from_curve(cls, curve: xr.Dataset, guess: Structure) -> CurveData:
-        """Check a resonance curve and take its numbers around the resonance.
-
-        Raises
-        ------
-        InputError
-            Where a variable is missing or the points near the resonance are too few.
-        """
+        """Check a resonance curve and take its numbers around the resonance."""
         check_curve(curve)
         falling = curve.attrs.get("direction", "up") == "down"
         played = curve.sortby("frequency", ascending=not falling)
@@ -147,12 +128,7 @@ class CurveData:
 
 
 def check_curve(curve: xr.Dataset) -> None:
-    """Check that a dataset has what :func:`orchestrate.resonance_curve` puts in it.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that a dataset has what :func:`orchestrate.resonance_curve` puts in it."""
     missing = [name for name in ("amplitude", "phase", "floor", "level") if name not in curve]
     if missing or set(curve.amplitude.dims) != {"channel", "order", "frequency"}:
         text = (
@@ -189,15 +165,8 @@ def half_power_damping(curve: xr.Dataset) -> float:
 
 
 def curve_evidence(data: CurveData, settle: int, samples_per_period: float) -> CurveEvidence:
-    """Build the evidence of a curve: its orders, and the stepped sine under which it was measured.
-
-    Parameters
-    ----------
-    data : CurveData
-    settle : int
-        Cycles at each frequency before what is compared.
-    samples_per_period : float
-        Of the highest frequency.
+    """Build the evidence of a curve: its orders, and the stepped sine under which it was
+    measured.
     """
     ordered = sorted(zip(data.frequency, data.level, strict=True))
     sine = SteppedSine(
@@ -245,19 +214,11 @@ def settled_windows(channels: Channels, sine: SteppedSine) -> OrderWindows:
 
 @dataclass(frozen=True)
 class CurveEvidence(Evidence):
-    """Orders of a resonance curve, their errors, and the stepped sine as the input of motions.
-
-    Attributes
-    ----------
-    with_phase : ndarray of bool, shape (sensors, windows)
-        Where the phase of order 1 was measured.
-    relative_motion : bool
-        Whether the orders are those of the motion relative to the base.
-    """
+    """Orders of a resonance curve, their errors, and the stepped sine as the input of motions."""
 
     has_floor: ClassVar[bool] = False
     with_phase: NDArray[np.bool_] = None  # type: ignore[assignment]
-    relative_motion: bool = False
+    relative_motion: bool = False  # whether the orders are those of the motion relative to the base
 
     @cached_property
     def used_windows(self) -> NDArray[np.intp]:

@@ -30,47 +30,30 @@ UNSURE = (0.02, 0.98)  # shares of resampled records between which the ratio is 
 
 @dataclass(frozen=True)
 class Findings:
-    """Hold the quantities that the decision rule needs.
+    """Hold the quantities that the decision rule needs."""
 
-    Attributes
-    ----------
-    excess : float
-        Order 2 over its detection threshold, the largest of all windows; above 1 it is seen.
-    order2 : float
-        Its size there, over order 1.
-    apart : float
-        Difference of two sensors over its detection threshold; 0 with one sensor.
-    bursts : float
-        Power of one-sided bursts at high frequencies over its detection threshold; NaN where the
-        record is sampled too slowly to tell.
-    sound, delaminated : str
-        Names of the best hypotheses of both kinds.
-    sound_misfit, delaminated_misfit : float
-    share : float
-        Of resampled records in which the delaminated one is better by the ratio that decides.
-    sensors : int
-    low, high : float
-        Level of the base, m/s2.
-    first, last : float
-        Frequencies, Hz.
-    smallest : float
-        Smallest opening at the sensor that would have been seen at every frequency, m.
-    """
-
+    # order 2 over its detection threshold, the largest of all windows; above 1 it is seen
     excess: float
-    order2: float
-    apart: float
+    order2: float  # its size there, over order 1
+    apart: float  # difference of two sensors over its detection threshold; 0 with one sensor
+    # power of one-sided bursts at high frequencies over its detection threshold; NaN where the
+    # record is sampled too slowly to tell
     bursts: float
+    # names of the best hypotheses of both kinds
     sound: str
     sound_misfit: float
     delaminated: str
     delaminated_misfit: float
+    # of resampled records in which the delaminated one is better by the ratio that decides
     share: float
     sensors: int
+    # level of the base, m/s2
     low: float
     high: float
+    # frequencies, Hz
     first: float
     last: float
+    # smallest opening at the sensor that would have been seen at every frequency, m
     smallest: float
 
     @property
@@ -214,14 +197,7 @@ def deciding_ratio(apart: float) -> float:
 
 
 def resampled_share(sound: Floats, delaminated: Floats, ratio: float = RATIO) -> float:
-    """Return the share of block-bootstrap samples in which the ratio of misfits is exceeded.
-
-    Parameters
-    ----------
-    sound, delaminated : ndarray, shape (sensors, 4, windows)
-        Residuals of the best of both.
-    ratio : float
-    """
+    """Return the share of block-bootstrap samples in which the ratio of misfits is exceeded."""
     one, other = (soft_squares(values).mean(axis=(0, 1)) for values in (sound, delaminated))
     blocks = np.array_split(np.arange(len(one)), min(BLOCKS, len(one)))
     sums = np.array([[one[block].sum(), other[block].sum()] for block in blocks])

@@ -72,13 +72,7 @@ def detect_all(
 def checked_job(
     name: str, record: xr.Dataset, guess: Structure, free: tuple[str, ...]
 ) -> DetectJob:
-    """Check one record and return the job that decides on it.
-
-    Raises
-    ------
-    InputError
-        It names the record.
-    """
+    """Check one record and return the job that decides on it."""
     try:
         data = checked_data(record)
     except InputError as error:

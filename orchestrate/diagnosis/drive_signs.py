@@ -27,18 +27,8 @@ def is_drive_run(data: object) -> bool:
 
 
 def drive_signs(run: xr.Dataset, sound: xr.Dataset) -> tuple[dict[str, float], dict[str, float]]:
-    """Compute the fall of the jump voltage and the extra power of a run against the sound beam's.
-
-    Parameters
-    ----------
-    run, sound : xarray.Dataset
-        Of :func:`orchestrate.couple`, or measured: over ``revolution`` time, speed, voltage and
-        the ``motor``'s work.
-
-    Returns
-    -------
-    values, floors : dict of str to float
-        By the sign's name; NaN where a run does not show it.
+    """Compute the fall of the jump voltage and the extra power of a run against the sound
+    beam's.
     """
     first, second = jump_voltage(run), jump_voltage(sound)
     fall = 1.0 - first / second

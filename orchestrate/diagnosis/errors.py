@@ -67,32 +67,18 @@ NOISE_FACTOR = 1.3  # squares over those that noise makes: less of them has no o
 
 @dataclass(frozen=True)
 class Estimate:
-    """Hold fitted numbers with their covariance, and the standard deviations by each cause.
-
-    Attributes
-    ----------
-    values : dict of str to float
-    covariance : ndarray, shape (numbers, numbers)
-    noise, blocks, discrepancy : ndarray, shape (numbers,)
-        Standard deviations by each alone.
-    """
+    """Hold fitted numbers with their covariance, and the standard deviations by each cause."""
 
     values: dict[str, float]
     covariance: Floats
+    # standard deviations by each alone
     noise: Floats
     blocks: Floats
     discrepancy: Floats
 
 
 def estimate(search: Search, values: Mapping[str, float]) -> Estimate:
-    """Return the numbers at the minimum of the smoothed misfit, with their covariances.
-
-    Parameters
-    ----------
-    search : Search
-    values : mapping of str to float
-        At the minimum that was found.
-    """
+    """Return the numbers at the minimum of the smoothed misfit, with their covariances."""
     here, bounds = dict(values), search.hypothesis.bounds(search.evidence)
     model = linear_model_around(search, here)
     moved = model.damped_minima(bounds, here)[0]
@@ -170,12 +156,6 @@ def contact_covariance(values: Mapping[str, float], beyond: float) -> Floats:
 
     A real contact loses energy in another way at each speed, and a fit shares that out between
     both halves and the impacts.
-
-    Parameters
-    ----------
-    values : mapping of str to float
-    beyond : float
-        Mean square of the residuals beyond noise.
     """
     size = min(1.0, math.sqrt(beyond) / CONTACT_MISFIT)
     damping = {
@@ -216,10 +196,6 @@ def scatter_changes(residuals: Floats) -> list[Floats]:
     A curve has no floor between its orders. Its scatter is what differs from one frequency to the
     next, of each sensor and order: the second differences of the residuals, of which white noise of
     variance 1 makes 6.
-
-    Parameters
-    ----------
-    residuals : ndarray, shape (sensors, rows, windows)
     """
     differences = np.diff(residuals, n=2, axis=-1)
     size = np.sqrt(np.mean(differences**2, axis=-1, keepdims=True) / 6.0)
@@ -237,14 +213,6 @@ def motions_under_base_noise(
 
     Noise is drawn when a motion is asked for: what a caller draws between two motions comes between
     them in the generator's sequence.
-
-    Parameters
-    ----------
-    evidence : Evidence
-    fit : tuple
-        Hypothesis, its values, and a player for hypotheses that need the FMU.
-    count : int
-    rng : numpy.random.Generator
     """
     hypothesis, values, player = fit
     size = noise_of_samples(evidence.orders)[BOX]

@@ -26,20 +26,13 @@ ORDER_2_OF_OPENING = 0.14
 
 @dataclass(frozen=True)
 class EvenOrders:
-    """Hold order 2 beyond what a linear structure makes of the base's, with its threshold.
+    """Hold order 2 beyond what a linear structure makes of the base's, with its threshold."""
 
-    Attributes
-    ----------
-    ratio, threshold : ndarray, shape (windows,)
-        Over order 1, root mean squares of neighbouring windows, of the sensor that is furthest
-        above the threshold from which an order counts as seen; NaN where little moves.
-    apart : ndarray, shape (windows,)
-        Difference of two sensors' order 1 or 2 over its threshold; NaN with one sensor.
-    """
-
+    # over order 1, root mean squares of neighbouring windows, of the sensor that is furthest above
+    # the threshold from which an order counts as seen; NaN where little moves
     ratio: Floats
     threshold: Floats
-    apart: Floats
+    apart: Floats  # difference of two sensors' order 1 or 2 over its threshold; NaN with one sensor
 
     @property
     def excess(self) -> float:
@@ -68,14 +61,7 @@ class EvenOrders:
 
 
 def even_orders(evidence: Evidence, bonded: Complexes) -> EvenOrders:
-    """Compute order 2 of a record beyond that of a bonded structure, and its threshold.
-
-    Parameters
-    ----------
-    evidence : Evidence
-    bonded : ndarray, shape (sensors, 3, windows)
-        Orders that the best linear structure would show under the same base.
-    """
+    """Compute order 2 of a record beyond that of a bonded structure, and its threshold."""
     power = average_over_windows(np.nan_to_num(np.abs(evidence.measured[:, 1] - bonded[:, 1]) ** 2))
     size, threshold = size_of_order_1(evidence), thresholds(evidence)
     excess = (
@@ -135,17 +121,6 @@ def sensor_difference(evidence: Evidence, threshold: Floats) -> Floats:
 
     Two faces of one body move alike, whatever it does. The best gain and delay between the sensors
     are taken out, as order 1 tells them.
-
-    Parameters
-    ----------
-    evidence : Evidence
-    threshold : ndarray, shape (sensors, windows)
-        See :func:`thresholds`.
-
-    Returns
-    -------
-    ndarray, shape (windows,)
-        NaN where little moves, and with one sensor.
     """
     if len(evidence.measured) < 2:
         return np.full(threshold.shape[1], np.nan)

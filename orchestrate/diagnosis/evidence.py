@@ -67,22 +67,13 @@ def cut_to_resonance(orders: RecordOrders) -> tuple[Channels, float]:
 
 @dataclass(frozen=True)
 class Evidence:
-    """Hold a record's orders with their errors, and the input of motions compared with them.
+    """Hold a record's orders with their errors, and the input of motions compared with them."""
 
-    Attributes
-    ----------
-    orders : RecordOrders
-    pieces : Pieces
-        The base's acceleration, from the first sample on.
-    relative : tuple of float
-        Errors that a good model may have, see ``MODEL_ERROR``.
-    has_floor : bool
-        Whether the noise between the orders was measured: not in a resonance curve.
-    """
-
+    # whether the noise between the orders was measured: not in a resonance curve
     has_floor: ClassVar[bool] = True
     orders: RecordOrders
-    pieces: Pieces
+    pieces: Pieces  # the base's acceleration, from the first sample on
+    # errors that a good model may have, see `MODEL_ERROR`
     relative: tuple[float, ...] = MODEL_ERROR
 
     @classmethod
@@ -232,11 +223,6 @@ class Evidence:
 
     def orders_of_motion(self, motion: Floats) -> Complexes:
         """Compute orders 1, 2, 3 that sensors would read of a motion, shape (sensors, 3, windows).
-
-        Parameters
-        ----------
-        motion : ndarray, shape (1 or 2, samples)
-            Displacements of the masses in the base at the record's samples, m.
 
         Notes
         -----

@@ -141,12 +141,7 @@ def fit(
 
 
 def checked_free(free: Sequence[str]) -> tuple[str, ...]:
-    """Check the names of the parameters to be fitted, and return them as a tuple.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check the names of the parameters to be fitted, and return them as a tuple."""
     names = (free,) if isinstance(free, str) else tuple(free)
     expected = f"expected some of {', '.join(FREE)}"
     for name in names:
@@ -158,12 +153,7 @@ def checked_free(free: Sequence[str]) -> tuple[str, ...]:
 
 
 def checked_data(record: xr.Dataset) -> RecordData:
-    """Check that a record's base moves as a sine, and return its channels for a job.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that a record's base moves as a sine, and return its channels for a job."""
     channels = checked_channels(record)
     channel_orders(channels)
     return RecordData.from_channels(channels)
@@ -191,13 +181,7 @@ def is_curve(record: xr.Dataset) -> bool:
 
 
 def delaminated_guess(guess: Structure) -> Structure:
-    """Check that both halves of the guess have a spring, and return it as delaminated.
-
-    Raises
-    ------
-    InputError
-        Where it has no spring or no mass of its own on a side.
-    """
+    """Check that both halves of the guess have a spring, and return it as delaminated."""
     structure = checked_structure(guess)
     if not (structure.k1 > 0.0 and structure.k2 > 0.0):
         text = "expected k1 > 0 and k2 > 0"
@@ -210,12 +194,7 @@ def delaminated_guess(guess: Structure) -> Structure:
 
 @dataclass(frozen=True, kw_only=True)
 class FitJob(SearchJob):
-    """Fit one hypothesis to a record.
-
-    Attributes
-    ----------
-    kind : str
-    """
+    """Fit one hypothesis to a record."""
 
     kind: str
 
@@ -241,13 +220,7 @@ class FitJob(SearchJob):
 
 @dataclass(frozen=True)
 class Results:
-    """Hold the results of a search job as arrays, one row a hypothesis.
-
-    Attributes
-    ----------
-    job : SearchJob
-    values, covariance, minima, misfit, residuals, fitted, evaluations : ndarray
-    """
+    """Hold the results of a search job as arrays, one row a hypothesis."""
 
     job: SearchJob
     values: Floats

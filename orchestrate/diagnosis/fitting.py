@@ -30,39 +30,22 @@ SAME_MISFIT = 0.03  # relative difference of misfits below which two minima coun
 
 @dataclass(frozen=True)
 class Solution:
-    """Hold a minimum of the misfit of a hypothesis: its numbers and its misfit.
+    """Hold a minimum of the misfit of a hypothesis: its numbers and its misfit."""
 
-    Attributes
-    ----------
-    name : str
-        Of the hypothesis.
-    values : dict of str to float
-    misfit : float
-        Root mean square of the residuals, large ones by their size: 1 is as far as ``MODEL_ERROR``
-        and the noise allow.
-    """
-
-    name: str
+    name: str  # of the hypothesis
     values: Mapping[str, float]
+    # root mean square of the residuals, large ones by their size: 1 is as far as `MODEL_ERROR` and
+    # the noise allow
     misfit: float
 
 
 @dataclass
 class Search:
-    """Search for the numbers of a hypothesis that fit a record; counts the computed motions.
-
-    Attributes
-    ----------
-    hypothesis : Hypothesis
-    evidence : Evidence
-    player : Player, optional
-        For hypotheses that need the FMU.
-    evaluations : int
-    """
+    """Search for the numbers of a hypothesis that fit a record; counts the computed motions."""
 
     hypothesis: Hypothesis
     evidence: Evidence
-    player: Player | None = None
+    player: Player | None = None  # for hypotheses that need the FMU
     evaluations: int = field(default=0, init=False)
     _last: tuple[dict[str, float], Floats] | None = field(default=None, init=False)
 
@@ -163,15 +146,8 @@ class Search:
         coarse: int = 9,
         fine: int = 25,
     ) -> list[Solution]:
-        """Minimise from the best starts, then refine the best; return the minima, the best first.
-
-        Parameters
-        ----------
-        starts : sequence of mapping
-        keep : int
-            From how many of them to go downhill.
-        coarse, fine : int
-            Steps from each of them, and from the best at the end.
+        """Minimise from the best starts, then refine the best; return the minima, the best
+        first.
         """
         chosen = self.rank_starts(starts)[:keep]
         found = [self.refine(one.values, coarse, 3e-3) for one in chosen]

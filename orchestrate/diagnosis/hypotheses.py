@@ -47,18 +47,10 @@ SLOW_SHARE = 0.01  # of the largest speed: below it friction is viscous
 
 
 class Hypothesis(ABC):
-    """A kind of structure, with the numbers that are fitted to a record.
+    """A kind of structure, with the numbers that are fitted to a record."""
 
-    Attributes
-    ----------
-    name : str
-        In messages and results.
-    is_rugged : bool
-        Whether single impacts make the misfit uneven.
-    """
-
-    name: ClassVar[str]
-    is_rugged: ClassVar[bool] = False
+    name: ClassVar[str]  # in messages and results
+    is_rugged: ClassVar[bool] = False  # whether single impacts make the misfit uneven
 
     @abstractmethod
     def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
@@ -221,17 +213,10 @@ class Delaminated(Hypothesis):
 
     Numbers are ``common``, the frequency of both glued together in Hz; ``split``, ln(f2/f1);
     ``log_zeta1``, ``log_zeta2``; ``e``; and ``clearance`` over the largest displacement.
-
-    Attributes
-    ----------
-    guess : Structure
-        Of which the masses are taken, and all that is not free.
-    free : tuple of str
-        Names of a structure's parameters.
     """
 
-    guess: Structure
-    free: tuple[str, ...] = ("f1", "f2", "zeta1", "zeta2", "e")
+    guess: Structure  # of which the masses are taken, and all that is not free
+    free: tuple[str, ...] = ("f1", "f2", "zeta1", "zeta2", "e")  # names of a structure's parameters
     name: ClassVar[str] = "delaminated"
     is_rugged: ClassVar[bool] = True
 

@@ -9,22 +9,12 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Indicator:
-    """A number that differs between a sound structure and one whose faces open and strike.
-
-    Attributes
-    ----------
-    long_name : str
-    formula : str
-    source : str
-        In the literature.
-    moved_by : str
-        What else than delamination moves it.
-    """
+    """A number that differs between a sound structure and one whose faces open and strike."""
 
     long_name: str
     formula: str
-    source: str
-    moved_by: str
+    source: str  # in the literature
+    moved_by: str  # what else than delamination moves it
 
 
 BOVSUNOVSKY = "Bovsunovsky and Surace, Mech. Syst. Signal Process. 62-63 (2015) 129-148"

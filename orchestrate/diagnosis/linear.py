@@ -24,25 +24,13 @@ DAMPINGS = (0.0, 0.01, 0.1, 1.0)
 
 @dataclass(frozen=True)
 class LinearModel:
-    """Hold a linear model of the residuals: ``residuals + slopes (values - here)``.
-
-    Attributes
-    ----------
-    residuals : ndarray, shape (sensors, 4, windows)
-    slopes : ndarray, shape (sensors, 4, windows, numbers)
-    best : dict of str to float
-        Numbers of the point of the cloud with the smallest misfit, and
-    lowest : float
-        that misfit.
-    scatter : ndarray, shape (points, residuals)
-        What the points of the cloud are beside the regression: single impacts that come or stay
-        away.
-    """
+    """Hold a linear model of the residuals: ``residuals + slopes (values - here)``."""
 
     residuals: Floats
     slopes: Floats
-    best: dict[str, float]
-    lowest: float
+    best: dict[str, float]  # numbers of the point of the cloud with the smallest misfit, and
+    lowest: float  # that misfit
+    # what the points of the cloud are beside the regression: single impacts that come or stay away
     scatter: Floats
 
     @classmethod
@@ -54,19 +42,7 @@ class LinearModel:
         covariance: Floats,
         seed: int = 0,
     ) -> LinearModel:
-        """Compute the residuals at a cloud of points around these values, and their regression.
-
-        Parameters
-        ----------
-        residuals : callable
-            From numbers to what their motion misses.
-        bounds : mapping of str to (float, float)
-            Smallest and largest value of each number.
-        values : mapping of str to float
-        covariance : ndarray
-            Of the cloud.
-        seed : int
-        """
+        """Compute the residuals at a cloud of points around these values, and their regression."""
         count = len(values)
         rng = np.random.default_rng([SEED, seed])
         sizes, axes = np.linalg.eigh(covariance)

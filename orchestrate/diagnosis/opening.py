@@ -28,17 +28,6 @@ def opening_force(structure: Structure, frequency: ArrayLike) -> Floats:
     both masses in the box has the complex amplitude X = -M A/(K - w^2 M + i w D), and the force on
     mass 2 is m2 A + (k2 - w^2 m2 + i w d2) X.
 
-    Parameters
-    ----------
-    structure : Structure
-    frequency : array_like
-        Hz.
-
-    Returns
-    -------
-    ndarray
-        kg, that is N for each m/s2; 0 at all frequencies where both halves alone move alike.
-
     Examples
     --------
     >>> from orchestrate.structures import Structure
@@ -61,13 +50,6 @@ def sweep_rate(f: float, zeta: float) -> float:
 
     54 f^2/Q^2 Hz/min with Q = 1/(2 zeta): ISO 7626-2, and Gloth and Sinapius, Mech. Syst. Signal
     Process. 18 (2004) 1421-1441.
-
-    Parameters
-    ----------
-    f : float
-        Natural frequency, Hz.
-    zeta : float
-        Damping ratio.
 
     Examples
     --------

@@ -43,34 +43,20 @@ EXPECTED = "not described by this method: expected a swept or stepped sine"
 
 @dataclass(frozen=True)
 class OrderWindows:
-    """Hold the windows of a record, and the least squares that give the orders in them.
+    """Hold the windows of a record, and the least squares that give the orders in them."""
 
-    Attributes
-    ----------
-    time, frequency, rate : ndarray, shape (windows,)
-        Middle of each in s, frequency of the excitation there in Hz, its derivative in Hz/s.
-    orders : tuple of float
-        ``ORDERS`` and after them ``OFF_ORDERS``.
-    parts : tuple of slice
-        Samples of each.
-    solutions : tuple of ndarray, shape (samples, orders)
-        Complex: a channel's samples times these give ``A exp(i theta)`` of
-        ``A sin(n phase + theta)`` for each order n, NaN above 0.45 of the sampling rate. The phase
-        is that of the base: its own order 1 has theta = 0.
-    sample_rate : float
-        Hz.
-    samples : int
-        Of the record.
-    """
-
+    # middle of each in s, frequency of the excitation there in Hz, its derivative in Hz/s
     time: Floats
     frequency: Floats
     rate: Floats
-    orders: tuple[float, ...]
-    parts: tuple[slice, ...]
+    orders: tuple[float, ...]  # `ORDERS` and after them `OFF_ORDERS`
+    parts: tuple[slice, ...]  # samples of each
+    # complex: a channel's samples times these give `A exp(i theta)` of `A sin(n phase + theta)` for
+    # each order n, NaN above 0.45 of the sampling rate. The phase is that of the base: its own
+    # order 1 has theta = 0
     solutions: tuple[Complexes, ...]
-    sample_rate: float
-    samples: int
+    sample_rate: float  # hz
+    samples: int  # of the record
 
     def __len__(self) -> int:
         """Return the number of windows."""
@@ -120,14 +106,7 @@ class OrderWindows:
         return replace(some, parts=tuple(parts), samples=samples.stop - samples.start)
 
     def amplitudes(self, values: Floats, later: float = 0.0) -> Complexes:
-        """Compute the complex amplitudes of channels, shape (channels, orders, windows).
-
-        Parameters
-        ----------
-        values : ndarray, shape (channels, samples)
-        later : float
-            How much later than the record's samples these are, in samples: it is made up for.
-        """
+        """Compute the complex amplitudes of channels, shape (channels, orders, windows)."""
         found = np.empty((len(values), len(self.orders), len(self)), dtype=complex)
         for number, (part, solution) in enumerate(zip(self.parts, self.solutions, strict=True)):
             found[:, :, number] = values[:, part] @ solution
@@ -139,25 +118,14 @@ class OrderWindows:
 
 @dataclass(frozen=True)
 class RecordOrders:
-    """Hold the orders of a record's channels, with the floor between the orders.
-
-    Attributes
-    ----------
-    windows : OrderWindows
-    channels : Channels
-    amplitude : ndarray, shape (channels, orders, windows)
-        Complex, m/s2, of ``ORDERS``.
-    floor : ndarray, shape (channels, windows)
-        Root mean square of the amplitudes at ``OFF_ORDERS``, m/s2, smoothed over the windows.
-    noise : ndarray, shape (channels,)
-        Floor in the quietest fifth of the windows, m/s2.
-    """
+    """Hold the orders of a record's channels, with the floor between the orders."""
 
     windows: OrderWindows
     channels: Channels
-    amplitude: Complexes
+    amplitude: Complexes  # complex, m/s2, of `ORDERS`
+    # root mean square of the amplitudes at `OFF_ORDERS`, m/s2, smoothed over the windows
     floor: Floats
-    noise: Floats
+    noise: Floats  # floor in the quietest fifth of the windows, m/s2
 
     def order(self, number: float, channel: str) -> Complexes:
         """Return the complex amplitudes of an order in a channel, m/s2, shape (windows,)."""
@@ -178,16 +146,6 @@ class RecordOrders:
 def record_orders(record: xr.Dataset) -> RecordOrders:
     """Compute the orders of a record of a swept or stepped sine.
 
-    Parameters
-    ----------
-    record : xarray.Dataset
-        With ``box_acceleration`` and one or both of ``acceleration1`` and ``acceleration2``.
-
-    Raises
-    ------
-    InputError
-        Where a channel is missing, or the base's acceleration is no sine of moving frequency.
-
     Notes
     -----
     The phase is that of the base's analytic signal, smoothed by a cubic in each window. In each
@@ -199,14 +157,7 @@ def record_orders(record: xr.Dataset) -> RecordOrders:
 
 
 def sensor_channels(record: xr.Dataset) -> Channels:
-    """Return the channels of a record, and refuse a simulation that no sensor has read.
-
-    Raises
-    ------
-    InputError
-        Where it is a history of :func:`orchestrate.shake` with impacts: its accelerations are those
-        between them, while an accelerometer feels each of them.
-    """
+    """Return the channels of a record, and refuse a simulation that no sensor has read."""
     impacts = record.sizes.get("impact", 0) if hasattr(record, "sizes") else 0
     if impacts and not {"acceleration1", "acceleration2"} & set(record):
         text = "expected what sensors read of it, orchestrate.measure(history, sensor)"
@@ -215,12 +166,7 @@ def sensor_channels(record: xr.Dataset) -> Channels:
 
 
 def checked_channels(record: xr.Dataset) -> Channels:
-    """Check that a record has the base's acceleration and a face's, and return the channels.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that a record has the base's acceleration and a face's, and return the channels."""
     channels = sensor_channels(record)
     if len(channels.names) < 2:
         text = "expected acceleration1, acceleration2 or both beside the base's"
@@ -242,16 +188,7 @@ def channel_orders(channels: Channels) -> RecordOrders:
 
 
 def decimated(channels: Channels, highest: float, kept: float = SAMPLES_PER_PERIOD) -> Channels:
-    """Low-pass and decimate channels by a whole factor, if enough samples are left.
-
-    Parameters
-    ----------
-    channels : Channels
-    highest : float
-        Frequency of the excitation, Hz, in whose period
-    kept : float
-        samples are to be left.
-    """
+    """Low-pass and decimate channels by a whole factor, if enough samples are left."""
     from scipy.signal import firwin, resample_poly
 
     factor = int(channels.sample_rate // (kept * highest))
@@ -274,13 +211,7 @@ def moving_average(values: Floats, width: int = 5) -> Floats:
 
 
 def sine_windows(channels: Channels) -> tuple[OrderWindows, Complexes]:
-    """Find the windows in which the base moves as a sine, and all channels' amplitudes in them.
-
-    Raises
-    ------
-    InputError
-        Where there are few of them.
-    """
+    """Find the windows in which the base moves as a sine, and all channels' amplitudes in them."""
     phase = measured_phase(channels)
     usable = [
         one

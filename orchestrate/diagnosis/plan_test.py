@@ -39,25 +39,14 @@ BOX = "box_acceleration"
 
 @dataclass(frozen=True)
 class Sweep:
-    """Hold the orders of a computed sweep over the frequency.
+    """Hold the orders of a computed sweep over the frequency."""
 
-    Attributes
-    ----------
-    delaminated, sound : ndarray, shape (channels, orders, frequencies)
-        Complex amplitudes, m/s2.
-    opening : ndarray, shape (frequencies,)
-        Largest gap around a frequency, m.
-    peak : float
-        Largest reading, m/s2.
-    level : float
-        Of the box, m/s2.
-    """
-
+    # complex amplitudes, m/s2
     delaminated: Floats
     sound: Floats
-    opening: Floats
-    peak: float
-    level: float
+    opening: Floats  # largest gap around a frequency, m
+    peak: float  # largest reading, m/s2
+    level: float  # of the box, m/s2
 
     def scaled_to(self, level: float) -> Sweep:
         """Scale the sweep to another level; valid for structures without clearance."""
@@ -73,21 +62,11 @@ class Sweep:
 
 @dataclass(frozen=True)
 class Noise:
-    """Describe the noise and gain errors that sensors add to an order in a window.
+    """Describe the noise and gain errors that sensors add to an order in a window."""
 
-    Attributes
-    ----------
-    density : ndarray, shape (channels,)
-        One-sided, (m/s2)/sqrt(Hz).
-    periods : float
-        In a window.
-    gain_error : float
-        Of the sensors against each other, relative.
-    """
-
-    density: Floats
-    periods: float
-    gain_error: float
+    density: Floats  # one-sided, (m/s2)/sqrt(Hz)
+    periods: float  # in a window
+    gain_error: float  # of the sensors against each other, relative
 
     def distances(self, sweep: Sweep, frequency: Floats) -> tuple[Floats, Floats]:
         """Compute the distance between both structures by order 1, and by orders 2 and 3.
@@ -95,11 +74,6 @@ class Noise:
         In standard deviations of a complex amplitude. Least squares with Hann's weights over n
         samples of a noise of variance s^2 have the variance 6 s^2/n; with a density of c^2 at the
         rate r that is s^2 = c^2 r/2, and n = r periods/f.
-
-        Returns
-        -------
-        (ndarray, ndarray)
-            Of shape (frequencies,).
         """
         variance = 3.0 * self.density[:, None] ** 2 * frequency / self.periods
         gap = np.abs(sweep.delaminated - sweep.sound) ** 2
@@ -195,24 +169,13 @@ def plan_test(
 
 @dataclass(frozen=True)
 class SweepComputation:
-    """Compute sweeps of a structure and of its sound form at the planned frequencies.
-
-    Attributes
-    ----------
-    structure : Structure
-    sensors : dict of str to Sensor
-    frequency : ndarray
-        Hz.
-    noise : Noise
-    running : dict
-        Keywords of :class:`orchestrate.running.options.Running`.
-    """
+    """Compute sweeps of a structure and of its sound form at the planned frequencies."""
 
     structure: Structure
     sensors: dict[str, Sensor]
-    frequency: Floats
+    frequency: Floats  # hz
     noise: Noise
-    running: Running
+    running: Running  # keywords of orchestrate.running.options.Running
 
     @property
     def sound(self) -> SoundStructure:
@@ -303,12 +266,7 @@ def scale_split(structure: Structure, part: float) -> Structure:
 
 
 def checked_frequencies(frequencies: ArrayLike) -> Floats:
-    """Check that frequencies ascend, and return them in Hz.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that frequencies ascend, and return them in Hz."""
     f = checked_positive("frequencies", frequencies, "Hz")
     if len(f) < 2 or not (np.diff(f) > 0.0).all():
         text = "expected two at least, ascending, in Hz"
@@ -317,12 +275,7 @@ def checked_frequencies(frequencies: ArrayLike) -> Floats:
 
 
 def checked_positive(name: str, given: ArrayLike, unit: str) -> Floats:
-    """Check that all numbers are finite and > 0, and return them as an array.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that all numbers are finite and > 0, and return them as an array."""
     try:
         values = np.atleast_1d(np.asarray(given, dtype=float))
     except (TypeError, ValueError):
@@ -333,13 +286,7 @@ def checked_positive(name: str, given: ArrayLike, unit: str) -> Floats:
 
 
 def checked_noise(sensors: dict[str, Sensor], periods: float, gain_error: float) -> Noise:
-    """Check that the responses' sensors have a noise, and return it with their gain error.
-
-    Raises
-    ------
-    InputError
-        Where a sensor has none, or there is none on the structure.
-    """
+    """Check that the responses' sensors have a noise, and return it with their gain error."""
     error = checked_number("gain_error", gain_error, 0.0, 1.0)
     responses = {name: one for name, one in sensors.items() if name != BOX}
     if not responses:
@@ -391,17 +338,7 @@ def plan_dataset(
 def smallest_detectable(
     test: SweepComputation, sweeps: Sequence[Sweep], limit: float, higher: Floats, opening: Floats
 ) -> dict[str, Any]:
-    """Return the smallest levels and openings that count, and where sensors overload.
-
-    Parameters
-    ----------
-    test : SweepComputation
-    sweeps : sequence of Sweep
-    limit : float
-        Difference that counts.
-    higher, opening : ndarray, shape (levels, frequencies)
-        Distance by orders 2 and 3, and the largest gap in m.
-    """
+    """Return the smallest levels and openings that count, and where sensors overload."""
     force = opening_force(test.structure, test.frequency)
     with np.errstate(divide="ignore", invalid="ignore"):
         smallest = np.where(higher[-1] > 0.0, limit * sweeps[-1].level / higher[-1], np.inf)

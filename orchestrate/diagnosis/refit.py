@@ -30,17 +30,10 @@ class SimulatedEvidence(Evidence):
     """Hold a record's evidence with simulated orders in place of the measured ones.
 
     Numbers that are relative to the record's resonance and displacement keep their meaning.
-
-    Attributes
-    ----------
-    reference : Evidence
-        Of the record.
-    simulated : ndarray, shape (sensors, 3, windows)
-        Complex, m/s2.
     """
 
-    reference: Evidence = field(kw_only=True)
-    simulated: Complexes = field(kw_only=True)
+    reference: Evidence = field(kw_only=True)  # of the record
+    simulated: Complexes = field(kw_only=True)  # complex, m/s2
 
     def __post_init__(self) -> None:
         names = ("operator", "windows", "base", "resonance", "displacement", "peaks", "error")
@@ -61,27 +54,17 @@ class SimulatedEvidence(Evidence):
 
 @dataclass(frozen=True)
 class LinearFit:
-    """Hold a hypothesis's residuals as a linear model, for fits to records near the measured one.
-
-    Attributes
-    ----------
-    residuals : ndarray, shape (residuals,)
-        Against the measured record.
-    slopes : ndarray, shape (residuals, numbers)
-    low, high : ndarray, shape (numbers,)
-        Changes of the numbers within which the slopes are used.
-    sensors : ndarray, shape (residuals, 2 sensors)
-        What gains and delays of the sensors change, and
-    estimator : ndarray, shape (2 sensors, residuals)
-        how they follow from residuals.
+    """Hold a hypothesis's residuals as a linear model, for fits to records near the measured
+    one.
     """
 
-    residuals: Floats
+    residuals: Floats  # against the measured record
     slopes: Floats
+    # changes of the numbers within which the slopes are used
     low: Floats
     high: Floats
-    sensors: Floats
-    estimator: Floats
+    sensors: Floats  # what gains and delays of the sensors change, and
+    estimator: Floats  # how they follow from residuals
 
     @classmethod
     def from_search(cls, search: Search, values: Values, covariance: Floats) -> LinearFit:
@@ -102,16 +85,7 @@ class LinearFit:
         return cls(residuals, slopes, low, high, columns, estimator)
 
     def misfits(self, changes: Floats) -> Floats:
-        """Fit the linear model to records whose residuals are changed; return their misfits.
-
-        Parameters
-        ----------
-        changes : ndarray, shape (records, residuals)
-
-        Returns
-        -------
-        ndarray, shape (records,)
-        """
+        """Fit the linear model to records whose residuals are changed; return their misfits."""
         wanted = self.residuals + changes - (changes @ self.estimator.T) @ self.sensors.T
         scale = np.maximum(np.sqrt(np.sum(self.slopes**2, axis=0)), 1e-300)
         slopes, low, high = self.slopes / scale, self.low * scale, self.high * scale

@@ -36,68 +36,32 @@ GAUSSIAN_KURTOSIS = 3.0  # kurtosis
 
 @dataclass(frozen=True)
 class Curve:
-    """Hold the response over the base's motion along a frequency that only rises or falls.
+    """Hold the response over the base's motion along a frequency that only rises or falls."""
 
-    Attributes
-    ----------
-    direction : int
-        1 up, -1 down, 0 where all frequencies come at once.
-    level : float
-        Root mean square of the box's order 1, or of its acceleration, m/s2.
-    frequency : ndarray, shape (n,)
-        Ascending, Hz.
-    response : ndarray, shape (rows, n)
-        Complex.
-    floor : ndarray, shape (rows,)
-        What noise makes of the root mean square of the response, relative to it.
-    """
-
-    direction: int
-    level: float
-    frequency: Floats
-    response: Floats
-    floor: Floats
+    direction: int  # 1 up, -1 down, 0 where all frequencies come at once
+    level: float  # root mean square of the box's order 1, or of its acceleration, m/s2
+    frequency: Floats  # ascending, Hz
+    response: Floats  # complex
+    floor: Floats  # what noise makes of the root mean square of the response, relative to it
 
 
 @dataclass(frozen=True)
 class ResponseSigns:
-    """Hold the signs of the responses of a record.
+    """Hold the signs of the responses of a record."""
 
-    Attributes
-    ----------
-    values, floors, frequencies : dict of str to ndarray
-        By the sign's name, of shape (rows,); frequencies in Hz, where a sign is largest.
-    curves : list of Curve
-    noise : ndarray, shape (rows,)
-        Root mean square of the noise, m/s2.
-    highest : float
-        Highest frequency of the excitation, Hz.
-    """
-
+    # by the sign's name, of shape (rows,); frequencies in Hz, where a sign is largest
     values: dict[str, Floats]
     floors: dict[str, Floats]
     frequencies: dict[str, Floats]
     curves: list[Curve]
-    noise: Floats
-    highest: float
+    noise: Floats  # root mean square of the noise, m/s2
+    highest: float  # highest frequency of the excitation, Hz
 
 
 def response_signs(
     channels: Channels, swept: bool, periods: float, high_band: float | None
 ) -> ResponseSigns:
-    """Compute the signs that one record has by itself, without comparison.
-
-    Parameters
-    ----------
-    channels : Channels
-        The box, then any number of responses.
-    swept : bool
-        Whether the box moves as a sine.
-    periods : float
-        Of the excitation, in a window of the orders.
-    high_band : float, optional
-        Frequency above which the signs at high frequencies are taken, Hz.
-    """
+    """Compute the signs that one record has by itself, without comparison."""
     own = signs_of_orders(channels, periods) if swept else signs_of_spectra(channels)
     edge = default_band_edge(channels, own.highest) if high_band is None else high_band
     moments = signs_of_moments(channels, edge)
@@ -276,14 +240,7 @@ def coherence_loss(channels: Channels, noise: Floats) -> tuple[Floats, Floats]:
 def signs_of_moments(
     channels: Channels, edge: float
 ) -> tuple[dict[str, Floats], dict[str, Floats]]:
-    """Compute kurtosis and skewness, of all and of the high band; and those of Gaussian noise.
-
-    Parameters
-    ----------
-    channels : Channels
-    edge : float
-        Hz.
-    """
+    """Compute kurtosis and skewness, of all and of the high band; and those of Gaussian noise."""
     from scipy.signal import butter, sosfiltfilt
     from scipy.stats import kurtosis, skew
 
@@ -308,20 +265,7 @@ def signs_of_moments(
 
 
 def sensor_differences(curves: Sequence[Curve], channels: int) -> tuple[Floats, Floats]:
-    """Compute the difference between two sensors, best complex gain taken out, and its floor.
-
-    Parameters
-    ----------
-    curves : sequence of Curve
-        Their rows are pairs of sensors, one pair after the other.
-    channels : int
-        Sensors; NaN where they are not two.
-
-    Returns
-    -------
-    (ndarray, ndarray)
-        Of shape (rows,), the same for both of a pair.
-    """
+    """Compute the difference between two sensors, best complex gain taken out, and its floor."""
     rows = len(curves[0].response) if curves else 0
     if channels != 2 or not rows:
         unknown = np.full(rows, np.nan)
@@ -350,18 +294,7 @@ def curve_difference(one: Curve, other: Curve) -> Floats:
 
 
 def level_and_direction_differences(curves: Sequence[Curve]) -> Mapping[str, tuple[Floats, Floats]]:
-    """Compute the largest differences over level and over direction, and their noise floors.
-
-    Parameters
-    ----------
-    curves : sequence of Curve
-        Of one record or of several.
-
-    Returns
-    -------
-    dict of str to (ndarray, ndarray)
-        By the sign's name: of shape (rows,), NaN where the curves do not show it.
-    """
+    """Compute the largest differences over level and over direction, and their noise floors."""
     rows = len(curves[0].response) if curves else 0
     best = {
         name: (np.full(rows, np.nan), np.full(rows, np.nan))

@@ -50,21 +50,13 @@ MAX_SOLUTIONS, MAX_NUMBERS, MAX_MINIMA = 4, 6, 8
 
 @dataclass(frozen=True)
 class RecordData:
-    """Hold the channels of a record as plain tuples, the form in which a job keeps them.
-
-    Attributes
-    ----------
-    names : tuple of str
-    sample_rate, begin : float
-        Hz, s.
-    channels : tuple of tuple of float
-        m/s2.
-    """
+    """Hold the channels of a record as plain tuples, the form in which a job keeps them."""
 
     names: tuple[str, ...]
+    # hz, s
     sample_rate: float
     begin: float
-    channels: tuple[tuple[float, ...], ...]
+    channels: tuple[tuple[float, ...], ...]  # m/s2
 
     @classmethod
     def from_channels(cls, channels: Channels) -> RecordData:
@@ -122,14 +114,6 @@ def may_be_delaminated(evidence: Evidence, bonded_motion: Floats, sound_misfit: 
 
     It may where faces are seen to part or do not move as one, or where a sound structure does not
     describe the record.
-
-    Parameters
-    ----------
-    evidence : Evidence
-    bonded_motion : ndarray, shape (1, samples)
-        Of the best linear structure, m.
-    sound_misfit : float
-        Lowest misfit of a sound hypothesis.
     """
     even = even_orders(evidence, evidence.fitted_orders(bonded_motion))
     return even.is_opening_seen or sound_misfit > SOUND_DESCRIBES
@@ -137,25 +121,13 @@ def may_be_delaminated(evidence: Evidence, bonded_motion: Floats, sound_misfit: 
 
 @dataclass(frozen=True, kw_only=True)
 class SearchJob(Job):
-    """Search for the minima of all hypotheses; the last item uses the results of all others.
-
-    Attributes
-    ----------
-    data : RecordData or CurveData
-    guess : Structure
-    free : tuple of str
-        What is fitted of a delaminated structure.
-    sound : tuple of int
-        Which of ``SOUND``.
-    delaminated : bool
-        Whether that is searched too.
-    """
+    """Search for the minima of all hypotheses; the last item uses the results of all others."""
 
     data: RecordData | CurveData
     guess: Structure
-    free: tuple[str, ...]
-    sound: tuple[int, ...] = tuple(range(len(SOUND)))
-    delaminated: bool = True
+    free: tuple[str, ...]  # what is fitted of a delaminated structure
+    sound: tuple[int, ...] = tuple(range(len(SOUND)))  # which of `SOUND`
+    delaminated: bool = True  # whether that is searched too
     gathers: ClassVar[bool] = True
     item: ClassVar[str] = "search"
 

@@ -156,12 +156,7 @@ def noise_source(swept: bool) -> str:
 
 
 def checked_responses(every: Sequence[Channels]) -> tuple[str, ...]:
-    """Check that all records have the same responses, and return their names.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that all records have the same responses, and return their names."""
     names = every[0].responses()[0]
     if not names:
         raise InputError("record: no acceleration1; expected it beside the box's, in m/s2")
@@ -175,13 +170,7 @@ def checked_responses(every: Sequence[Channels]) -> tuple[str, ...]:
 def sound_structure(
     structure: Structure | None, own: ResponseSigns, channels: Channels
 ) -> SoundStructure:
-    """Return the sound structure: the bonded guess, or the oscillator nearest to the record.
-
-    Raises
-    ------
-    InputError
-        Where there is no guess, and the record has no response to find it from.
-    """
+    """Return the sound structure: the bonded guess, or the oscillator nearest to the record."""
     if structure is not None:
         return SoundStructure.from_structure(structure)
     if not own.curves:
@@ -222,21 +211,7 @@ def signs_dataset(
     shown: Floats,
     described: dict[str, Any],
 ) -> xr.Dataset:
-    """Assemble the dataset of the signs.
-
-    Parameters
-    ----------
-    title : str
-        Of the record.
-    names : sequence of str
-        Of the channels.
-    values, floors : dict of str to ndarray
-        By the sign's name.
-    shown : ndarray, shape (seeds, signs, channels)
-        Of sound structures.
-    described : dict
-        Attributes.
-    """
+    """Assemble the dataset of the signs."""
     import xarray as xr
 
     over = ("sign", "channel")
@@ -303,13 +278,7 @@ def sound_variables(sound: SoundStructure, noise: Floats) -> dict[str, Any]:
 
 
 def signs_of_drive_run(run: xr.Dataset, others: Sequence[xr.Dataset]) -> xr.Dataset:
-    """Compute the signs of a run on a weak drive, against that of the sound beam.
-
-    Raises
-    ------
-    InputError
-        Where the run of the sound beam is missing.
-    """
+    """Compute the signs of a run on a weak drive, against that of the sound beam."""
     if len(others) != 1 or not is_drive_run(others[0]):
         raise InputError("other: expected the run of the sound beam on the same drive")
     own, lags = drive_signs(run, others[0])

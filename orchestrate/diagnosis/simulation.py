@@ -27,21 +27,12 @@ DIGITS = 7  # of numbers at which motions are computed: the same on every proces
 
 @dataclass(frozen=True)
 class Fitted:
-    """Hold the numbers of a hypothesis at its minimum, with misfit and covariance.
-
-    Attributes
-    ----------
-    hypothesis : Hypothesis
-    values : dict of str to float
-    misfit : float
-    covariance : ndarray, shape (numbers, numbers)
-        Of the values; NaN where it is not known.
-    """
+    """Hold the numbers of a hypothesis at its minimum, with misfit and covariance."""
 
     hypothesis: Hypothesis
     values: dict[str, float]
     misfit: float
-    covariance: Floats
+    covariance: Floats  # of the values; NaN where it is not known
 
 
 def rounded(value: float) -> float:
@@ -51,20 +42,11 @@ def rounded(value: float) -> float:
 
 @dataclass(frozen=True)
 class Simulation:
-    """Hold simulated records of one hypothesis, as changes of the residuals of the measured one.
+    """Hold simulated records of one hypothesis, as changes of the residuals of the measured one."""
 
-    Attributes
-    ----------
-    fitted : Fitted
-        From which they are simulated.
-    motion : ndarray, shape (1 or 2, samples)
-        Of its numbers, m.
-    changes : ndarray, shape (records, residuals)
-        Computed less measured orders over their errors, beyond those of the measured record.
-    """
-
-    fitted: Fitted
-    motion: Floats
+    fitted: Fitted  # from which they are simulated
+    motion: Floats  # of its numbers, m
+    # computed less measured orders over their errors, beyond those of the measured record
     changes: Floats
 
     @classmethod

@@ -32,34 +32,19 @@ MAX_STEP_ANGLE = 0.12
 
 @dataclass(frozen=True)
 class SingleMass:
-    """Hold the parameters of a single mass on a nonlinear spring, see the equation above.
+    """Hold the parameters of a single mass on a nonlinear spring, see the equation above."""
 
-    Attributes
-    ----------
-    f : float
-        Hz, w/(2 pi).
-    zeta : float
-    square, cube : float
-        q in 1/m, c in 1/m2.
-    friction, slow : float
-        m/s2 and m/s.
-    stop : float
-        Stiffness of the stop over that of the spring, r.
-    position : float
-        p, m.
-    side : float
-        b.
-    """
-
-    f: float
+    f: float  # hz, w/(2 pi)
     zeta: float
+    # q in 1/m, c in 1/m2
     square: float = 0.0
     cube: float = 0.0
+    # m/s2 and m/s
     friction: float = 0.0
     slow: float = 1.0
-    stop: float = 0.0
-    position: float = 0.0
-    side: float = 1.0
+    stop: float = 0.0  # stiffness of the stop over that of the spring, r
+    position: float = 0.0  # p, m
+    side: float = 1.0  # b
 
     def coefficients(self) -> tuple[float, ...]:
         """Return the coefficients of the equation in the order that the integrator takes."""
@@ -68,16 +53,8 @@ class SingleMass:
         return (*smooth, self.stop, self.position, self.side)
 
     def displacements(self, cubics: Floats, step: float, bound: float = 1e3) -> Floats:
-        """Integrate the motion: relative displacement at each cubic's beginning and at the end, m.
-
-        Parameters
-        ----------
-        cubics : ndarray, shape (n, 4)
-            The base's acceleration and its derivatives where each begins, m/s2 to m/s5.
-        step : float
-            Length of each, s.
-        bound : float
-            Displacement beyond which the mass counts as gone, m: NaN from there on.
+        """Integrate the motion: relative displacement at each cubic's beginning and at the
+        end, m.
         """
         stiffest = self.f * math.sqrt(1.0 + max(self.stop, 0.0))
         parts = max(1, math.ceil(2.0 * math.pi * stiffest * step / MAX_STEP_ANGLE))

@@ -20,18 +20,10 @@ FIRST_DAMPING = (0.003, 0.02, 0.1)  # ratios that the search for the nearest osc
 
 @dataclass(frozen=True)
 class SoundStructure:
-    """Describe a bonded structure as a linear oscillator: both masses move as one.
+    """Describe a bonded structure as a linear oscillator: both masses move as one."""
 
-    Attributes
-    ----------
-    f : float
-        Natural frequency, Hz.
-    zeta : float
-        Damping ratio.
-    """
-
-    f: float
-    zeta: float
+    f: float  # natural frequency, Hz
+    zeta: float  # damping ratio
 
     @classmethod
     def from_structure(cls, structure: Structure) -> SoundStructure:
@@ -42,18 +34,7 @@ class SoundStructure:
 
     @classmethod
     def nearest(cls, frequency: Floats, response: Floats, channels: Channels) -> SoundStructure:
-        """Fit the oscillator whose acceleration is nearest to a record's.
-
-        Parameters
-        ----------
-        frequency : ndarray, shape (n,)
-            Hz.
-        response : ndarray, shape (channels, n)
-            Complex, acceleration over the box's: what the search begins with, since a sweep that
-            is fast moves its peak.
-        channels : Channels
-            The record.
-        """
+        """Fit the oscillator whose acceleration is nearest to a record's."""
         from scipy.optimize import least_squares
 
         peak = float(frequency[int(np.abs(response).max(axis=0).argmax())])
@@ -89,21 +70,7 @@ class SoundStructure:
         return np.asarray(lfilter(*filters, channels.box))
 
     def records(self, channels: Channels, noise: Floats, seeds: Sequence[int]) -> Channels:
-        """Simulate what sensors on this structure would read: one row for each seed and channel.
-
-        Parameters
-        ----------
-        channels : Channels
-            The record: its box is taken as it is.
-        noise : ndarray, shape (channels,)
-            Root mean square of each response's noise, m/s2.
-        seeds : sequence of int
-
-        Returns
-        -------
-        Channels
-            The box, then the responses of the first seed, of the second one, and so on.
-        """
+        """Simulate what sensors on this structure would read: one row for each seed and channel."""
         steady = self.acceleration(channels)
         rows = [channels.box]
         for seed in seeds:

@@ -54,40 +54,23 @@ AROUND, BEYOND = 0.7, 3.0  # of its largest displacement, of its largest gap: th
 
 
 class RandomStart(NamedTuple):
-    """A random start to run: parameter value, its index, the size of the box to draw it from.
+    """A random start to run: parameter value, its index, the size of the box to draw it from."""
 
-    Attributes
-    ----------
-    value_index : int
-        Of the value among all.
-    point : Point
-    scale : float, optional
-        Half width of the box of starts, m; None: from the response from rest.
-    number : int
-        Of the start.
-    """
-
-    value_index: int
+    value_index: int  # of the value among all
     point: Point
-    scale: float | None
-    number: int
+    scale: float | None  # half width of the box of starts, m; None: from the response from rest
+    number: int  # of the start
 
 
 @dataclass(frozen=True, kw_only=True)
 class AttractorsJob(SeriesQuestion):
-    """Job of :func:`orchestrate.attractors`: random starts at each value of a parameter.
-
-    Attributes
-    ----------
-    follows : str
-        Name of a sweep over the same parameter whose gaps are taken instead of those from rest.
-    settings : AttractorSettings
-    """
+    """Job of :func:`orchestrate.attractors`: random starts at each value of a parameter."""
 
     starts: int = 60
     seed: int = 0
     scale: Numbers | None = None
     width: float = 3.0
+    # name of a sweep over the same parameter whose gaps are taken instead of those from rest
     follows: str = ""
     settings: AttractorSettings = AttractorSettings()
     asked: ClassVar[str] = "attractors"
@@ -309,23 +292,7 @@ def attractor_variables(
 def random_starts(
     count: int, scale: float, seed: tuple[int, int], structure: Structure
 ) -> NDArray[np.float64]:
-    """Draw ``count`` states, shape (count, 4), uniformly from a box around rest, gap >= 0.
-
-    Parameters
-    ----------
-    count : int
-    scale : float
-        Displacement of mass 1 in +-scale from rest, gap in [0, scale], m; velocity of mass 1 and of
-        the gap in +-omega scale, m/s.
-    seed : (int, int)
-        Of the random numbers: the question's, and the index of the value.
-    structure : Structure
-
-    Returns
-    -------
-    ndarray, shape (count, 4)
-        x1, x2, v1, v2.
-    """
+    """Draw ``count`` states, shape (count, 4), uniformly from a box around rest, gap >= 0."""
     draws = np.random.default_rng(list(seed)).uniform(-scale, scale, (count, 4))
     omega, x1, gap = structure.omega, draws[:, 0] + structure.at_rest[0], np.abs(draws[:, 1])
     v1, rate = draws[:, 2] * omega, draws[:, 3] * omega
@@ -333,21 +300,11 @@ def random_starts(
 
 
 class SizeFromRest(NamedTuple):
-    """Size of the settled response from rest: its state, largest displacement, largest gap.
+    """Size of the settled response from rest: its state, largest displacement, largest gap."""
 
-    Attributes
-    ----------
-    state : ndarray, shape (4,)
-        At phase 0, x1, x2 in m, v1, v2 in m/s.
-    displacement : float
-        Largest displacement of both masses, m.
-    gap : float
-        Largest gap, m.
-    """
-
-    state: NDArray[np.float64]
-    displacement: float
-    gap: float
+    state: NDArray[np.float64]  # at phase 0, x1, x2 in m, v1, v2 in m/s
+    displacement: float  # largest displacement of both masses, m
+    gap: float  # largest gap, m
 
 
 def size_from_rest(instance: Instance, point: Point, settings: AttractorSettings) -> SizeFromRest:
@@ -363,25 +320,7 @@ def size_from_rest(instance: Instance, point: Point, settings: AttractorSettings
 def starts_in_both_boxes(
     count: int, scale: float, size: SizeFromRest, seed: tuple[int, int], point: Point
 ) -> NDArray[np.float64]:
-    """Draw start states in turn from a box around rest and one around the response from rest.
-
-    Parameters
-    ----------
-    count : int
-    scale : float
-        Half width of the box around zero, see :func:`random_starts`.
-    size : SizeFromRest
-    seed : (int, int)
-        Of the random numbers: the question's, and the index of the value.
-    point : Point
-
-    Returns
-    -------
-    ndarray, shape (count, 4)
-        x1, x2, v1, v2: even rows are of the first box. In the second, displacement and velocity of
-        mass 1 lie within 0.7 of the largest displacement from those of the response from rest, the
-        gap in [0, 3 G] and its rate in +-3 G Omega with the largest gap G.
-    """
+    """Draw start states in turn from a box around rest and one around the response from rest."""
     states = random_starts(count, scale, seed, point.structure)
     draws = np.random.default_rng([*seed, 1]).uniform(-1.0, 1.0, (count, 4))
     frequency = point.excitation.frequency
@@ -534,13 +473,7 @@ def attractors(
 
 
 def checked_half_widths(argument: ArrayLike | None) -> Numbers | None:
-    """Return the user's half width(s) of the box of starts, m, or None; raise unless positive.
-
-    Raises
-    ------
-    InputError
-        Where one is not.
-    """
+    """Return the user's half width(s) of the box of starts, m, or None; raise unless positive."""
     scale = checked_numbers("scale", argument)
     each = scale if isinstance(scale, tuple) else () if scale is None else (scale,)
     wrong = [value for value in each if value <= 0.0]

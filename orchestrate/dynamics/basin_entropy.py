@@ -22,15 +22,9 @@ Floats = NDArray[np.float64]
 
 
 class BoxEntropies(NamedTuple):
-    """Gibbs entropies of attractor shares in the square boxes that a plane is cut into.
+    """Gibbs entropies of attractor shares in the square boxes that a plane is cut into."""
 
-    Attributes
-    ----------
-    entropies : ndarray, shape (n,)
-        ``-sum p ln p`` over the shares p of the attractors in each box.
-    """
-
-    entropies: Floats
+    entropies: Floats  # `-sum p ln p` over the shares p of the attractors in each box
 
     @property
     def mean(self) -> float:
@@ -161,13 +155,7 @@ def basin_entropy(basins: xr.Dataset, *, box: int = 5) -> xr.Dataset:
 
 
 def attractor_labels(basins: object) -> Labels:
-    """Return a basin dataset's attractor numbers, shape (y, x); raise if it is no basin's.
-
-    Raises
-    ------
-    InputError
-        Where these are no basins.
-    """
+    """Return a basin dataset's attractor numbers, shape (y, x); raise if it is no basin's."""
     known = getattr(basins, "attractor_of", None)
     if known is None or len(known.dims) != 2:
         kind = type(basins).__name__

@@ -61,17 +61,9 @@ GAPS = {"x_rel": ("x1", "x2"), "v_rel": ("v1", "v2")}
 
 
 class PlaneAxis(NamedTuple):
-    """Axis of a plane of starts: a coordinate's name and its equidistant values.
+    """Axis of a plane of starts: a coordinate's name and its equidistant values."""
 
-    Attributes
-    ----------
-    name : str
-        Of ``AXES``.
-    low, high : float
-    number : int
-    """
-
-    name: str
+    name: str  # of `AXES`
     low: float
     high: float
     number: int
@@ -82,20 +74,12 @@ class PlaneAxis(NamedTuple):
 
 
 class Plane(NamedTuple):
-    """Plane of starts: two axes, and the state that the other coordinates are taken from.
-
-    Attributes
-    ----------
-    point : Point
-    x, y : PlaneAxis
-    at : tuple of float
-        State in whose neighbourhood the plane lies: x1, x2 in m, v1, v2 in m/s.
-    """
+    """Plane of starts: two axes, and the state that the other coordinates are taken from."""
 
     point: Point
     x: PlaneAxis
     y: PlaneAxis
-    at: tuple[float, ...]
+    at: tuple[float, ...]  # state in whose neighbourhood the plane lies: x1, x2 in m, v1, v2 in m/s
 
     def starts(self) -> tuple[Floats, Floats]:
         """Return states of all starts, shape (y.number * x.number, 4), and phases, row by row."""
@@ -140,24 +124,13 @@ class PlaneStart(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class BasinJob(Question):
-    """Job of :func:`orchestrate.basin`: all starts on a plane, run until they settle.
+    """Job of :func:`orchestrate.basin`: all starts on a plane, run until they settle."""
 
-    Attributes
-    ----------
-    excitation : Excitation
-        Its phase is that of all starts where ``phase`` is not a coordinate.
-    x, y : PlaneAxis
-    at : tuple of float
-    known : tuple of tuple of float
-        States on attractors that are known, at phase 0.
-    settings : AttractorSettings
-    """
-
-    excitation: Excitation
+    excitation: Excitation  # its phase is that of all starts where `phase` is not a coordinate
     x: PlaneAxis
     y: PlaneAxis
     at: tuple[float, ...] = REST
-    known: tuple[tuple[float, ...], ...] = ()
+    known: tuple[tuple[float, ...], ...] = ()  # states on attractors that are known, at phase 0
     settings: AttractorSettings = AttractorSettings()
     asked: ClassVar[str] = "basin"
     chunk_size: ClassVar[int] = 240
@@ -253,13 +226,7 @@ def run_to_phase_zero(instance: Instance, start: PlaneStart) -> tuple[float, ...
 
 
 def checked_axis(name: str, argument: Any) -> PlaneAxis:
-    """Return a ``PlaneAxis`` from the user's (name, low, high, count); raise if invalid.
-
-    Raises
-    ------
-    InputError
-        Where it is none.
-    """
+    """Return a ``PlaneAxis`` from the user's (name, low, high, count); raise if invalid."""
     expected = f"expected (name, low, high, count) with a name of {', '.join(AXES)}"
     try:
         axis, low, high, count = argument
@@ -381,23 +348,12 @@ def basin(
 
 
 class KnownAttractors(NamedTuple):
-    """Attractors found beforehand, from which the default plane of starts is laid out.
-
-    Attributes
-    ----------
-    point : Point
-    states : tuple of tuple of float
-        A state on each at phase 0.
-    samples : ndarray, shape (n, 4)
-        States of all of them at phase 0.
-    gap : float
-        Largest gap of their motions, m.
-    """
+    """Attractors found beforehand, from which the default plane of starts is laid out."""
 
     point: Point
-    states: tuple[tuple[float, ...], ...]
-    samples: Floats
-    gap: float
+    states: tuple[tuple[float, ...], ...]  # A state on each at phase 0
+    samples: Floats  # states of all of them at phase 0
+    gap: float  # largest gap of their motions, m
 
     def default_axis(self, name: str) -> PlaneAxis:
         """Return a default axis for gap or gap velocity, twice as wide as the attractors."""

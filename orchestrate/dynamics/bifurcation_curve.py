@@ -46,22 +46,13 @@ class BifurcationCurve:
     """Equations of an orbit at a bifurcation, as a curve over two parameters.
 
     Unknowns are those of the nodes, the two parameters, and what the kind adds.
-
-    Attributes
-    ----------
-    family : Family
-        Of two parameters.
-    kind : int
-    place : int
-        Index of the node that grazes, or of the segment that touches or is released.
-    extra : ndarray
-        What the kind adds, at the start: the multiplier's angle, or the phase of touching or of the
-        release.
     """
 
-    family: Family
+    family: Family  # of two parameters
     kind: int
-    place: int
+    place: int  # index of the node that grazes, or of the segment that touches or is released
+    # what the kind adds, at the start: the multiplier's angle, or the phase of touching or of the
+    # release
     extra: Floats
     scale: Floats = field(init=False)
     columns: NDArray[np.complex128] = field(init=False)
@@ -72,13 +63,7 @@ class BifurcationCurve:
 
     @classmethod
     def from_orbit(cls, family: Family, point: OrbitPoint, kind: int) -> BifurcationCurve:
-        """Return the equations of the curve through a bifurcation found on a branch.
-
-        Raises
-        ------
-        InputError
-            Where bifurcations of that kind are not followed.
-        """
+        """Return the equations of the curve through a bifurcation found on a branch."""
         place, extra = -1, np.zeros(0)
         if kind == TORUS:
             which = np.abs(np.abs(point.pairs) - 1.0).argmin()
@@ -195,14 +180,7 @@ def rotated_to_real(vector: NDArray[np.complex128]) -> NDArray[np.complex128]:
 
 
 class BifurcationTracer(BranchTracer[BifurcationCurve, Root]):
-    """Traces a bifurcation over two parameters by pseudo-arclength continuation.
-
-    Parameters
-    ----------
-    curve : BifurcationCurve
-    start : Root
-    settings : ContinuationSettings
-    """
+    """Traces a bifurcation over two parameters by pseudo-arclength continuation."""
 
     def __init__(
         self, curve: BifurcationCurve, start: Root, settings: ContinuationSettings

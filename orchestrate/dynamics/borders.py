@@ -58,26 +58,13 @@ KEPT = ("state", "xi", "multipliers", *NODES)  # variables of orbits that those 
 
 @dataclass(frozen=True, kw_only=True)
 class BorderJob(OneItemQuestion):
-    """Job of :func:`orchestrate.border`: one bifurcation followed over two parameters.
+    """Job of :func:`orchestrate.border`: one bifurcation followed over two parameters."""
 
-    Attributes
-    ----------
-    setting : Setting
-        The two parameters and their limits.
-    start : FirstGuess
-        Nodes of the orbit at the bifurcation.
-    period, kind : int
-    values : tuple of float
-        Of the parameters there.
-    longest : float
-    most : int
-    """
-
-    setting: Setting
-    start: FirstGuess
+    setting: Setting  # the two parameters and their limits
+    start: FirstGuess  # nodes of the orbit at the bifurcation
     period: int
     kind: int
-    values: tuple[float, float]
+    values: tuple[float, float]  # of the parameters there
     longest: float
     most: int
     asked: ClassVar[str] = "border"
@@ -150,13 +137,7 @@ def codimension_two_variables(setting: Setting, table: Table) -> dict[str, Varia
 
 
 def start_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
-    """Solve for the bifurcation at which a border curve begins; return equations and root.
-
-    Raises
-    ------
-    InputError
-        Where it is none, or not one that is followed.
-    """
+    """Solve for the bifurcation at which a border curve begins; return equations and root."""
     setting, nodes = job.setting, np.array(job.start.nodes).reshape(-1, 4)
     sequence, values = job.start.sequence(job.period), np.array(job.values)
     try:

@@ -63,32 +63,16 @@ OrbitSegment = BranchSegment[OrbitPoint]
 
 @dataclass(frozen=True, kw_only=True)
 class BranchJob(OneItemQuestion):
-    """Job of :func:`orchestrate.branch`: a branch of orbits continued over one parameter.
+    """Job of :func:`orchestrate.branch`: a branch of orbits continued over one parameter."""
 
-    Attributes
-    ----------
-    setting : Setting
-        The parameter that varies and its limits.
-    start : FirstGuess
-        Nodes of the orbit that it begins with.
-    period : int
-    value : float
-        Of the parameter there.
-    switch : int
-        Kind of the bifurcation at which the branch leaves; -1: that through the start, both ways.
-    longest : float
-        Longest step.
-    most : int
-        Most points in one direction.
-    """
-
-    setting: Setting
-    start: FirstGuess
+    setting: Setting  # the parameter that varies and its limits
+    start: FirstGuess  # nodes of the orbit that it begins with
     period: int
-    value: float
+    value: float  # of the parameter there
+    # kind of the bifurcation at which the branch leaves; -1: that through the start, both ways
     switch: int
-    longest: float
-    most: int
+    longest: float  # longest step
+    most: int  # most points in one direction
     asked: ClassVar[str] = "branch"
 
     def call_text(self) -> str:
@@ -135,13 +119,7 @@ class BranchJob(OneItemQuestion):
 
 
 def trace_branch(job: BranchJob) -> list[OrbitSegment]:
-    """Continue the branch in both directions (one if it leaves another); return its segments.
-
-    Raises
-    ------
-    InputError
-        Where there is no orbit at its start.
-    """
+    """Continue the branch in both directions (one if it leaves another); return its segments."""
     guess = job.start.sequence(job.period), np.array(job.start.nodes).reshape(-1, 4)
     settings = ContinuationSettings(job.longest, job.most)
     try:
@@ -378,11 +356,6 @@ def complete_excitation(
     """Return the excitation as (name, number) pairs, taken from ``start`` where not given.
 
     Where nothing of the structure has a length the amplitude does not matter, and ``eta`` says all.
-
-    Raises
-    ------
-    InputError
-        Where ``eta`` varies, which takes the amplitude along, from another amplitude.
     """
     over, names = varied[0], [name for name, _ in arguments]
     if start is not None and not arguments:

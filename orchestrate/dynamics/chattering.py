@@ -15,13 +15,7 @@ MAX_CHANGES = 10  # impacts that come or go in one step: more are no small chang
 
 
 def add_or_remove_impacts(point: OrbitPoint) -> OrbitPoint:
-    """Add or remove chattering impacts one by one until (17) holds; return the orbit.
-
-    Raises
-    ------
-    NoConvergenceError
-        Where there is no such orbit.
-    """
+    """Add or remove chattering impacts one by one until (17) holds; return the orbit."""
     for _ in range(MAX_CHANGES):
         if not point.wrong_contact:
             return point
@@ -30,13 +24,7 @@ def add_or_remove_impacts(point: OrbitPoint) -> OrbitPoint:
 
 
 def change_one_impact(point: OrbitPoint) -> OrbitPoint:
-    """Return the orbit with one more chattering impact, or without those that (17) excludes.
-
-    Raises
-    ------
-    NoConvergenceError
-        Where there is no such orbit.
-    """
+    """Return the orbit with one more chattering impact, or without those that (17) excludes."""
     orbit, margins = point.orbit, point.sticking_margins
     kinds, nodes = list(orbit.sequence.kinds), orbit.nodes
     if point.contact_margin(CONTACT_BEGUN) < point.contact_margin(CONTACT_LOST):
@@ -61,13 +49,7 @@ def change_one_impact(point: OrbitPoint) -> OrbitPoint:
 def without_impacts_after(
     kinds: list[int], nodes: Floats, sticking: int
 ) -> tuple[list[int], Floats]:
-    """Remove the impacts between a sticking one and its release; return kinds and nodes.
-
-    Raises
-    ------
-    NoConvergenceError
-        Where no release follows.
-    """
+    """Remove the impacts between a sticking one and its release; return kinds and nodes."""
     releases = [i for i in range(sticking + 1, len(kinds)) if kinds[i] == RELEASE]
     if not releases:
         raise NoConvergenceError("an impact sticks that is not of a chattering")

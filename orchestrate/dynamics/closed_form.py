@@ -29,55 +29,32 @@ def oscillators(contact: NDArray[np.bool_] | bool) -> slice | NDArray[np.intp]:
 
 @dataclass(frozen=True)
 class ClosedForm:
-    """Coefficients of the closed-form motion between impacts, non-dimensional.
+    """Coefficients of the closed-form motion between impacts, non-dimensional."""
 
-    Attributes
-    ----------
-    eta, mu, e, gamma : float
-        Frequency ratio, mass ratio (2), restitution (15), end of chattering (17).
-    e_slope : float
-        Decrease of the restitution with the closing speed.
-    damping, stiffness : ndarray, shape (3,)
-        D_i (8) and omega_i^2 (7).
-    cosine, sine : ndarray, shape (3,)
-        a_i and b_i of (11).
-    offset : ndarray, shape (3,)
-        Displacement by a constant acceleration of the box.
-    force_v, force_x : float
-        Coefficients of the contact force f (18).
-    gap_offset : float
-        The gap where both springs are unloaded.
-    load : ndarray, shape (3,)
-        Acceleration of each oscillator at no displacement, by the clearance.
-    """
-
+    # frequency ratio, mass ratio (2), restitution (15), end of chattering (17)
     eta: float
     mu: float
     e: float
     gamma: float
-    e_slope: float
+    e_slope: float  # decrease of the restitution with the closing speed
+    # D_i (8) and omega_i^2 (7)
     damping: Floats
     stiffness: Floats
+    # a_i and b_i of (11)
     cosine: Floats
     sine: Floats
-    offset: Floats
+    offset: Floats  # displacement by a constant acceleration of the box
+    # coefficients of the contact force f (18)
     force_v: float
     force_x: float
-    gap_offset: float
-    load: Floats
+    gap_offset: float  # the gap where both springs are unloaded
+    load: Floats  # acceleration of each oscillator at no displacement, by the clearance
 
     @classmethod
     def from_structure(
         cls, structure: Structure, excitation: Excitation, box_acceleration: float = 0.0
     ) -> ClosedForm:
         """Return the coefficients for a structure, an excitation, and a constant acceleration.
-
-        Parameters
-        ----------
-        structure : Structure
-        excitation : Excitation
-        box_acceleration : float
-            Constant acceleration of the box beside the harmonic one, m/s2.
 
         Notes
         -----
@@ -144,14 +121,7 @@ class ClosedForm:
         return self.e * factor * factor
 
     def basis(self, i: int, time: Floats) -> tuple[Floats, Floats]:
-        """Return ``e^{-D t} cos(nu t)`` and ``e^{-D t} sin(nu t)/nu`` of (10), overdamped too.
-
-        Parameters
-        ----------
-        i : int
-            Of the oscillator.
-        time : ndarray
-        """
+        """Return ``e^{-D t} cos(nu t)`` and ``e^{-D t} sin(nu t)/nu`` of (10), overdamped too."""
         damping, square = self.damping[i], self.stiffness[i]
         nu_squared = square - damping * damping  # (11)
         if abs(nu_squared) <= CRITICAL * square:
@@ -165,17 +135,7 @@ class ClosedForm:
         return slow * (1.0 + 0.5 * faster), -0.5 * slow * faster / nu
 
     def oscillator(self, i: int, time: Floats) -> Floats:
-        """Return the free flow matrices (n, 2, 2) of oscillator ``i`` after given times.
-
-        Parameters
-        ----------
-        i : int
-        time : ndarray, shape (n,)
-
-        Returns
-        -------
-        ndarray, shape (n, 2, 2)
-        """
+        """Return the free flow matrices (n, 2, 2) of oscillator ``i`` after given times."""
         cosine, sine = self.basis(i, time)
         matrices = np.empty((len(time), 2, 2))
         matrices[:, 0, 0] = cosine + self.damping[i] * sine
@@ -200,19 +160,7 @@ class ClosedForm:
         return matrices
 
     def steady(self, phase: Floats, contact: NDArray[np.bool_] | bool = False) -> Floats:
-        """Return the steady-state response (harmonic part of (10)) at phases, shape (n, 4).
-
-        Parameters
-        ----------
-        phase : ndarray, shape (n,)
-            Of the excitation, rad.
-        contact : ndarray of bool, shape (n,), or bool
-            Where both masses are one.
-
-        Returns
-        -------
-        ndarray, shape (n, 4)
-        """
+        """Return the steady-state response (harmonic part of (10)) at phases, shape (n, 4)."""
         which = oscillators(contact)
         cosine, sine = np.cos(phase)[:, None], np.sin(phase)[:, None]
         a, b = self.cosine[which], self.sine[which]
@@ -224,14 +172,8 @@ class ClosedForm:
     def common_motion(
         self, time: Floats, phase: Floats, position: Floats, velocity: Floats
     ) -> tuple[Floats, Floats]:
-        """Return displacement and velocity in contact after a time, from their start: (10), i = 3.
-
-        Parameters
-        ----------
-        time : ndarray
-            Since the contact began.
-        phase, position, velocity : ndarray
-            Then; all arrays are broadcast against each other.
+        """Return displacement and velocity in contact after a time, from their start: (10), i
+        = 3.
         """
         cosine, sine = self.basis(2, time)
         damping, square = self.damping[2], self.stiffness[2]

@@ -23,34 +23,22 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class AttractorSettings:
-    """Settings for settling and clustering responses from many starts.
+    """Settings for settling and clustering responses from many starts."""
 
-    Parameters
-    ----------
-    transient, settle, samples, converged
-        As in :func:`orchestrate.attractors`.
-    apart : float
-        Over ``converged``: within so much a state nearly repeats; states differ by more after fewer
-        periods than those of the response.
-    longest
-        As in :func:`orchestrate.attractors`.
-    irregular_samples : int
-        Periods kept of an irregular response.
-    alike, alike_irregular
-        As in :func:`orchestrate.attractors`.
-    count_weight : float
-        Weight of the impacts per period of irregular responses, a mean over the samples.
-    """
-
+    # as in orchestrate.attractors
     transient: int = 400
     settle: float = 300.0
     samples: int = 48
     converged: float = 1e-6
+    # over `converged`: within so much a state nearly repeats; states differ by more after fewer
+    # periods than those of the response
     apart: float = 1e3
-    longest: int = 20_000
-    irregular_samples: int = 400
+    longest: int = 20_000  # as in orchestrate.attractors
+    irregular_samples: int = 400  # periods kept of an irregular response
+    # as in orchestrate.attractors
     alike: float = 0.02
     alike_irregular: float = 0.25
+    # weight of the impacts per period of irregular responses, a mean over the samples
     count_weight: float = 0.2
 
 
@@ -60,18 +48,10 @@ def transient_periods(transient: int, settle: float, eta: float) -> int:
 
 
 class SettledResponse(NamedTuple):
-    """A response run until it repeats or the limit is reached, and the periods that took.
+    """A response run until it repeats or the limit is reached, and the periods that took."""
 
-    Attributes
-    ----------
-    response : Response
-        Its multiplicity is 0 where it is irregular: a torus, or chaos.
-    periods : int
-        After which it was decided.
-    """
-
-    response: Response
-    periods: int
+    response: Response  # its multiplicity is 0 where it is irregular: a torus, or chaos
+    periods: int  # after which it was decided
 
 
 def run_until_settled(
@@ -114,14 +94,7 @@ def repeats_first(response: Response, settings: AttractorSettings) -> bool:
 
 
 def response_features(response: Response, length: float) -> list[float]:
-    """Return a response's phase-independent features: multiplicity, impacts, gap statistics.
-
-    Parameters
-    ----------
-    response : Response
-    length : float
-        Unit of the gap, a eta^2 in m.
-    """
+    """Return a response's phase-independent features: multiplicity, impacts, gap statistics."""
     n, gaps = response.multiplicity, response.gap / length
     impacts = response.impacts_per_period
     if n:  # over whole periods of the response
@@ -130,20 +103,7 @@ def response_features(response: Response, length: float) -> list[float]:
 
 
 def irregular_clusters(rows: ArrayLike, settings: AttractorSettings) -> NDArray[np.intp]:
-    """Cluster irregular responses' feature rows by single linkage; return a label per row.
-
-    Parameters
-    ----------
-    rows : array_like, shape (n, 5)
-        Features of irregular responses. Those belong together that a chain of responses connects,
-        each like the next.
-    settings : AttractorSettings
-
-    Returns
-    -------
-    ndarray of int, shape (n,)
-        Labels 0, 1, ... in the order in which the attractors are met.
-    """
+    """Cluster irregular responses' feature rows by single linkage; return a label per row."""
     table = np.asarray(rows, dtype=float).reshape(-1, len(FEATURES))
     scale = np.maximum(np.abs(table[:, 2]), 1e-300)
     points = np.column_stack(
@@ -162,16 +122,6 @@ def single_linkage(points: Floats, radius: float) -> NDArray[np.intp]:
 
     The memory grows with the number of points, and not with its square as that of
     :func:`scipy.cluster.hierarchy.linkage`.
-
-    Parameters
-    ----------
-    points : ndarray, shape (n, k)
-    radius : float
-
-    Returns
-    -------
-    ndarray of int, shape (n,)
-        Labels 0, 1, ... in the order in which the clusters are met.
     """
     labels = np.full(len(points), -1, dtype=np.intp)
     left = np.arange(len(points))

@@ -90,39 +90,17 @@ ANGLES = {PointKind.RESONANCE_3: 2.0 * np.pi / 3.0, PointKind.RESONANCE_4: 0.5 *
 
 @dataclass(frozen=True)
 class CodimensionTwoPoint:
-    """A codimension-two point: its kind, the root there, and its position on the curve.
-
-    Attributes
-    ----------
-    kind : PointKind
-    unknowns : ndarray
-        Those of the nodes, and both parameters.
-    position : float
-        Among the curve's points: between two numbers where it lies between two points.
-    residual : float
-        What is left of its two conditions, of D over its largest coefficient.
-    """
+    """A codimension-two point: its kind, the root there, and its position on the curve."""
 
     kind: PointKind
-    unknowns: Floats
+    unknowns: Floats  # those of the nodes, and both parameters
+    # among the curve's points: between two numbers where it lies between two points
     position: float
-    residual: float
+    residual: float  # what is left of its two conditions, of D over its largest coefficient
 
 
 class CharacteristicPolynomial:
-    """Characteristic polynomial of an orbit's monodromy matrix: roots are multipliers.
-
-    Parameters
-    ----------
-    orbit : PeriodicOrbit
-    scale : ndarray
-        Of the unknowns of its nodes.
-
-    Attributes
-    ----------
-    coefficients : ndarray, shape (5,)
-        Of ascending powers, over the largest one.
-    """
+    """Characteristic polynomial of an orbit's monodromy matrix: roots are multipliers."""
 
     def __init__(self, orbit: PeriodicOrbit, scale: Floats) -> None:
         circle = np.exp(2j * np.pi * np.arange(DEGREE + 1) / (DEGREE + 1))
@@ -160,16 +138,7 @@ class CharacteristicPolynomial:
 def locate_points(
     curve: BifurcationCurve, roots: list[Root], ends: tuple[str, str]
 ) -> list[CodimensionTwoPoint]:
-    """Locate the points of codimension two along a traced curve, in order.
-
-    Parameters
-    ----------
-    curve : BifurcationCurve
-    roots : list of Root
-        From its first end to its last one.
-    ends : tuple of str
-        Why it ends there.
-    """
+    """Locate the points of codimension two along a traced curve, in order."""
     points = list(end_points(curve, roots[0], ends[0], 0.0))
     for number, (before, after) in enumerate(zip(roots[:-1], roots[1:], strict=True)):
         points += sorted(
@@ -237,21 +206,7 @@ def test_function_value(
     kind: PointKind,
     known: CharacteristicPolynomial | None = None,
 ) -> float:
-    """Return a kind's test function at a root of the curve: it changes sign at such a point.
-
-    Parameters
-    ----------
-    curve : BifurcationCurve
-    root : Root
-    kind : PointKind
-    known : CharacteristicPolynomial, optional
-        The polynomial at the root.
-
-    Raises
-    ------
-    NoConvergenceError
-        Where it has no value.
-    """
+    """Return a kind's test function at a root of the curve: it changes sign at such a point."""
     if kind in ANGLES:
         return float(root.unknowns[-1] - ANGLES[kind])
     if kind == PointKind.CUSP:
@@ -323,13 +278,7 @@ def end_points(
 def solve_end(
     curve: BifurcationCurve, root: Root, kind: PointKind, reason: str, position: float
 ) -> CodimensionTwoPoint:
-    """Solve for the codimension-two point at which a curve ends, by Newton's method.
-
-    Raises
-    ------
-    NoConvergenceError
-        Where Newton's method does not converge near ``root``.
-    """
+    """Solve for the codimension-two point at which a curve ends, by Newton's method."""
     size = curve.family.size + 2
     resonance = kind in (PointKind.RESONANCE_1, PointKind.RESONANCE_2)
     curve.update_border(root.unknowns)

@@ -52,11 +52,6 @@ class Curve(Protocol):
         """Return the residual's Jacobian, shape (n, n + 1); exact if ``at_root``.
 
         Elsewhere it may be an estimate.
-
-        Raises
-        ------
-        NoConvergenceError
-            Where there is no derivative.
         """
 
 
@@ -65,23 +60,12 @@ AnyCurve = TypeVar("AnyCurve", bound=Curve)
 
 @dataclass(frozen=True)
 class Root:
-    """A solved point of a curve: unknowns, unit tangent and residual.
-
-    Attributes
-    ----------
-    unknowns : ndarray, shape (n + 1,)
-    tangent : ndarray, shape (n + 1,)
-        Of length 1, in unknowns over their scale.
-    residual : float
-        Largest absolute residual of the equations.
-    iterations : int
-        Of Newton's method.
-    """
+    """A solved point of a curve: unknowns, unit tangent and residual."""
 
     unknowns: Floats
-    tangent: Floats
-    residual: float
-    iterations: int
+    tangent: Floats  # of length 1, in unknowns over their scale
+    residual: float  # largest absolute residual of the equations
+    iterations: int  # of Newton's method
 
     def reversed(self) -> Root:
         """Return the same root with its tangent reversed."""
@@ -98,23 +82,6 @@ def newton_correct(
     max_distance: float = 0.5,
 ) -> Root:
     """Solve by Newton's method for the root in the plane through ``guess`` with this normal.
-
-    Parameters
-    ----------
-    curve : Curve
-    guess : ndarray, shape (n + 1,)
-    normal : ndarray, shape (n + 1,)
-        Of the plane, in unknowns over their scale. A unit vector keeps an unknown fixed.
-    tolerance : float
-        Largest last step before the root is polished, in unknowns over their scale.
-    max_iterations : int
-    max_distance : float
-        Of the root from the guess, in each unknown over its scale.
-
-    Raises
-    ------
-    NoConvergenceError
-        Where there is none.
 
     Notes
     -----
@@ -141,11 +108,6 @@ def newton_step(
     """Take one step of Newton's method: return the new offset from the guess, and the step.
 
     The derivative is the curve's own where none is given.
-
-    Raises
-    ------
-    NoConvergenceError
-        Where the equations are singular, or have no value.
     """
     try:
         with np.errstate(over="ignore", invalid="ignore"):
@@ -161,13 +123,7 @@ def newton_step(
 def polish_root(
     curve: Curve, guess: Floats, offset: Floats, normal: Floats, iterations: int
 ) -> Root:
-    """Refine a nearly converged root with an exact Jacobian; return it with its tangent.
-
-    Raises
-    ------
-    NoConvergenceError
-        Where its residual is too large.
-    """
+    """Refine a nearly converged root with an exact Jacobian; return it with its tangent."""
     try:
         jacobian = curve.jacobian(guess + curve.scale * offset, at_root=True)
         for _ in range(POLISHING_STEPS):
@@ -183,13 +139,7 @@ def polish_root(
 
 
 def solve_linear(matrix: Floats, right: Floats) -> Floats:
-    """Solve linear equations, by dense LU; large systems by sparse LU.
-
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        Where the matrix is singular.
-    """
+    """Solve linear equations, by dense LU; large systems by sparse LU."""
     if len(right) <= DENSE_LIMIT:
         return np.asarray(np.linalg.solve(matrix, right), dtype=float)
     from scipy.sparse import csc_array
@@ -242,30 +192,16 @@ def unit_vector(size: int, component: int) -> Floats:
 
 @dataclass
 class ArclengthStepper(Generic[AnyCurve]):
-    """Pseudo-arclength stepper along a curve; its step follows the turning of the tangent.
-
-    Attributes
-    ----------
-    curve : Curve
-    root : Root
-        Where the stepper is; the next step goes along its tangent.
-    length : float
-        Of the next step, in unknowns over their scale.
-    max_length, min_length : float
-        Steps allowed.
-    min_cosine : float
-        Smallest cosine between successive tangents.
-    tolerance : float
-        As :func:`newton_correct` has it.
-    """
+    """Pseudo-arclength stepper along a curve; its step follows the turning of the tangent."""
 
     curve: AnyCurve
-    root: Root
-    length: float
+    root: Root  # where the stepper is; the next step goes along its tangent
+    length: float  # of the next step, in unknowns over their scale
+    # steps allowed
     max_length: float
     min_length: float = 1e-7
-    min_cosine: float = 0.97
-    tolerance: float = 1e-8
+    min_cosine: float = 0.97  # smallest cosine between successive tangents
+    tolerance: float = 1e-8  # as newton_correct has it
 
     def root_after(self, length: float) -> Root:
         """Return the root at an arclength ahead: predicted on the tangent, then corrected."""
@@ -274,13 +210,7 @@ class ArclengthStepper(Generic[AnyCurve]):
         return newton_correct(self.curve, guess, root.tangent, tolerance=self.tolerance)
 
     def step(self, accepts: Callable[[Root], bool] = lambda root: True) -> tuple[Root, float]:
-        """Step to the next root that ``accepts``, shortened where needed; return it, the length.
-
-        Raises
-        ------
-        NoConvergenceError
-            Where no step is short enough.
-        """
+        """Step to the next root that ``accepts``, shortened where needed; return it, the length."""
         length = self.length
         while length >= self.min_length:
             try:
@@ -302,28 +232,8 @@ class ArclengthStepper(Generic[AnyCurve]):
         limits: Sequence[tuple[float, float]],
         accepts: Callable[[Root], bool] = lambda root: True,
     ) -> tuple[Root, float, bool]:
-        """Step, at most onto a limit; return the root, the step's length, and whether it is on one.
-
-        Parameters
-        ----------
-        first : int
-            Index of the first unknown that has limits.
-        limits : sequence of (float, float)
-            Of that one and those after it.
-        accepts : callable
-            Whether a root may be the next one.
-
-        Returns
-        -------
-        root : Root
-        length : float
-            Of the step.
-        at_limit : bool
-
-        Raises
-        ------
-        NoConvergenceError
-            Where no step is short enough.
+        """Step, at most onto a limit; return the root, the step's length, and whether it is on
+        one.
         """
         limit = self.next_limit(first, limits)
         if limit is not None:

@@ -37,39 +37,22 @@ LENGTH, POINTS, CONVERGED = "length", "most points", "converges"
 
 
 class CurvePoint(NamedTuple):
-    """A point of a grown curve: parameter s, state, and itinerary (its counts of impacts).
+    """A point of a grown curve: parameter s, state, and itinerary (its counts of impacts)."""
 
-    Attributes
-    ----------
-    s : float
-        Its number.
-    state : ndarray
-    itinerary : tuple of int
-        What happened on the way to it, such as numbers of impacts: the curve can only be broken
-        where that changes.
-    """
-
-    s: float
+    s: float  # its number
     state: Floats
+    # what happened on the way to it, such as numbers of impacts: the curve can only be broken where
+    # that changes
     itinerary: tuple[int, ...]
 
 
 class ItineraryChange(NamedTuple):
-    """Two neighbouring curve points, bisected to rounding, between which impacts change.
-
-    Attributes
-    ----------
-    low, high : CurvePoint
-    distance : float
-        Of both.
-    power : float
-        Of the distance of their numbers, with which that distance falls.
-    """
+    """Two neighbouring curve points, bisected to rounding, between which impacts change."""
 
     low: CurvePoint
     high: CurvePoint
-    distance: float
-    power: float
+    distance: float  # of both
+    power: float  # of the distance of their numbers, with which that distance falls
 
     def is_break(self, size: float) -> bool:
         """Return whether the curve jumps here, rather than only changing its itinerary."""
@@ -78,50 +61,24 @@ class ItineraryChange(NamedTuple):
 
 @dataclass(frozen=True)
 class GrowthSettings:
-    """Settings for growing a curve: its length, spacing, angle between chords, most points.
+    """Settings for growing a curve: its length, spacing, angle between chords, most points."""
 
-    Attributes
-    ----------
-    length : float
-        At which it ends.
-    spacing : float
-        Largest distance of neighbours.
-    angle : float
-        Largest angle between successive chords, rad.
-    max_points : int
-    size : float
-        What is small is so in comparison with it.
-    max_step : float
-        Of s.
-    resolution : float
-        Of s: what rounding leaves of it.
-    """
-
-    length: float
-    spacing: float
-    angle: float
+    length: float  # at which it ends
+    spacing: float  # largest distance of neighbours
+    angle: float  # largest angle between successive chords, rad
     max_points: int
-    size: float = 1.0
-    max_step: float = MAX_STEP
-    resolution: float = 1e-14
+    size: float = 1.0  # what is small is so in comparison with it
+    max_step: float = MAX_STEP  # of s
+    resolution: float = 1e-14  # of s: what rounding leaves of it
 
 
 @dataclass
 class GrownCurve:
-    """A grown curve: its points, arclengths, breaks, and why it ended.
-
-    Attributes
-    ----------
-    points : list of CurvePoint
-    arclength : list of float
-        Without what is broken.
-    breaks : dict of int, ItineraryChange
-        By the number of the first point after each break.
-    end : str
-    """
+    """A grown curve: its points, arclengths, breaks, and why it ended."""
 
     points: list[CurvePoint] = field(default_factory=list)
-    arclength: list[float] = field(default_factory=list)
+    arclength: list[float] = field(default_factory=list)  # without what is broken
+    # by the number of the first point after each break
     breaks: dict[int, ItineraryChange] = field(default_factory=dict)
     end: str = ""
 
@@ -145,14 +102,7 @@ def shrinking_power(history: list[tuple[float, float]]) -> float:
 
 
 class CurveGrower:
-    """Grows a curve point by point, with steps adapted to the distance and bend of its points.
-
-    Parameters
-    ----------
-    image : callable
-        From s to the point of that number.
-    settings : GrowthSettings
-    """
+    """Grows a curve point by point, with steps adapted to the distance and bend of its points."""
 
     def __init__(self, image: Callable[[float], CurvePoint], settings: GrowthSettings) -> None:
         self.image, self.settings = image, settings

@@ -49,23 +49,7 @@ MAX_NODES = 400  # of an orbit that Newton's method is tried on
 
 
 class MotionDecider:
-    """Decides to which motions responses at one point settle; remembers the orbits found.
-
-    Parameters
-    ----------
-    plain : Instance
-        Of ``TwoMassImpactOscillator``.
-    eventful : EventInstance, optional
-        For impacts one by one. None where the FMU is FMI 2.0, which reports none: then repeated
-        states alone decide.
-    point : Point
-    settings : AttractorSettings
-
-    Attributes
-    ----------
-    known : list of SettledMotion
-        Periodic motions and undecided ones, in the order in which they were met.
-    """
+    """Decides to which motions responses at one point settle; remembers the orbits found."""
 
     def __init__(
         self,
@@ -104,14 +88,7 @@ class MotionDecider:
         return respond(self.plain, *self.point, response.end, dropped, samples, converged)
 
     def periodic_motion(self, response: Response) -> tuple[SettledMotion | None, bool]:
-        """Return a response's periodic motion (or None), and whether an unstable orbit is near.
-
-        Returns
-        -------
-        motion : SettledMotion or None
-        near_unstable : bool
-            Whether the response is near an unstable orbit.
-        """
+        """Return a response's periodic motion (or None), and whether an unstable orbit is near."""
         n = response.multiplicity
         if n:
             known = self.known_motion_at(response.end, n)
@@ -211,15 +188,7 @@ class MotionDecider:
     # -- orbits -----------------------------------------------------------------------------------
 
     def orbit_near(self, state: ArrayLike, periods: int) -> tuple[PeriodicOrbit | None, float]:
-        """Solve for the orbit near a state; return it, or None, and the phase of its start.
-
-        Returns
-        -------
-        orbit : PeriodicOrbit or None
-            None where Newton's method finds no possible motion.
-        phase : float
-            Of the orbit, far from impacts, rad.
-        """
+        """Solve for the orbit near a state; return it, or None, and the phase of its start."""
         if self.eventful is None:
             return None, 0.0
         guess, free_phase = self.guess_from(np.array(state), periods)

@@ -25,26 +25,13 @@ RESIDUAL = 1e-10  # of the motion's size: what a root may leave of the equations
 
 @dataclass(frozen=True)
 class Setting:
-    """A structure and excitation with the names and limits of the parameters that vary.
-
-    Attributes
-    ----------
-    structure : Structure
-    excitation : tuple of (str, float)
-        ``eta``, or ``frequency`` and ``amplitude``.
-    over : tuple of str
-        Names of the parameters that vary.
-    limits : tuple of (float, float)
-        Between which.
-    box_acceleration : float
-        Constant acceleration of the box beside the harmonic one, m/s2.
-    """
+    """A structure and excitation with the names and limits of the parameters that vary."""
 
     structure: Structure
-    excitation: tuple[tuple[str, float], ...]
-    over: tuple[str, ...]
-    limits: tuple[tuple[float, float], ...]
-    box_acceleration: float = 0.0
+    excitation: tuple[tuple[str, float], ...]  # `eta`, or `frequency` and `amplitude`
+    over: tuple[str, ...]  # names of the parameters that vary
+    limits: tuple[tuple[float, float], ...]  # between which
+    box_acceleration: float = 0.0  # constant acceleration of the box beside the harmonic one, m/s2
 
     @classmethod
     def fixed(
@@ -83,13 +70,7 @@ class Setting:
         return parameters.get(ACCELERATION, self.box_acceleration)
 
     def form(self, values: Floats) -> ClosedForm:
-        """Return the closed-form coefficients at these values of the parameters.
-
-        Raises
-        ------
-        InputError
-            On a natural frequency with no damping, or next to none: amplitudes grow there.
-        """
+        """Return the closed-form coefficients at these values of the parameters."""
         point = self.point(values)
         point.excitation.check(point.structure)
         return ClosedForm.from_structure(*point, self.acceleration(values))
@@ -109,13 +90,7 @@ class Setting:
 
 
 def require_delaminated(structure: Structure) -> Structure:
-    """Return the structure unchanged; raise ``InputError`` if it is bonded.
-
-    Raises
-    ------
-    InputError
-        Where they are glued.
-    """
+    """Return the structure unchanged; raise ``InputError`` if it is bonded."""
     if structure.bonded:
         raise InputError(REQUIRES_DELAMINATED)
     return structure
@@ -134,19 +109,11 @@ def check_parameters(over: tuple[str, ...]) -> None:
 
 @dataclass
 class Family:
-    """Equations of orbits with one impact sequence; unknowns: nodes, then parameters.
-
-    Attributes
-    ----------
-    setting : Setting
-    sequence : ImpactSequence
-    scale : ndarray
-        Sizes of the unknowns.
-    """
+    """Equations of orbits with one impact sequence; unknowns: nodes, then parameters."""
 
     setting: Setting
     sequence: ImpactSequence
-    scale: Floats = field(default_factory=lambda: np.zeros(0))
+    scale: Floats = field(default_factory=lambda: np.zeros(0))  # sizes of the unknowns
 
     @classmethod
     def from_nodes(cls, setting: Setting, sequence: ImpactSequence, nodes: Floats) -> Family:

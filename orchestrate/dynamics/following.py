@@ -26,36 +26,23 @@ State = tuple[float, ...]
 
 
 class FollowedResponse(NamedTuple):
-    """A response to follow: structure, excitation, and its state at phase 0 (m, m/s).
-
-    Attributes
-    ----------
-    point : Point
-    start : tuple of float
-    touching : tuple of bool
-        Whether the masses are in permanent contact where the periods followed begin, and where they
-        end.
-    """
+    """A response to follow: structure, excitation, and its state at phase 0 (m, m/s)."""
 
     point: Point
     start: State
+    # whether the masses are in permanent contact where the periods followed begin, and where they
+    # end
     touching: tuple[bool, bool] = (False, False)
 
 
 @dataclass(frozen=True, kw_only=True)
 class StartStatesQuestion(SeriesQuestion, ABC):
-    """Base of jobs along a parameter whose responses start from given or swept states.
+    """Base of jobs along a parameter whose responses start from given or swept states."""
 
-    Attributes
-    ----------
-    start : tuple of float
-        One state at phase 0 after the other, x1, x2 in m, v1, v2 in m/s: one for all values of the
-        parameter, or one for each.
-    follows : str
-        Name of a sweep over the same parameter whose responses are followed instead.
-    """
-
+    # one state at phase 0 after the other, x1, x2 in m, v1, v2 in m/s: one for all values of the
+    # parameter, or one for each
     start: tuple[float, ...] = REST
+    # name of a sweep over the same parameter whose responses are followed instead
     follows: str = ""
 
     def needs(self) -> tuple[str, ...]:
@@ -76,14 +63,9 @@ class StartStatesQuestion(SeriesQuestion, ABC):
 
 @dataclass(frozen=True, kw_only=True)
 class ImpactsQuestion(StartStatesQuestion, ABC):
-    """Base of jobs that evaluate the impacts of responses after a transient.
+    """Base of jobs that evaluate the impacts of responses after a transient."""
 
-    Attributes
-    ----------
-    transient, periods : int
-        Periods dropped, and followed after them.
-    """
-
+    # periods dropped, and followed after them
     transient: int = 500
     periods: int = 100
 
@@ -103,15 +85,7 @@ class ImpactsQuestion(StartStatesQuestion, ABC):
 
     @abstractmethod
     def row(self, impacts: Impacts, item: FollowedResponse) -> Sequence[float]:
-        """Return the numbers that one response's impacts give; subclasses choose them.
-
-        Parameters
-        ----------
-        impacts : Impacts
-            Non-dimensional, of ``periods`` periods.
-        item : FollowedResponse
-            From the state that the periods begin with.
-        """
+        """Return the numbers that one response's impacts give; subclasses choose them."""
 
 
 def end_states(swept: xr.Dataset, series: Series) -> NDArray[np.float64]:
@@ -122,20 +96,7 @@ def end_states(swept: xr.Dataset, series: Series) -> NDArray[np.float64]:
 
 
 def start_states(start: ArrayLike | xr.Dataset | None, question: SeriesQuestion) -> State:
-    """Return the start states given by the user: one for all, one per value, or of a sweep.
-
-    Parameters
-    ----------
-    start : array_like or xarray.Dataset, optional
-        One state, one for each value, or what :func:`orchestrate.sweep` has answered for these
-        values; at rest by default.
-    question : SeriesQuestion
-
-    Raises
-    ------
-    InputError
-        Where these are not as many as there are values, or no states of the structure.
-    """
+    """Return the start states given by the user: one for all, one per value, or of a sweep."""
     series = question.series
     if hasattr(start, "end_state"):
         swept: xr.Dataset = start  # type: ignore[assignment]

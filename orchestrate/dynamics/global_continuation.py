@@ -31,15 +31,9 @@ BY_SIMULATION, BY_NEWTON = 1, 2  # how an attractor was continued to a neighbour
 
 @dataclass
 class InstancePair:
-    """Context manager that opens the FMU as a plain instance and, if FMI 3.0, one with events.
+    """Context manager that opens the FMU as a plain instance and, if FMI 3.0, one with events."""
 
-    Parameters
-    ----------
-    path : Path
-        Of the FMU.
-    """
-
-    path: Path
+    path: Path  # of the FMU
 
     def __enter__(self) -> tuple[Instance, EventInstance | None]:
         """Open the FMU twice: without events, and with events where it has them."""
@@ -56,38 +50,22 @@ class InstancePair:
 
 @dataclass
 class SettledStarts:
-    """Motions that random starts at one parameter value settle to: features, states, how decided.
-
-    Attributes
-    ----------
-    features : ndarray, shape (n, 5)
-        By ``clusters.FEATURES``.
-    ends : ndarray, shape (n, 4)
-        States on the motions at phase 0.
-    decided : ndarray of int, shape (n,)
-        Of ``settled_motion.DECIDED``.
+    """Motions that random starts at one parameter value settle to: features, states, how
+    decided.
     """
 
-    features: Floats
-    ends: Floats
-    decided: NDArray[np.int_]
+    features: Floats  # by `clusters.FEATURES`
+    ends: Floats  # states on the motions at phase 0
+    decided: NDArray[np.int_]  # of `settled_motion.DECIDED`
 
 
 @dataclass
 class AttractorsAtValue:
-    """Attractors known at one parameter value, and which of them each random start reaches.
-
-    Attributes
-    ----------
-    decider : MotionDecider
-    motions : list of SettledMotion
-        The attractors.
-    labels : ndarray of int
-        Of each random start, its attractor.
-    """
+    """Attractors known at one parameter value, and which of them each random start reaches."""
 
     decider: MotionDecider
-    motions: list[SettledMotion] = field(default_factory=list)
+    motions: list[SettledMotion] = field(default_factory=list)  # the attractors
+    # of each random start, its attractor
     labels: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
 
     def collect_from_starts(self, starts: SettledStarts, settings: AttractorSettings) -> None:
@@ -172,21 +150,14 @@ def may_be_different_branches(motion: SettledMotion, other: SettledMotion) -> bo
 
 @dataclass(frozen=True)
 class MatchedAttractors:
-    """Attractors at all values of a parameter, with one number for the same attractor everywhere.
-
-    Attributes
-    ----------
-    motions : sequence of sequence of SettledMotion
-        Of each value.
-    numbers : sequence of sequence of int
-        Numbers of these along the parameter, the most frequent attractor first.
-    labels : sequence of ndarray
-        Number of the attractor that each random start leads to.
+    """Attractors at all values of a parameter, with one number for the same attractor
+    everywhere.
     """
 
-    motions: Sequence[Sequence[SettledMotion]]
+    motions: Sequence[Sequence[SettledMotion]]  # of each value
+    # numbers of these along the parameter, the most frequent attractor first
     numbers: Sequence[Sequence[int]]
-    labels: Sequence[NDArray[np.intp]]
+    labels: Sequence[NDArray[np.intp]]  # number of the attractor that each random start leads to
 
     @property
     def count(self) -> int:
@@ -201,18 +172,7 @@ def continue_attractors(
     settings: AttractorSettings,
     seeds: Sequence[Sequence[float]] = (),
 ) -> MatchedAttractors:
-    """Return the attractors along a parameter from random starts, continued and matched.
-
-    Parameters
-    ----------
-    instances : (Instance, EventInstance or None)
-    points : sequence of Point
-        In the order of the parameter: neighbours are next to each other.
-    starts : sequence of SettledStarts
-    settings : AttractorSettings
-    seeds : sequence of 4 floats
-        States on attractors that are known at the first value, at phase 0.
-    """
+    """Return the attractors along a parameter from random starts, continued and matched."""
     values = [AttractorsAtValue(MotionDecider(*instances, point, settings)) for point in points]
     for value, starts_there in zip(values, starts, strict=True):
         value.collect_from_starts(starts_there, settings)

@@ -21,18 +21,7 @@ Guess = tuple[ImpactSequence, Floats]
 def guess_from_state(
     instance: EventInstance, point: Point, form: ClosedForm, state: Floats, periods: int
 ) -> Guess:
-    """Run the FMU some periods from a state at phase 0; return its impacts as an orbit guess.
-
-    Parameters
-    ----------
-    instance : EventInstance
-    point : Point
-    form : ClosedForm
-        Of the same structure and excitation.
-    state : ndarray, shape (4,)
-        x1, x2 in m, v1, v2 in m/s.
-    periods : int
-    """
+    """Run the FMU some periods from a state at phase 0; return its impacts as an orbit guess."""
     begin_at_state(instance, point, form, state)
     impacts = instance.impacts(0.0, periods * point.excitation.period)
     return guess_from_impacts(impacts, point, form, periods)
@@ -97,25 +86,7 @@ def close_returns(
     transient: int,
     max_periods: int,
 ) -> Iterator[tuple[Floats, float]]:
-    """Yield stroboscopic states that nearly repeat after some periods, the closest return first.
-
-    Parameters
-    ----------
-    instance : EventInstance
-    point, form
-        What responds.
-    periods : int
-        After which they come back.
-    transient, max_periods : int
-        Periods dropped, and searched.
-
-    Yields
-    ------
-    state : ndarray, shape (4,)
-        x1, x2 in m, v1, v2 in m/s.
-    distance : float
-        Largest deviation of a co-ordinate, over its largest absolute value.
-    """
+    """Yield stroboscopic states that nearly repeat after some periods, the closest return first."""
     period = point.excitation.period
     begin_at_state(instance, point, form, np.zeros(4))
     instance.advance(0.0, transient * period)

@@ -66,15 +66,7 @@ class ImpactStatisticsJob(ImpactsQuestion):
 
 
 def response_statistics(impacts: Impacts, item: FollowedResponse, periods: int) -> dict[str, float]:
-    """Return the impact statistics and Lyapunov exponent of one response, by ``FIELDS`` names.
-
-    Parameters
-    ----------
-    impacts : Impacts
-        Non-dimensional, of the periods.
-    item : FollowedResponse
-    periods : int
-    """
+    """Return the impact statistics and Lyapunov exponent of one response, by ``FIELDS`` names."""
     structure, excitation = item.point
     eta = excitation.eta(structure)
     span = period_in_tau(eta)

@@ -31,41 +31,17 @@ FALSE_ALARM_CHANCE = 1e-3  # chance at which parts of a steady response are take
 
 
 class LongRun(NamedTuple):
-    """Result of a long run: its Lyapunov exponent, whether it was steady, and its periods.
+    """Result of a long run: its Lyapunov exponent, whether it was steady, and its periods."""
 
-    Attributes
-    ----------
-    exponent : Exponent
-        Of the last parts, per unit of tau: of all parts where the response was steady from the
-        beginning, of those after the transient where one ended.
-    outcome : int
-        Of ``WORDS``.
-    periods : int
-        Excitation periods followed in all.
-    """
-
+    # of the last parts, per unit of tau: of all parts where the response was steady from the
+    # beginning, of those after the transient where one ended
     exponent: Exponent
-    outcome: int
-    periods: int
+    outcome: int  # of `WORDS`
+    periods: int  # excitation periods followed in all
 
 
 def parts_agree(values: ArrayLike, errors: ArrayLike, floor: float, batches: int = BATCHES) -> bool:
     """Return whether exponents of successive parts scatter as their errors predict (F test).
-
-    Parameters
-    ----------
-    values, errors : array_like, shape (n,)
-        Exponent of each part, and its standard error from the batches within the part.
-    floor : float
-        Least error of a part: what the wandering of a deviation makes in its length.
-    batches : int
-        From which each error was estimated.
-
-    Returns
-    -------
-    bool
-        By an F test of the scatter of the parts against their errors, at the level
-        ``FALSE_ALARM_CHANCE``.
 
     Examples
     --------
@@ -93,18 +69,7 @@ def mean_exponent(parts: Sequence[Exponent]) -> Exponent:
 def exponents_of_parts(
     instance: EventInstance, point: Point, start: State, periods: int, parts: int
 ) -> tuple[list[Exponent], State]:
-    """Run the FMU over successive parts; return each part's exponent, and the end state.
-
-    Parameters
-    ----------
-    instance : EventInstance
-    point : Point
-    start : tuple of float
-        State at phase 0, m and m/s.
-    periods : int
-        Excitation periods of each part.
-    parts : int
-    """
+    """Run the FMU over successive parts; return each part's exponent, and the end state."""
     eta, exponents = point.excitation.eta(point.structure), []
     for _ in range(parts):
         impacts = follow_impacts(instance, point, start, periods)
@@ -132,19 +97,6 @@ def run_until_steady(
 
     Where the parts of a run do not agree, the motion is followed on for as many parts again, which
     are then judged by themselves: a transient that ended is left behind.
-
-    Parameters
-    ----------
-    instance : EventInstance
-    point : Point
-    start : tuple of float
-        State at phase 0, m and m/s; a first part is dropped.
-    periods : int
-        Excitation periods of each part.
-    parts : int
-        Of each run.
-    runs : int
-        At most; after that the exponent is undecided.
     """
     floor = wander_error(periods, point.excitation.eta(point.structure))
     _, start = exponents_of_parts(instance, point, start, periods, 1)
@@ -159,21 +111,8 @@ def run_until_steady(
 
 
 def perturbed_start(point: Point, start: State, seed: NDArray[np.int64] | Sequence[int]) -> State:
-    """Return a start state randomly perturbed by up to 1 per cent, for an independent chaotic run.
-
-    Parameters
-    ----------
-    point : Point
-    start : tuple of float
-        State at phase 0, m and m/s.
-    seed : sequence of int
-        Of the random numbers.
-
-    Returns
-    -------
-    tuple of float
-        Both masses moved together, and the gap and the velocities changed, by 1 % at most; the
-        masses do not overlap.
+    """Return a start state randomly perturbed by up to 1 per cent, for an independent chaotic
+    run.
     """
     x1, _, v1, v2 = start
     gap_change, shift, fast, slow = 0.01 * np.random.default_rng(seed).uniform(-1.0, 1.0, 4)

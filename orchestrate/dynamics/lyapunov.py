@@ -68,27 +68,7 @@ def largest_exponent(
     blocks: int = BLOCKS,
     batches: int = BATCHES,
 ) -> Exponent:
-    """Return the largest Lyapunov exponent and its error, from a response's impacts in a span.
-
-    Parameters
-    ----------
-    impacts : Impacts
-        Of the span, non-dimensional; time 0 is at phase 0.
-    end : float
-        tau at the span's end.
-    point : Point
-    blocks : int
-        Products of matrices whose growth is averaged.
-    batches : int
-        Groups of blocks; the spread of their means is the uncertainty.
-
-    Returns
-    -------
-    Exponent
-        Natural logarithm per unit of tau, and the standard error of the mean over batches. Minus
-        infinity where the deviation vanishes. NaN where there are fewer impacts than
-        :func:`min_impacts` says.
-    """
+    """Return the largest Lyapunov exponent and its error, from a response's impacts in a span."""
     if len(impacts.time) < min_impacts(batches):
         return Exponent(math.nan, math.nan)
     growth = block_growth(impact_matrices(impacts, end, point), impacts.time, end, blocks)
@@ -98,19 +78,7 @@ def largest_exponent(
 
 
 def exact_exponent_without_impacts(point: Point) -> Exponent | None:
-    """Return the exact exponent of a response that never impacts; None if it may impact.
-
-    Parameters
-    ----------
-    point : Point
-        At which a response had no impact yet.
-
-    Returns
-    -------
-    Exponent or None
-        Exact; None for all other structures, and above the level at which the linear response
-        opens or touches: there it will.
-    """
+    """Return the exact exponent of a response that never impacts; None if it may impact."""
     structure = point.structure
     if exceeds_threshold(*point):
         return None
@@ -125,13 +93,7 @@ def exact_exponent_without_impacts(point: Point) -> Exponent | None:
 
 
 def decay_rate(damping: float, square: float) -> float:
-    """Return the decay rate of a damped oscillator's free motion (overdamped: the slower rate).
-
-    Parameters
-    ----------
-    damping, square : float
-        D_i (8) and omega_i^2 (7): of an overdamped one, the slower part decays at that rate.
-    """
+    """Return the decay rate of a damped oscillator's free motion (overdamped: the slower rate)."""
     excess = square - damping**2
     return damping if excess >= 0.0 else square / (damping + math.sqrt(-excess))
 
@@ -139,17 +101,7 @@ def decay_rate(damping: float, square: float) -> float:
 def classify_exponents(
     exponent: ArrayLike, error: ArrayLike, floor: ArrayLike, sigmas: float = SIGMAS
 ) -> NDArray[np.int8]:
-    """Classify exponents by their errors as -1 periodic, 0 neutral or 1 chaotic.
-
-    Parameters
-    ----------
-    exponent, error : array_like
-    floor : array_like
-        Least distance from zero that counts: a deviation that neither grows nor shrinks still
-        wanders by a factor of a few.
-    sigmas : float
-        Standard errors that an exponent must be away from zero.
-    """
+    """Classify exponents by their errors as -1 periodic, 0 neutral or 1 chaotic."""
     value = np.asarray(exponent, dtype=float)
     distance = np.fmax(sigmas * np.asarray(error, dtype=float), floor)
     verdicts = np.where(value > distance, CHAOTIC, np.where(value < -distance, PERIODIC, NEUTRAL))
@@ -158,22 +110,14 @@ def classify_exponents(
 
 @dataclass(frozen=True, kw_only=True)
 class LyapunovJob(ImpactsQuestion):
-    """Job of :func:`orchestrate.lyapunov`: largest Lyapunov exponents along a parameter.
-
-    Attributes
-    ----------
-    spectrum : bool
-        Whether all four exponents are wanted.
-    blocks, batches : int
-        As in :func:`largest_exponent`.
-    sigmas, wander : float
-        As in :func:`lyapunov`.
-    """
+    """Job of :func:`orchestrate.lyapunov`: largest Lyapunov exponents along a parameter."""
 
     periods: int = 2500
-    spectrum: bool = False
+    spectrum: bool = False  # whether all four exponents are wanted
+    # as in largest_exponent
     blocks: int = BLOCKS
     batches: int = BATCHES
+    # as in lyapunov
     sigmas: float = SIGMAS
     wander: float = WANDER
     asked: ClassVar[str] = "lyapunov"
@@ -205,13 +149,7 @@ class LyapunovJob(ImpactsQuestion):
         return np.concatenate(spectrum)
 
     def exponent(self, impacts: Impacts, item: FollowedResponse) -> Exponent:
-        """Return the largest exponent and its error for one response.
-
-        Raises
-        ------
-        InputError
-            Where it has too few impacts.
-        """
+        """Return the largest exponent and its error for one response."""
         known = None if len(impacts.time) else exact_exponent_without_impacts(item.point)
         if known is not None:
             return known

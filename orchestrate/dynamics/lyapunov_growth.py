@@ -12,33 +12,14 @@ FIRST_VECTOR = np.array([1.0, 0.7, 0.3, -0.5, 0.2, -0.4])  # in no special direc
 
 
 class BlockGrowth(NamedTuple):
-    """Logarithmic growth of a vector over successive blocks of matrices, and their durations.
+    """Logarithmic growth of a vector over successive blocks of matrices, and their durations."""
 
-    Attributes
-    ----------
-    growth : ndarray, shape (n,)
-        Logarithm of a vector's growth over each block.
-    durations : ndarray, shape (n,)
-        Of the blocks, in units of tau.
-    """
-
-    growth: Floats
-    durations: Floats
+    growth: Floats  # logarithm of a vector's growth over each block
+    durations: Floats  # of the blocks, in units of tau
 
 
 def block_growth(matrices: Floats, times: Floats, end: float, blocks: int) -> BlockGrowth | None:
-    """Return a vector's logarithmic growth over blocks of matrices; None if it becomes zero.
-
-    Parameters
-    ----------
-    matrices : ndarray, shape (n, m, m)
-    times : ndarray, shape (n,)
-        tau at which each begins.
-    end : float
-        tau at which the last one ends.
-    blocks : int
-        About how many.
-    """
+    """Return a vector's logarithmic growth over blocks of matrices; None if it becomes zero."""
     size = max(1, len(matrices) // blocks)
     growth = vector_log_growth(*scaled_products(matrices, size))
     if growth is None:
@@ -60,19 +41,7 @@ def growth_by_batch_means(blocks: BlockGrowth, batches: int) -> tuple[float, flo
 
 
 def scaled_products(matrices: Floats, size: int) -> tuple[Floats, Floats]:
-    """Multiply each ``size`` successive matrices; return scaled products and the scales' logs.
-
-    Parameters
-    ----------
-    matrices : ndarray, shape (n, m, m)
-    size : int
-        The last product may have fewer factors.
-
-    Returns
-    -------
-    ndarray, shape (p, m, m)
-    ndarray, shape (p,)
-    """
+    """Multiply each ``size`` successive matrices; return scaled products and the scales' logs."""
     count, rows = -(-len(matrices) // size), matrices.shape[-1]
     stack = np.broadcast_to(np.eye(rows), (count * size, rows, rows)).copy()
     stack[: len(matrices)] = matrices

@@ -30,12 +30,7 @@ CONTACT_RANK = 2  # of a matrix where permanent contact begins
 
 
 class Spectrum(NamedTuple):
-    """Four Lyapunov exponents per unit of tau, the largest first, and their standard errors.
-
-    Attributes
-    ----------
-    exponents, errors : ndarray, shape (4,)
-    """
+    """Four Lyapunov exponents per unit of tau, the largest first, and their standard errors."""
 
     exponents: Floats
     errors: Floats
@@ -48,17 +43,6 @@ class Spectrum(NamedTuple):
 
 def compound_matrices(matrices: Floats, order: int) -> Floats:
     """Return compound matrices (all minors of an order), which map volume elements.
-
-    Parameters
-    ----------
-    matrices : ndarray, shape (n, m, m)
-    order : int
-        From 1 to m.
-
-    Returns
-    -------
-    ndarray, shape (n, b, b)
-        With b = m over ``order``: the minors of so many rows and columns, in lexical order.
 
     Examples
     --------
@@ -75,18 +59,7 @@ def compound_matrices(matrices: Floats, order: int) -> Floats:
 def lyapunov_spectrum(
     impacts: Impacts, end: float, point: Point, blocks: int, batches: int
 ) -> Spectrum:
-    """Return all four exponents and their errors, from a response's impacts in a span.
-
-    Parameters
-    ----------
-    impacts : Impacts
-        Of the span, non-dimensional; time 0 is at phase 0.
-    end : float
-        tau at the span's end.
-    point : Point
-    blocks, batches : int
-        As in :func:`.largest_exponent`.
-    """
+    """Return all four exponents and their errors, from a response's impacts in a span."""
     matrices = impact_matrices(impacts, end, point)
     rank = CONTACT_RANK if impacts.sticks.any() else STATES
     exponents, errors = np.full(STATES, -math.inf), np.full(STATES, math.nan)
@@ -120,11 +93,6 @@ def kaplan_yorke_dimension(exponents: Floats) -> float:
 
     The number of exponents, the largest first, whose sum is not negative, and the part of the next
     one that makes the sum zero (Kaplan and Yorke, in Lecture Notes in Mathematics 730, 1979).
-
-    Parameters
-    ----------
-    exponents : ndarray
-        In descending order; minus infinity for a direction that is forgotten.
 
     Examples
     --------

@@ -61,35 +61,17 @@ MIN_GAP = 2.0  # starting distances: a gap at phase 0 that is smaller leaves no 
 
 @dataclass(frozen=True)
 class Saddle:
-    """A saddle orbit at phase 0: state, unstable direction, its multiplier outside the circle.
+    """A saddle orbit at phase 0: state, unstable direction, its multiplier outside the circle."""
 
-    Attributes
-    ----------
-    state : ndarray, shape (4,)
-        Units of xi, with the faces' places for displacements.
-    direction : ndarray, shape (4,)
-        Of the unstable manifold, of length 1; the gap grows along it.
-    multiplier : float
-    periods : int
-    size : float
-        Largest displacement or velocity of its nodes.
-    """
-
-    state: Floats
-    direction: Floats
+    state: Floats  # units of xi, with the faces' places for displacements
+    direction: Floats  # of the unstable manifold, of length 1; the gap grows along it
     multiplier: float
     periods: int
-    size: float
+    size: float  # largest displacement or velocity of its nodes
 
     @classmethod
     def from_orbit(cls, orbit: PeriodicOrbit) -> Saddle:
-        """Return an orbit as a saddle; raise unless just one multiplier lies outside the circle.
-
-        Raises
-        ------
-        InputError
-            Where it is none, or its unstable manifold is no curve.
-        """
+        """Return an orbit as a saddle; raise unless just one multiplier lies outside the circle."""
         multipliers = orbit.multipliers()
         outside = multipliers[np.abs(multipliers) > 1.0 + ON_CIRCLE]
         if len(outside) != 1:
@@ -147,15 +129,9 @@ def unstable_direction(orbit: PeriodicOrbit) -> Floats:
 
 @dataclass(frozen=True, kw_only=True)
 class ManifoldJob(SingleOrbitQuestion):
-    """Job of :func:`orchestrate.manifold`: the unstable manifold of one saddle, both sides.
+    """Job of :func:`orchestrate.manifold`: the unstable manifold of one saddle, both sides."""
 
-    Attributes
-    ----------
-    start : FirstGuess
-        Nodes of the saddle.
-    """
-
-    start: FirstGuess
+    start: FirstGuess  # nodes of the saddle
     period: int
     length: float
     spacing: float
@@ -174,13 +150,7 @@ class ManifoldJob(SingleOrbitQuestion):
         return f"manifold({', '.join([repr(self.structure), start, *more])})"
 
     def saddle(self) -> Saddle:
-        """Solve for the saddle by Newton's method from the start's nodes; raise if it is none.
-
-        Raises
-        ------
-        InputError
-            Where there is no orbit, or it is no saddle.
-        """
+        """Solve for the saddle by Newton's method from the start's nodes; raise if it is none."""
         guess = self.start.sequence(self.period), np.array(self.start.nodes).reshape(-1, 4)
         try:
             family, root = solve_orbit(self.setting, guess, self.values)

@@ -32,16 +32,9 @@ STICK_TOLERANCE = 1e-10  # of (17), over a eta^2: an impact so near to sticking 
 
 @dataclass(frozen=True)
 class OrbitPoint:
-    """One point of an orbit branch: the root, its orbit, multipliers and test functions.
+    """One point of an orbit branch: the root, its orbit, multipliers and test functions."""
 
-    Attributes
-    ----------
-    family : Family
-        Whose equations it solves.
-    root : Root
-    """
-
-    family: Family
+    family: Family  # whose equations it solves
     root: Root
 
     @cached_property

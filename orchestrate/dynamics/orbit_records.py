@@ -38,34 +38,16 @@ PARTS = np.array(["real", "imaginary"])
 
 @dataclass(frozen=True)
 class OrbitRecord:
-    """All stored numbers of one orbit: nodes, states, multipliers, amplitudes, FMU check.
+    """All stored numbers of one orbit: nodes, states, multipliers, amplitudes, FMU check."""
 
-    Attributes
-    ----------
-    values : ndarray, shape (p,)
-        Of the parameters that vary.
-    kinds : ndarray of int, shape (k,)
-    nodes : ndarray, shape (k, 4)
-        From phase 0 on.
-    zero : ndarray, shape (periods, 4)
-        States at phase 0.
-    multipliers : ndarray of complex, shape (4,)
-    product : float
-        Of the multipliers, as dampers and impacts dictate it.
-    amplitudes : Amplitudes
-    nearest_miss : float
-        Smallest gap at which the masses turn away from each other without an impact.
-    residual : float
-    fmu : FmuCheck
-    """
-
-    values: Floats
+    values: Floats  # of the parameters that vary
     kinds: Floats
-    nodes: Floats
-    zero: Floats
+    nodes: Floats  # from phase 0 on
+    zero: Floats  # states at phase 0
     multipliers: Floats
-    product: float
+    product: float  # of the multipliers, as dampers and impacts dictate it
     amplitudes: Amplitudes
+    # smallest gap at which the masses turn away from each other without an impact
     nearest_miss: float
     residual: float
     fmu: FmuCheck

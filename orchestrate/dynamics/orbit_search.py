@@ -33,18 +33,11 @@ PHASES = 24  # at which a single impact is tried: every 15 degrees
 
 @dataclass(frozen=True)
 class FmuCheck:
-    """Result of running an orbit in the FMU: same impacts or not, and the error of its return.
+    """Result of running an orbit in the FMU: same impacts or not, and the error of its return."""
 
-    Attributes
-    ----------
-    same : bool
-        Whether it has the same impacts, contacts included, from the orbit's state at phase 0 on.
-    away : float
-        How far from that state it is after the orbit's periods, over a eta^2.
-    """
-
+    # whether it has the same impacts, contacts included, from the orbit's state at phase 0 on
     same: bool
-    away: float
+    away: float  # how far from that state it is after the orbit's periods, over a eta^2
 
 
 def solve_orbit(
@@ -55,13 +48,7 @@ def solve_orbit(
     max_iterations: int = 25,
     max_distance: float = 100.0,
 ) -> tuple[Family, Root]:
-    """Solve for a periodic orbit from a guess by Newton's method; return equations and root.
-
-    Raises
-    ------
-    NoConvergenceError
-        Where there is none near.
-    """
+    """Solve for a periodic orbit from a guess by Newton's method; return equations and root."""
     sequence, nodes = guess
     family = Family.from_nodes(setting, sequence, nodes)
     unknowns = np.append(nodes.ravel(), values)
@@ -140,21 +127,7 @@ def not_grazing(closing: Floats) -> NDArray[np.bool_]:
 def first_possible_orbit(
     setting: Setting, guesses: Iterable[Guess], values: Floats, *, stable: bool = False
 ) -> tuple[Family, Root]:
-    """Solve guesses in turn; return equations and root of the first possible orbit.
-
-    Parameters
-    ----------
-    setting : Setting
-    guesses : iterable of Guess
-    values : ndarray
-    stable : bool
-        Whether a stable one that comes later goes before an unstable one.
-
-    Raises
-    ------
-    NoConvergenceError
-        Where no guess leads to one, with the reason of the first.
-    """
+    """Solve guesses in turn; return equations and root of the first possible orbit."""
     reason, unstable = "", None
     for guess in guesses:
         try:

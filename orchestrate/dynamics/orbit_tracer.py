@@ -43,12 +43,8 @@ SAME_SIZE = 0.5, 2.0  # size of the motion over the one that its unknowns are me
 
 
 class OrbitTracer(BranchTracer[Family, OrbitPoint]):
-    """Traces a branch of periodic orbits by pseudo-arclength continuation, with its bifurcations.
-
-    Parameters
-    ----------
-    start : OrbitPoint
-    settings : ContinuationSettings
+    """Traces a branch of periodic orbits by pseudo-arclength continuation, with its
+    bifurcations.
     """
 
     kinds = (FOLD, FLIP, TORUS, GRAZING, TOUCHING, EARLIER_RELEASE)

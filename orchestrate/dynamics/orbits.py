@@ -41,20 +41,11 @@ NODE = ("node_phase", "node_position", "node_velocity", "node_closing")
 
 @dataclass(frozen=True)
 class FirstGuess:
-    """The user's guess of an orbit in plain numbers: a state, or kinds and nodes of its impacts.
+    """The user's guess of an orbit in plain numbers: a state, or kinds and nodes of its impacts."""
 
-    Attributes
-    ----------
-    state : tuple of float
-        x1, x2 in m, v1, v2 in m/s at phase 0; empty where not given.
-    kinds : tuple of int
-        Of the nodes.
-    nodes : tuple of tuple of float
-        Phase, position, velocity, closing speed of each; or phases alone.
-    """
-
-    state: tuple[float, ...] = ()
-    kinds: tuple[int, ...] = ()
+    state: tuple[float, ...] = ()  # x1, x2 in m, v1, v2 in m/s at phase 0; empty where not given
+    kinds: tuple[int, ...] = ()  # of the nodes
+    # phase, position, velocity, closing speed of each; or phases alone
     nodes: tuple[tuple[float, ...], ...] = ()
 
     def as_argument(self, frequency: float) -> str:
@@ -81,18 +72,10 @@ class OneItemQuestion(Question, ABC):
 
 @dataclass(frozen=True, kw_only=True)
 class SingleOrbitQuestion(OneItemQuestion, ABC):
-    """Base of jobs about one orbit at a fixed excitation.
+    """Base of jobs about one orbit at a fixed excitation."""
 
-    Attributes
-    ----------
-    excitation : tuple of (str, float)
-        As the user gave it.
-    box_acceleration : float
-        Constant acceleration of the box beside the harmonic one, m/s2.
-    """
-
-    excitation: tuple[tuple[str, float], ...]
-    box_acceleration: float
+    excitation: tuple[tuple[str, float], ...]  # as the user gave it
+    box_acceleration: float  # constant acceleration of the box beside the harmonic one, m/s2
 
     @property
     def setting(self) -> Setting:
@@ -149,12 +132,8 @@ class OrbitJob(SingleOrbitQuestion):
 
 
 def find_orbit(instance: EventInstance, job: OrbitJob) -> OrbitRecord:
-    """Solve for a job's orbit from its guesses, check it in the FMU; return its record, or raise.
-
-    Raises
-    ------
-    InputError
-        Where none is found.
+    """Solve for a job's orbit from its guesses, check it in the FMU; return its record, or
+    raise.
     """
     setting = job.setting
     values = job.values
@@ -194,13 +173,7 @@ def orbit_guesses(
 def checked_guess(
     guess: Any, structure: Structure, frequency: float, period: int
 ) -> FirstGuess | None:
-    """Return the user's guess as plain numbers, None if not given; raise if its form is unknown.
-
-    Raises
-    ------
-    InputError
-        Where it is none of them.
-    """
+    """Return the user's guess as plain numbers, None if not given; raise if its form is unknown."""
     expected = "expected a state, impact times, or a result of orbit or branch"
     if guess is None:
         return None
@@ -221,13 +194,7 @@ def checked_guess(
 
 
 def guess_from_result(result: Mapping[Any, Any]) -> FirstGuess:
-    """Return the guess that repeats an orbit from a dataset of ``orbit`` or ``branch``.
-
-    Raises
-    ------
-    InputError
-        Where it holds several.
-    """
+    """Return the guess that repeats an orbit from a dataset of ``orbit`` or ``branch``."""
     kinds = np.asarray(result["node_kind"])
     if kinds.ndim != 1:
         raise InputError("guess: several orbits; expected one, such as branch.isel(point=0)")
@@ -332,13 +299,7 @@ def orbit(
 
 
 def finite_number(name: str, argument: ArrayLike) -> float:
-    """Return one finite number as float; raise ``InputError`` if it is a list or no number.
-
-    Raises
-    ------
-    InputError
-        Where it is none.
-    """
+    """Return one finite number as float; raise ``InputError`` if it is a list or no number."""
     value = checked_numbers(name, argument)
     if not isinstance(value, float):
         raise InputError(f"{name} = {argument!r}: expected one number")

@@ -76,14 +76,9 @@ class MapAxis(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class MapJob(Question):
-    """Job of :func:`orchestrate.map`: responses over two parameters, each from the same start.
+    """Job of :func:`orchestrate.map`: responses over two parameters, each from the same start."""
 
-    Attributes
-    ----------
-    given : tuple of (str, float or tuple of float)
-        Parameters of the excitation and the structure; two of them are lists.
-    """
-
+    # parameters of the excitation and the structure; two of them are lists
     given: tuple[tuple[str, Numbers], ...]
     transient: int = 300
     settle: float = 300.0
@@ -193,13 +188,7 @@ class MapJob(Question):
 def map_points(
     structure: Structure, arguments: tuple[tuple[str, Numbers], ...]
 ) -> tuple[Point, ...]:
-    """Return structure and excitation of each grid point, row by row; raise if not two lists.
-
-    Raises
-    ------
-    InputError
-        Where there are not two lists, the excitation is incomplete, or a number is out of range.
-    """
+    """Return structure and excitation of each grid point, row by row; raise if not two lists."""
     values = dict(arguments)
     check_excitation_form(values.keys() & EXCITATION_PARAMETERS.keys())
     lists = {name: value for name, value in arguments if isinstance(value, tuple)}

@@ -27,18 +27,10 @@ ON_CIRCLE = 1e-7  # of a multiplier's size: nearer to the unit circle no orbit i
 
 @dataclass(frozen=True)
 class ImpactSequence:
-    """The order of impacts, sticking impacts and releases in an orbit, and its periods.
+    """The order of impacts, sticking impacts and releases in an orbit, and its periods."""
 
-    Attributes
-    ----------
-    periods : int
-        Of the excitation, until the orbit closes.
-    kinds : tuple of int
-        Of its nodes in their order.
-    """
-
-    periods: int
-    kinds: tuple[int, ...]
+    periods: int  # of the excitation, until the orbit closes
+    kinds: tuple[int, ...]  # of its nodes in their order
 
     @cached_property
     def sticks(self) -> NDArray[np.bool_]:
@@ -70,19 +62,11 @@ class ImpactSequence:
 
 @dataclass(frozen=True)
 class PeriodicOrbit:
-    """A candidate periodic orbit: nodes (impacts and releases) and the equations they solve.
-
-    Attributes
-    ----------
-    sequence : ImpactSequence
-    form : ClosedForm
-    nodes : ndarray, shape (k, 4)
-        Phase in rad, displacement, velocity of the centre of mass, closing speed.
-    """
+    """A candidate periodic orbit: nodes (impacts and releases) and the equations they solve."""
 
     sequence: ImpactSequence
     form: ClosedForm
-    nodes: Floats
+    nodes: Floats  # phase in rad, displacement, velocity of the centre of mass, closing speed
 
     @property
     def count(self) -> int:
@@ -132,18 +116,7 @@ class PeriodicOrbit:
         return matrices
 
     def states(self, segment: NDArray[np.int_], phase: Floats) -> Floats:
-        """Return the states at phases inside given segments, by the closed form, shape (n, 4).
-
-        Parameters
-        ----------
-        segment : ndarray of int, shape (n,)
-        phase : ndarray, shape (n,)
-            From the segment's begin to its end, rad.
-
-        Returns
-        -------
-        ndarray, shape (n, 4)
-        """
+        """Return the states at phases inside given segments, by the closed form, shape (n, 4)."""
         contact = self.contact[segment]
         time = (phase - self.begins[segment]) / self.form.eta
         free = (self.starts - self.form.steady(self.begins, self.contact))[segment]
@@ -192,12 +165,7 @@ class PeriodicOrbit:
         return residual.ravel()
 
     def segment_jacobians(self) -> tuple[Floats, Floats]:
-        """Return each segment's residual derivatives by the nodes before and after it.
-
-        Returns
-        -------
-        before, after : ndarray, shape (k, 4, 4)
-        """
+        """Return each segment's residual derivatives by the nodes before and after it."""
         form, sequence = self.form, self.sequence
         share = form.mu / (1.0 + form.mu)
         begun = form.field(self.starts, self.begins, self.contact)
@@ -220,14 +188,7 @@ class PeriodicOrbit:
         return before, after
 
     def jacobian(self, multiplier: complex = 1.0) -> NDArray[np.inexact]:
-        """Return the Jacobian of the residual by all nodes' unknowns, shape (4 k, 4 k).
-
-        Parameters
-        ----------
-        multiplier : complex
-            What a deviation is multiplied by in one run through the orbit. Where the matrix is
-            singular, it is a Floquet multiplier.
-        """
+        """Return the Jacobian of the residual by all nodes' unknowns, shape (4 k, 4 k)."""
         before, after = self.segment_jacobians()
         k = self.count
         matrix = np.zeros((k, 4, k, 4), dtype=complex if isinstance(multiplier, complex) else float)

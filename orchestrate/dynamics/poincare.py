@@ -47,25 +47,14 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class PoincareJob(OneMotionQuestion):
-    """Job of :func:`orchestrate.poincare`: the Poincaré section of one motion.
+    """Job of :func:`orchestrate.poincare`: the Poincaré section of one motion."""
 
-    Attributes
-    ----------
-    at : str
-        Of ``SECTIONS``.
-    phase : float
-        Of the box, in [0, 2 pi), where ``at`` is ``"phase"``.
-    transient, periods : int
-        Periods dropped, and followed after them.
-    start : tuple of float
-        x1, x2 in m, v1, v2 in m/s at phase 0.
-    """
-
-    at: str = "phase"
-    phase: float = 0.0
+    at: str = "phase"  # of `SECTIONS`
+    phase: float = 0.0  # of the box, in [0, 2 pi), where `at` is `"phase"`
+    # periods dropped, and followed after them
     transient: int = 500
     periods: int = 1000
-    start: tuple[float, ...] = REST
+    start: tuple[float, ...] = REST  # x1, x2 in m, v1, v2 in m/s at phase 0
     asked: ClassVar[str] = "poincare"
 
     def work(

@@ -30,19 +30,6 @@ def contact_durations(
 
     The zero is bracketed by samples of the force and by its largest values between them, and
     solved for by Chandrupatla's method.
-
-    Parameters
-    ----------
-    form : ClosedForm
-    phase, position, velocity : ndarray, shape (n,)
-        Of the excitation and of both masses where the contacts begin.
-    spans : ndarray, shape (n,)
-        Longest durations, in units of tau.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        In units of tau; infinite where a contact outlasts its span.
     """
     from scipy.optimize.elementwise import find_root
 
@@ -76,23 +63,7 @@ def contact_durations(
 def short_openings(
     force: Force, begin: Floats, times: Floats, forces: Floats, first: NDArray[np.intp]
 ) -> list[tuple[int, float, float]]:
-    """Find openings between samples that are all pressed: contact, last sample, largest force.
-
-    Parameters
-    ----------
-    force : callable
-        Of the time and of a contact's begin.
-    begin : ndarray, shape (3, n)
-    times, forces : ndarray, shape (n, m)
-        Of the samples.
-    first : ndarray, shape (n,)
-        Index of the first sample that is open.
-
-    Returns
-    -------
-    list of (int, float, float)
-        Index of the contact, time of the sample before, and of the largest force after it, >= 0.
-    """
+    """Find openings between samples that are all pressed: contact, last sample, largest force."""
     from scipy.optimize.elementwise import find_minimum
 
     left, middle, right = forces[:, :-2], forces[:, 1:-1], forces[:, 2:]

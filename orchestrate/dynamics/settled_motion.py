@@ -33,39 +33,21 @@ SAME_NODES = 1e-6  # of the nodes of two orbits over their size, within which th
 
 @dataclass(frozen=True, eq=False)
 class SettledMotion:
-    """A motion that responses settle to: its states, period, impacts, gap, and how decided.
-
-    Attributes
-    ----------
-    point : Point
-    decided : int
-        Of ``DECIDED``: by a stable orbit of Newton's method, by states that repeat, or neither.
-    states : ndarray, shape (n, 4)
-        x1, x2 in m, v1, v2 in m/s at phase 0 of successive periods: all of a periodic motion's,
-        some of an irregular one.
-    multiplicity : int
-        Excitation periods after which it repeats; 0: irregular.
-    impacts_per_period : float
-        Of a periodic motion a whole number over ``multiplicity``.
-    gap : float
-        Largest gap, m.
-    multiplier : float
-        Largest absolute value of the orbit's Floquet multipliers; NaN where there is no orbit.
-    orbit : PeriodicOrbit, optional
-        The orbit.
-    free_phase : float
-        Phase in rad at which it is far from impacts.
-    """
+    """A motion that responses settle to: its states, period, impacts, gap, and how decided."""
 
     point: Point
+    # of `DECIDED`: by a stable orbit of Newton's method, by states that repeat, or neither
     decided: int
+    # x1, x2 in m, v1, v2 in m/s at phase 0 of successive periods: all of a periodic motion's, some
+    # of an irregular one
     states: Floats
-    multiplicity: int
-    impacts_per_period: float
-    gap: float
+    multiplicity: int  # excitation periods after which it repeats; 0: irregular
+    impacts_per_period: float  # of a periodic motion a whole number over `multiplicity`
+    gap: float  # largest gap, m
+    # largest absolute value of the orbit's Floquet multipliers; NaN where there is no orbit
     multiplier: float = np.nan
-    orbit: PeriodicOrbit | None = None
-    free_phase: float = 0.0
+    orbit: PeriodicOrbit | None = None  # the orbit
+    free_phase: float = 0.0  # phase in rad at which it is far from impacts
 
     @classmethod
     def from_orbit(cls, point: Point, orbit: PeriodicOrbit, free_phase: float) -> SettledMotion:
@@ -129,20 +111,11 @@ class ScaledStates:
 
     Displacements and velocities over the frequency are compared with the largest of them; the gap
     and its rate with the largest gap, as by :func:`orchestrate.response.multiplicity.scale_states`.
-
-    Attributes
-    ----------
-    states : ndarray, shape (n, 4)
-        SI.
-    scaled : ndarray, shape (n, 6)
-        Displacements, velocities, gap and its rate over their sizes.
-    matrix : ndarray, shape (4, 6)
-        From a state to these.
     """
 
-    states: Floats
-    scaled: Floats
-    matrix: Floats
+    states: Floats  # SI
+    scaled: Floats  # displacements, velocities, gap and its rate over their sizes
+    matrix: Floats  # from a state to these
 
     @classmethod
     def from_states(cls, states: Floats, frequency: float, gap: float) -> ScaledStates:

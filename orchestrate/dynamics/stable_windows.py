@@ -13,29 +13,18 @@ if TYPE_CHECKING:
 
 
 class StableWindow(NamedTuple):
-    """A parameter interval with a stable orbit, and the bifurcations at both of its ends.
+    """A parameter interval with a stable orbit, and the bifurcations at both of its ends."""
 
-    Attributes
-    ----------
-    low, high : float
-        The parameter at its ends.
-    below, above : str
-        Kinds of the bifurcations there, or why the branch was followed no further.
-    """
-
+    # the parameter at its ends
     low: float
     high: float
+    # kinds of the bifurcations there, or why the branch was followed no further
     below: str
     above: str
 
 
 def stable_windows(branch: xr.Dataset) -> list[StableWindow]:
     """Return the stable parameter intervals of a branch dataset, in order along the branch.
-
-    Parameters
-    ----------
-    branch : xarray.Dataset
-        Of :func:`orchestrate.branch`.
 
     Examples
     --------

@@ -33,56 +33,32 @@ Point = TypeVar("Point")
 
 @dataclass(frozen=True)
 class ContinuationSettings:
-    """Settings for tracing a branch: the longest step, and the most points.
+    """Settings for tracing a branch: the longest step, and the most points."""
 
-    Attributes
-    ----------
-    max_step : float
-        Longest step, in unknowns over their scale: shorter where branches lie close to each other.
-    max_points : int
-        Points in one direction, without the start: more where a branch ends with
-        ``"most points"``.
-    """
-
+    # longest step, in unknowns over their scale: shorter where branches lie close to each other
     max_step: float
+    # points in one direction, without the start: more where a branch ends with `"most points"`
     max_points: int
 
 
 @dataclass(frozen=True)
 class Bifurcation(Generic[Point]):
-    """A bifurcation located on a branch: its kind, its point, and its position on the branch.
-
-    Attributes
-    ----------
-    kind : BifurcationKind
-    point : Point
-        Of the branch, there.
-    position : float
-        Among the branch's points: between two numbers where it lies between two points.
-    """
+    """A bifurcation located on a branch: its kind, its point, and its position on the branch."""
 
     kind: BifurcationKind
-    point: Point
+    point: Point  # of the branch, there
+    # among the branch's points: between two numbers where it lies between two points
     position: float
 
 
 @dataclass
 class BranchSegment(Generic[Point]):
-    """One direction of a traced branch: points, bifurcations, and why it ends.
+    """One direction of a traced branch: points, bifurcations, and why it ends."""
 
-    Attributes
-    ----------
-    points : list of Point
-        From the start on.
-    bifurcations : list of Bifurcation
-        In their order along the branch.
-    end : str
-        Why it ends.
-    """
-
-    points: list[Point] = field(default_factory=list)
+    points: list[Point] = field(default_factory=list)  # from the start on
+    # in their order along the branch
     bifurcations: list[Bifurcation[Point]] = field(default_factory=list)
-    end: str = ""
+    end: str = ""  # why it ends
 
     def add_bifurcation(self, kind: BifurcationKind, point: Point, beyond: float) -> None:
         """Append a bifurcation located ``beyond`` the last point, as a fraction of a step."""
@@ -90,27 +66,12 @@ class BranchSegment(Generic[Point]):
 
 
 class BranchTracer(ABC, Generic[AnyCurve, Point]):
-    """Base of tracers: the loop of continuation; subclasses supply points and test functions.
+    """Base of tracers: the loop of continuation; subclasses supply points and test functions."""
 
-    Parameters
-    ----------
-    stepper : ArclengthStepper
-        At the start of the branch.
-    max_points : int
-        As :class:`ContinuationSettings` has it.
-
-    Attributes
-    ----------
-    kinds : tuple of BifurcationKind
-        Those with a test function.
-    ending_kinds : tuple of BifurcationKind
-        Those beyond which there are no points.
-    finds_pairs : bool
-        Whether two bifurcations of a kind in one step are sought: it takes further roots.
-    """
-
-    kinds: ClassVar[tuple[BifurcationKind, ...]] = ()
+    kinds: ClassVar[tuple[BifurcationKind, ...]] = ()  # those with a test function
+    # those beyond which there are no points
     ending_kinds: ClassVar[tuple[BifurcationKind, ...]] = ()
+    # whether two bifurcations of a kind in one step are sought: it takes further roots
     finds_pairs: ClassVar[bool] = False
 
     def __init__(self, stepper: ArclengthStepper[AnyCurve], max_points: int) -> None:
@@ -182,13 +143,7 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
     def next_step(
         self, before: Point, rates: Mapping[BifurcationKind, float]
     ) -> tuple[BranchStep[Point], list[LocatedBifurcation[Point]]]:
-        """Take a step, shortened until its bifurcations can be located; return it and these.
-
-        Raises
-        ------
-        NoConvergenceError
-            Where no step is short enough.
-        """
+        """Take a step, shortened until its bifurcations can be located; return it and these."""
         stepper = self.stepper
         while True:
             root, length, at_limit = stepper.step_within(*self.limits(), self.accepts)
@@ -204,13 +159,7 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
                     raise
 
     def locate(self, step: BranchStep[Point]) -> list[LocatedBifurcation[Point]]:
-        """Locate all bifurcations in a step, in order, up to the first that ends the branch.
-
-        Raises
-        ------
-        NoConvergenceError
-            Where no root is found on the way.
-        """
+        """Locate all bifurcations in a step, in order, up to the first that ends the branch."""
         tested = [kind for kind in self.kinds if kind in self.ending_kinds]
         ends = self.locate_kinds(step, tested)[:1]
         if ends:
@@ -269,33 +218,18 @@ class LocatedBifurcation(Generic[Point]):
 
 @dataclass
 class BranchStep(Generic[Point]):
-    """One continuation step between two points, with the points solved for in between.
+    """One continuation step between two points, with the points solved for in between."""
 
-    Attributes
-    ----------
-    tracer : BranchTracer
-        Whose stepper is at the step's begin.
-    before, after : Point
-        At the step's ends.
-    length : float
-    at_limit : bool
-        Whether it ends at a limit of a parameter.
-    rates : mapping
-        How fast each test function changed in the step before; infinite where that is not known.
-    end : str
-        Why the branch ends before the step's end; empty where it does not.
-    last_points : iterable of Point
-        To add to the branch then.
-    """
-
-    tracer: BranchTracer[Any, Point]
+    tracer: BranchTracer[Any, Point]  # whose stepper is at the step's begin
+    # at the step's ends
     before: Point
     after: Point
     length: float
-    at_limit: bool = False
+    at_limit: bool = False  # whether it ends at a limit of a parameter
+    # how fast each test function changed in the step before; infinite where that is not known
     rates: Mapping[BifurcationKind, float] = field(default_factory=dict)
-    end: str = ""
-    last_points: Iterable[Point] = ()
+    end: str = ""  # why the branch ends before the step's end; empty where it does not
+    last_points: Iterable[Point] = ()  # to add to the branch then
 
     def __post_init__(self) -> None:
         self.known = {0.0: self.before, self.length: self.after}
@@ -369,13 +303,7 @@ class BranchStep(Generic[Point]):
     def solve_for_level(
         self, kind: BifurcationKind, low: float, high: float, level: float = 0.0
     ) -> tuple[float, Point]:
-        """Solve by Brent's method for where a test has a level; return position, point.
-
-        Raises
-        ------
-        NoConvergenceError
-            Where no root of the branch is found on the way.
-        """
+        """Solve by Brent's method for where a test has a level; return position, point."""
         from scipy.optimize import brentq
 
         tolerances = self.tracer.location_tolerances(self.length)

@@ -21,17 +21,11 @@ REFINEMENTS = 6  # Newton steps: each doubles the digits of a bracketed extremum
 
 @dataclass(frozen=True)
 class TurningPoints:
-    """Extrema of both displacements and the gap inside an orbit's segments, as arrays.
-
-    Attributes
-    ----------
-    segment, quantity : ndarray of int, shape (n,)
-    phase, value, curvature : ndarray, shape (n,)
-        Phase in rad; value and second derivative of the quantity by tau.
-    """
+    """Extrema of both displacements and the gap inside an orbit's segments, as arrays."""
 
     segment: NDArray[np.int_]
     quantity: NDArray[np.int_]
+    # phase in rad; value and second derivative of the quantity by tau
     phase: Floats
     value: Floats
     curvature: Floats
@@ -80,19 +74,7 @@ def refine_zeros(
     brackets: tuple[Floats, Floats],
     eta: float,
 ) -> Floats:
-    """Refine phases, rad, of zeros of rates by Newton's method within their brackets.
-
-    Parameters
-    ----------
-    rate_and_slope : callable
-        From phases to values and derivatives by tau.
-    phases : ndarray, shape (n,)
-        First estimates.
-    brackets : (ndarray, ndarray)
-        Lowest and highest phase of each.
-    eta : float
-        Phase per unit of tau.
-    """
+    """Refine phases, rad, of zeros of rates by Newton's method within their brackets."""
     for _ in range(REFINEMENTS):
         rate, slope = rate_and_slope(phases)
         step = np.divide(rate, slope, out=np.zeros_like(rate), where=slope != 0.0)
@@ -113,19 +95,12 @@ def quantity_derivatives(
 
 @dataclass(frozen=True)
 class Amplitudes:
-    """Largest displacements of both masses and largest gap over an orbit, in units of a eta^2.
+    """Largest displacements of both masses and largest gap over an orbit, in units of a eta^2."""
 
-    Attributes
-    ----------
-    xi_1, xi_2 : float
-        Largest absolute displacement of each mass.
-    gap : float
-        Largest gap.
-    """
-
+    # largest absolute displacement of each mass
     xi_1: float
     xi_2: float
-    gap: float
+    gap: float  # largest gap
 
     @classmethod
     def from_orbit(cls, orbit: PeriodicOrbit, turns: TurningPoints) -> Amplitudes:
@@ -140,15 +115,8 @@ class Amplitudes:
 
 
 def nearest_miss(orbit: PeriodicOrbit, turns: TurningPoints) -> tuple[float, int, float]:
-    """Return the smallest gap minimum of all flights, with its segment and phase; infinite if none.
-
-    Returns
-    -------
-    gap : float
-        The smallest gap at which a flight turns away again; infinite where none does. Negative:
-        the masses would have gone through each other.
-    segment : int
-    phase : float
+    """Return the smallest gap minimum of all flights, with its segment and phase; infinite if
+    none.
     """
     which = np.flatnonzero((turns.quantity == GAP) & (turns.curvature > 0.0))
     if not len(which):
@@ -158,16 +126,7 @@ def nearest_miss(orbit: PeriodicOrbit, turns: TurningPoints) -> tuple[float, int
 
 
 def weakest_force(orbit: PeriodicOrbit) -> tuple[float, int, float]:
-    """Return the smallest minimum of the contact pressure -f, with its segment and phase.
-
-    Returns
-    -------
-    force : float
-        The smallest -f (18) where f turns: it is 0 at an earlier release. Infinite where there is
-        no contact, or f does not turn there.
-    segment : int
-    phase : float
-    """
+    """Return the smallest minimum of the contact pressure -f, with its segment and phase."""
     if not orbit.contact.any():
         return np.inf, -1, 0.0
     segment, phase = sample_grid(orbit)

@@ -54,15 +54,7 @@ def saltation_matrices(impacts: Impacts, point: Point) -> Floats:
 
 
 def contact_durations_after(impacts: Impacts, ends: Floats, point: Point) -> Floats:
-    """Return how long permanent contact lasts after each impact, in tau; 0 without.
-
-    Parameters
-    ----------
-    impacts : Impacts
-    ends : ndarray, shape (n,)
-        tau of the next impact or the end: contact lasts no longer.
-    point : Point
-    """
+    """Return how long permanent contact lasts after each impact, in tau; 0 without."""
     times = np.zeros(len(impacts.time))
     sticks, form = impacts.sticks, ClosedForm.from_structure(*point)
     begins, states = impacts.time[sticks], impacts.state[sticks]
@@ -73,20 +65,7 @@ def contact_durations_after(impacts: Impacts, ends: Floats, point: Point) -> Flo
 
 
 def impact_matrices(impacts: Impacts, end: float, point: Point) -> Floats:
-    """Return matrices that map a deviation from each impact to the next, just before both.
-
-    Parameters
-    ----------
-    impacts : Impacts
-        Non-dimensional, see :func:`nondimensional_impacts`; time 0 is at phase 0.
-    end : float
-        tau.
-    point : Point
-
-    Returns
-    -------
-    ndarray, shape (n, 4, 4)
-    """
+    """Return matrices that map a deviation from each impact to the next, just before both."""
     form = ClosedForm.from_structure(*point)
     ends = np.append(impacts.time[1:], end)
     touching = contact_durations_after(impacts, ends, point)
@@ -98,19 +77,7 @@ def impact_matrices(impacts: Impacts, end: float, point: Point) -> Floats:
 
 
 def monodromy(impacts: Impacts, point: Point, periods: int = 1) -> Floats:
-    """Return the monodromy matrix (4, 4) over some periods from phase 0, impacts included.
-
-    Parameters
-    ----------
-    impacts : Impacts
-        Of the span, non-dimensional, see :func:`nondimensional_impacts`.
-    point : Point
-    periods : int
-
-    Returns
-    -------
-    ndarray, shape (4, 4)
-    """
+    """Return the monodromy matrix (4, 4) over some periods from phase 0, impacts included."""
     form = ClosedForm.from_structure(*point)
     end = periods * period_in_tau(form.eta)
     first = impacts.time[0] if len(impacts.time) else end

@@ -17,18 +17,7 @@ if TYPE_CHECKING:
 
 
 def branch_json(found: xr.Dataset | None) -> dict[str, Any]:
-    """Return lines and bifurcations of a branch as JSON data for the page.
-
-    Parameters
-    ----------
-    found : xarray.Dataset, optional
-        Of :func:`orchestrate.branch` over ``eta``.
-
-    Raises
-    ------
-    InputError
-        Where it is over something else, or no branch.
-    """
+    """Return lines and bifurcations of a branch as JSON data for the page."""
     if found is None:
         return {"branches": [], "bifurcations": []}
     if found.attrs.get("over") != "eta":

@@ -17,13 +17,6 @@ EXPORT = re.compile(r"^export ((?:async )?(?:function\*?|class|const|let)) (\w+)
 def bundle(sources: Mapping[str, str], entry: str) -> str:
     """Join JavaScript modules into one script that ends with the entry module.
 
-    Parameters
-    ----------
-    sources : mapping of str to str
-        Modules by file name without ``.js``.
-    entry : str
-        The module that starts everything.
-
     Examples
     --------
     >>> taken = 'import { one } from "./a.js";' + chr(10)

@@ -47,36 +47,6 @@ def explore(
 ) -> Path:
     """Write the explorer, one HTML file that needs no other file and no network.
 
-    Parameters
-    ----------
-    data : xarray.Dataset or Structure, optional
-        A sweep along the frequency, whose responses the page replays; or a structure, whose
-        responses the page computes itself. By default the paper's Figure 6, whose sweep comes with
-        the package.
-    output : path-like
-        The file.
-    branches : xarray.Dataset, optional
-        Of :func:`orchestrate.branch` over ``eta``, drawn over the diagram.
-    units : str
-        What the page opens in: ``"eta"``, the paper's ratios, or units of frequency, length,
-        acceleration and time such as ``"Hz, mm, g"`` or ``"rad/s, um, m/s2"``. By default the
-        ratios for a structure of omega = 1 rad/s, and for a sweep as it was shaken.
-    build_folder : path-like, optional
-        Where the kernel's WebAssembly is looked for and compiled to.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    InputError
-        Where the data are no sweep along the frequency, or one by ratios is to be shown in other
-        units, or the kernel cannot be compiled here.
-    StoreError
-        Where the file cannot be written.
-
     Notes
     -----
     A click replays a response from its start with the same kernel: the samples of the sweep, to

@@ -29,38 +29,22 @@ PAPER = (0.1, 8.0)  # frequency ratios of Figure 6
 
 @dataclass(frozen=True)
 class SweepData:
-    """A sweep as the page needs it: settings, range, and start states in one array.
-
-    Attributes
-    ----------
-    structure : Structure
-    directions : tuple of str
-        ``up``, ``down`` or both.
-    settings : dict of str to float
-        Transient, samples and tolerance.
-    numbers : ndarray
-        Frequency ratio, frequency and amplitude of each response, then for each direction the four
-        numbers of each start, m and m/s.
-    count : int
-        Number of responses in a direction.
-    low, high : float
-        Ends of the frequency ratios.
-    level : tuple of str and float
-        How strongly the box is shaken: ``"paper"``, 1/eta^2 m, or held at all frequencies, ``"g"``
-        as acceleration, ``"mm"`` as amplitude.
-    source : str
-        What computed it.
-    """
+    """A sweep as the page needs it: settings, range, and start states in one array."""
 
     structure: Structure
-    directions: tuple[str, ...]
-    settings: dict[str, float]
+    directions: tuple[str, ...]  # `up`, `down` or both
+    settings: dict[str, float]  # transient, samples and tolerance
+    # frequency ratio, frequency and amplitude of each response, then for each direction the four
+    # numbers of each start, m and m/s
     numbers: NDArray[np.float64]
-    count: int
+    count: int  # number of responses in a direction
+    # ends of the frequency ratios
     low: float
     high: float
+    # how strongly the box is shaken: `"paper"`, 1/eta^2 m, or held at all frequencies, `"g"` as
+    # acceleration, `"mm"` as amplitude
     level: tuple[str, float]
-    source: str
+    source: str  # what computed it
 
 
 def empty_sweep(structure: Structure, units: Units) -> SweepData:
@@ -71,18 +55,7 @@ def empty_sweep(structure: Structure, units: Units) -> SweepData:
 
 
 def read_sweep(data: xr.Dataset) -> SweepData:
-    """Return a sweep dataset as ``SweepData``; raise if the page cannot show it.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Of :func:`orchestrate.sweep` along ``eta`` or ``frequency``, in any direction but ``given``.
-
-    Raises
-    ------
-    InputError
-        Where it is something else.
-    """
+    """Return a sweep dataset as ``SweepData``; raise if the page cannot show it."""
     try:
         return read_checked(data, check_sweep(data))
     except InputError:
@@ -131,18 +104,7 @@ def in_ratios(structure: Structure, units: Units) -> bool:
 
 
 def check_units(units: Units, level: tuple[str, float]) -> None:
-    """Check that a sweep can be shown in some units: one of the paper's motion is in ratios.
-
-    Parameters
-    ----------
-    units : Units
-    level : tuple of str and float
-        Of the sweep, whose responses the page replays as they were shaken.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that a sweep can be shown in some units: one of the paper's motion is in ratios."""
     if level[0] == "paper" and (units.length or units.acceleration or units.frequency not in RATIO):
         raise InputError(
             f"units {units}: the page replays the sweep as it was shaken, by the paper's ratios; "

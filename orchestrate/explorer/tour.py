@@ -35,36 +35,16 @@ USUAL = {kind: unit for unit, kind in KINDS.items()}
 
 @dataclass(frozen=True)
 class View:
-    """A motion shown by the tour: its structure, frequency, start state and diagram range.
+    """A motion shown by the tour: its structure, frequency, start state and diagram range."""
 
-    Attributes
-    ----------
-    name : str
-        In the link ``#tour=NAME``.
-    label : str
-        Of its link, where a step has several.
-    eta : float
-        Frequency ratio, with the amplitude 1/eta^2 m.
-    start : tuple of float
-        State at phase 0: x1, x2 in m, v1, v2 in m/s.
-    region : tuple of float
-        Frequency ratios of the diagram.
-    direction : str
-        Of its sweep.
-    changes : dict of str to float
-        Parameters that are not the paper's.
-    level : float
-        Peak acceleration of the box in g, held at all frequencies; 0: the paper's amplitude
-        1/eta^2 m.
-    """
-
-    name: str
-    label: str
-    eta: float
-    start: tuple[float, ...] = START
-    region: tuple[float, float] = (0.1, 8.0)
-    direction: str = "up"
-    changes: dict[str, float] = field(default_factory=dict)
+    name: str  # in the link `#tour=NAME`
+    label: str  # of its link, where a step has several
+    eta: float  # frequency ratio, with the amplitude 1/eta^2 m
+    start: tuple[float, ...] = START  # state at phase 0: x1, x2 in m, v1, v2 in m/s
+    region: tuple[float, float] = (0.1, 8.0)  # frequency ratios of the diagram
+    direction: str = "up"  # of its sweep
+    changes: dict[str, float] = field(default_factory=dict)  # parameters that are not the paper's
+    # peak acceleration of the box in g, held at all frequencies; 0: the paper's amplitude 1/eta^2 m
     level: float = 0.0
 
     @property
@@ -165,13 +145,6 @@ STEPS = (
 
 def in_units(text: str, shown: Mapping[str, str]) -> str:
     """Return a text of the tour with its numbers in the units of a page.
-
-    Parameters
-    ----------
-    text : str
-        Numbers with a unit in braces.
-    shown : mapping
-        Units of ``frequency``, ``length`` and ``acceleration``, words of :mod:`orchestrate.units`.
 
     Examples
     --------

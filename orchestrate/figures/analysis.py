@@ -46,21 +46,7 @@ def draw(
     others: Mapping[str, xr.Dataset] | None = None,
     title: str = "",
 ) -> Figure:
-    """Draw an analysis' result, with those of further records for comparison; return the figure.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Of :func:`orchestrate.frf`, :func:`orchestrate.psd`, :func:`orchestrate.track_orders`,
-        :func:`orchestrate.harmonics`, :func:`orchestrate.spectrogram`,
-        :func:`orchestrate.shock_spectrum` or :func:`orchestrate.probability_density`.
-    label : str
-        What its record is, for the legend.
-    others : mapping of str to xarray.Dataset, optional
-        Results of the same analysis of other records, by what they are.
-    title : str
-        By default the result's own.
-    """
+    """Draw an analysis' result, with those of further records for comparison; return the figure."""
     results = {label: data, **(others or {})}
     kind = data.attrs["analysis"]
     other = [name for name, result in results.items() if result.attrs["analysis"] != kind]
@@ -78,14 +64,7 @@ def draw(
 def make_channel_grid(
     results: Results, rows: int, heights: tuple[float, ...]
 ) -> tuple[Figure, Any]:
-    """Make a figure with a column for each measured mass; return it and the axes by channel.
-
-    Returns
-    -------
-    figure : matplotlib.figure.Figure
-    axes : dict of str to list of Axes
-        By channel, from top to bottom.
-    """
+    """Make a figure with a column for each measured mass; return it and the axes by channel."""
     every = channels_in(results)
     names = [name for name in every if name != "box_acceleration"] or every
     size = (5.4 * len(names), 0.6 + 2.0 * sum(heights))
@@ -278,16 +257,7 @@ def make_order_reader(order: float, name: str, factor: float) -> Reader:
 def draw_frequency_rows(
     results: Results, rows: list[tuple[str, Reader]], heights: tuple[float, ...]
 ) -> tuple[Figure, Any]:
-    """Draw rows of curves over a sweep's frequency, dashed for downward parts.
-
-    Parameters
-    ----------
-    results : dict of str to xarray.Dataset
-    rows : list of (str, callable)
-        Label of each row, and what gives its curve from a result.
-    heights : tuple of float
-        Of the rows; where there are more than ``rows`` the last ones stay empty.
-    """
+    """Draw rows of curves over a sweep's frequency, dashed for downward parts."""
     figure, columns = make_channel_grid(results, len(heights), heights)
     shown: list[dict[str, list[np.ndarray]]] = [{} for _ in rows]
     for channel, column in columns.items():

@@ -44,14 +44,8 @@ class AttractorStyle(NamedTuple):
 
 @styled
 def draw(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw attractors over a parameter: largest gap, share of starts and number; return the figure.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Of :func:`orchestrate.attractors`.
-    title : str
-        By default the structure.
+    """Draw attractors over a parameter: largest gap, share of starts and number; return the
+    figure.
     """
     figure, axes = make_panels(3, 1, (9.6, 7.2), sharex=True, height_ratios=(3, 2, 1))
     top, middle, bottom = axes

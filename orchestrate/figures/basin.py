@@ -28,17 +28,7 @@ STATE = ("x1", "x2", "v1", "v2")
 
 @styled
 def draw(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", "")) -> Figure:
-    """Draw basins: each start in the colour of the attractor it leads to; return the figure.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Of :func:`orchestrate.basin`.
-    title : str
-        By default the structure and the excitation.
-    names : (str, str)
-        Of both axes; by default those of the coordinates, with their units.
-    """
+    """Draw basins: each start in the colour of the attractor it leads to; return the figure."""
     figure, (plane,) = make_panels(1, 1, (6.4, 5.6))
     y, x = map(str, data.attractor_of.dims)
     labels = data.attractor_of.where(data.attractor_of >= 0).values.clip(max=len(COLOURS))

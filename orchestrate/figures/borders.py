@@ -26,13 +26,8 @@ COLOURS = {
 
 @styled
 def draw(*curves: xr.Dataset, title: str = "") -> Figure:
-    """Draw bifurcation curves over two parameters, with codimension-two points; return the figure.
-
-    Parameters
-    ----------
-    *curves : xarray.Dataset
-        Of :func:`orchestrate.border`, all over the same two parameters.
-    title : str
+    """Draw bifurcation curves over two parameters, with codimension-two points; return the
+    figure.
     """
     figure, (plane,) = make_panels(1, 1, (9.6, 4.4))
     first, second = (str(name) for name in curves[0].attrs["over"])
@@ -57,17 +52,7 @@ def draw(*curves: xr.Dataset, title: str = "") -> Figure:
 def draw_points(
     plane: Axes, curve: xr.Dataset, axes: Iterable[tuple[str, float]], shown: set[str]
 ) -> None:
-    """Draw a marker at each codimension-two point; each kind once in the legend.
-
-    Parameters
-    ----------
-    plane : Axes
-    curve : xarray.Dataset
-    axes : iterable of tuple
-        Of both axes the parameter, and what its values are divided by.
-    shown : set of str
-        Kinds in the legend already; added to.
-    """
+    """Draw a marker at each codimension-two point; each kind once in the legend."""
     if not curve.sizes.get("codimension_two"):
         return
     words = flag_words(curve.codimension_two_kind.attrs)

@@ -29,18 +29,7 @@ def draw_branch(
     stable: np.ndarray,
     colours: tuple[str, str] = (BLUE, RED),
 ) -> None:
-    """Draw a branch's values as lines: solid where stable, dashed where unstable.
-
-    Parameters
-    ----------
-    plane : Axes
-    x : ndarray, shape (n,)
-    rows : ndarray, shape (lines, n)
-        Such as one for each phase 0 of the orbits.
-    stable : ndarray of bool, shape (n,)
-    colours : tuple of str
-        Of what is stable, and of what is not.
-    """
+    """Draw a branch's values as lines: solid where stable, dashed where unstable."""
     # a step of which one end is unstable is drawn as unstable
     both = stable & np.append(stable[1:], True) & np.append(True, stable[:-1])
     for row in rows:
@@ -53,16 +42,7 @@ def draw_branch(
 
 
 def draw_bifurcations(plane: Axes, branch: xr.Dataset, x: np.ndarray, rows: np.ndarray) -> None:
-    """Draw a marker of the bifurcation's kind at each bifurcation of a branch.
-
-    Parameters
-    ----------
-    plane : Axes
-    branch : xarray.Dataset
-    x : ndarray, shape (n,)
-        Of its bifurcations.
-    rows : ndarray, shape (n, marks)
-    """
+    """Draw a marker of the bifurcation's kind at each bifurcation of a branch."""
     names = flag_words(branch.bifurcation_kind.attrs)
     for at, row, kind in zip(x, rows, branch.bifurcation_kind.values, strict=True):
         word = names[int(kind)].replace("Neimark Sacker", "Neimark-Sacker")

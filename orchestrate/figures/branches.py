@@ -15,14 +15,7 @@ from .style import XI_REL, legend_below, make_panels, set_title, styled
 
 @styled
 def draw(*branches: xr.Dataset, title: str = "") -> Figure:
-    """Draw branches of periodic orbits over their parameter; return the figure.
-
-    Parameters
-    ----------
-    *branches : xarray.Dataset
-        Of :func:`orchestrate.branch`, all along the same parameter.
-    title : str
-    """
+    """Draw branches of periodic orbits over their parameter; return the figure."""
     figure, (plane,) = make_panels(1, 1, (9.6, 5.8))
     name = str(branches[0].attrs["over"])
     factor, gap = gap_scale(branches[0], branches[0].xi_rel)

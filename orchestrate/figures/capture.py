@@ -19,14 +19,7 @@ FOLD: Any = {"color": GREY, "linewidth": 1.0, "linestyle": ":", "label": "fold, 
 
 @styled
 def draw(maps: Mapping[str, xr.Dataset], title: str = "") -> Figure:
-    """Draw capture maps, one column per structure; return the figure.
-
-    Parameters
-    ----------
-    maps : mapping of xarray.Dataset
-        Of :func:`orchestrate.capture`, by what they are, such as ``"bonded"``.
-    title : str
-    """
+    """Draw capture maps, one column per structure; return the figure."""
     figure, axes = make_panels(1, len(maps), (5.5 * len(maps), 4.5), sharex=True, sharey=True)
     for panel, (name, data) in zip(axes, maps.items(), strict=True):
         over = {str(dim) for dim in data.passes.dims} - {"voltage"}

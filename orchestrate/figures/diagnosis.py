@@ -41,15 +41,7 @@ HEIGHT = 0.8  # of all bars of a sign
 
 @styled
 def draw_signs(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw delamination signs as bars relative to noise and to a sound structure's values.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Of :func:`orchestrate.signs`.
-    title : str
-        By default the answer's own.
-    """
+    """Draw delamination signs as bars relative to noise and to a sound structure's values."""
     signs = [str(sign) for sign in data.sign.values]
     figure, (axes,) = make_panels(1, 1, (8.0, 1.6 + 0.32 * len(signs)))
     usual = np.fmax(data.floor, data.sound_highest)
@@ -90,15 +82,7 @@ def write_values(axes: Axes, place: np.ndarray, ratios: np.ndarray, values: np.n
 
 @styled
 def draw_plan(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw over frequency and level where a test would show a delamination; return the figure.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Of :func:`orchestrate.plan_test`.
-    title : str
-        By default the answer's own.
-    """
+    """Draw over frequency and level where a test would show a delamination; return the figure."""
     size = (8.0, 6.2)
     figure, (plane, below) = make_panels(2, 1, size, sharex=True, height_ratios=(1.5, 1.0))
     data = as_shown(data)
@@ -165,15 +149,7 @@ def draw_distances(plane: Axes, data: xr.Dataset, limit: float) -> None:
 
 @styled
 def draw_detect(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw a record's orders over frequency with those of the fits, one column per sensor.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Of :func:`orchestrate.detect` or :func:`orchestrate.fit`.
-    title : str
-        By default the answer's own.
-    """
+    """Draw a record's orders over frequency with those of the fits, one column per sensor."""
     data = with_hypothesis_dimension(as_shown(data))
     channels = [str(channel) for channel in data.channel.values]
     orders = [float(order) for order in data.order.values]
@@ -244,15 +220,7 @@ def limit_decades(plane: Axes, values: np.ndarray) -> None:
 
 @styled
 def draw_misfit(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw each fit's misfit to the record over frequency; return the figure.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Of :func:`orchestrate.detect`.
-    title : str
-        By default the answer's own.
-    """
+    """Draw each fit's misfit to the record over frequency; return the figure."""
     figure, (axes,) = make_panels(1, 1, (8.0, 3.4))
     data = as_shown(data)
     for number, name in enumerate(best_fits(data)):

@@ -17,17 +17,7 @@ FLOOR = 1e-6  # of the largest amplitude: the lower end of the axis
 
 @styled
 def draw(data: xr.Dataset, mass: int = 1, title: str = "") -> Figure:
-    """Draw one mass' acceleration spectra of both structures, one below the other.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Of :func:`orchestrate.weak_drive.drive_spectra.drive_spectra`.
-    mass : int
-        1 or 2.
-    title : str
-        What is shown: set and volts.
-    """
+    """Draw one mass' acceleration spectra of both structures, one below the other."""
     count = data.sizes["kind"]
     figure, axes = make_panels(count, 1, (10, 3.5 * count), sharex=True, sharey=True)
     turning = data if units_of(data).frequency else with_units(data, "rad/s")

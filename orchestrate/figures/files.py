@@ -44,28 +44,7 @@ def png_size(png: bytes) -> dict[str, int]:
 def save(
     figure: Figure, path: str | Path, formats: Iterable[str] = ("png",), **options: Any
 ) -> list[Path]:
-    """Save a figure in each format atomically; return the paths.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-    path : path-like
-        Without an ending: the format is the ending.
-    formats : iterable of str
-        Of those matplotlib writes: png, pdf, svg, ...
-    **options
-        Of :meth:`matplotlib.figure.Figure.savefig`.
-
-    Returns
-    -------
-    list of Path
-        The files written.
-
-    Raises
-    ------
-    orchestrate.errors.StoreError
-        Where a file cannot be written.
-    """
+    """Save a figure in each format atomically; return the paths."""
     written = []
     for ending in formats:
         target = Path(f"{path}.{ending}")

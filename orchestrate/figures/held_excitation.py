@@ -14,13 +14,6 @@ from .scales import has_frequency_unit
 def branch_title(data: xr.Dataset, over: Iterable[str]) -> str:
     r"""Return a title with the structure, and with the frequency and amplitude that are held.
 
-    Parameters
-    ----------
-    data : xarray.Dataset
-        With ``frequency``, ``eta`` and ``amplitude`` of each point as co-ordinates.
-    over : iterable of str
-        The parameters that vary.
-
     Examples
     --------
     >>> beam = dict(m1=1.0, m2=1.0, k1=4.0, k2=4.0, d1=0.02, d2=0.02, e=0.7)

@@ -19,14 +19,7 @@ TOO_FEW = "too few rates for rate 0"
 
 @styled
 def draw(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw jump voltages over the ramp rate, one panel per direction; return the figure.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Of :func:`orchestrate.jump_voltages`.
-    title : str
-    """
+    """Draw jump voltages over the ramp rate, one panel per direction; return the figure."""
     known = np.isfinite(data.voltage).any(["rate", "structure"])
     jumps = [str(jump) for jump in data.jump.values if known.sel(jump=jump)] or ["up"]
     figure, axes = make_panels(1, len(jumps), (6.0 * len(jumps), 4.5))

@@ -79,13 +79,6 @@ def title_from_attributes(data: xr.Dataset, shown_elsewhere: Iterable[str] = ())
     A structure that is not in the paper's units is described by its halves: frequencies in Hz,
     damping ratios at them in per cent.
 
-    Parameters
-    ----------
-    data : xarray.Dataset
-        With the structure's SI parameters as attributes, as questions give them.
-    shown_elsewhere : iterable of str
-        Names that are shown elsewhere, like the dataset's dimensions.
-
     Examples
     --------
     >>> attributes = dict(m1=1.0, m2=2.0, k1=1.0, k2=1.2, d1=0.01, d2=0.02, e=0.7)

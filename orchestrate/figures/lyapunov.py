@@ -21,19 +21,7 @@ VERDICTS = {1: (RED, "o"), 0: (BLUE, "s"), -1: (BLACK, ".")}  # chaotic, neutral
 def draw(
     *cases: xr.Dataset, title: str = "", titles: tuple[str, ...] = (), lowest: float = -0.1
 ) -> Figure:
-    """Draw exponents with standard errors, one panel per dataset; return the figure.
-
-    Parameters
-    ----------
-    *cases : xarray.Dataset
-        Of :func:`orchestrate.lyapunov`, over the same parameter.
-    title : str
-        Of a single case.
-    titles : tuple of str
-        One a case; by default the structures.
-    lowest : float
-        End of the axis; exponents below it are marked at its edge.
-    """
+    """Draw exponents with standard errors, one panel per dataset; return the figure."""
     size = (9.6, 0.6 + 2.2 * len(cases))
     figure, axes = make_panels(len(cases), 1, size, sharex=True, sharey=True)
     highest = max(float(data.exponent.max()) for data in cases)

@@ -15,15 +15,7 @@ WORDS = {"+": "where the gap grows from the saddle on", "-": "where it falls"}
 
 @styled
 def draw(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw both sides of a manifold, broken where it is discontinuous; return the figure.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Of :func:`orchestrate.manifold`.
-    title : str
-        By default the structure and the excitation.
-    """
+    """Draw both sides of a manifold, broken where it is discontinuous; return the figure."""
     figure, (plane,) = make_panels(1, 1, (7.4, 5.6))
     factor, letter = length_scale(data, float(data.x_rel.max()))
     pace, speed_letter = length_scale(data, float(abs(data.v_rel).max()))

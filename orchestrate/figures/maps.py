@@ -47,16 +47,7 @@ NOTHING = "#d9d9d9"  # no impacts
 
 @styled
 def draw(*maps: xr.Dataset, title: str = "") -> Figure:
-    """Draw maps over two parameters, one row per dataset; return the figure.
-
-    Parameters
-    ----------
-    *maps : xarray.Dataset
-        Of :func:`orchestrate.map`; of ``COLUMNS`` those are drawn that all datasets have. The
-        frequency, if it is one of the parameters, runs to the right.
-    title : str
-        Of all; by default the structure of each row.
-    """
+    """Draw maps over two parameters, one row per dataset; return the figure."""
     columns = [name for name in COLUMNS if all(name in data for data in maps)]
     size = (max(3.1 * len(columns), 4.5), 0.4 + 2.8 * len(maps))
     figure, axes = make_panels(len(maps), len(columns), size)

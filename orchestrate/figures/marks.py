@@ -15,18 +15,10 @@ SHADES = ((1, 0.35), (3, 0.6), (8, 1.0))  # from so many samples in a cell on: o
 
 
 class MarkStyle(NamedTuple):
-    """Colour, size and filling of marks at values.
-
-    Attributes
-    ----------
-    colour : str
-    size : float
-        Over the usual size.
-    filled : bool
-    """
+    """Colour, size and filling of marks at values."""
 
     colour: str
-    size: float = 1.0
+    size: float = 1.0  # over the usual size
     filled: bool = True
 
 
@@ -44,21 +36,7 @@ def marker_keywords(count: int, marks: MarkStyle) -> dict[str, Any]:
 
 
 def one_per_cell(axes: Axes, x: np.ndarray, samples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return one sample's index per occupied cell of a panel, and the samples in each cell.
-
-    Parameters
-    ----------
-    axes : Axes
-        With its scales and limits.
-    x : ndarray, shape (n,)
-    samples : ndarray, shape (n, m)
-
-    Returns
-    -------
-    chosen : ndarray of int
-        Indices of the samples as a flat list.
-    count : ndarray of int
-    """
+    """Return one sample's index per occupied cell of a panel, and the samples in each cell."""
     columns, rows = CELLS
     column = cell_index(axes.xaxis, x, columns)
     row = cell_index(axes.yaxis, samples, rows)
@@ -80,16 +58,7 @@ def cell_index(axis: Axis, values: np.ndarray, count: int) -> np.ndarray:
 def draw_samples(
     axes: Axes, x: np.ndarray, samples: np.ndarray, marks: MarkStyle, label: str = ""
 ) -> None:
-    """Draw samples over their parameter, darker where many coincide; set scales before.
-
-    Parameters
-    ----------
-    axes : Axes
-    x : ndarray, shape (n,)
-    samples : ndarray, shape (n, m)
-    marks : MarkStyle
-    label : str
-    """
+    """Draw samples over their parameter, darker where many coincide; set scales before."""
     gaps, each = samples.ravel(), samples.shape[1]
     style = {**marker_keywords(len(x), marks), "rasterized": True}
     if len(x) <= MAX_DISTINCT:
@@ -123,19 +92,7 @@ def draw_stems(
     width: float = 1.5,
     **style: Any,
 ) -> None:
-    """Draw a spectrum's lines as stems on a logarithmic axis that begins at a floor.
-
-    Parameters
-    ----------
-    axes : Axes
-    x, amplitudes : ndarray, shape (n,)
-    floor : float
-        Lines below it are left out.
-    width : float
-        Of a stem, in points; many stems are thinner, so that they are told apart.
-    **style
-        Of :meth:`matplotlib.axes.Axes.vlines`.
-    """
+    """Draw a spectrum's lines as stems on a logarithmic axis that begins at a floor."""
     axes.set_yscale("log")
     shown = amplitudes > floor
     thin = min(1.0, (MAX_STEMS / (1 + int(shown.sum()))) ** 0.5)

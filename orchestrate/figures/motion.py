@@ -31,17 +31,7 @@ MIN_PERIODS = 4  # periods that a spectrum takes
 
 @styled
 def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) -> Figure:
-    """Draw a simulated motion: histories, phase planes and spectrum; return the figure.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Of :func:`orchestrate.simulate`.
-    title : str
-        What moves; by default the structure and the excitation.
-    bonded : xarray.Dataset, optional
-        The same of the bonded structure, drawn behind it.
-    """
+    """Draw a simulated motion: histories, phase planes and spectrum; return the figure."""
     figure = Figure(figsize=(10.4, 6.8), layout="constrained")
     axes = figure.subplot_mosaic(LAYOUT, width_ratios=(2.2, 1))
     set_title(figure, title or title_from_attributes(data))

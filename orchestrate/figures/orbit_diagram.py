@@ -24,26 +24,7 @@ WIDTHS = {"up": 2.6, "down": 1.0}
 def draw(
     data: xr.Dataset, title: str = "", decades: int = 6, overlay: Sequence[xr.Dataset] = ()
 ) -> Figure:
-    """Draw an orbit diagram with all samples, as in the paper; return the figure.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Of :func:`orchestrate.sweep`, in one direction or in both.
-    title : str
-        What is the same in the whole diagram; by default the structure.
-    decades : int
-        Of the gap's logarithmic axis, from the largest down; below them it is linear, down to 0.
-    overlay : sequence of xarray.Dataset
-        Of :func:`orchestrate.branch`, over the samples, which are grey then: solid where orbits are
-        stable, dashed where not.
-
-    Raises
-    ------
-    InputError
-        Where a branch is of another structure, over another parameter, or of another motion of the
-        box.
-    """
+    """Draw an orbit diagram with all samples, as in the paper; return the figure."""
     figure, (top, bottom) = make_panels(2, 1, (9.6, 6.4), sharex=True, height_ratios=(3, 1))
     parameter = varied_dimension(data.impacts_per_period)
     branches = [Overlay(branch, data, parameter) for branch in overlay]

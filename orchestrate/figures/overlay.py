@@ -35,16 +35,7 @@ ALIKE = ({"eta", "frequency"}, {"level", "amplitude"})  # names of what is one a
 
 
 def explain_mismatch(branch: xr.Dataset, over: str, parameters: Mapping[str, Any]) -> str:
-    """Return a text on why a dataset is no branch of this structure and parameter; else "".
-
-    Parameters
-    ----------
-    branch : xarray.Dataset
-    over : str
-        What the responses are along.
-    parameters : mapping
-        Of the responses' structure, SI.
-    """
+    """Return a text on why a dataset is no branch of this structure and parameter; else ""."""
     question = str(branch.attrs.get("call", "")).partition("(")[0] or "nothing"
     if question != "branch":
         return f"an answer of {question}; expected one of branch"
@@ -104,22 +95,7 @@ def amplitude_at(data: xr.Dataset, frequency: np.ndarray) -> np.ndarray:
 
 
 class Overlay:
-    """A branch with the units of the responses over which it is drawn.
-
-    Parameters
-    ----------
-    branch : xarray.Dataset
-        Of :func:`orchestrate.branch`.
-    data : xarray.Dataset
-        Of :func:`orchestrate.sweep` or :func:`orchestrate.resonance`.
-    parameter : str
-        What these are along.
-
-    Raises
-    ------
-    InputError
-        Where both do not belong together.
-    """
+    """A branch with the units of the responses over which it is drawn."""
 
     def __init__(self, branch: xr.Dataset, data: xr.Dataset, parameter: str) -> None:
         parameters = {key: data.attrs[key] for key in SI if key in data.attrs}
@@ -145,13 +121,7 @@ class Overlay:
         return np.asarray(numbers / parameter_scale(self.data, self.parameter)[0])
 
     def scale(self, factor: float) -> np.ndarray:
-        """Return factors from lengths over a eta^2 to the axis' unit, one per branch point.
-
-        Parameters
-        ----------
-        factor : float
-            What an axis in m is divided by; 0 for one that has lengths over a eta^2.
-        """
+        """Return factors from lengths over a eta^2 to the axis' unit, one per branch point."""
         branch = self.branch
         if not factor:
             return np.ones(branch.sizes["point"])

@@ -27,17 +27,7 @@ FLOOR = 1e-4  # of the largest line: the lower end of the colours
 def draw(
     runs: Mapping[str, xr.Dataset], spectra: Mapping[str, xr.Dataset], title: str = ""
 ) -> Figure:
-    """Draw passages, one column per structure; return the figure.
-
-    Parameters
-    ----------
-    runs : mapping of xarray.Dataset
-        Of :func:`orchestrate.passage`, by what they are, such as ``"bonded"``.
-    spectra : mapping of xarray.Dataset
-        Of :func:`orchestrate.waterfall`, by the same names.
-    title : str
-        What is shown: set, rate, volts.
-    """
+    """Draw passages, one column per structure; return the figure."""
     count = len(runs)
     figure, axes = make_panels(5, count, (6.5 * count + 1.0, 14), sharex="col", sharey="row")
     shown = {name: as_shown(data) for name, data in runs.items()}

@@ -29,13 +29,7 @@ CONTACT = 2
 
 @styled
 def draw_states(data: xr.Dataset) -> Figure:
-    """Draw one response's phase planes, coloured by state (Figure 5); return the figure.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Curves with one panel, see :mod:`.curve_data`.
-    """
+    """Draw one response's phase planes, coloured by state (Figure 5); return the figure."""
     figure, (left, right) = make_panels(1, 2, (8.5, 4.2))
     state, kind = data.state.values, data.kind.values
     _, gap, rate = relative_motion(data, 0)
@@ -71,13 +65,7 @@ def draw_by_state(
 
 @styled
 def draw_masses(data: xr.Dataset) -> Figure:
-    """Draw both masses' phase planes, one panel per response on one scale (Figure 12).
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Curves, see :mod:`.curve_data`.
-    """
+    """Draw both masses' phase planes, one panel per response on one scale (Figure 12)."""
     count = data.sizes["panel"]
     figure, axes = make_panels(1, count, (3.3 * count, 3.7))
     reach = 1.08 * float(np.abs(data.state).max())

@@ -12,14 +12,7 @@ from .style import XI_REL, XI_REL_RATE, make_panels, styled
 
 @styled
 def draw(data: xr.Dataset, columns: int = 4) -> Figure:
-    """Draw a grid of relative phase planes, one per response, each on its own scales.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Curves, see :mod:`.curve_data`.
-    columns : int
-    """
+    """Draw a grid of relative phase planes, one per response, each on its own scales."""
     count = data.sizes["panel"]
     rows = -(-count // columns)
     figure, axes = make_panels(rows, columns, (2.7 * columns, 2.6 * rows))

@@ -173,13 +173,7 @@ def plot_drive(answers: Sequence[xr.Dataset], kinds: Sequence[str], title: str) 
 
 
 def function_name(answer: object) -> str:
-    """Return the name of the public function that made a result.
-
-    Raises
-    ------
-    InputError
-        Where it is no answer.
-    """
+    """Return the name of the public function that made a result."""
     attributes = answer.attrs if isinstance(answer, xr.Dataset) else {}
     if "analysis" in attributes:  # of a record
         return str(attributes["analysis"])

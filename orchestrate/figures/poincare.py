@@ -21,16 +21,7 @@ SHARES = {0.0: "0", 0.25: "π/2", 0.5: "π", 0.75: "3π/2", 1.0: "2π"}  # of a 
 
 @styled
 def draw(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw a motion's Poincaré section; return the figure.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Of :func:`orchestrate.poincare`: at a phase the gap and its rate; at impacts the closing
-        speed, and at releases the velocity of both masses, by the phase of the box.
-    title : str
-        By default the structure and the excitation.
-    """
+    """Draw a motion's Poincaré section; return the figure."""
     figure, (plane,) = make_panels(1, 1, (6.4, 5.0))
     DRAW[str(data.attrs["at"])](plane, data, marker_size(data.sizes["point"]))
     widen_narrow_limits(plane)

@@ -47,26 +47,7 @@ LENGTHS = {"x1_max": "xi1_max", "x2_max": "xi2_max", "x_rel_max": "xi_rel_max"} 
 
 @styled
 def draw(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] = ()) -> Figure:
-    """Draw resonance curves with their peaks and jumps; return the figure.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Of :func:`orchestrate.resonance`: ``x1_max``, ``x2_max``, ``x_rel_max`` in m and
-        ``a1_max``, ``a2_max`` in m/s2 over the frequency and, where there are several,
-        ``structure`` and ``direction``.
-    title : str
-        What is shaken; by default the structure and the excitation.
-    overlay : sequence of xarray.Dataset
-        Of :func:`orchestrate.branch`, over displacements and gaps: solid where orbits are stable,
-        dashed where not.
-
-    Raises
-    ------
-    InputError
-        Where a branch is of another structure, over another parameter, or of another motion of the
-        box.
-    """
+    """Draw resonance curves with their peaks and jumps; return the figure."""
     figure = Figure(figsize=(9.6, 7.6), layout="constrained")
     rows = [row for row in LAYOUT if row[0] in data]
     if THRESHOLD in data:

@@ -21,15 +21,7 @@ FEW = 8  # levels that have a legend entry each; more have a colour bar
 
 @styled
 def draw(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw acceleration over level, gap and threshold over frequency; return the figure.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Of :func:`orchestrate.resonance_levels`.
-    title : str
-        What is shaken; by default the structure.
-    """
+    """Draw acceleration over level, gap and threshold over frequency; return the figure."""
     rows = ["acceleration", "gap", *(["threshold"] if THRESHOLD in data else [])]
     figure, axes = make_panels(len(rows), 1, (8.4, 1.2 + 2.5 * len(rows)), sharex=True)
     plane = dict(zip(rows, axes, strict=True))

@@ -24,17 +24,7 @@ ROWS = {
 
 @styled
 def draw(runs: Mapping[str, xr.Dataset], resonance: float, title: str = "") -> Figure:
-    """Draw coupled runs over time, one column per structure; return the figure.
-
-    Parameters
-    ----------
-    runs : mapping of xarray.Dataset
-        Of :func:`orchestrate.couple`, by what they are, such as ``"bonded"``.
-    resonance : float
-        Speed between motions below and beyond the resonance, rad/s.
-    title : str
-        What is shown: set, volts, controller.
-    """
+    """Draw coupled runs over time, one column per structure; return the figure."""
     count, rows = len(runs), len(ROWS) + 1
     figure, axes = make_panels(rows, count, (6.5 * count, 2.6 * rows), sharex=True, sharey="row")
     shown = {name: as_shown(data) for name, data in runs.items()}

@@ -24,13 +24,7 @@ MAX_LISTED = 6  # numbers that a list of values has before it says how many more
 
 
 class AxisValues(NamedTuple):
-    """Values and label of a horizontal axis, in display units.
-
-    Attributes
-    ----------
-    values : ndarray
-    label : str
-    """
+    """Values and label of a horizontal axis, in display units."""
 
     values: np.ndarray
     label: str
@@ -82,14 +76,7 @@ def length_scale(data: xr.Dataset, largest: float) -> tuple[float, str]:
 
 
 def acceleration_scale(data: xr.Dataset, usual: str = "m/s2") -> tuple[float, str]:
-    """Return the divisor from m/s2 to the display unit, and that unit for an axis.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-    usual : str
-        The unit where none is asked for.
-    """
+    """Return the divisor from m/s2 to the display unit, and that unit for an axis."""
     word = units_of(data).acceleration or usual
     return FACTORS["acceleration"][word], typeset_unit(word)
 

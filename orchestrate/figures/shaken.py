@@ -23,17 +23,7 @@ MASSES: tuple[tuple[str, dict[str, Any]], ...] = (
 
 @styled
 def draw(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) -> Figure:
-    """Draw a laboratory record: accelerations, gap and impulses over time; return the figure.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Of :func:`orchestrate.shake`.
-    title : str
-        What is shaken; by default the structure.
-    bonded : xarray.Dataset, optional
-        The same of the bonded structure, drawn over it.
-    """
+    """Draw a laboratory record: accelerations, gap and impulses over time; return the figure."""
     figure = Figure(figsize=(10.4, 7.2), layout="constrained")
     rows = figure.subplots(4, 1, sharex=True, height_ratios=(1.0, 1.6, 1.2, 1.2))
     set_title(figure, title or shaken_title(data))

@@ -28,19 +28,7 @@ SIDES: tuple[dict[str, dict[str, Any]], ...] = (  # left and right; a thin line 
 
 @styled
 def draw(data: xr.Dataset, title: str = "", mass: int = 1, decades: int = 4) -> Figure:
-    """Draw spectra, one row per frequency, bonded left and delaminated right.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Of :func:`orchestrate.spectra`.
-    title : str
-        What is the same in all panels; by default the structure.
-    mass : int
-        1 or 2.
-    decades : int
-        Of the axis, down from the largest line of each row.
-    """
+    """Draw spectra, one row per frequency, bonded left and delaminated right."""
     felt, unit = acceleration_scale(data)
     shown = data.acceleration.sel(mass=mass) / felt
     along = str(shown.dims[0])

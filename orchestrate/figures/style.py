@@ -77,16 +77,7 @@ def styled(draw: Callable[Arguments, Figure]) -> Callable[Arguments, Figure]:
 def make_panels(
     rows: int, columns: int, size: tuple[float, float], **more: Any
 ) -> tuple[Figure, list[Axes]]:
-    """Make a figure with a grid of axes; return it and the axes row by row.
-
-    Parameters
-    ----------
-    rows, columns : int
-    size : tuple of float
-        Width and height in inches.
-    **more
-        Of :meth:`matplotlib.figure.Figure.subplots`.
-    """
+    """Make a figure with a grid of axes; return it and the axes row by row."""
     figure = Figure(figsize=size, layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False, **more)
     return figure, list(axes.ravel())
@@ -104,17 +95,7 @@ def set_title(figure: Figure, title: str) -> None:
 
 
 def legend_below(figure: Figure, axes: Iterable[Axes], columns: int = 4, **more: Any) -> None:
-    """Draw one legend for several panels below the figure; each label once.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-    axes : iterable of Axes
-    columns : int
-        At the most.
-    **more
-        Of :meth:`matplotlib.figure.Figure.legend`.
-    """
+    """Draw one legend for several panels below the figure; each label once."""
     words: dict[str, Any] = {}
     for plane in axes:
         handles, labels = plane.get_legend_handles_labels()

@@ -24,15 +24,7 @@ def hide_infinite(threshold: xr.DataArray) -> np.ndarray:
 
 @styled
 def draw(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw the threshold level over frequency, in g and Hz; return the figure.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Of :func:`orchestrate.contact_threshold`.
-    title : str
-        By default the structure.
-    """
+    """Draw the threshold level over frequency, in g and Hz; return the figure."""
     figure, (plane,) = make_panels(1, 1, (6.4, 4.2))
     set_title(figure, title or title_from_attributes(data, ("eta", "frequency")))
     factor, unit = acceleration_scale(data, "g")

@@ -13,13 +13,7 @@ from .style import BLACK, BLUE, XI_REL, make_panels, styled
 
 @styled
 def draw(data: xr.Dataset) -> Figure:
-    """Draw the gap over periods of the excitation, a panel per response, and sin(eta tau).
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Curves over whole periods, see :mod:`.curve_data`; panel k has the multiplicity k + 1.
-    """
+    """Draw the gap over periods of the excitation, a panel per response, and sin(eta tau)."""
     count, turns = data.sizes["panel"], np.zeros(1)
     figure, axes = make_panels(count + 1, 1, (8.5, 1.6 * (count + 1)), sharex=True)
     for index, plane in enumerate(axes[:count]):

@@ -50,19 +50,7 @@ def draw(
     branches: xr.Dataset | None = None,
     title: str = "",
 ) -> Figure:
-    """Draw voltage ramps: speed, amplitude, impacts and power; return the figure.
-
-    Parameters
-    ----------
-    runs : mapping of xarray.Dataset
-        ``"bonded"`` and ``"delaminated"``, or one of them; of :func:`orchestrate.couple`.
-    theory : xarray.Dataset, optional
-        ``voltage``, ``amplitude`` and ``stable`` of the averaged theory, over ``speed``.
-    branches : xarray.Dataset, optional
-        Of :func:`orchestrate.drive_branch`: unstable motions are dotted.
-    title : str
-        What is shown: set, rate, volts.
-    """
+    """Draw voltage ramps: speed, amplitude, impacts and power; return the figure."""
     shown = {name: drop_spin_up(as_shown(data)) for name, data in runs.items()}
     figure, axes = make_panels(2, 2, (11, 9.4))
     for name, data in shown.items():
@@ -92,15 +80,7 @@ def draw(
 
 @styled
 def draw_jumps(runs: Mapping[str, xr.Dataset], title: str = "") -> Figure:
-    """Draw speed and amplitude over time around jumps, one row per direction.
-
-    Parameters
-    ----------
-    runs : mapping of xarray.Dataset
-        As :func:`draw` takes them.
-    title : str
-        What is shown: set, rate, volts.
-    """
+    """Draw speed and amplitude over time around jumps, one row per direction."""
     shown = {name: as_shown(data) for name, data in runs.items()}
     jumps = jump_directions(shown)
     figure, axes = make_panels(
@@ -216,14 +196,7 @@ def split_directions(data: xr.Dataset) -> list[tuple[np.ndarray, str, str]]:
 
 @styled
 def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
-    """Draw branches of stationary motions without runs; return the figure.
-
-    Parameters
-    ----------
-    branches : xarray.Dataset
-        Of :func:`orchestrate.drive_branch`.
-    title : str
-    """
+    """Draw branches of stationary motions without runs; return the figure."""
     figure, axes = make_panels(1, 2, (12, 5))
     branches = as_shown(branches)
     draw_branches(axes, branches)

@@ -27,34 +27,20 @@ NEAR = 1.0
 
 @dataclass(frozen=True)
 class Cells:
-    """Hold a signal as polynomials, one per cell of time; cells follow each other without gaps.
+    """Hold a signal as polynomials, one per cell of time; cells follow each other without gaps."""
 
-    Attributes
-    ----------
-    starts, ends : ndarray, shape (n,)
-        s.
-    derivatives : ndarray, shape (n, k)
-        Value and derivatives at the start of each, m/s2, m/s3, ...
-    """
-
+    # s
     starts: Floats
     ends: Floats
-    derivatives: Floats
+    derivatives: Floats  # value and derivatives at the start of each, m/s2, m/s3, ..
 
 
 @dataclass(frozen=True)
 class AnalogFilter:
-    """Describe an analogue filter by simple poles and their residues: more poles than zeros.
+    """Describe an analogue filter by simple poles and their residues: more poles than zeros."""
 
-    Attributes
-    ----------
-    poles : ndarray
-        rad/s; of conjugate pairs the one above the real axis.
-    residues : ndarray
-        1/s; of pairs twice theirs, so that the response is the real part of the sum.
-    """
-
-    poles: Complexes
+    poles: Complexes  # rad/s; of conjugate pairs the one above the real axis
+    # 1/s; of pairs twice theirs, so that the response is the real part of the sum
     residues: Complexes
 
     @classmethod
@@ -80,24 +66,7 @@ class AnalogFilter:
     def respond(
         self, cells: Cells, impulse_times: Floats, impulses: Floats, times: Floats
     ) -> Floats:
-        """Compute the output at equally spaced times, from rest at the first.
-
-        Parameters
-        ----------
-        cells : Cells
-            From the first of the times to the last at least; ``times`` are among their ends.
-        impulse_times : ndarray, shape (n,)
-            s.
-        impulses : ndarray, shape (n,)
-            Changes of velocity, m/s.
-        times : ndarray, shape (m,)
-            s.
-
-        Returns
-        -------
-        ndarray, shape (m,)
-            m/s2.
-        """
+        """Compute the output at equally spaced times, from rest at the first."""
         from scipy.signal import lfilter
 
         inside = (impulse_times >= times[0]) & (impulse_times <= times[-1])
@@ -155,19 +124,7 @@ def sum_by_step(steps: NDArray[np.int_], values: Complexes, count: int = 0) -> C
 
 
 def phi_functions(z: Complexes, count: int) -> Complexes:
-    """Compute ``phi_k(z)``, the integral of ``exp(z (1 - u)) u^(k-1)/(k-1)!`` over u in [0, 1].
-
-    Parameters
-    ----------
-    z : ndarray, shape (n,)
-        In the left half plane.
-    count : int
-        k is 1 to it.
-
-    Returns
-    -------
-    ndarray, shape (count, n)
-    """
+    """Compute ``phi_k(z)``, the integral of ``exp(z (1 - u)) u^(k-1)/(k-1)!`` over u in [0, 1]."""
     found = np.empty((count, len(z)), dtype=complex)
     size = np.abs(z)
     far = size > FAR

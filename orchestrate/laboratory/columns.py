@@ -172,18 +172,6 @@ def converted_channels(
 
     How they were read are attributes of a record: ``columns``, which column was taken for what;
     ``unit`` of the accelerations; and ``unit_in_file``, where ``unit`` was taken in its place.
-
-    Parameters
-    ----------
-    table : Columns
-    columns : mapping, sequence or None
-        Which column, by name or number from 0, each channel and the time are in.
-    unit : str or None
-        Of accelerations without a unit, or with a wrong one.
-
-    Raises
-    ------
-    InputError
     """
     known = channels_by_name(table) if columns is None else {}
     places = known or channel_places(table, columns)
@@ -339,22 +327,7 @@ def places_asked_for(
     order: Sequence[str],
     names: Sequence[str],
 ) -> dict[str, int]:
-    """Return the column index of each quantity that a caller asks for, by the quantity's name.
-
-    Parameters
-    ----------
-    table : Columns
-    columns : mapping or sequence
-        Which column each quantity is in, by name or number.
-    order : sequence of str
-        Quantities that a sequence of columns stands for, one by one.
-    names : sequence of str
-        All quantities that a mapping may ask for.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the column index of each quantity that a caller asks for, by the quantity's name."""
     if not isinstance(columns, Mapping):
         if isinstance(columns, str) or len(columns) > len(order):
             raise InputError(f"columns = {columns!r}: expected {', '.join(order)} in that order")

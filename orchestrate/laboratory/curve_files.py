@@ -122,12 +122,7 @@ def read_curve(
 def curve_places(
     table: Columns, columns: Mapping[str, str | int] | Sequence[str | int] | None
 ) -> dict[str, int]:
-    """Return the column index of each quantity of a curve, as asked for or by usual names.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the column index of each quantity of a curve, as asked for or by usual names."""
     if columns is None:
         places = places_by_name(table, CURVE_NAMES)
     else:
@@ -144,12 +139,7 @@ def curve_places(
 def curve_columns(
     table: Columns, places: Mapping[str, int], unit: str | None, level: float | None
 ) -> CurveColumns:
-    """Return the columns of a curve with their units.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the columns of a curve with their units."""
     at = {name: table.columns[place] for name, place in places.items()}
     faces = [f"amplitude{n}" for n in "12" if f"amplitude{n}" in at]
     frequency = scaled_column(table, at["frequency"], "Hz", FREQUENCIES)
@@ -167,13 +157,7 @@ def curve_columns(
 
 
 def face_orders(name: str, at: Mapping[str, Column]) -> Floats:
-    """Return orders 1, 2, 3 of a face in the file's unit, NaN where there is no column.
-
-    Raises
-    ------
-    InputError
-        Where they differ in their units.
-    """
+    """Return orders 1, 2, 3 of a face in the file's unit, NaN where there is no column."""
     columns = [at.get(f"{name}{more}") for more in ("", "_order2", "_order3")]
     for one in columns[1:]:
         if one is not None and plain_unit(one.unit) != plain_unit(at[name].unit):
@@ -186,13 +170,7 @@ def face_orders(name: str, at: Mapping[str, Column]) -> Floats:
 def base_level(
     table: Columns, column: Column | None, unit: str | None, level: float | None, frequency: Floats
 ) -> Floats | float:
-    """Return the peak acceleration of the base, m/s2, from its column or from the given number.
-
-    Raises
-    ------
-    InputError
-        Where there is neither, or both.
-    """
+    """Return the peak acceleration of the base, m/s2, from its column or from the given number."""
     if (column is None) == (level is None):
         text = "no column of the base's level" if column is None else f'column "{column.name}"'
         given = "" if level is None else f" and level = {level!r}"

@@ -29,34 +29,16 @@ def phase_step(accuracy: float) -> float:
 
 @dataclass(frozen=True)
 class Pieces:
-    """Cubics for consecutive intervals of time, as the FMU takes the box's acceleration.
+    """Cubics for consecutive intervals of time, as the FMU takes the box's acceleration."""
 
-    Attributes
-    ----------
-    nodes : ndarray, shape (n + 1,)
-        Where they begin, and where the last one ends, s.
-    derivatives : ndarray, shape (n, 4)
-        Of each at its beginning: acceleration, jerk, snap and crackle, m/s2 to m/s5.
-    error : float
-        Bound of the distance to the signal that they stand for, m/s2.
-    """
-
-    nodes: Floats
+    nodes: Floats  # where they begin, and where the last one ends, s
+    # of each at its beginning: acceleration, jerk, snap and crackle, m/s2 to m/s5
     derivatives: Floats
-    error: float
+    error: float  # bound of the distance to the signal that they stand for, m/s2
 
     @classmethod
     def from_values(cls, nodes: Floats, values: Floats, error: float) -> Pieces:
-        """Interpolate values inside each piece by its cubic.
-
-        Parameters
-        ----------
-        nodes : ndarray, shape (n + 1,)
-        values : ndarray, shape (n, 4)
-            Of the signal at the four points ``POINTS`` of each piece, m/s2.
-        error : float
-            Bound, m/s2.
-        """
+        """Interpolate values inside each piece by its cubic."""
         powers = np.diff(nodes)[:, None] ** np.arange(4)
         return cls(nodes, values @ MONOMIALS.T * FACTORIALS / powers, error)
 
@@ -79,12 +61,7 @@ class Pieces:
         return np.where(times == self.nodes[-1], last.sum(), values)
 
     def taylor(self, times: Floats) -> Floats:
-        """Return value and derivatives at times, of the piece that begins there or before.
-
-        Returns
-        -------
-        ndarray, shape (n, 4)
-        """
+        """Return value and derivatives at times, of the piece that begins there or before."""
         last = len(self.derivatives) - 1
         index = np.clip(np.searchsorted(self.nodes, times, side="right") - 1, 0, last)
         t = times - self.nodes[index]

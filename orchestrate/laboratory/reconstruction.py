@@ -31,28 +31,14 @@ ORDER = 7  # derivatives of an acceleration kept: the next is below SHORT^7/7! =
 
 @dataclass(frozen=True)
 class Motion:
-    """Hold a stored motion of the structure as arrays, with the parameters of its equations.
-
-    Attributes
-    ----------
-    structure : Structure
-    pieces : Pieces
-        Of the box's acceleration; their time begins at the first sample.
-    times : ndarray, shape (n,)
-        s from the first sample.
-    states : ndarray, shape (n, 4)
-        x1, x2, v1, v2.
-    touching : ndarray of bool, shape (n,)
-    impact_times, impulses : ndarray, shape (m,)
-        s, N s.
-    sticks : ndarray of bool, shape (m,)
-    """
+    """Hold a stored motion of the structure as arrays, with the parameters of its equations."""
 
     structure: Structure
-    pieces: Pieces
-    times: Floats
-    states: Floats
+    pieces: Pieces  # of the box's acceleration; their time begins at the first sample
+    times: Floats  # s from the first sample
+    states: Floats  # x1, x2, v1, v2
     touching: Flags
+    # s, N s
     impact_times: Floats
     impulses: Floats
     sticks: Flags
@@ -75,15 +61,7 @@ class Motion:
         )
 
     def derivatives(self, states: Floats, touching: Flags, times: Floats) -> Floats:
-        """Compute displacements and their derivatives, shape (ORDER + 2, 2, n), by (6).
-
-        Parameters
-        ----------
-        states : ndarray, shape (n, 4)
-        touching : ndarray of bool, shape (n,)
-        times : ndarray, shape (n,)
-            s, for the box.
-        """
+        """Compute displacements and their derivatives, shape (ORDER + 2, 2, n), by (6)."""
         found = np.empty((ORDER + 2, 2, len(times)))
         found[:2] = states.T.reshape(2, 2, -1)
         box = np.zeros((ORDER, len(times)))
@@ -196,33 +174,17 @@ def first_fall(derivatives: Floats, scale: float, length: float) -> float | None
 
 @dataclass(frozen=True)
 class SmoothParts:
-    """Hold the absolute accelerations of box and masses, without the impulses of impacts.
+    """Hold the absolute accelerations of box and masses, without the impulses of impacts."""
 
-    Attributes
-    ----------
-    times : ndarray
-        Of the record, s.
-    box, mass1, mass2 : Cells
-    error : float
-        Largest distance of a mass's acceleration from the history's next sample, m/s2.
-    """
-
-    times: Floats
+    times: Floats  # of the record, s
     box: Cells
     mass1: Cells
     mass2: Cells
-    error: float
+    error: float  # largest distance of a mass's acceleration from the history's next sample, m/s2
 
 
 def smooth_parts(motion: Motion, sample_rate: float) -> SmoothParts:
-    """Solve the equations of motion between the samples; return the smooth accelerations.
-
-    Parameters
-    ----------
-    motion : Motion
-    sample_rate : float
-        Of the record that is made of them, Hz.
-    """
+    """Solve the equations of motion between the samples; return the smooth accelerations."""
     steps = math.floor(float(motion.times[-1]) * sample_rate * (1.0 + 1e-14))
     parts = motion.step_count(1.0 / sample_rate)
     grid = np.arange(steps * parts + 1) / (sample_rate * parts)

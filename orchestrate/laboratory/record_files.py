@@ -172,12 +172,7 @@ def file_kind(path: Path) -> str:
 
 
 def check_file(path: Path) -> None:
-    """Check that a file exists, is not empty, and is not too large to read.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that a file exists, is not empty, and is not too large to read."""
     try:
         status = path.stat()
     except OSError as error:

@@ -44,13 +44,7 @@ CRASHED = "its reader broke down; expected a MAT file that is whole"
 
 
 def load_arrays(path: Path) -> dict[str, NDArray[Any]]:
-    """Load the arrays of numbers and texts of a MAT file by name, in a process of its own.
-
-    Raises
-    ------
-    InputError
-        Also where the reader breaks down.
-    """
+    """Load the arrays of numbers and texts of a MAT file by name, in a process of its own."""
     command = [sys.executable, "-c", READER, str(path.absolute()), json.dumps(sys.path)]
     done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True)
     if done.returncode or not done.stdout:

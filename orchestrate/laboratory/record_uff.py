@@ -28,13 +28,7 @@ NOTED = re.compile(r"sample_rate = (\S+), start = (\S+)")
 
 
 def import_pyuff() -> ModuleType:
-    """Import the package pyuff; raise with the remedy if it is not installed.
-
-    Raises
-    ------
-    InputError
-        Where it is not installed.
-    """
+    """Import the package pyuff; raise with the remedy if it is not installed."""
     try:
         import pyuff
     except ImportError:
@@ -44,12 +38,7 @@ def import_pyuff() -> ModuleType:
 
 
 def read_uff(path: Path) -> Columns:
-    """Read accelerations over time; other datasets are skipped, with a line in the log.
-
-    Raises
-    ------
-    InputError
-    """
+    """Read accelerations over time; other datasets are skipped, with a line in the log."""
     if not path.read_bytes().rstrip().endswith(b"    -1"):
         raise InputError(f"{path}: no '    -1' at its end; expected a universal file that is whole")
     pyuff = import_pyuff()
@@ -68,16 +57,7 @@ def read_uff(path: Path) -> Columns:
 def columns_over_time(
     path: Path, kinds: list[int], functions: list[tuple[int, Dataset]]
 ) -> Columns:
-    """Return the time and the columns of all datasets that are functions of the same times.
-
-    Parameters
-    ----------
-    path : Path
-    kinds : list of int
-        Of all datasets of the file.
-    functions : list of (int, dict)
-        Datasets 58 with their numbers in the file.
-    """
+    """Return the time and the columns of all datasets that are functions of the same times."""
     for i, kind in enumerate(kinds):
         if kind != 58:
             log.info("%s: dataset %d, number %d of the file, is skipped", path, kind, i)
@@ -145,12 +125,7 @@ def rounded_rate(step: float) -> float:
 
 
 def check_whole(path: Path, number: int, one: Dataset) -> None:
-    """Check that a dataset has as many values as its heading announces.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that a dataset has as many values as its heading announces."""
     announced = int(one["num_pts"])
     if len(one["data"]) != announced:
         text = f"{len(one['data'])} values; expected {announced}, as its heading says"

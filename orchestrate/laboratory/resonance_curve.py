@@ -117,40 +117,18 @@ def resonance_curve(
 
 @dataclass(frozen=True)
 class CurveColumns:
-    """Hold the columns of a resonance curve before they are checked.
+    """Hold the columns of a resonance curve before they are checked."""
 
-    Attributes
-    ----------
-    frequency : ndarray, shape (n,)
-        Hz.
-    level : array_like
-        m/s2.
-    amplitudes : dict of str to ndarray
-        By ``amplitude1`` and ``amplitude2``, shape (n,) or (orders, n).
-    phases : dict of str to ndarray
-        Of order 1, rad.
-    floors : dict of str to array_like
-    units : dict of str to str
-        Of amplitudes and floors.
-    first_row : int
-        Number of the first row, for messages.
-    """
-
-    frequency: Floats
-    level: ArrayLike
-    amplitudes: Mapping[str, Floats]
-    phases: Mapping[str, Floats] = field(default_factory=dict)
+    frequency: Floats  # hz
+    level: ArrayLike  # m/s2
+    amplitudes: Mapping[str, Floats]  # by `amplitude1` and `amplitude2`, shape (n,) or (orders, n)
+    phases: Mapping[str, Floats] = field(default_factory=dict)  # of order 1, rad
     floors: Mapping[str, ArrayLike] = field(default_factory=dict)
-    units: Mapping[str, str] = field(default_factory=dict)
-    first_row: int = 0
+    units: Mapping[str, str] = field(default_factory=dict)  # of amplitudes and floors
+    first_row: int = 0  # number of the first row, for messages
 
     def orders(self, name: str) -> Floats:
-        """Return the orders of a face in its own unit, shape (3, n), NaN where there are none.
-
-        Raises
-        ------
-        InputError
-        """
+        """Return the orders of a face in its own unit, shape (3, n), NaN where there are none."""
         count = len(self.frequency)
         rows = np.atleast_2d(self.amplitudes[name])
         if rows.ndim != 2 or rows.shape[1] != count or len(rows) > len(CURVE_ORDERS):
@@ -164,12 +142,7 @@ class CurveColumns:
         return found
 
     def for_each_frequency(self, name: str, given: ArrayLike) -> Floats:
-        """Return a quantity at each frequency, shape (n,), from one number or from one for each.
-
-        Raises
-        ------
-        InputError
-        """
+        """Return a quantity at each frequency, shape (n,), from one number or from one for each."""
         values = plain_numbers(name, given)
         count = len(self.frequency)
         if values.shape not in ((), (1,), (count,)):
@@ -241,12 +214,7 @@ def curve_coordinates(faces: list[str], frequency: Floats) -> dict[str, Any]:
 
 
 def plain_numbers(name: str, given: Any, kind: type = float) -> NDArray[Any]:
-    """Return an argument as an array; raise unless it has numbers alone.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return an argument as an array; raise unless it has numbers alone."""
     try:
         return np.array(given, dtype=kind)
     except (TypeError, ValueError):
@@ -280,12 +248,7 @@ def dropped_text(known: NDArray[np.bool_], first_row: int) -> str:
 
 
 def check_frequencies(frequency: Floats, rows: NDArray[np.intp]) -> None:
-    """Check that frequencies are above 0, and ascend or descend.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that frequencies are above 0, and ascend or descend."""
     check_positive("frequency", frequency, rows)
     steps = np.diff(frequency)
     falling = np.median(steps) < 0.0
@@ -300,12 +263,7 @@ def check_frequencies(frequency: Floats, rows: NDArray[np.intp]) -> None:
 def check_positive(
     name: str, values: Floats, rows: NDArray[np.intp] | None, least: bool = False
 ) -> None:
-    """Check that numbers are above 0, or at least 0.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that numbers are above 0, or at least 0."""
     wrong = np.flatnonzero(values < 0.0 if least else ~(values > 0.0))
     if len(wrong):
         row = wrong[0] if rows is None else rows[wrong[0]]
@@ -314,12 +272,7 @@ def check_positive(
 
 
 def direction_of(frequency: Floats, direction: str | None) -> str:
-    """Return the direction in which the frequencies were passed, from their order if not given.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the direction in which the frequencies were passed, from their order if not given."""
     if direction is None:
         return DIRECTIONS[int(frequency[-1] < frequency[0])]
     if direction not in DIRECTIONS:
@@ -343,12 +296,7 @@ def power_of(unit: str) -> int:
 
 
 def acceleration_factor(name: str, unit: str, frequency: Floats, level: Floats) -> Floats:
-    """Return the factors that convert order 1 of a unit's quantity to m/s2, shape (n,).
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the factors that convert order 1 of a unit's quantity to m/s2, shape (n,)."""
     plain = plain_unit(unit)
     if plain in RATIOS:
         return level.copy()
@@ -364,11 +312,6 @@ def lagging_phases(first: Floats, phase: Floats) -> tuple[Floats, str]:
     """Return phases that are negative where a face lags, and what was done with their sign.
 
     A structure takes up work, so that in a mean over the largest amplitudes a face lags.
-
-    Parameters
-    ----------
-    first, phase : ndarray, shape (faces, n)
-        Amplitude of order 1 and its phase in rad, NaN where there is none.
     """
     wrapped = np.angle(np.exp(1j * phase))
     if not np.isfinite(phase).any():

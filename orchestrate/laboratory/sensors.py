@@ -267,13 +267,7 @@ def sensor_by_channel(sensor: Sensor | Mapping[str, Sensor]) -> dict[str, Sensor
 
 
 def structure_of(history: xr.Dataset, needed: tuple[str, ...] = NEEDED) -> Structure:
-    """Return the structure of a history; raise if one of the variables ``needed`` is missing.
-
-    Raises
-    ------
-    InputError
-        Where it is no history.
-    """
+    """Return the structure of a history; raise if one of the variables ``needed`` is missing."""
     attributes, variables = getattr(history, "attrs", {}), getattr(history, "variables", {})
     known = {*STRUCTURE} - {*ADDED} <= {*attributes} and {*needed} <= {*variables}
     if not known or history.sizes.get("time", 0) < 4:

@@ -42,23 +42,12 @@ def pieces_of(excitation: ExcitationSignal, accuracy: float) -> Pieces:
 
 @dataclass(frozen=True, kw_only=True)
 class ShakeJob(Question):
-    """Job that computes a motion under any excitation, each part from the end of the one before.
-
-    Attributes
-    ----------
-    excitation : ExcitationSignal
-    sample_rate : float
-        Hz.
-    accuracy : float
-        Of the cubic pieces, relative to the excitation's peak.
-    start : tuple of float
-        x1, x2 in m, v1, v2 in m/s.
-    """
+    """Job that computes a motion under any excitation, each part from the end of the one before."""
 
     excitation: ExcitationSignal
-    sample_rate: float
-    accuracy: float
-    start: tuple[float, ...] = REST
+    sample_rate: float  # hz
+    accuracy: float  # of the cubic pieces, relative to the excitation's peak
+    start: tuple[float, ...] = REST  # x1, x2 in m, v1, v2 in m/s
     asked: ClassVar[str] = "shake"
     chunk_size: ClassVar[int] = 20_000
     sequential: ClassVar[bool] = True

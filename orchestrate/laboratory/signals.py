@@ -51,12 +51,7 @@ def checked_profile(name: str, given: object, quantity: Quantity) -> Profile:
 
 
 def checked_level(name: str, given: object, low: float, high: float) -> float | Profile:
-    """Return a peak acceleration, m/s2, or its profile, which must cover ``low`` to ``high``.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return a peak acceleration, m/s2, or its profile, which must cover ``low`` to ``high``."""
     if not isinstance(given, (tuple, list, np.ndarray)):
         return checked(LEVEL, name, given)
     profile = checked_profile(name, given, LEVEL)

@@ -149,12 +149,7 @@ class SteppedSine(ExcitationSignal):
 
 
 def checked_frequencies(given: Any) -> tuple[float, ...]:
-    """Return frequencies in Hz as floats; raise unless there is one at least.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return frequencies in Hz as floats; raise unless there is one at least."""
     several = isinstance(given, (Sequence, np.ndarray)) and not isinstance(given, str)
     values = tuple(given) if several else ()
     if not 1 <= len(values) <= MOST_FREQUENCIES:

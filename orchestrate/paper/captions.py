@@ -7,14 +7,9 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Caption:
-    """Texts beside a picture: its title, its caption, and how it was computed.
+    """Texts beside a picture: its title, its caption, and how it was computed."""
 
-    Attributes
-    ----------
-    title, text, method : str
-        ``method`` says how it was computed.
-    """
-
+    # `method` says how it was computed
     title: str
     text: str
     method: str

@@ -36,27 +36,17 @@ NUMBERS = {
 
 @dataclass(frozen=True, kw_only=True)
 class ChatteringJob(Job):
-    """Job: impacts after one kick until sticking, for each restitution and gamma.
-
-    Attributes
-    ----------
-    structure : Structure
-    restitutions, gammas : tuple of float
-    eta : float
-        So slow that the force which presses the masses together hardly changes meanwhile.
-    kick : float
-        Parting velocity over omega a eta^2 and 1 - e, so that all sequences take about as long;
-        over omega a eta^2 alone where e is 1, and the sequence has no end.
-    latest : int
-        Ratios taken, of the latest times that rounding does not reach.
-    """
+    """Job: impacts after one kick until sticking, for each restitution and gamma."""
 
     structure: Structure = CASES["elastic"]
     restitutions: tuple[float, ...] = (0.01, 0.05, 0.1, 0.3, 0.5, 0.7, 0.9, 0.95, 0.99, 1.0)
     gammas: tuple[float, ...] = (1e-3, 1e-5, 1e-7, 1e-9)
+    # so slow that the force which presses the masses together hardly changes meanwhile
     eta: float = 0.02
+    # parting velocity over omega a eta^2 and 1 - e, so that all sequences take about as long; over
+    # omega a eta^2 alone where e is 1, and the sequence has no end
     kick: float = 0.01
-    latest: int = 3
+    latest: int = 3  # ratios taken, of the latest times that rounding does not reach
     item: ClassVar[str] = "sequence"
 
     def items(self, inputs: Inputs) -> Sequence[Structure]:

@@ -25,24 +25,14 @@ RANGES = {"elastic": (0.400, 0.445), "damped": (0.450, 0.500), "plastic": (0.930
 
 @dataclass(frozen=True, kw_only=True)
 class ContactLimitJob(Job):
-    """Job: last frequency with permanent contact, by a short sweep per case and gamma.
-
-    Attributes
-    ----------
-    structures : tuple of Structure
-    ranges : tuple of (float, float)
-        Of eta, for each of them.
-    gammas : tuple of float
-    step : float
-        Of eta.
-    transient, samples : int
-        Periods dropped and kept at each frequency.
-    """
+    """Job: last frequency with permanent contact, by a short sweep per case and gamma."""
 
     structures: tuple[Structure, ...] = tuple(CASES.values())
+    # of eta, for each of them
     ranges: tuple[tuple[float, float], ...] = tuple(RANGES[name] for name in CASES)
     gammas: tuple[float, ...] = (1e-5, 1e-4, 1e-3, 1e-2, 5e-2)
-    step: float = 0.001
+    step: float = 0.001  # of eta
+    # periods dropped and kept at each frequency
     transient: int = 250
     samples: int = 40
 

@@ -29,22 +29,12 @@ NUMBERS = ("e", "D", "eta", "multiplicity")  # of a panel
 
 @dataclass(frozen=True)
 class Panel:
-    """One response to trace: structure, frequency ratio, start state and multiplicity.
-
-    Attributes
-    ----------
-    structure : Structure
-    eta : float
-    start : tuple of float
-        State at phase 0 that the motion starts from.
-    multiplicity : int
-        0 where irregular.
-    """
+    """One response to trace: structure, frequency ratio, start state and multiplicity."""
 
     structure: Structure
     eta: float
-    start: tuple[float, ...]
-    multiplicity: int
+    start: tuple[float, ...]  # state at phase 0 that the motion starts from
+    multiplicity: int  # 0 where irregular
 
     @property
     def point(self) -> Point:
@@ -66,25 +56,14 @@ def panel_at(sweep: xr.Dataset, structure: Structure, eta: float) -> Panel:
 
 @dataclass(frozen=True, kw_only=True)
 class CurvesJob(Job):
-    """Base of jobs that trace the curves of a figure, one panel each.
+    """Base of jobs that trace the curves of a figure, one panel each."""
 
-    Attributes
-    ----------
-    sweeps : tuple of str
-        Names of the upward sweeps whose responses they start from.
-    structures : tuple of Structure
-        Of these sweeps.
-    skip, keep : int
-        Periods dropped and kept.
-    points : int
-        States a period, beside both sides of each impact.
-    """
-
-    sweeps: tuple[str, ...]
-    structures: tuple[Structure, ...]
+    sweeps: tuple[str, ...]  # names of the upward sweeps whose responses they start from
+    structures: tuple[Structure, ...]  # of these sweeps
+    # periods dropped and kept
     skip: int
     keep: int
-    points: int
+    points: int  # states a period, beside both sides of each impact
     item: ClassVar[str] = "curve"
 
     def needs(self) -> tuple[str, ...]:
@@ -146,12 +125,7 @@ class CurvesJob(Job):
 
 @dataclass(frozen=True, kw_only=True)
 class CurvesAtFrequencies(CurvesJob):
-    """Job of Figures 5, 8 and 9: the first sweep's responses at chosen frequencies.
-
-    Attributes
-    ----------
-    etas : tuple of float
-    """
+    """Job of Figures 5, 8 and 9: the first sweep's responses at chosen frequencies."""
 
     etas: tuple[float, ...]
 
@@ -182,12 +156,7 @@ class CurvesAtPeaks(CurvesJob):
 
 @dataclass(frozen=True, kw_only=True)
 class CurvesInWindows(CurvesJob):
-    """Job of Figure 7: relative peaks of the windows T, 2T, ... with one impact.
-
-    Attributes
-    ----------
-    windows : int
-    """
+    """Job of Figure 7: relative peaks of the windows T, 2T, ... with one impact."""
 
     windows: int = 4
 

@@ -47,20 +47,11 @@ NUMBERS = {
 
 
 class Candidate(NamedTuple):
-    """A response that may have its region's largest Lyapunov exponent: point, start, exponent.
-
-    Attributes
-    ----------
-    point : Point
-    start : tuple of float
-        State at phase 0 on the settled response, m and m/s.
-    screened : float
-        The exponent it was chosen by.
-    """
+    """A response that may have its region's largest Lyapunov exponent: point, start, exponent."""
 
     point: Point
-    start: State
-    screened: float
+    start: State  # state at phase 0 on the settled response, m and m/s
+    screened: float  # the exponent it was chosen by
 
 
 class RegionCandidates(NamedTuple):
@@ -72,36 +63,22 @@ class RegionCandidates(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class LargestExponentJob(Job):
-    """Job: long runs of each region's candidates until one has a steady exponent.
+    """Job: long runs of each region's candidates until one has a steady exponent."""
 
-    Attributes
-    ----------
-    case : str
-        Of :data:`.cases.CASES`.
-    structure : Structure
-    exponents, settled, limits : str
-        Names of the results that say where to look: exponents along the up-sweep, states on the
-        responses, and the limits of the regions.
-    periods : int
-        Excitation periods of each part.
-    parts, runs : int
-        Of each run, and how many runs until an exponent is undecided.
-    candidates : int
-        Frequencies tried in a region, the largest exponent first, until one is steady.
-    seed : int
-        Of the other starts.
-    """
-
-    case: str
+    case: str  # of cases.CASES
     structure: Structure
+    # names of the results that say where to look: exponents along the up-sweep, states on the
+    # responses, and the limits of the regions
     exponents: str
     settled: str
     limits: str
-    periods: int = 10_000
+    periods: int = 10_000  # excitation periods of each part
+    # of each run, and how many runs until an exponent is undecided
     parts: int = 10
     runs: int = 3
+    # frequencies tried in a region, the largest exponent first, until one is steady
     candidates: int = 10
-    seed: int = 23
+    seed: int = 23  # of the other starts
 
     def needs(self) -> tuple[str, ...]:
         """Return the names of the jobs whose results it needs."""
@@ -181,20 +158,13 @@ class LargestExponentJob(Job):
 
 
 class LargestExponent(NamedTuple):
-    """A region's largest exponent with error and frequency, and notes on other candidates.
+    """A region's largest exponent with error and frequency, and notes on other candidates."""
 
-    Attributes
-    ----------
-    exponent, error, eta : float
-        NaN where none of the candidates was decided.
-    others : tuple of str
-        A phrase for each candidate whose response was not steady.
-    """
-
+    # naN where none of the candidates was decided
     exponent: float
     error: float
     eta: float
-    others: tuple[str, ...]
+    others: tuple[str, ...]  # A phrase for each candidate whose response was not steady
 
     def text(self) -> str:
         """Return the exponent as text; notes on candidates that were not steady in brackets."""
@@ -206,15 +176,7 @@ class LargestExponent(NamedTuple):
 
 
 def largest_exponent(data: xr.Dataset, region: str) -> LargestExponent:
-    """Return a region's largest exponent among its candidates that were decided.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Of :class:`LargestExponentJob`.
-    region : str
-        Its name.
-    """
+    """Return a region's largest exponent among its candidates that were decided."""
     rows = data.sel(region=region)
     tried = rows.isel(candidate=rows.outcome.values != NOT_RUN)
     others = []

@@ -31,19 +31,12 @@ NUMBERS = {
 
 @dataclass(frozen=True, kw_only=True)
 class LaterJob(StartStatesQuestion):
-    """Job: features of a sweep's responses after further periods.
+    """Job: features of a sweep's responses after further periods."""
 
-    Attributes
-    ----------
-    transient, samples : int
-        Periods dropped after the sweep's, and stroboscopic samples kept after them.
-    tolerance : float
-        Within which a state repeats, as in the sweep.
-    """
-
+    # periods dropped after the sweep's, and stroboscopic samples kept after them
     transient: int = 4300
     samples: int = 201
-    tolerance: float = 1e-2
+    tolerance: float = 1e-2  # within which a state repeats, as in the sweep
     chunk_size: ClassVar[int] = 20
 
     def work(
@@ -72,20 +65,7 @@ class LaterJob(StartStatesQuestion):
 def classify_changes(
     swept: xr.Dataset, later: xr.Dataset, tolerance: float
 ) -> dict[str, np.ndarray]:
-    """Return Boolean arrays of a sweep's responses that changed later, by kind of change.
-
-    Parameters
-    ----------
-    swept, later : xarray.Dataset
-        Of a sweep, and of :class:`LaterJob`; frequencies of the second are among the first's.
-    tolerance : float
-        Relative change of a periodic response's largest gap that counts.
-
-    Returns
-    -------
-    dict of ndarray of bool
-        Over the frequencies of ``later``; a response is in one of them at most.
-    """
+    """Return Boolean arrays of a sweep's responses that changed later, by kind of change."""
     first = swept.sel(eta=later.eta.values, method="nearest")
     before, after = first.multiplicity.values, later.multiplicity.values.astype(int)
     counts = first.impacts_per_period.values, later.impacts_per_period.values

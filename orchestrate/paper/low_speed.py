@@ -44,19 +44,11 @@ def make_points() -> tuple[Point, ...]:
 
 @dataclass(frozen=True, kw_only=True)
 class LowSpeedJob(Job):
-    """Job: counts of impacts, sticking and slow impacts of motions from rest.
-
-    Attributes
-    ----------
-    points : tuple of Point
-    periods : int
-    gamma : float
-        Of (17), in units of the largest velocity of the gap (section 3).
-    """
+    """Job: counts of impacts, sticking and slow impacts of motions from rest."""
 
     points: tuple[Point, ...] = make_points()
     periods: int = 2000
-    gamma: float = 1e-4
+    gamma: float = 1e-4  # of (17), in units of the largest velocity of the gap (section 3)
     chunk_size: ClassVar[int] = 10
 
     def items(self, inputs: Inputs) -> Sequence[Point]:

@@ -25,22 +25,12 @@ class MapPeakJob(DerivedJob):
 
     The largest impulse of an irregular response depends on how long it is followed; and of many
     points with few periods each, that with the largest one is chosen for its chance too.
-
-    Attributes
-    ----------
-    map : str
-        Its name.
-    parameter : str
-        Of the structure, along the map's first side.
-    structure : Structure
-        With the map's other parameters.
-    transient, periods : int
-        Dropped from rest, and followed after them.
     """
 
-    map: str
-    parameter: str
-    structure: Structure
+    map: str  # its name
+    parameter: str  # of the structure, along the map's first side
+    structure: Structure  # with the map's other parameters
+    # dropped from rest, and followed after them
     transient: int = 3000
     periods: int = 10_000
 

@@ -48,21 +48,11 @@ SECOND_REGION = (2.60, 2.65, 2.69, 2.737, 2.83, 2.92, 3.05, 3.17, 3.30, 3.49, 3.
 
 @dataclass(frozen=True)
 class Part:
-    """A part of the report: its name, its picture, and the jobs whose results it shows.
+    """A part of the report: its name, its picture, and the jobs whose results it shows."""
 
-    Attributes
-    ----------
-    name : str
-        As it is asked for.
-    picture : str
-        Name of its files; empty for the table of claims.
-    jobs : tuple of str
-        Names of the results it shows.
-    """
-
-    name: str
-    picture: str
-    jobs: tuple[str, ...]
+    name: str  # as it is asked for
+    picture: str  # name of its files; empty for the table of claims
+    jobs: tuple[str, ...]  # names of the results it shows
 
 
 @dataclass(frozen=True)
@@ -81,13 +71,7 @@ class Plan:
         return [job for job in self.jobs.values() if job.name in wanted]
 
     def choose(self, names: Sequence[str] | None) -> list[Part]:
-        """Return the report's parts with these names, all by default; raise for unknown names.
-
-        Raises
-        ------
-        InputError
-            Where there is none of a name.
-        """
+        """Return the report's parts with these names, all by default; raise for unknown names."""
         if names is None:
             return list(self.parts.values())
         asked = [name.strip() for name in names]

@@ -18,18 +18,11 @@ COUNT = 2 * len(WINDOWS)
 
 
 class Region(NamedTuple):
-    """Frequencies between two limits of windows, with the windows' names.
-
-    Attributes
-    ----------
-    low, high : float
-    name : str
-        The window, or the two it lies between.
-    """
+    """Frequencies between two limits of windows, with the windows' names."""
 
     low: float
     high: float
-    name: str
+    name: str  # the window, or the two it lies between
 
     @property
     def is_window(self) -> bool:
@@ -53,18 +46,6 @@ def list_regions(limits: xr.Dataset, case: str) -> list[Region]:
     """Return a case's windows and the regions between them, up to eta = 8.
 
     Irregular regions of the paper are between the exact limits of two windows.
-
-    Parameters
-    ----------
-    limits : xarray.Dataset
-        Of :class:`.limits.LimitsJob`.
-    case : str
-        Of :data:`.cases.CASES`.
-
-    Returns
-    -------
-    list of Region
-        ``COUNT`` of them, upwards, also those without any frequency of the sweeps.
     """
     last, label = nearest_window(limits, case, *CONTACT).high, "contact"
     listed = []

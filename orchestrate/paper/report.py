@@ -48,24 +48,7 @@ COLUMNS = {  # of both tables, with their headings
 def write_report(
     output: Path, pictures: Mapping[str, Path], parts: Mapping[str, Part], content: dict[str, Any]
 ) -> Path:
-    """Write ``report.html`` with claims, answers and pictures; return its path.
-
-    Parameters
-    ----------
-    output : Path
-        The folder.
-    pictures : mapping of Path
-        PNG files by the names of their parts, in the order of the page.
-    parts : mapping of Part
-        By name.
-    content : dict
-        ``resolution``, ``fmu`` and ``claims``, ``regions`` and ``answers``, empty where they were
-        not asked for.
-
-    Returns
-    -------
-    Path
-    """
+    """Write ``report.html`` with claims, answers and pictures; return its path."""
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("orchestrate.paper"),
         autoescape=True,

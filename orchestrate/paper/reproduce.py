@@ -23,20 +23,12 @@ NOTHING: Mapping[str, Any] = {"claims": [], "regions": [], "answers": []}
 
 @dataclass(frozen=True)
 class Reproduction:
-    """Claims with verdicts, paths of the pictures and of the report.
+    """Claims with verdicts, paths of the pictures and of the report."""
 
-    Attributes
-    ----------
-    found : mapping
-        ``claims`` and ``regions``, lists of texts by name, and ``answers``, sentences; empty where
-        they were not asked for.
-    pictures : mapping of Path
-        PNG files by the names of their parts.
-    report : Path
-    """
-
+    # `claims` and `regions`, lists of texts by name, and `answers`, sentences; empty where they
+    # were not asked for
     found: Mapping[str, Any]
-    pictures: Mapping[str, Path]
+    pictures: Mapping[str, Path]  # PNG files by the names of their parts
     report: Path
 
 
@@ -46,22 +38,7 @@ def reproduce(
     figures: Sequence[str] | None,
     running: Mapping[str, object],
 ) -> Reproduction:
-    """Compute the paper, or some figures; reuse stored results; write pictures and report.
-
-    Parameters
-    ----------
-    output : Path
-        Folder of the results.
-    resolution : Resolution
-    figures : sequence of str, optional
-        Names of parts, see :func:`.plan.make_plan`; all by default.
-    running : mapping
-        Keywords of :class:`orchestrate.running.options.Running` but ``store``.
-
-    Returns
-    -------
-    Reproduction
-    """
+    """Compute the paper, or some figures; reuse stored results; write pictures and report."""
     whole = plan.make_plan(resolution)
     parts = whole.choose(figures)
     options, find = RunOptions.from_keywords(running), finder(running)

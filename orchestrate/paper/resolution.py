@@ -9,63 +9,37 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Resolution:
-    """Numbers of frequencies, periods, starts and grid points of all computations.
-
-    Attributes
-    ----------
-    name : str
-    transient, samples : int
-        Number of the first sample at each eta of a sweep, and of periods sampled after it.
-    steady : int
-        Periods after the sweep followed impact by impact.
-    skip, keep : int
-        Periods dropped and kept for phase curves (section 3.2).
-    long_run : int
-        Periods of the long runs that decide between regular and chaotic.
-    longest : int
-        Periods up to which a response is run on that does not repeat.
-    part : int
-        Periods of each part of the runs that give the largest exponents.
-    later, latest : int
-        Number n of the first sample at which the sweep's responses are looked at again: at all
-        frequencies, and at a few.
-    ramp_rate : float
-        Of the motor's no-load speed over omega, in a time 1/omega.
-    attractor_step, fine_step : float
-        Of eta, where coexisting attractors are looked for; the fine one where sweeps up and down
-        differ.
-    starts : int
-        Random starts at each.
-    basin : int
-        Starts along each side of the basin picture.
-    settle, settle_most : int
-        Periods before a response from a random start counts as settled; up to which it is run on.
-    map_etas, map_rows : int
-        Values along the sides of a parameter map.
-    map_settle, map_keep : int
-        Periods dropped and kept at each of its points.
-    """
+    """Numbers of frequencies, periods, starts and grid points of all computations."""
 
     name: str = "full"
+    # number of the first sample at each eta of a sweep, and of periods sampled after it
     transient: int = 500
     samples: int = 200
-    steady: int = 100
+    steady: int = 100  # periods after the sweep followed impact by impact
+    # periods dropped and kept for phase curves (section 3.2)
     skip: int = 2000
     keep: int = 500
-    long_run: int = 2500
-    longest: int = 100_000
-    part: int = 10_000
+    long_run: int = 2500  # periods of the long runs that decide between regular and chaotic
+    longest: int = 100_000  # periods up to which a response is run on that does not repeat
+    part: int = 10_000  # periods of each part of the runs that give the largest exponents
+    # number n of the first sample at which the sweep's responses are looked at again: at all
+    # frequencies, and at a few
     later: int = 5000
     latest: int = 50_000
-    ramp_rate: float = 2e-5
+    ramp_rate: float = 2e-5  # of the motor's no-load speed over omega, in a time 1/omega
+    # of eta, where coexisting attractors are looked for; the fine one where sweeps up and down
+    # differ
     attractor_step: float = 0.005
     fine_step: float = 0.002
-    starts: int = 60
-    basin: int = 160
+    starts: int = 60  # random starts at each
+    basin: int = 160  # starts along each side of the basin picture
+    # periods before a response from a random start counts as settled; up to which it is run on
     settle: int = 400
     settle_most: int = 8000
+    # values along the sides of a parameter map
     map_etas: int = 181
     map_rows: int = 51
+    # periods dropped and kept at each of its points
     map_settle: int = 300
     map_keep: int = 60
 

@@ -33,12 +33,7 @@ FIELDS = {
 
 @dataclass(frozen=True, kw_only=True)
 class SettledJob(StartStatesQuestion):
-    """Job: what a sweep's responses settle to.
-
-    Attributes
-    ----------
-    settings : AttractorSettings
-    """
+    """Job: what a sweep's responses settle to."""
 
     settings: AttractorSettings = AttractorSettings(transient=0, settle=0.0)
     chunk_size: ClassVar[int] = 20

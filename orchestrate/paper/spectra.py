@@ -12,20 +12,11 @@ from .derived_job import DerivedJob
 
 @dataclass(frozen=True, kw_only=True)
 class PeakSpectraJob(DerivedJob):
-    """Job: spectra at the largest gap of a sweep and at other frequencies.
+    """Job: spectra at the largest gap of a sweep and at other frequencies."""
 
-    Attributes
-    ----------
-    sweep : str
-        Its name.
-    structure : Structure
-    others : tuple of float
-        Further frequency ratios.
-    """
-
-    sweep: str
+    sweep: str  # its name
     structure: Structure
-    others: tuple[float, ...] = (0.4, 1.13)
+    others: tuple[float, ...] = (0.4, 1.13)  # further frequency ratios
 
     def needs(self) -> tuple[str, ...]:
         """Return the name of the sweep's job, in a tuple."""

@@ -23,24 +23,14 @@ if TYPE_CHECKING:
 
 
 class BranchSpec(NamedTuple):
-    """A branch to trace: case, orbit's name, start frequency, period and limits.
+    """A branch to trace: case, orbit's name, start frequency, period and limits."""
 
-    Attributes
-    ----------
-    case, label : str
-        mT/k: k impacts in m periods.
-    eta : float
-        Where the up-sweep is on it.
-    period : int
-    limits : (float, float)
-        Of eta.
-    """
-
+    # mT/k: k impacts in m periods
     case: str
     label: str
-    eta: float
+    eta: float  # where the up-sweep is on it
     period: int
-    limits: tuple[float, float]
+    limits: tuple[float, float]  # of eta
 
 
 WINDOWS = (  # of all cases: label, eta, periods, limits
@@ -72,19 +62,11 @@ BRANCHES = tuple(BranchSpec(case, *row) for case in CASES for row in (*OWN[case]
 
 @dataclass(frozen=True, kw_only=True)
 class LimitsJob(Job):
-    """Job: stable windows along each branch.
+    """Job: stable windows along each branch."""
 
-    Attributes
-    ----------
-    sweeps : tuple of str
-        Names of the up-sweeps, in the order of the cases, whose responses the branches begin with.
-    structures : tuple of Structure
-        Of these sweeps.
-    branches : tuple of BranchSpec
-    """
-
+    # names of the up-sweeps, in the order of the cases, whose responses the branches begin with
     sweeps: tuple[str, ...]
-    structures: tuple[Structure, ...] = tuple(CASES.values())
+    structures: tuple[Structure, ...] = tuple(CASES.values())  # of these sweeps
     branches: tuple[BranchSpec, ...] = BRANCHES
     item: ClassVar[str] = "branch"
 

@@ -19,22 +19,15 @@ class TwoAttractorBasinJob(BasinJob):
 
     Its sides ``x`` and ``y`` are in units of the largest gap of the sweep at that frequency; what
     they do not vary is the mean of states on the two attractors.
-
-    Attributes
-    ----------
-    attractors, sweep : str
-        Names of the random starts, and of the sweep that sets the scale.
-    low, high : float
-        Range of eta that is looked at.
-    apart : float
-        Impacts per period by which both attractors differ at least.
     """
 
+    # names of the random starts, and of the sweep that sets the scale
     attractors: str
     sweep: str
+    # range of eta that is looked at
     low: float = 1.07
     high: float = 1.37
-    apart: float = 0.2
+    apart: float = 0.2  # impacts per period by which both attractors differ at least
 
     def needs(self) -> tuple[str, ...]:
         """Return the names of the jobs whose results it needs: attractors and sweep."""

@@ -22,17 +22,10 @@ TONES = ("bad", "good", "unclear", "open")  # of a verdict, for its colour
 
 @dataclass(frozen=True)
 class Picture:
-    """PNG picture inside the page, with a text for those who cannot see it.
-
-    Attributes
-    ----------
-    png : bytes
-    words : str
-        What it shows, for those who do not see it, and below it.
-    """
+    """PNG picture inside the page, with a text for those who cannot see it."""
 
     png: bytes
-    words: str
+    words: str  # what it shows, for those who do not see it, and below it
 
     @classmethod
     def from_figure(cls, figure: Any, words: str) -> Picture:
@@ -52,82 +45,43 @@ class Picture:
 
 @dataclass(frozen=True)
 class Table:
-    """A table of texts: column titles, rows, highlighted rows and a caption.
-
-    Attributes
-    ----------
-    columns : tuple of str
-    rows : sequence of tuple of str
-    marked : frozenset of int
-        Rows that stand out.
-    words : str
-        Above it.
-    """
+    """A table of texts: column titles, rows, highlighted rows and a caption."""
 
     columns: tuple[str, ...]
     rows: Sequence[tuple[str, ...]]
-    marked: frozenset[int] = frozenset()
-    words: str = ""
+    marked: frozenset[int] = frozenset()  # rows that stand out
+    words: str = ""  # above it
 
 
 @dataclass(frozen=True)
 class Section:
-    """A part of the page: title, texts, picture and tables.
-
-    Attributes
-    ----------
-    heading : str
-    paragraphs : list of str
-    points : list of str
-        Of a list.
-    picture : Picture, optional
-    tables : list of Table
-    """
+    """A part of the page: title, texts, picture and tables."""
 
     heading: str
     paragraphs: list[str] = field(default_factory=list)
-    points: list[str] = field(default_factory=list)
+    points: list[str] = field(default_factory=list)  # of a list
     picture: Picture | None = None
     tables: list[Table] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """The verdict at the top of the page: a word, a sentence, and a tone for its colour.
-
-    Attributes
-    ----------
-    word : str
-    sentence : str
-    tone : str
-        Of ``TONES``.
-    """
+    """The verdict at the top of the page: a word, a sentence, and a tone for its colour."""
 
     word: str
     sentence: str
-    tone: str
+    tone: str  # of `TONES`
 
 
 @dataclass(frozen=True)
 class Page:
-    """A report page: title, metadata, verdict, sections, and whether it has room to sign.
-
-    Attributes
-    ----------
-    title : str
-    about : str
-        Below the title.
-    sections : list of Section
-    verdict : Verdict, optional
-    signed : bool
-        Whether there is a place for a signature.
-    """
+    """A report page: title, metadata, verdict, sections, and whether it has room to sign."""
 
     title: str
-    about: str
+    about: str  # below the title
     sections: list[Section]
     verdict: Verdict | None = None
-    signed: bool = False
+    signed: bool = False  # whether there is a place for a signature
 
     def html(self) -> str:
         """Render the page as HTML text."""

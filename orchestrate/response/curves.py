@@ -17,21 +17,11 @@ KINDS = {FLIGHT: "separate motion", SEQUENCE: "sequence of impacts", CONTACT: "p
 
 
 class SampledCurve(NamedTuple):
-    """A sampled motion with its jumps: times, states, kind; two points at an impact.
+    """A sampled motion with its jumps: times, states, kind; two points at an impact."""
 
-    Attributes
-    ----------
-    tau : ndarray, shape (n,)
-        Time in units of 1/omega.
-    state : ndarray, shape (n, 4)
-        xi_1, xi_2, xi_1', xi_2'.
-    kind : ndarray of int, shape (n,)
-        Of ``KINDS``.
-    """
-
-    tau: NDArray[np.float64]
-    state: NDArray[np.float64]
-    kind: NDArray[np.int8]
+    tau: NDArray[np.float64]  # time in units of 1/omega
+    state: NDArray[np.float64]  # xi_1, xi_2, xi_1', xi_2'
+    kind: NDArray[np.int8]  # of `KINDS`
 
 
 def simulate_curve(
@@ -42,25 +32,7 @@ def simulate_curve(
     periods: int,
     points: int,
 ) -> SampledCurve:
-    """Simulate a motion after a transient; return samples and both sides of its impacts.
-
-    Parameters
-    ----------
-    fmu : Path
-        Of the FMI 3.0 form.
-    point : Point
-    start : array_like of 4 floats
-        State at phase 0: x1, x2 in m, v1, v2 in m/s.
-    transient, periods : int
-        Excitation periods dropped and kept.
-    points : int
-        Equally spaced states a period.
-
-    Returns
-    -------
-    SampledCurve
-        ``tau`` counts from the first kept period on.
-    """
+    """Simulate a motion after a transient; return samples and both sides of its impacts."""
     span = point.excitation.period
     first, last = transient * span, (transient + periods) * span
     with EventInstance(fmu) as instance:

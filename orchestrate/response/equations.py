@@ -20,19 +20,13 @@ Flags = NDArray[np.bool_]
 
 
 class MotionCoefficients(NamedTuple):
-    """Coefficients k/m and d/m of the equations of motion: mass 1, mass 2, both as one.
+    """Coefficients k/m and d/m of the equations of motion: mass 1, mass 2, both as one."""
 
-    Attributes
-    ----------
-    stiffness, damping : ndarray, shape (3, n)
-        A column a structure; of shape (2, ...) where it is what each mass feels.
-    push : ndarray, shape (2, n), optional
-        Acceleration of each mass in contact by the other one's spring, which a clearance loads
-        where the mass itself is at 0, m/s2; None where there is no clearance.
-    """
-
+    # A column a structure; of shape (2, ...) where it is what each mass feels
     stiffness: Floats
     damping: Floats
+    # acceleration of each mass in contact by the other one's spring, which a clearance loads where
+    # the mass itself is at 0, m/s2; None where there is no clearance
     push: Floats | None = None
 
     @classmethod
@@ -47,12 +41,7 @@ class MotionCoefficients(NamedTuple):
         return cls(np.array(stiffness), np.array(damping), push)
 
     def effective(self, touching: Flags) -> MotionCoefficients:
-        """Return each mass's acting coefficients: its own, or those of both in contact.
-
-        Parameters
-        ----------
-        touching : ndarray of bool, shape (n, ...)
-        """
+        """Return each mass's acting coefficients: its own, or those of both in contact."""
 
         def columns(rates: Floats) -> Floats:
             """Return coefficients with axes appended to broadcast over ``touching``."""
@@ -82,15 +71,7 @@ class MotionCoefficients(NamedTuple):
 
 
 def in_touch(states: Floats, gap_offset: ArrayLike = 0.0) -> Flags:
-    """Return, for each state, whether it is permanent contact: no gap and equal velocities.
-
-    Parameters
-    ----------
-    states : ndarray, shape (..., 4)
-        x1, x2, v1, v2.
-    gap_offset : array_like
-        The gap between unloaded springs, as by :func:`.access.gap_between`.
-    """
+    """Return, for each state, whether it is permanent contact: no gap and equal velocities."""
     together = gap_between(states, gap_offset) == 0.0
     touching: Flags = together & (states[..., 2] == states[..., 3])
     return touching
@@ -100,19 +81,6 @@ def absolute_accelerations(
     states: Floats, structure: Structure, touching: Flags | None = None
 ) -> Floats:
     """Return both masses' absolute accelerations, as accelerometers read between impacts.
-
-    Parameters
-    ----------
-    states : ndarray, shape (n, 4)
-        x1, x2 in m and v1, v2 in m/s, relative to the box.
-    structure : Structure
-    touching : ndarray of bool, shape (n,), optional
-        Whether there is permanent contact; by default as :func:`in_touch` finds it.
-
-    Returns
-    -------
-    ndarray, shape (n, 2)
-        m/s2; in permanent contact, and of a bonded structure, with the contact force.
 
     Examples
     --------

@@ -36,53 +36,23 @@ Floats = NDArray[np.float64]
 
 
 class Repetition(NamedTuple):
-    """Multiplicity of a response, and the largest deviation of states so many periods apart.
+    """Multiplicity of a response, and the largest deviation of states so many periods apart."""
 
-    Attributes
-    ----------
-    multiplicity : int
-        Least n such that the state repeats after n periods; 0: none.
-    deviation : float
-        Largest difference of states n periods apart over the motion's size; infinity where there is
-        no n.
-    """
-
-    multiplicity: int
+    multiplicity: int  # least n such that the state repeats after n periods; 0: none
+    # largest difference of states n periods apart over the motion's size; infinity where there is
+    # no n
     deviation: float
 
 
 class Decision(NamedTuple):
-    """Multiplicity of a response, and how it was decided: irregular, repeated or undecided.
+    """Multiplicity of a response, and how it was decided: irregular, repeated or undecided."""
 
-    Attributes
-    ----------
-    multiplicity : int
-        Where it is undecided, the best guess.
-    decided : int
-        Of ``DECIDED``.
-    """
-
-    multiplicity: int
-    decided: int
+    multiplicity: int  # where it is undecided, the best guess
+    decided: int  # of `DECIDED`
 
 
 def scale_states(samples: ArrayLike, frequency: float = 1.0, gap: float | None = None) -> Floats:
     """Divide states by the motion's size, so that differences compare with a tolerance.
-
-    Parameters
-    ----------
-    samples : array_like, shape (n_samples, 4)
-        x1, x2 in m, v1, v2 in m/s at the same phase of successive periods.
-    frequency : float
-        Of the excitation, rad/s: a velocity over it is a length.
-    gap : float, optional
-        Largest gap of the motion, between samples too, m.
-
-    Returns
-    -------
-    ndarray, shape (n_samples, 4) or (n_samples, 6)
-        Displacements and velocities of both masses over one length, and, where ``gap`` is there,
-        the gap and its rate over theirs.
 
     Notes
     -----
@@ -107,13 +77,6 @@ def scale_states(samples: ArrayLike, frequency: float = 1.0, gap: float | None =
 def find_repetition(states: Floats, tolerance: float) -> Repetition:
     """Find the least n after which states repeat within a tolerance; return n, deviation.
 
-    Parameters
-    ----------
-    states : ndarray, shape (n_samples, n_co-ordinates)
-        Of :func:`scale_states`.
-    tolerance : float
-        Largest deviation of a repeated state.
-
     Notes
     -----
     Only the later half of the samples is compared: at low damping and high frequency a transient
@@ -128,25 +91,6 @@ def find_repetition(states: Floats, tolerance: float) -> Repetition:
 
 def decide_multiplicity(states: Floats, tolerance: float) -> Decision:
     """Decide a response's multiplicity: its deviations must have died or be decaying.
-
-    Parameters
-    ----------
-    states : ndarray, shape (n_samples, n_co-ordinates)
-        Of :func:`scale_states`.
-    tolerance : float
-        Largest deviation of a repeated state, and how far it may still go.
-
-    Returns
-    -------
-    Decision
-        *Repeated*: states n periods apart are within the tolerance; their deviation has died, or
-        dies so fast that what is left of it is within the tolerance too; and states fewer periods
-        apart differ for good: by ten thousand times what is left of the deviation where that has
-        died, else by more than the tolerance. *Undecided*: states nearly repeat, but their
-        deviation stays, grows, or dies too slowly to tell n from its divisors (a response still
-        converging, next to a period doubling above all; a torus or a chaotic band narrower than the
-        tolerance; a response leaving an unstable orbit), or deviations are large but die.
-        *Irregular*: none of these.
 
     Notes
     -----
@@ -207,19 +151,7 @@ def growth_ratio(deviation: Floats) -> float:
 
 
 def spread_over_returns(states: Floats, n: int) -> Floats:
-    """Return how far states lie apart at most that n, 2n, 3n ... periods separate.
-
-    Parameters
-    ----------
-    states : ndarray, shape (..., n_co-ordinates, n_samples)
-        Several runs of states at once, or one.
-    n : int
-
-    Returns
-    -------
-    ndarray, shape (...)
-        Of each run.
-    """
+    """Return how far states lie apart at most that n, 2n, 3n ... periods separate."""
     count = states.shape[-1]
     again = states[..., count - n : count - n + -count % n]  # fills the last n periods
     turns = np.concatenate([states, again], axis=-1).reshape(*states.shape[:-1], -1, n)

@@ -24,34 +24,18 @@ Rows = NDArray[np.intp]
 
 
 class Motion(NamedTuple):
-    """Displacements and accelerations of both masses at some times, with two time derivatives.
+    """Displacements and accelerations of both masses at some times, with two time derivatives."""
 
-    Attributes
-    ----------
-    value, slope : ndarray, shape (4, ...)
-        Displacements of both masses and their absolute accelerations; their time derivatives.
-    bend : ndarray, shape (4, ...)
-        Accelerations of both masses relative to the box, and their time derivatives.
-    """
-
+    # displacements of both masses and their absolute accelerations; their time derivatives
     value: Floats
     slope: Floats
-    bend: Floats
+    bend: Floats  # accelerations of both masses relative to the box, and their time derivatives
 
     @classmethod
     def from_states(
         cls, states: Floats, rates: MotionCoefficients, forces: tuple[Floats, Floats]
     ) -> Motion:
-        """Return the motion's values and derivatives at states, by the equations of motion.
-
-        Parameters
-        ----------
-        states : ndarray, shape (4, ...)
-            x1, x2, v1, v2.
-        rates : MotionCoefficients
-        forces : (ndarray, ndarray)
-            Minus the box's acceleration, and its time derivative.
-        """
+        """Return the motion's values and derivatives at states, by the equations of motion."""
         x, v = states[:2], states[2:]
         absolute = rates.acceleration(x, v)
         relative = absolute + forces[0]
@@ -91,22 +75,7 @@ def periods_to_sample(multiplicity: int, max_periods: int) -> int:
 def sample_periods(
     instance: Instance, point: Point, response: Response, first: int, periods: int
 ) -> Floats:
-    """Run the FMU over some periods; return their states, equally spaced, with the start.
-
-    Parameters
-    ----------
-    instance : Instance
-        At the last sample of ``response``.
-    point : Point
-    response : Response
-    first : int
-        Number of periods since the start.
-    periods : int
-
-    Returns
-    -------
-    ndarray, shape (POINTS + 1, 4)
-    """
+    """Run the FMU over some periods; return their states, equally spaced, with the start."""
     period = point.excitation.period
     instance.set(x_rel_max_on=False)
     states = sampled(instance, first * period, (first + periods) * period, POINTS)
@@ -117,24 +86,6 @@ def peaks(
     points: Sequence[Point], periods: Sequence[int], states: Floats, jump: float = 1e-3
 ) -> dict[str, Floats]:
     """Return the largest displacements and accelerations of both masses in each response.
-
-    Parameters
-    ----------
-    points : sequence of Point
-        n of them.
-    periods : sequence of int
-        That the states of each span.
-    states : ndarray, shape (n, k + 1, 4)
-        At equal times, the first at phase 0 and the last at the end of the periods.
-    jump : float
-        Part of the largest velocity: where velocities differ by more than the accelerations
-        tell, there is an impact.
-
-    Returns
-    -------
-    dict of ndarray, shape (n,)
-        ``x1_max``, ``x2_max``: largest distances from the box's middle, m; ``a1_max``, ``a2_max``:
-        largest absolute accelerations, m/s2, impulses left out.
 
     Notes
     -----
@@ -198,17 +149,7 @@ def cubic_extrema(left: Motion, right: Motion, width: Floats) -> Floats:
 def update_maxima_from_cubics(
     largest: Floats, candidates: Flags, left: Motion, right: Motion, width: Floats
 ) -> None:
-    """Raise maxima in place where the interpolating cubics of intervals exceed them.
-
-    Parameters
-    ----------
-    largest : ndarray, shape (4, n)
-    candidates : ndarray of bool, shape (4, n, k)
-        Intervals to look at.
-    left, right : Motion
-        At their ends, shape (4, n, k).
-    width : ndarray, shape (n, 1)
-    """
+    """Raise maxima in place where the interpolating cubics of intervals exceed them."""
     turns = np.nonzero(candidates & (left.slope * right.slope < 0.0))
     ends = [side.map_arrays(lambda array: array[turns]) for side in (left, right)]
     np.maximum.at(largest, turns[:2], np.abs(cubic_extrema(ends[0], ends[1], width[turns[1], 0])))

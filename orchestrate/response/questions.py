@@ -63,11 +63,6 @@ class Point(NamedTuple):
 
         That of mass 2 is ``xi_2`` and the clearance over a eta^2: the gap is the difference of
         both, 0 in contact.
-
-        Parameters
-        ----------
-        states : ndarray, shape (..., 4)
-            x1, x2 in m from the unloaded springs, v1, v2 in m/s.
         """
         offset = self.structure.gap_offset
         if offset != 0.0:
@@ -86,22 +81,12 @@ class Point(NamedTuple):
 
 @dataclass(frozen=True)
 class Series:
-    """Operating points along one parameter, in the order of the values given.
+    """Operating points along one parameter, in the order of the values given."""
 
-    Attributes
-    ----------
-    name : str
-        Of the parameter, and of the dimension of all results.
-    values : tuple of float
-    points : tuple of Point
-    etas : tuple of float
-        Frequency ratio of each.
-    """
-
-    name: str
+    name: str  # of the parameter, and of the dimension of all results
     values: tuple[float, ...]
     points: tuple[Point, ...]
-    etas: tuple[float, ...]
+    etas: tuple[float, ...]  # frequency ratio of each
 
     def coordinates(self) -> dict[str, Variable]:
         """Return dataset coordinates: the parameter, eta, frequency, amplitude and period."""
@@ -137,23 +122,7 @@ def make_series(
     over: str | None = None,
     values: Numbers | None = None,
 ) -> Series:
-    """Return the operating points along the parameter whose argument is a list of values.
-
-    Parameters
-    ----------
-    structure : Structure
-    eta, frequency, amplitude : float or tuple of float, optional
-        The excitation, in one of the two forms.
-    over : str, optional
-        Parameter of the structure or the excitation that takes ``values``; else it is that of
-        ``eta``, ``frequency`` and ``amplitude`` that is given as a list.
-    values : tuple of float, optional
-
-    Raises
-    ------
-    InputError
-        Where these are no question of one form along one parameter, or a value is out of its range.
-    """
+    """Return the operating points along the parameter whose argument is a list of values."""
     excitation_values = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
     excitation = {name: value for name, value in excitation_values.items() if value is not None}
     varied = varied_values(over, values, excitation)
@@ -242,13 +211,7 @@ def checked_point(
     frequency: ArrayLike | None,
     amplitude: ArrayLike | None,
 ) -> Point:
-    """Return the operating point of scalar excitation arguments; raise if incomplete or lists.
-
-    Raises
-    ------
-    InputError
-        Where a list is given, too.
-    """
+    """Return the operating point of scalar excitation arguments; raise if incomplete or lists."""
     arguments = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
     checked = {
         name: checked_numbers(name, value) for name, value in arguments.items() if value is not None
@@ -271,19 +234,7 @@ def checked_structure(structure: object) -> Structure:
 
 
 def checked_numbers(name: str, argument: ArrayLike | None) -> Numbers | None:
-    """Return an argument as float or tuple of floats, checked for its range; None if not given.
-
-    Parameters
-    ----------
-    name : str
-        Of the parameter; ranges of a structure's are checked by the structure.
-    argument : array_like, optional
-
-    Raises
-    ------
-    InputError
-        Where these are no finite numbers, none at all, a table, or out of range.
-    """
+    """Return an argument as float or tuple of floats, checked for its range; None if not given."""
     if argument is None:
         return None
     try:
@@ -313,13 +264,7 @@ def checked_numbers(name: str, argument: ArrayLike | None) -> Numbers | None:
 
 
 def checked_positive(name: str, value: Any) -> float:
-    """Return an argument as finite float above zero; raise ``InputError`` otherwise.
-
-    Raises
-    ------
-    InputError
-        Where it is none.
-    """
+    """Return an argument as finite float above zero; raise ``InputError`` otherwise."""
     number = checked_numbers(name, value)
     if not isinstance(number, float) or number <= 0.0:
         raise InputError(f"{name} = {value!r}: expected a number > 0")
@@ -330,11 +275,6 @@ def checked_states(name: str, value: ArrayLike | None, structure: Structure) -> 
     """Return start states (n, 4) in m, m/s, rest by default; raise if masses overlap.
 
     Displacements count from the unloaded springs; zeros mean rest, with a preload too.
-
-    Raises
-    ------
-    InputError
-        Where these are no states the structure can be in.
     """
     expected = "expected x1, x2 in m, v1, v2 in m/s with x2 >= x1"
     if structure.gap_offset:
@@ -371,12 +311,7 @@ def checked_state(name: str, value: ArrayLike | None, structure: Structure) -> t
 
 @dataclass(frozen=True, kw_only=True)
 class Question(Job, ABC):
-    """Base of jobs that answer a public function about a structure.
-
-    Attributes
-    ----------
-    structure : Structure
-    """
+    """Base of jobs that answer a public function about a structure."""
 
     structure: Structure
     asked: ClassVar[str] = ""  # name of the function
@@ -400,12 +335,7 @@ class Question(Job, ABC):
 
 @dataclass(frozen=True, kw_only=True)
 class OneMotionQuestion(Question, ABC):
-    """Base of jobs that simulate one motion, under one excitation.
-
-    Attributes
-    ----------
-    excitation : Excitation
-    """
+    """Base of jobs that simulate one motion, under one excitation."""
 
     excitation: Excitation
 
@@ -416,21 +346,13 @@ class OneMotionQuestion(Question, ABC):
 
 @dataclass(frozen=True, kw_only=True)
 class SeriesQuestion(Question, ABC):
-    """Base of jobs that compute responses along one parameter.
+    """Base of jobs that compute responses along one parameter."""
 
-    Attributes
-    ----------
-    eta, frequency, amplitude : float or tuple of float, optional
-        The excitation.
-    over : str, optional
-        Parameter that takes ``values``.
-    values : tuple of float, optional
-    """
-
+    # the excitation
     eta: Numbers | None = None
     frequency: Numbers | None = None
     amplitude: Numbers | None = None
-    over: str | None = None
+    over: str | None = None  # parameter that takes `values`
     values: Numbers | None = None
 
     def __post_init__(self) -> None:

@@ -15,18 +15,10 @@ from .respond import Response, follow_responses
 
 @dataclass(frozen=True)
 class RelativeResonance:
-    """The relative resonance of a response: frequency ratio eta of its largest gap, state.
+    """The relative resonance of a response: frequency ratio eta of its largest gap, state."""
 
-    Attributes
-    ----------
-    eta : float
-        Frequency ratio of the largest gap.
-    state : tuple of float
-        The response there at phase 0: x1, x2 in m, v1, v2 in m/s.
-    """
-
-    eta: float
-    state: tuple[float, ...]
+    eta: float  # frequency ratio of the largest gap
+    state: tuple[float, ...]  # the response there at phase 0: x1, x2 in m, v1, v2 in m/s
 
 
 def follow_to_peak(
@@ -43,30 +35,7 @@ def follow_to_peak(
     samples: int = 80,
     tolerance: float = 1e-2,
 ) -> RelativeResonance:
-    """Increase eta until the largest gap of a 1-impact response passes its peak; return that.
-
-    Parameters
-    ----------
-    instance : Instance
-    structure : Structure
-    eta : float
-        Frequency ratio of the response that is known; the box's amplitude is 1/eta^2 m throughout.
-    start : array_like of 4 floats
-        Its state at phase 0.
-    multiplicity : int
-        Of the responses that count.
-    step, reach : float
-        Of eta, and how far to go at the most.
-    fall : float
-        Part of the maximum by which the gap must have fallen before the search ends.
-    transient, samples, tolerance
-        At each eta, as in :func:`.respond.respond`.
-
-    Returns
-    -------
-    RelativeResonance
-        The known response itself where none larger of its kind is found.
-    """
+    """Increase eta until the largest gap of a 1-impact response passes its peak; return that."""
     etas = np.round(eta + step * np.arange(1, round(reach / step)), 9)
     points = make_series(structure, tuple(etas.tolist()), None, None).points
     peak, largest = RelativeResonance(eta, tuple(np.asarray(start, dtype=float).tolist())), 0.0

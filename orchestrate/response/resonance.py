@@ -37,14 +37,9 @@ PEAK_QUANTITIES = ("x1_max", "x2_max", "a1_max", "a2_max", "x_rel_max", "impacts
 
 @dataclass(frozen=True, kw_only=True)
 class ResonanceJob(SweepJob):
-    """Job of :func:`orchestrate.resonance`: up and down sweeps, bonded and delaminated.
+    """Job of :func:`orchestrate.resonance`: up and down sweeps, bonded and delaminated."""
 
-    Attributes
-    ----------
-    prominence, jump : float
-        As in :func:`resonance`.
-    """
-
+    # as in resonance
     prominence: float = 0.1
     jump: float = 0.15
     asked: ClassVar[str] = "resonance"

@@ -33,18 +33,10 @@ RAGGED = ("peak", "jump")  # of each level as many as it has
 
 @dataclass(frozen=True, kw_only=True)
 class ResonanceLevelsJob(Question):
-    """Job of :func:`orchestrate.resonance_levels`: resonance curves at several levels.
+    """Job of :func:`orchestrate.resonance_levels`: resonance curves at several levels."""
 
-    Attributes
-    ----------
-    frequency : tuple of float
-        rad/s.
-    level : tuple of float
-        Peak accelerations a Omega^2 of the box, m/s2.
-    """
-
-    frequency: tuple[float, ...]
-    level: tuple[float, ...]
+    frequency: tuple[float, ...]  # rad/s
+    level: tuple[float, ...]  # peak accelerations a Omega^2 of the box, m/s2
     direction: Direction = "both"
     transient: int = 500
     samples: int = 60

@@ -27,38 +27,17 @@ from .threshold import exceeds_threshold
 
 @dataclass(frozen=True)
 class Response:
-    """Steady-state response at one operating point: stroboscopic samples, impacts, largest gap.
+    """Steady-state response at one operating point: stroboscopic samples, impacts, largest gap."""
 
-    Attributes
-    ----------
-    samples : ndarray, shape (n_samples, 4)
-        x1, x2, v1, v2 at the excitation's phase 0 of successive periods.
-    x_rel_max : float
-        Largest gap in them, exact between the samples too.
-    impacts_per_period : float
-        Mean over the samples' periods.
-    impact_count : int
-        Impacts from the beginning of the transient to the last sample.
-    permanent_contact : bool
-        Whether any occurred in them.
-    frequency : float
-        Of the excitation, rad/s.
-    tolerance : float
-        Within which a state repeats, over the motion's size: see :mod:`.multiplicity`.
-    gap_offset : float
-        The gap between unloaded springs, m.
-    has_to_impact : bool
-        Whether no response without impacts exists: the linear one would open or touch.
-    """
-
-    samples: NDArray[np.float64]
-    x_rel_max: float
-    impacts_per_period: float
-    impact_count: int
-    permanent_contact: bool
-    frequency: float
-    tolerance: float
-    gap_offset: float = 0.0
+    samples: NDArray[np.float64]  # x1, x2, v1, v2 at the excitation's phase 0 of successive periods
+    x_rel_max: float  # largest gap in them, exact between the samples too
+    impacts_per_period: float  # mean over the samples' periods
+    impact_count: int  # impacts from the beginning of the transient to the last sample
+    permanent_contact: bool  # whether any occurred in them
+    frequency: float  # of the excitation, rad/s
+    tolerance: float  # within which a state repeats, over the motion's size: see multiplicity
+    gap_offset: float = 0.0  # the gap between unloaded springs, m
+    # whether no response without impacts exists: the linear one would open or touch
     has_to_impact: bool = False
 
     @cached_property
@@ -88,12 +67,6 @@ class Response:
         """Return how the multiplicity was decided, undecided if impacts speak against it.
 
         A response that still converges, by less than the tolerance, may yet gain or lose some.
-
-        Parameters
-        ----------
-        decision : Decision
-        impacts : int
-            In as many periods as its multiplicity, after the samples.
         """
         n, decided = decision
         if decided == REPEATED and (self.lacks_impacts(impacts, n) or not self.repeats(impacts, n)):
@@ -137,15 +110,6 @@ def round_state(
     its last digits for good. Without them it is the same to the last bit, and parts of a sweep that
     are begun elsewhere join it.
 
-    Parameters
-    ----------
-    state : ndarray, shape (4,)
-        x1, x2, v1, v2.
-    gap_offset : float
-        The gap between unloaded springs, m.
-    bits : int
-        Kept of the larger displacement, and of the larger velocity: the gap stays >= 0.
-
     Examples
     --------
     >>> round_state(np.array([0.25, 0.3, 1.0, -1.0]))
@@ -179,25 +143,7 @@ def respond(
     samples: int,
     tolerance: float,
 ) -> Response:
-    """Simulate a transient and samples from a state at phase 0; return the response.
-
-    Parameters
-    ----------
-    instance : Instance
-        Of ``TwoMassImpactOscillator``; afterwards it stands at the last sample.
-    structure : Structure
-    excitation : Excitation
-    start : array_like of 4 floats
-        x1, x2 in m, v1, v2 in m/s.
-    transient, samples : int
-        Periods dropped, and stroboscopic samples kept after them.
-    tolerance : float
-        Of a state that repeats, over the motion's size: see :mod:`.multiplicity`.
-
-    Returns
-    -------
-    Response
-    """
+    """Simulate a transient and samples from a state at phase 0; return the response."""
     period = excitation.period
     begin(instance, structure, excitation, start)
     if transient:
@@ -221,14 +167,7 @@ def respond(
 def stroboscopic_samples(
     instance: Instance, period: float, transient: int, samples: int
 ) -> tuple[NDArray[np.float64], float]:
-    """Run the FMU over some periods; return states at phase 0, and the largest gap.
-
-    Returns
-    -------
-    states : ndarray, shape (samples, 4)
-    peak : float
-        Largest gap on the way.
-    """
+    """Run the FMU over some periods; return states at phase 0, and the largest gap."""
     room = samples_per_step(instance)
     states, peak = np.empty((len(STATE), samples)).T, 0.0
     for done in range(0, samples, room):
@@ -242,17 +181,7 @@ def stroboscopic_samples(
 
 
 def count_impacts_until(instance: Instance, before: int, time: float, target: float) -> int:
-    """Run the FMU on to a time; return the impacts since an earlier count.
-
-    Parameters
-    ----------
-    instance : Instance
-        At ``time``.
-    before : int
-        Its ``impact_count`` then.
-    time, target : float
-        s.
-    """
+    """Run the FMU on to a time; return the impacts since an earlier count."""
     if target > time:
         instance.step(time, target)
     count: int = instance.get("impact_count")[0]
@@ -275,20 +204,7 @@ def follow_responses(
     tolerance: float,
     gap_offset: float | None = None,
 ) -> Iterator[Response]:
-    """Yield the response at each point, started from the end state of the one before.
-
-    Parameters
-    ----------
-    instance : Instance
-    points : iterable of Point
-    start : array_like of 4 floats
-        Of the first one.
-    transient, samples, tolerance
-        As in :func:`respond`.
-    gap_offset : float, optional
-        The gap between unloaded springs in the structure that ``start`` is a state of; by default
-        that of the first point. Where it changes from point to point, the gap goes on.
-    """
+    """Yield the response at each point, started from the end state of the one before."""
     for structure, excitation in points:
         if gap_offset is not None and gap_offset != structure.gap_offset and np.any(start):
             start = np.add(start, (0.0, gap_offset - structure.gap_offset, 0.0, 0.0))

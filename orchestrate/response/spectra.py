@@ -38,21 +38,6 @@ Floats = NDArray[np.float64]
 def amplitude_spectrum(signal: ArrayLike, interval: float) -> tuple[Floats, Floats]:
     """Return frequencies, rad/s, and amplitudes of a sampled signal (Hann window).
 
-    Parameters
-    ----------
-    signal : array_like, shape (..., n)
-        At equal times.
-    interval : float
-        Time between them, s.
-
-    Returns
-    -------
-    frequency : ndarray, shape (n//2 + 1,)
-        Of the lines, rad/s.
-    amplitude : ndarray, shape (..., n//2 + 1)
-        Exact for sines with a whole number of periods in the span, whose neighbouring lines then
-        show half of it. The mean shows at 0 alone: the line beside it is of what differs from it.
-
     Examples
     --------
     >>> time = np.arange(256) / 256

@@ -31,20 +31,7 @@ ACCURACY = 1e-12  # of a frequency at a minimum; the level there is flat, and ex
 
 
 def threshold_amplitudes(structure: Structure, frequency: Floats) -> Floats:
-    """Return box amplitudes, m, at which the linear response first opens or touches.
-
-    Parameters
-    ----------
-    structure : Structure
-    frequency : ndarray
-        rad/s.
-
-    Returns
-    -------
-    ndarray
-        0 without a clearance; infinite where the linear response never opens or touches: of two
-        halves that move alike, and of a bonded structure.
-    """
+    """Return box amplitudes, m, at which the linear response first opens or touches."""
     omega, m1, m2 = structure.omega, structure.m1, structure.m2
     eta = np.asarray(frequency, dtype=float) / omega
     masses = np.array([m1, m2, m1 + m2])
@@ -122,18 +109,6 @@ def lowest_threshold(structure: Structure, low: float, high: float) -> tuple[flo
     The curve is a smooth one with a valley at each natural frequency of the linear response, as
     narrow as that is damped: its minima are bracketed on a grid with these frequencies in it, and
     found by Brent's method.
-
-    Parameters
-    ----------
-    structure : Structure
-        With a clearance, and halves that do not move alike.
-    low, high : float
-        rad/s.
-
-    Returns
-    -------
-    frequency, acceleration : float
-        rad/s, m/s2.
     """
     from scipy.optimize import minimize_scalar
 

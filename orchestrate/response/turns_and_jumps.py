@@ -13,14 +13,6 @@ NEIGHBOURS, JUMP_FACTOR = 2, 3.0  # of the curve's own slope, which a jump must 
 def prominent_maxima(curve: ArrayLike, prominence: float) -> Rows:
     """Return the indices of a curve's inner maxima whose relative prominence is enough.
 
-    Parameters
-    ----------
-    curve : array_like, shape (n,)
-        Not negative.
-    prominence : float
-        By what part of itself a maximum lies above the curve on both sides, before the curve rises
-        above it or ends.
-
     Examples
     --------
     >>> prominent_maxima([1.0, 2.0, 1.9, 2.0, 5.0, 2.0], 0.1)
@@ -37,17 +29,6 @@ def prominent_maxima(curve: ArrayLike, prominence: float) -> Rows:
 def inside_irregular(irregular: ArrayLike) -> NDArray[np.bool_]:
     """Return, for each value of a curve, whether it lies in a range of irregular responses.
 
-    Parameters
-    ----------
-    irregular : array_like of bool, shape (n,)
-        Whether each response is.
-
-    Returns
-    -------
-    ndarray of bool, shape (n,)
-        Of irregular responses, and of up to two others between irregular ones: such a window is too
-        narrow to show a maximum of its own.
-
     Examples
     --------
     >>> inside_irregular([False, True, False, False, True, False, False]).astype(int)
@@ -62,13 +43,6 @@ def inside_irregular(irregular: ArrayLike) -> NDArray[np.bool_]:
 
 def jump_indices(curve: ArrayLike, minimum: float) -> Rows:
     """Return the indices after which a curve jumps: steps far larger than their neighbours.
-
-    Parameters
-    ----------
-    curve : array_like, shape (n,)
-    minimum : float
-        Part of the larger one of both values that a jump is at least. It must also be some times
-        as large as the steps next to it: a steep curve does not jump, nor does an irregular one.
 
     Examples
     --------

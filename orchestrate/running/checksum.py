@@ -24,15 +24,6 @@ def checksum(data: xr.Dataset) -> str:
 
     A dataset that was written to NetCDF and read again has the checksum that it had before.
 
-    Parameters
-    ----------
-    data : xarray.Dataset
-
-    Returns
-    -------
-    str
-        SHA-256, in hexadecimal digits.
-
     Examples
     --------
     >>> import xarray as xr

@@ -34,19 +34,7 @@ def is_worth_logging(record: logging.LogRecord) -> bool:
 
 
 class Cluster:
-    """Computes chunks on the workers of a Dask scheduler.
-
-    Parameters
-    ----------
-    address : str
-
-    Raises
-    ------
-    InputError
-        Where no scheduler answers there, or it has no workers.
-    WorkerError
-        Where it ends while it is asked.
-    """
+    """Computes chunks on the workers of a Dask scheduler."""
 
     remote = True
 

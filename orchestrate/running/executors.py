@@ -38,30 +38,8 @@ def compute(
     warmup_items: Sequence[Any],
     code: Mapping[str, str] | None = None,
 ) -> tuple[bytes, Table]:
-    """Compute a chunk of a job in a worker; return its table, and the start state used, as bytes.
-
-    Parameters
-    ----------
-    job : Job
-    fmus : mapping
-    items : sequence
-    previous : dict of ndarray, optional
-        What the chunk starts from.
-    warmup_items : sequence
-        Items to compute first, from the job's own beginning, in place of ``previous``.
-    code : mapping of str to str, optional
-        Digests of the sources that the job belongs to, where it travels to another machine.
-
-    Returns
-    -------
-    start : bytes
-        What it started from, of a sequential job.
-    table : dict of ndarray
-
-    Raises
-    ------
-    WorkerError
-        Where the sources here are others: they would give other numbers.
+    """Compute a chunk of a job in a worker; return its table, and the start state used, as
+    bytes.
     """
     own_code = code_digests(type(job).__module__) if code is not None else {}
     if code is not None and own_code != code:

@@ -46,15 +46,8 @@ Identity = dict[str, Any]
 
 
 def identity_of(job: Job, fmus: Mapping[str, Fmu], known: Mapping[str, Identity]) -> Identity:
-    """Return a job's identity as a dict: its parameters, digests of code and FMUs, needed results.
-
-    Parameters
-    ----------
-    job : Job
-    fmus : mapping
-        By model name.
-    known : mapping
-        Identities of the jobs it needs, by name.
+    """Return a job's identity as a dict: its parameters, digests of code and FMUs, needed
+    results.
     """
     identity: Identity = {
         "question": {"kind": type(job).__name__, **job.parameters()},

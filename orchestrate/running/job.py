@@ -25,34 +25,22 @@ MAX_LISTED = 4  # a longer list of numbers is summarized by its ends, count and 
 
 @dataclass(frozen=True)
 class Chunk:
-    """Consecutive items of a job computed at once; ``after`` is the chunk it continues.
-
-    Attributes
-    ----------
-    index : int
-    start, stop : int
-        Its items: from ``start`` up to, not including, ``stop``.
-    after : int, optional
-        The chunk whose result it starts from.
-    """
+    """Consecutive items of a job computed at once; ``after`` is the chunk it continues."""
 
     index: int
+    # its items: from `start` up to, not including, `stop`
     start: int
     stop: int
-    after: int | None
+    after: int | None  # the chunk whose result it starts from
 
 
 @dataclass(frozen=True)
 class Job(ABC):
-    """Base class of one computation with a stored result; subclasses define its items and the work.
-
-    Attributes
-    ----------
-    name : str
-        Of the result; it decides no number.
+    """Base class of one computation with a stored result; subclasses define its items and the
+    work.
     """
 
-    name: str
+    name: str  # of the result; it decides no number
     models: ClassVar[tuple[str, ...]] = ("TwoMassImpactOscillator",)
     chunk_size: ClassVar[int] = 1
     sequential: ClassVar[bool] = False
@@ -83,21 +71,7 @@ class Job(ABC):
 
     @abstractmethod
     def work(self, fmus: Mapping[str, Path], items: Sequence[Any], previous: Table | None) -> Table:
-        """Compute a chunk's items by the FMUs, in a worker; return arrays, one row per item.
-
-        Parameters
-        ----------
-        fmus : mapping of str to Path
-            FMU by model name.
-        items : sequence
-        previous : dict of ndarray, optional
-            The last entries of the chunk before, in a sequential job; of the last chunk of a
-            job that ``has_final_chunk`` or ``gathers``, all entries of all before, put together.
-
-        Returns
-        -------
-        dict of ndarray
-        """
+        """Compute a chunk's items by the FMUs, in a worker; return arrays, one row per item."""
 
     def progress_note(self, first: int) -> str:
         """Return a text shown beside the progress bar while a chunk runs; usually empty."""

@@ -60,22 +60,7 @@ def checksum_of_parts(*parts: bytes) -> str:
 
 
 class Journal:
-    """SQLite database of one job's computed chunks and its identity.
-
-    Parameters
-    ----------
-    path : Path
-    identity : dict
-        What the chunks answer; entered where the journal is new.
-    begun : str
-        When the job was begun; entered where the journal is new.
-
-    Attributes
-    ----------
-    identity : dict
-        What the chunks on disk answer.
-    begun : str
-    """
+    """SQLite database of one job's computed chunks and its identity."""
 
     def __init__(self, path: Path, identity: Identity, begun: str) -> None:
         self.path = path
@@ -192,20 +177,7 @@ def error_text(error: Exception) -> str:
 
 
 class Lock:
-    """File lock by SQLite on a result that is being computed; it ends with the process.
-
-    Parameters
-    ----------
-    path : Path
-        Of what is locked.
-
-    Raises
-    ------
-    InputError
-        Where another process holds it.
-    StoreError
-        Where it cannot be made.
-    """
+    """File lock by SQLite on a result that is being computed; it ends with the process."""
 
     def __init__(self, path: Path) -> None:
         self.path = path.with_name(f"{path.name}.lock")

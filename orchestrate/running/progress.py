@@ -27,52 +27,28 @@ MIN_GAP = 3  # chunks in a row not begun: from here on, guessing the middle one 
 
 @dataclass(frozen=True)
 class Task:
-    """A chunk to be computed: its items, its start state or warm-up items, whether it is a guess.
-
-    Attributes
-    ----------
-    chunk : Chunk
-    items : sequence
-    previous : dict of ndarray, optional
-        What it starts from: the last entries of the chunk before.
-    warmup_items : sequence
-        Items to compute first, from any state, where it is guessed what it starts from.
-    guess : bool
-        Whether what it starts from is not known to be true.
+    """A chunk to be computed: its items, its start state or warm-up items, whether it is a
+    guess.
     """
 
     chunk: Chunk
     items: Sequence[Any]
-    previous: Table | None
+    previous: Table | None  # what it starts from: the last entries of the chunk before
+    # items to compute first, from any state, where it is guessed what it starts from
     warmup_items: Sequence[Any]
-    guess: bool
+    guess: bool  # whether what it starts from is not known to be true
 
 
 @dataclass(frozen=True)
 class Guess:
-    """A chunk computed early from a guessed start state, kept until the true one is known.
+    """A chunk computed early from a guessed start state, kept until the true one is known."""
 
-    Attributes
-    ----------
-    start : bytes
-        That state.
-    table : dict of ndarray
-    """
-
-    start: bytes
+    start: bytes  # that state
     table: Table
 
 
 class Progress:
-    """Scheduling state of one job: chunks done, running, or computed ahead from guessed states.
-
-    Parameters
-    ----------
-    job : Job
-    store : Store
-    identity : dict
-    fmus : mapping of str to Fmu
-    """
+    """Scheduling state of one job: chunks done, running, or computed ahead from guessed states."""
 
     def __init__(self, job: Job, store: Store, identity: Identity, fmus: Mapping[str, Fmu]) -> None:
         self.job, self.store, self.identity, self.fmus = job, store, identity, fmus

@@ -17,17 +17,7 @@ if TYPE_CHECKING:
 def with_provenance(
     dataset: xr.Dataset, job: Job, identity: Identity, fmus: Mapping[str, Fmu], begun: str
 ) -> xr.Dataset:
-    """Return a dataset with attributes on its origin: parameters, FMU, versions, time.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-    job : Job
-    identity : dict
-    fmus : mapping of str to Fmu
-    begun : str
-        When the job was begun.
-    """
+    """Return a dataset with attributes on its origin: parameters, FMU, versions, time."""
     call = job.call_text()
     attributes: dict[str, Any] = {
         **flatten_parameters(job.parameters()),

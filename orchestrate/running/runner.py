@@ -39,56 +39,21 @@ BAR_DELAY = 1.0  # s until the progress bar shows: shorter work needs none
 
 
 def answer(job: Job, running: Mapping[str, object], find: FmuFinder) -> xr.Dataset:
-    """Compute one job in parallel chunks, or read its stored result; return the dataset.
-
-    Parameters
-    ----------
-    job : Job
-    running : mapping
-        Keywords of :class:`.options.Running`.
-    find : callable
-        From a model's name to its FMU's description.
-
-    Returns
-    -------
-    xarray.Dataset
-    """
+    """Compute one job in parallel chunks, or read its stored result; return the dataset."""
     return Runner([job], RunOptions.from_keywords(running), find).run()[job.name]
 
 
 def answer_all(
     jobs: Sequence[Job], folder: Path, options: RunOptions, find: FmuFinder
 ) -> dict[str, Path]:
-    """Compute many jobs into NetCDF files in a folder; return their paths by job name.
-
-    Parameters
-    ----------
-    jobs : sequence of Job
-        Each after those it needs.
-    folder : Path
-    options : RunOptions
-    find : callable
-
-    Returns
-    -------
-    dict of str to Path
-        By the jobs' names.
-    """
+    """Compute many jobs into NetCDF files in a folder; return their paths by job name."""
     open_folder(folder)
     Runner(jobs, replace(options, store=folder), find).run()
     return {job.name: folder / f"{job.name}.nc" for job in jobs}
 
 
 class Runner:
-    """Compute several jobs, which may need each other's results, with common workers.
-
-    Parameters
-    ----------
-    jobs : sequence of Job
-        Each after those it needs.
-    options : RunOptions
-    find : callable
-    """
+    """Compute several jobs, which may need each other's results, with common workers."""
 
     def __init__(self, jobs: Sequence[Job], options: RunOptions, find: FmuFinder) -> None:
         self.jobs, self.options = jobs, options

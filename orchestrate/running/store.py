@@ -36,13 +36,7 @@ FINISHED: set[Path] = set()  # results that it has; both say how much an interru
 
 
 def now() -> str:
-    """Return the present time, UTC, as ISO 8601 text; SOURCE_DATE_EPOCH overrides it.
-
-    Raises
-    ------
-    InputError
-        Where that is no such number.
-    """
+    """Return the present time, UTC, as ISO 8601 text; SOURCE_DATE_EPOCH overrides it."""
     fixed = os.environ.get("SOURCE_DATE_EPOCH")
     if fixed and not (re.fullmatch("[0-9]{1,12}", fixed) and int(fixed) <= LAST_SECOND):
         raise InputError(
@@ -130,25 +124,7 @@ class Memory(Store):
 
 
 class Disk(Store):
-    """Storage of one job on disk: an SQLite journal of chunks, then a NetCDF file of the result.
-
-    Parameters
-    ----------
-    path : Path
-        The NetCDF file. Where it is computed anew, it stays as it is until the new one is whole.
-    identity : dict
-        What it answers.
-    options : RunOptions
-
-    Raises
-    ------
-    InputError
-        Where another question's result or journal is there.
-    StaleError
-        Where it answers this question, but was made by other code or another FMU.
-    StoreError
-        Where a file stands there that is no result of this project.
-    """
+    """Storage of one job on disk: an SQLite journal of chunks, then a NetCDF file of the result."""
 
     def __init__(self, path: Path, identity: Identity, options: RunOptions) -> None:
         self.path, self.identity, self.options = path, identity, options
@@ -277,11 +253,6 @@ def load(path: Path) -> xr.Dataset:
     """Return the dataset of a NetCDF file; raise ``StoreError`` if it is damaged (checksum).
 
     A result without one, of a version that wrote none or of another tool, is taken as it is.
-
-    Raises
-    ------
-    StoreError
-        Where it cannot be read, or its checksum does not fit.
     """
     import xarray as xr
 
@@ -314,13 +285,7 @@ def first_line(error: BaseException) -> str:
 
 
 def read_identity(path: Path) -> Identity:
-    """Return the identity dict stored in a finished NetCDF result's attributes.
-
-    Raises
-    ------
-    StoreError
-        Where the file is not a result of this project.
-    """
+    """Return the identity dict stored in a finished NetCDF result's attributes."""
     import netCDF4
 
     try:

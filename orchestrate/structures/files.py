@@ -50,11 +50,6 @@ SECTIONS = ("structure", "excitation", "motor", "box")
 def resolve(source: str | PathLike[str]) -> Path:
     """Return the TOML file's path for a shipped set's name or a user's path; raise if missing.
 
-    Raises
-    ------
-    InputError
-        Where there is neither.
-
     Examples
     --------
     >>> resolve("beam").name
@@ -72,23 +67,6 @@ def resolve(source: str | PathLike[str]) -> Path:
 
 def read(source: str | PathLike[str], structure: Structure | None = None) -> dict[str, Described]:
     """Read a TOML file; return its structure, excitation and drive in a dict, those present.
-
-    Parameters
-    ----------
-    source : path-like
-        A TOML file, or the name of a shipped set.
-    structure : Structure, optional
-        What non-dimensional numbers refer to where the file has no ``[structure]``.
-
-    Returns
-    -------
-    dict
-        Of the keys ``"structure"``, ``"excitation"`` and ``"drive"`` those that the file has.
-
-    Raises
-    ------
-    InputError
-        Where something is wrong in it: file, section, key, value and what is expected.
 
     Examples
     --------
@@ -159,23 +137,7 @@ def write(
     excitation: Excitation | None = None,
     drive: Drive | None = None,
 ) -> Path:
-    """Write structure, excitation and drive to a TOML file in SI, exact to the last bit.
-
-    Parameters
-    ----------
-    path : path-like
-    structure, excitation, drive
-        What is to be in it.
-
-    Returns
-    -------
-    Path
-
-    Raises
-    ------
-    StoreError
-        Where it cannot be written; what stood there before still does.
-    """
+    """Write structure, excitation and drive to a TOML file in SI, exact to the last bit."""
     tables: dict[str, Mapping[str, float | bool]] = {}
     if structure is not None:
         tables["structure"] = structure.parameters()

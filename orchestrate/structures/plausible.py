@@ -9,13 +9,7 @@ LARGEST_RATIO = 0.3  # damping ratio above which a half of a beam would hardly r
 
 
 def warn_of_per_cent(ratios: Mapping[str, float]) -> None:
-    """Warn about damping ratios, by name, so large that per cent was probably meant.
-
-    Parameters
-    ----------
-    ratios : mapping
-        Damping ratios by their names.
-    """
+    """Warn about damping ratios, by name, so large that per cent was probably meant."""
     for name, ratio in ratios.items():
         if ratio > LARGEST_RATIO:
             warnings.warn(

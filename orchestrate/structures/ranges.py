@@ -20,24 +20,16 @@ Described = TypeVar("Described")
 
 @dataclass(frozen=True)
 class Quantity:
-    """A user's number as the variable table has it: name, unit, meaning, default and range.
+    """A user's number as the variable table has it: name, unit, meaning, default and range."""
 
-    Attributes
-    ----------
-    name, unit, description : str
-        Unit ``"1"`` is dimensionless.
-    minimum, maximum : float
-        Its range, both ends included.
-    default : float
-        What the FMU takes where nothing is given.
-    """
-
+    # unit `"1"` is dimensionless
     name: str
     unit: str
     description: str
+    # its range, both ends included
     minimum: float
     maximum: float
-    default: float = 0.0
+    default: float = 0.0  # what the FMU takes where nothing is given
 
     @property
     def dimension(self) -> dict[str, int]:
@@ -52,13 +44,7 @@ class Quantity:
         return f"{self.minimum:g} <= {self.name} <= {self.maximum:g}{unit}"
 
     def check(self, value: Any) -> float:
-        """Return ``value`` as a float; raise ``InputError`` if it is no number or out of range.
-
-        Raises
-        ------
-        InputError
-            Where it is no number in the range.
-        """
+        """Return ``value`` as a float; raise ``InputError`` if it is no number or out of range."""
         number = plain(value)
         if isinstance(number, bool) or not isinstance(number, numbers.Real):
             raise InputError(f"{self.name} = {value!r}: expected a number, {self.expected}")
@@ -78,13 +64,7 @@ def plain(value: Any) -> Any:
 
 
 def check_flag(name: str, value: Any) -> bool:
-    """Return ``value`` as True or False; raise ``InputError`` naming it if it is neither.
-
-    Raises
-    ------
-    InputError
-        Where it is neither true nor false.
-    """
+    """Return ``value`` as True or False; raise ``InputError`` naming it if it is neither."""
     flag = plain(value)
     if not isinstance(flag, bool):
         raise InputError(f"{name} = {value!r}: expected true or false")

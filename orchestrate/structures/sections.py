@@ -214,13 +214,7 @@ def read_drive(motor: Section, box: Section, structure: Structure | None) -> Dri
 
 
 def check_masses(structure: Section, motor: Section) -> None:
-    """Raise if a motor is in SI but the structure's mass m1 is left to its default of 1 kg.
-
-    Raises
-    ------
-    InputError
-        Where a frequency is given beside ratios, and no mass.
-    """
+    """Raise if a motor is in SI but the structure's mass m1 is left to its default of 1 kg."""
     if (
         structure.present(OMEGAS)
         and not structure.present(("m1",))

@@ -32,19 +32,12 @@ LOWEST = 0.1  # of the structure's resonance: a slower one of the box is far awa
 
 
 class BifurcationPoint(NamedTuple):
-    """Store a bifurcation point of the branch: voltage, speed, and fold or Neimark-Sacker.
+    """Store a bifurcation point of the branch: voltage, speed, and fold or Neimark-Sacker."""
 
-    Attributes
-    ----------
-    eta0, Omega : float
-        Voltage and speed.
-    kind : str
-        ``"fold"`` or ``"Neimark-Sacker"``.
-    """
-
+    # voltage and speed
     eta0: float
     Omega: float
-    kind: str
+    kind: str  # `"fold"` or `"Neimark-Sacker"`
 
 
 def mechanical_polynomials(
@@ -63,19 +56,7 @@ def mechanical_polynomials(
 def transfer_functions(
     structure: Structure, drive: Drive, Omega: ArrayLike
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the transfer functions from box force to box position and from box to masses.
-
-    Parameters
-    ----------
-    structure : Structure
-    drive : Drive
-    Omega : array_like
-        Speed over omega.
-
-    Returns
-    -------
-    H, ratio : ndarray of complex
-    """
+    """Return the transfer functions from box force to box position and from box to masses."""
     s = 1j * np.asarray(Omega, dtype=float)
     pull, masses, box = (part(s) for part in mechanical_polynomials(structure, drive))
     ratio = -masses / (masses + pull)
@@ -128,21 +109,7 @@ def calm_speed(structure: Structure, drive: Drive) -> float:
 def folds(
     structure: Structure, drive: Drive, low: float | None = None, high: float = math.inf
 ) -> list[BifurcationPoint]:
-    """Find the folds of the averaged branch, where the speed jumps (Sommerfeld effect).
-
-    Parameters
-    ----------
-    structure : Structure
-    drive : Drive
-    low, high : float, optional
-        Range of Omega; by default that of the structure's resonance, above :func:`calm_speed`.
-
-    Returns
-    -------
-    list of BifurcationPoint
-        By speed: a jump up, where eta0 is largest, then a jump down, and so on; empty without
-        folds.
-    """
+    """Find the folds of the averaged branch, where the speed jumps (Sommerfeld effect)."""
     numerator, denominator = slope_polynomials(structure, drive)
     roots = numerator.roots()
     real = np.sort(roots.real[np.abs(roots.imag) < 1e-6 * np.abs(roots)])
@@ -181,15 +148,8 @@ def slope_polynomials(structure: Structure, drive: Drive) -> tuple[Polynomial, P
 
 
 def smallest_slope(structure: Structure, drive: Drive, count: int = 10_001) -> float:
-    """Return the smallest slope d eta0 / d Omega at the structure's resonance; negative with folds.
-
-    Parameters
-    ----------
-    structure : Structure
-    drive : Drive
-    count : int
-        Speeds that are looked at, from :func:`calm_speed` to twice the resonance's, and as many
-        within twenty half widths of it.
+    """Return the smallest slope d eta0 / d Omega at the structure's resonance; negative with
+    folds.
     """
     numerator, denominator = slope_polynomials(structure, drive)
     low, peak = calm_speed(structure, drive), resonance(structure, drive)
@@ -199,19 +159,7 @@ def smallest_slope(structure: Structure, drive: Drive, count: int = 10_001) -> f
 
 
 def growth_rates(structure: Structure, drive: Drive, Omega: float) -> np.ndarray:
-    """Return the growth rates of small slow disturbances of a stationary motion.
-
-    Parameters
-    ----------
-    structure : Structure
-    drive : Drive
-    Omega : float
-
-    Returns
-    -------
-    ndarray of complex
-        Over omega; the one that grows fastest first.
-    """
+    """Return the growth rates of small slow disturbances of a stationary motion."""
     pull, masses, box = mechanical_polynomials(structure, drive)
     above = (pull + masses) * Polynomial([0.0, 0.0, 0.0, 0.0, 1.0])
     below = box * (pull + masses) + pull * masses
@@ -231,15 +179,7 @@ def growth_rates(structure: Structure, drive: Drive, Omega: float) -> np.ndarray
 def neimark_sacker_points(
     structure: Structure, drive: Drive, count: int = 151
 ) -> list[BifurcationPoint]:
-    """Find the Neimark-Sacker points, where a slow oscillation of the speed starts to grow.
-
-    Parameters
-    ----------
-    structure : Structure
-    drive : Drive
-    count : int
-        Speeds that are looked at, from 0.8 to 1.5 times the structure's resonance.
-    """
+    """Find the Neimark-Sacker points, where a slow oscillation of the speed starts to grow."""
     from scipy.optimize import brentq
 
     def hurwitz_product(Omega: float) -> float:
@@ -266,14 +206,7 @@ def neimark_sacker_points(
 def stability_limits(
     structure: Structure, drive: Drive
 ) -> tuple[BifurcationPoint | None, BifurcationPoint | None]:
-    """Return the point where a slow voltage ramp loses stability, upward and downward.
-
-    Returns
-    -------
-    up, down : BifurcationPoint or None
-        The end of the stable branch that comes from below, and of the one from beyond; None where
-        all motions are stable.
-    """
+    """Return the point where a slow voltage ramp loses stability, upward and downward."""
     points, stable = branch_stability(structure, drive)
     if not points:
         return None, None
@@ -287,14 +220,7 @@ def stability_limits(
 def branch_stability(
     structure: Structure, drive: Drive
 ) -> tuple[list[BifurcationPoint], list[bool]]:
-    """Return all folds and Neimark-Sacker points by speed, and which motions are stable.
-
-    Returns
-    -------
-    points : list of BifurcationPoint
-    stable : list of bool
-        Of the motions below the first point, between each and the next, and beyond the last one.
-    """
+    """Return all folds and Neimark-Sacker points by speed, and which motions are stable."""
     speed = resonance(structure, drive)
     torus = neimark_sacker_points(structure, drive)
     points = sorted([*folds(structure, drive), *torus], key=lambda point: point.Omega)

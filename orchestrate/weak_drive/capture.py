@@ -62,25 +62,15 @@ class System(NamedTuple):
 
 @dataclass(frozen=True)
 class CaptureJob(Job):
-    """Run starts from rest at several voltages for each value of a parameter.
-
-    Attributes
-    ----------
-    over : str
-        Empty for none.
-    voltages : tuple of float
-        V, rising.
-    time : float
-        0: by the system's time constants.
-    """
+    """Run starts from rest at several voltages for each value of a parameter."""
 
     structure: Structure
     drive: Drive
-    over: str
+    over: str  # empty for none
     values: tuple[float, ...]
-    voltages: tuple[float, ...]
+    voltages: tuple[float, ...]  # V, rising
     tolerance: float
-    time: float
+    time: float  # 0: by the system's time constants
     stay: int
     scheme: Scheme
     control: Controller | None = None
@@ -203,11 +193,6 @@ def threshold_voltage(
     The highest voltage that is captured and the lowest above it that passes are brought together to
     ``tolerance``. An undecided start is neither: the bracket is wider then, and both its ends are
     brought close to the undecided voltages.
-
-    Returns
-    -------
-    low, high : ThresholdEnd
-        NaN where the highest voltage does not pass, or none captures.
     """
     captured = [i for i, outcome in enumerate(outcomes) if outcome.captured]
     if not captured or not outcomes[-1].passed:
@@ -235,13 +220,7 @@ def threshold_voltage(
 
 
 def replace_parameter(system: System, over: str, value: float) -> System:
-    """Replace one parameter of the drive or of the structure, and return both.
-
-    Raises
-    ------
-    InputError
-        Where neither has it, or it does not take the value.
-    """
+    """Replace one parameter of the drive or of the structure, and return both."""
     if over in DRIVE_NAMES:
         return system._replace(drive=system.drive.replace(**{over: value}))
     return system._replace(structure=system.structure.replace(**{over: value}))

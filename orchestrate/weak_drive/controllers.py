@@ -19,24 +19,12 @@ ControllerState = tuple[float, ...]
 
 
 class Measurement(NamedTuple):
-    """Store what a controller measures at the beginning of a communication step.
+    """Store what a controller measures at the beginning of a communication step."""
 
-    Attributes
-    ----------
-    time : float
-        s.
-    speed : float
-        Of the motor, at this instant, rad/s.
-    available : float
-        Voltage of the schedule over the step, V: the most a controller may take.
-    h : float
-        Length of the step, s.
-    """
-
-    time: float
-    speed: float
-    available: float
-    h: float
+    time: float  # s
+    speed: float  # of the motor, at this instant, rad/s
+    available: float  # voltage of the schedule over the step, V: the most a controller may take
+    h: float  # length of the step, s
 
 
 @dataclass(frozen=True)

@@ -121,17 +121,7 @@ class CoupleJob(CoupledRun):
         every: int,
         revolve: Callable[[Run], Table],
     ) -> Table:
-        """Compute one chunk with a given stepping function and return its final state too.
-
-        Parameters
-        ----------
-        fmus, items, previous
-            As of :meth:`work`.
-        every : int
-            Steps of a chunk.
-        revolve : callable
-            Does the steps; gives what is kept of them.
-        """
+        """Compute one chunk with a given stepping function and return its final state too."""
         if items[0] == self.steps():
             assert previous is not None
             nothing = {name: values[:0] for name, values in previous.items()}
@@ -146,15 +136,7 @@ class CoupleJob(CoupledRun):
         return "voltages held where a jump is in doubt" if first == self.steps() else ""
 
     def run_held_voltage_tests(self, fmus: Mapping[str, Path], table: Table, every: int) -> Table:
-        """Hold voltages where the ramp's record leaves a jump in doubt; return verdicts.
-
-        Parameters
-        ----------
-        fmus : mapping
-        table : dict of ndarray
-            Revolutions, and the states after ``every`` steps each.
-        every : int
-        """
+        """Hold voltages where the ramp's record leaves a jump in doubt; return verdicts."""
         record = RampRecord(self, table)
         doubts = [record.doubtful_passing(up) for up in UPWARD]
         places = [record.find_further_passings(up) for up in UPWARD]
@@ -224,13 +206,7 @@ class CoupleJob(CoupledRun):
         return results
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Build the dataset of all revolutions, of the jumps and of their verdicts.
-
-        Raises
-        ------
-        InputError
-            Where the motor has not turned once.
-        """
+        """Build the dataset of all revolutions, of the jumps and of their verdicts."""
         import xarray as xr
 
         if not len(table["time"]):
@@ -509,12 +485,7 @@ def couple_job(
     control: Controller | None = None,
     hold: float | None = None,
 ) -> CoupleJob:
-    """Check the arguments of a coupled run and build its job.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check the arguments of a coupled run and build its job."""
     if control is not None and not isinstance(control, Controller):
         raise InputError(f"control = {control!r}: expected SpeedControl(...), SpeedGradient(...)")
     if speed_start is None:

@@ -43,17 +43,11 @@ SHARES = (0.6, 0.45, 0.3, 0.15)  # of the way from the jump down to the jump up:
 
 @dataclass(frozen=True)
 class DriveSpectraJob(Job):
-    """Compute the spectra of the bonded and the delaminated structure.
-
-    Attributes
-    ----------
-    approach : Ramp
-        How the voltage gets where it is held.
-    """
+    """Compute the spectra of the bonded and the delaminated structure."""
 
     structure: Structure
     drive: Drive
-    approach: Ramp
+    approach: Ramp  # how the voltage gets where it is held
     hold: float
     step: float
     revolutions: int
@@ -149,21 +143,7 @@ class DriveSpectraJob(Job):
 
 
 def voltage_at_resonance(structure: Structure, drive: Drive, share: float = 0.6) -> float:
-    """Return a voltage at which the motor hangs at the resonance, V.
-
-    Parameters
-    ----------
-    structure : Structure
-    drive : Drive
-    share : float
-        Of the way from the jump down to the jump up of the bonded structure, by the averaged
-        theory; delaminated it jumps up earlier.
-
-    Raises
-    ------
-    InputError
-        Where the theory knows no jumps.
-    """
+    """Return a voltage at which the motor hangs at the resonance, V."""
     folds = averaged.folds(structure, drive)
     if not folds:
         raise InputError("voltage: expected one, in V; by the averaged theory there is no jump")

@@ -56,28 +56,14 @@ ITERATIONS = 12  # of Newton's method from a guess that is not of the branch its
 
 
 class Motion(NamedTuple):
-    """Store one stationary motion of a branch: root, Jacobian, multipliers and period.
-
-    Attributes
-    ----------
-    root : Root
-    matrix : ndarray
-        Jacobian there.
-    multipliers : ndarray of complex
-        Floquet multipliers, the largest first.
-    period : Period
-    angle : float
-        Of the motor where the period begins, rad.
-    together : bool
-        Whether it begins with the masses in contact.
-    """
+    """Store one stationary motion of a branch: root, Jacobian, multipliers and period."""
 
     root: Root
-    matrix: Floats
-    multipliers: np.ndarray
+    matrix: Floats  # jacobian there
+    multipliers: np.ndarray  # floquet multipliers, the largest first
     period: Period
-    angle: float
-    together: bool
+    angle: float  # of the motor where the period begins, rad
+    together: bool  # whether it begins with the masses in contact
 
     @property
     def coordinates(self) -> Floats:
@@ -106,16 +92,7 @@ class ShooterStepper(ArclengthStepper[Shooter]):
 
 
 class DriveTracer(BranchTracer[Shooter, Motion]):
-    """Trace a branch of stationary motions within a range of speeds; locate bifurcations.
-
-    Parameters
-    ----------
-    shooter : Shooter
-    start : Motion
-    speeds : (float, float)
-        Lowest and highest, over omega.
-    settings : ContinuationSettings
-    """
+    """Trace a branch of stationary motions within a range of speeds; locate bifurcations."""
 
     kinds = (FOLD, FLIP, TORUS)
     stepper: ShooterStepper
@@ -225,13 +202,7 @@ def motion_at(shooter: Shooter, root: Root, direction: Floats) -> Motion:
 
 
 def motion_near(shooter: Shooter, guess: Floats, up: bool) -> Motion:
-    """Solve for the motion of a given speed, starting from a guess.
-
-    Raises
-    ------
-    NoConvergenceError
-        Where there is none.
-    """
+    """Solve for the motion of a given speed, starting from a guess."""
     shooter.renew_jacobian(guess)
     speed = unit_vector(len(guess), -1)
     root = newton_correct(shooter, guess, speed, max_iterations=ITERATIONS)
@@ -239,13 +210,7 @@ def motion_near(shooter: Shooter, guess: Floats, up: bool) -> Motion:
 
 
 def double_period(shooter: Shooter, flip: Motion) -> Motion:
-    """Solve for a motion of twice the period near a period doubling.
-
-    Raises
-    ------
-    NoConvergenceError
-        Where there is none.
-    """
+    """Solve for a motion of twice the period near a period doubling."""
     for distance in AWAY:
         shooter.begin_together(flip.together)
         shooter.repeat_after(flip.period.revolutions)

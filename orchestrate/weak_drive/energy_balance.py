@@ -20,50 +20,23 @@ from .polynomials import end_value, integrate_product, matched_quartic, normaliz
 
 
 class Energies(NamedTuple):
-    """Store the energies since the start, J: the motor's work and where it has gone.
+    """Store the energies since the start, J: the motor's work and where it has gone."""
 
-    Attributes
-    ----------
-    motor : float
-        Mechanical work of the motor.
-    box_damper, impact_loss, dampers : float
-        Lost in the damper of the box, in impacts, in the dampers of the masses.
-    stored : float
-        Kinetic energy, and energy of the springs.
-    missing : float
-        Motor less all others: what the coupling has lost (negative: fed in).
-    defect, defect_sizes : float
-        Sum of the steps' defects (work that the box takes less work that the masses give), and sum
-        of their sizes.
-    """
-
-    motor: float
+    motor: float  # mechanical work of the motor
+    # lost in the damper of the box, in impacts, in the dampers of the masses
     box_damper: float
     impact_loss: float
-    stored: float
+    stored: float  # kinetic energy, and energy of the springs
     dampers: float
-    missing: float
+    missing: float  # motor less all others: what the coupling has lost (negative: fed in)
+    # sum of the steps' defects (work that the box takes less work that the masses give), and sum of
+    # their sizes
     defect: float
     defect_sizes: float
 
 
 class EnergyBalance:
-    """Sum up the energies of a coupled run, step by step.
-
-    Parameters
-    ----------
-    structure : Structure
-    motion : OscillatorOutputs
-    shaking : ShakerOutputs
-        Outputs of both sides at the start.
-
-    Attributes
-    ----------
-    lost : float
-        Energy lost in the structure, J.
-    defect, defect_sizes : float
-        Sum of the steps' defects, and of their sizes, J.
-    """
+    """Sum up the energies of a coupled run, step by step."""
 
     def __init__(
         self, structure: Structure, motion: OscillatorOutputs, shaking: ShakerOutputs
@@ -101,19 +74,7 @@ class EnergyBalance:
         defect: float,
         h: float,
     ) -> None:
-        """Add the energy lost in the structure over one step, and the step's defect.
-
-        Parameters
-        ----------
-        before, after : OscillatorOutputs
-            The structure at its ends.
-        acceleration : tuple of float
-            The box's acceleration, as the structure was told it.
-        defect : float
-            J.
-        h : float
-            Length of the step, s.
-        """
+        """Add the energy lost in the structure over one step, and the step's defect."""
         work = h * integrate_product(
             self._momentum(before, after, acceleration, h), normalized_coefficients(acceleration, h)
         )

@@ -83,18 +83,7 @@ def range_of_mass(
     begin: float,
     h: float,
 ) -> Range:
-    """Return the lowest and the highest x1 within a step, also with an impact.
-
-    Parameters
-    ----------
-    structure : Structure
-    ends : tuple of OscillatorOutputs
-        The structure at the step's beginning and end.
-    acceleration : tuple of float
-        The box's acceleration, as the structure was told it.
-    begin, h : float
-        The step's beginning and length, s.
-    """
+    """Return the lowest and the highest x1 within a step, also with an impact."""
     before, after = ends
     positions = [before.x1, after.x1]
     hit = after.impact_time - begin
@@ -120,28 +109,18 @@ def range_of_box(
 
 @dataclass
 class Revolution:
-    """Record the extreme positions during one revolution of the motor.
+    """Record the extreme positions during one revolution of the motor."""
 
-    Attributes
-    ----------
-    turn : float
-        Full turns of the motor at its beginning.
-    time, impacts : float
-        s, and impacts so far, at its beginning.
-    x1_high, x1_low, box_high, box_low : float
-        Extreme positions since, m.
-    acceleration : float
-        Largest of the box, m/s2.
-    """
-
-    turn: float
+    turn: float  # full turns of the motor at its beginning
+    # s, and impacts so far, at its beginning
     time: float
     impacts: float
+    # extreme positions since, m
     x1_high: float
     x1_low: float
     box_high: float
     box_low: float
-    acceleration: float = 0.0
+    acceleration: float = 0.0  # largest of the box, m/s2
 
     @classmethod
     def begin(

@@ -44,22 +44,7 @@ APART = 4  # widths of the mean between two places; for fewer no scatter is know
 def find_further_jumps(
     leg: SweepLeg, b: float, up: bool, threshold: float, main: tuple[int, int] | None = None
 ) -> list[Passing]:
-    """Find where the ramp may lose a motion besides the passing of the resonance.
-
-    Parameters
-    ----------
-    leg : SweepLeg
-        Of one ramp, without a gap.
-    b : float
-        Slope of the torque line, the inverse of the time in which a rotor without load settles.
-    up : bool
-        Whether the voltage rises.
-    threshold : float
-        Speed between the motions below and beyond the resonance. Beyond it the torque falls with
-        the speed on stable branches too: the speed has to change fast there.
-    main : (int, int), optional
-        Rows between which the speed passes the resonance: nothing is looked for there.
-    """
+    """Find where the ramp may lose a motion besides the passing of the resonance."""
     limits, sign = Criterion(), 1.0 if up else -1.0
     width = mean_width(leg, b)
     if not width or len(leg.time) < 2 * APART * width:

@@ -24,31 +24,14 @@ BACK = 3  # motions over which the slope of a margin is taken
 
 
 class Margins(NamedTuple):
-    """Store how far a motion's gaps and impacts are from grazing, non-dimensional.
+    """Store how far a motion's gaps and impacts are from grazing, non-dimensional."""
 
-    Attributes
-    ----------
-    flight : float
-        Smallest gap at which the masses turn away from each other without an impact.
-    impact : float
-        Smallest closing speed of an impact, over omega.
-    """
-
-    flight: float
-    impact: float
+    flight: float  # smallest gap at which the masses turn away from each other without an impact
+    impact: float  # smallest closing speed of an impact, over omega
 
 
 def grazing_margins(shooter: Shooter, unknowns: Floats, angle: float) -> Margins:
-    """Simulate one period and return its smallest gap and smallest closing speed.
-
-    Parameters
-    ----------
-    shooter : Shooter
-    unknowns : ndarray
-        The motion.
-    angle : float
-        Of the motor where its period begins, rad.
-    """
+    """Simulate one period and return its smallest gap and smallest closing speed."""
     shooter.angle = angle
     master, voltage = shooter.begin_period(unknowns)
     gaps, closing = [math.inf], [math.inf]
@@ -89,19 +72,6 @@ def next_grazing(
     """Extrapolate which grazing comes next along a branch, and how far away it is.
 
     A margin is taken to fall as it did over the last motions. The very last ones may be beyond.
-
-    Parameters
-    ----------
-    shooter : Shooter
-    motions : sequence of (ndarray, float)
-        Unknowns, and the motor's angle where the period begins.
-
-    Returns
-    -------
-    kind : BifurcationKind or None
-        None where nothing grazes within ``REACH``.
-    distance : float
-        In voltage over K omega and speed over omega.
     """
     last_motions = motions[-2 * BACK :]
     falling = np.array([grazing_margins(shooter, *motion) for motion in last_motions])

@@ -43,19 +43,11 @@ MEANINGS = {
 
 
 class Verdict(NamedTuple):
-    """Store a result of the held-voltage test: the outcome and the bracket of voltages.
+    """Store a result of the held-voltage test: the outcome and the bracket of voltages."""
 
-    Attributes
-    ----------
-    outcome : int
-        ``NOT_ASKED``, ``LOST``, ``FOLLOWS``, ``LEFT_BEFORE`` or ``UNDECIDED``.
-    low, high : float
-        The last voltage at which the motion stays and the first at which it is lost, V; of an
-        undecided verdict the voltages between which the speed changes most, as far as known; NaN
-        else.
-    """
-
-    outcome: int
+    outcome: int  # `NOT_ASKED`, `LOST`, `FOLLOWS`, `LEFT_BEFORE` or `UNDECIDED`
+    # the last voltage at which the motion stays and the first at which it is lost, V; of an
+    # undecided verdict the voltages between which the speed changes most, as far as known; NaN else
     low: float = math.nan
     high: float = math.nan
 
@@ -65,18 +57,10 @@ class Verdict(NamedTuple):
 
 
 class HeldCourse(NamedTuple):
-    """Store the verdicts on the largest and on all other speed changes of a held course.
+    """Store the verdicts on the largest and on all other speed changes of a held course."""
 
-    Attributes
-    ----------
-    verdict : Verdict
-        On the largest change of the speed.
-    further : tuple of Verdict
-        On the others at which a motion is lost, or may be.
-    """
-
-    verdict: Verdict
-    further: tuple[Verdict, ...] = ()
+    verdict: Verdict  # on the largest change of the speed
+    further: tuple[Verdict, ...] = ()  # on the others at which a motion is lost, or may be
 
 
 class HeldVoltageTest(VoltageHolder):
@@ -94,13 +78,7 @@ class HeldVoltageTest(VoltageHolder):
         return test
 
     def for_suspected_jumps(self, end: float) -> HeldVoltageTest:
-        """Return a copy with the settings for places where a record suggests a further jump.
-
-        Parameters
-        ----------
-        end : float
-            Voltage at which the ramp ends, V: shortly before it a jump need not show.
-        """
+        """Return a copy with the settings for places where a record suggests a further jump."""
         test = self.for_further_jumps()
         settings = test.settings
         test.settings = replace(settings, least_told=settings.suspected_jump, told_near=end)
@@ -114,21 +92,7 @@ class HeldVoltageTest(VoltageHolder):
         up: bool,
         resonance: tuple[float, float] | None = None,
     ) -> HeldCourse:
-        """Decide whether a passage of a speed threshold loses the motion, and where.
-
-        Parameters
-        ----------
-        steps : Passing
-            By steps of the run.
-        ends : (int, int)
-            Steps at which the voltage begins and ceases to go this way.
-        threshold : float
-            Speed over omega between the motions below and beyond the resonance.
-        up : bool
-        resonance : (float, float), optional
-            Least and largest speed that may divide them: the held course begins before both and
-            ends beyond both, as far as the run goes. By default both are the threshold.
-        """
+        """Decide whether a passage of a speed threshold loses the motion, and where."""
         sign = 1.0 if up else -1.0
         near, far = (resonance or (threshold, threshold))[:: 1 if up else -1]
 
@@ -162,18 +126,8 @@ class HeldVoltageTest(VoltageHolder):
         return HeldCourse(verdict, tuple(others))
 
     def losses_before_the_end(self, steps: tuple[int, int], up: bool) -> list[Verdict]:
-        """Hold voltages to the end of a ramp and bracket the losses that it would show afterwards.
-
-        Parameters
-        ----------
-        steps : (int, int)
-            Of the run, at which the course begins, and at which the ramp ends.
-        up : bool
-
-        Returns
-        -------
-        list of Verdict
-            Losses, certain and undecided ones; none where the speed follows the voltage.
+        """Hold voltages to the end of a ramp and bracket the losses that it would show
+        afterwards.
         """
         sign, test = 1.0 if up else -1.0, self.for_further_jumps()
         low = self.hold_step(steps[0])
@@ -215,11 +169,6 @@ class HeldVoltageTest(VoltageHolder):
 
         Steps in which the speed falls back, or came back from further along, are halved: the course
         takes up what the halves settle at, as a motion that exists in a narrow range of voltages.
-
-        Returns
-        -------
-        (int, Verdict), optional
-            Index of the last point before its end, and the end: ``LOST`` or ``UNDECIDED``.
         """
         i = 0
         while i + 1 < len(points):
@@ -295,12 +244,6 @@ class HeldVoltageTest(VoltageHolder):
 
         UNDECIDED if none does, but there is one to come to, or if a ramp stays on the motion: an
         irregular one ends by chance. Else FOLLOWS.
-
-        Parameters
-        ----------
-        points : list of HeldPoint
-            Of the course: the last one before the end, the first one past it, and all after it.
-        sign : float
         """
         last, landed, *after = points
         if not after or not self.ends_against(last, landed, sign):
@@ -421,13 +364,6 @@ class HeldVoltageTest(VoltageHolder):
 
         The speed came back then, which it also does after a fast ramp: it is such an end if a
         course from well before falls back on its way there.
-
-        Parameters
-        ----------
-        low : HeldPoint
-        step, first : int
-            Of the run: that of the held point, and the earliest.
-        sign : float
         """
         if not self.came_back(low, sign):
             return low

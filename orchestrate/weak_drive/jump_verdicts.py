@@ -27,24 +27,14 @@ SMOOTH_TEXT = "no jump: the speed follows the voltage through the resonance"
 
 
 class AveragedPrediction(NamedTuple):
-    """Store where averaged theory predicts that the bonded structure loses stability.
+    """Store where averaged theory predicts that the bonded structure loses stability."""
 
-    Attributes
-    ----------
-    losses : tuple of float
-        Voltages over K omega where a motion may be lost: a Neimark-Sacker point and the fold after
-        it, or one of them; empty where none is lost.
-    narrow : bool
-        Whether its folds are so close that there may be none.
-    slope : float
-        Least slope d eta0 / d Omega of all motions.
-    box_losses : tuple of float
-        The same as ``losses`` at the box's own resonance, below that of the structure.
-    """
-
+    # voltages over K omega where a motion may be lost: a Neimark-Sacker point and the fold after
+    # it, or one of them; empty where none is lost
     losses: tuple[float, ...]
-    narrow: bool
-    slope: float
+    narrow: bool  # whether its folds are so close that there may be none
+    slope: float  # least slope d eta0 / d Omega of all motions
+    # the same as `losses` at the box's own resonance, below that of the structure
     box_losses: tuple[float, ...] = ()
 
 
@@ -100,16 +90,7 @@ def check_further(verdict: Verdict, theory: AveragedPrediction, volts: float) ->
 
 
 def explain_no_jump(held: Verdict, final: Verdict, theory: AveragedPrediction, hold: float) -> str:
-    """Explain in words why a passage of the resonance is not reported as a jump.
-
-    Parameters
-    ----------
-    held, final : Verdict
-        Of held voltages, before and after the averaged theory was asked.
-    theory : AveragedPrediction
-    hold : float
-        Time for which voltages were held at most, s.
-    """
+    """Explain in words why a passage of the resonance is not reported as a jump."""
     if final.outcome == UNDECIDED:
         return explain_undecided(held, theory, hold)
     texts = {FOLLOWS: FOLLOWS_TEXT, LEFT_BEFORE: LEFT_BEFORE_TEXT}

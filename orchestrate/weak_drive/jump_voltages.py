@@ -45,22 +45,6 @@ EXPONENT = 2.0 / 3.0
 def extrapolate(rates: np.ndarray, voltages: np.ndarray) -> tuple[float, float]:
     """Extrapolate jump voltages to rate 0; return the voltage and its standard error.
 
-    Parameters
-    ----------
-    rates : ndarray, shape (n,)
-        V/s.
-    voltages : ndarray, shape (n,)
-        V, NaN where there is no jump.
-
-    Returns
-    -------
-    voltage, error : float
-        NaN with fewer than two jumps; the error NaN with two, which a line in rate^(2/3) always
-        meets. From three on the term in the rate is fitted too. The error has two parts: what the
-        scatter makes of it, from four jumps on, and half of what the term in the rate changes,
-        since that is not the last term of the law. (It may change nothing because the next one
-        cancels it at these rates: such an error is too small.)
-
     Examples
     --------
     >>> rates = np.array([1e-4, 3e-5, 1e-5])
@@ -80,18 +64,7 @@ def extrapolate(rates: np.ndarray, voltages: np.ndarray) -> tuple[float, float]:
 
 
 def summarize_held(voltages: np.ndarray, errors: np.ndarray) -> np.ndarray:
-    """Return middle and error of the brackets that held voltages found at several rates.
-
-    Parameters
-    ----------
-    voltages, errors : ndarray, shape (n, m)
-        Middles and half widths of n brackets each, V.
-
-    Returns
-    -------
-    ndarray, shape (m, 2)
-        Middle of all brackets, and half of what they span together.
-    """
+    """Return middle and error of the brackets that held voltages found at several rates."""
     low, high = (voltages - errors).min(axis=0), (voltages + errors).max(axis=0)
     return np.stack([0.5 * (low + high), 0.5 * (high - low)], axis=1)
 
@@ -113,20 +86,11 @@ def fit_rate_powers(
 
 @dataclass(frozen=True)
 class JumpVoltagesJob(Job):
-    """Run ramps at several rates for the bonded and the delaminated structure.
-
-    Attributes
-    ----------
-    structure : Structure
-    drive : Drive
-    schedules : tuple of Ramp
-        One for each rate, slowest first.
-    scheme : Scheme
-    """
+    """Run ramps at several rates for the bonded and the delaminated structure."""
 
     structure: Structure
     drive: Drive
-    schedules: tuple[Ramp, ...]
+    schedules: tuple[Ramp, ...]  # one for each rate, slowest first
     scheme: Scheme
 
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)

@@ -23,66 +23,40 @@ SHARE = 0.3  # of the change of the slip in a jump: more than half its maximum w
 
 
 class SweepLeg(NamedTuple):
-    """Store time, voltage and speed of the revolutions with a rising or a falling voltage.
+    """Store time, voltage and speed of the revolutions with a rising or a falling voltage."""
 
-    Attributes
-    ----------
-    time, eta0, Omega : ndarray
-        At the revolutions' ends.
-    """
-
+    # at the revolutions' ends
     time: np.ndarray
     eta0: np.ndarray
     Omega: np.ndarray
 
 
 class Passing(NamedTuple):
-    """Store where in a ramp's record the speed passes the resonance, and how clearly.
+    """Store where in a ramp's record the speed passes the resonance, and how clearly."""
 
-    Attributes
-    ----------
-    row : int
-        Where the slip passes half of its largest value.
-    before, after : int
-        Where the speed leaves its branch, and where it follows the voltage again.
-    look : str
-        What the record tells: ``JUMP``; ``SMOOTH`` where the speed never changes much more than
-        the voltage; ``DOUBTFUL`` between the two; ``UNFINISHED`` where the record ends on the way.
-    half : float
-        The same as ``row``, between two rows.
-    """
-
-    row: int
+    row: int  # where the slip passes half of its largest value
+    # where the speed leaves its branch, and where it follows the voltage again
     before: int
     after: int
+    # what the record tells: `JUMP`; `SMOOTH` where the speed never changes much more than the
+    # voltage; `DOUBTFUL` between the two; `UNFINISHED` where the record ends on the way
     look: str
-    half: float
+    half: float  # the same as `row`, between two rows
 
 
 class Criterion(NamedTuple):
-    """Set the thresholds by which a ramp's record counts as a jump.
+    """Set the thresholds by which a ramp's record counts as a jump."""
 
-    Attributes
-    ----------
-    growth : float
-        Least change of the speed over that of the voltage meanwhile.
-    share : float
-        Least torque of the rotor's inertia at its largest, over the torque set free.
-    strength : float
-        Least share times the square of the growth of the whole change. By the edge of a fold, where
-        the branch is vertical but not lost, it is 2 to 6 at every rate.
-    clearness : float
-        Least change of the speed over the scatter of its changes before and after, in as long a
-        time too: the speed of an irregular motion comes and goes by itself.
-    around : int
-        Of how many widths of the running mean before and after that scatter is.
-    """
-
-    growth: float = 3.0
+    growth: float = 3.0  # least change of the speed over that of the voltage meanwhile
+    # least torque of the rotor's inertia at its largest, over the torque set free
     share: float = 0.25
+    # least share times the square of the growth of the whole change. By the edge of a fold, where
+    # the branch is vertical but not lost, it is 2 to 6 at every rate
     strength: float = 12.0
+    # least change of the speed over the scatter of its changes before and after, in as long a time
+    # too: the speed of an irregular motion comes and goes by itself
     clearness: float = 8.0
-    around: int = 40
+    around: int = 40  # of how many widths of the running mean before and after that scatter is
 
 
 def find_passing(
@@ -93,21 +67,7 @@ def find_passing(
     criterion: Criterion | None = None,
     calm: float = 0.0,
 ) -> Passing | None:
-    """Find where the speed passes the resonance for good; None where it does not.
-
-    Parameters
-    ----------
-    leg : SweepLeg
-    b : float
-        Slope of the torque line, the inverse of the time in which a rotor without load settles.
-    up : bool
-        Whether the voltage rises; the speed has to pass the same way.
-    threshold : float
-        Speed between the motions below and beyond the resonance.
-    criterion : Criterion, optional
-    calm : float
-        Speed below which the box's own resonance takes the torque.
-    """
+    """Find where the speed passes the resonance for good; None where it does not."""
     limits, sign = criterion or Criterion(), 1.0 if up else -1.0
     width = mean_width(leg, b)
     if not width:
@@ -154,19 +114,7 @@ def classify_stretch(
     stretch: tuple[int, int],
     limits: Criterion,
 ) -> str:
-    """Classify a fast change of the speed: jump, smooth, doubtful or unfinished.
-
-    Parameters
-    ----------
-    leg, means : SweepLeg
-        The record, and its running means.
-    b : float
-    sign : float
-        1 where the voltage rises, else -1.
-    stretch : (int, int)
-        First and last row of the means.
-    limits : Criterion
-    """
+    """Classify a fast change of the speed: jump, smooth, doubtful or unfinished."""
     before, after = stretch
     width = len(leg.time) - len(means.time) + 1
     last = min(after + 2 * width, len(leg.time) - 1)
@@ -234,14 +182,6 @@ def half_slip_row(slip: np.ndarray, before: int, last: int, up: bool) -> float |
 
     Where folds are close the slip is as large as that beyond the resonance too. It crosses
     ``SHARE`` of the way from there to its maximum then, where that is more.
-
-    Parameters
-    ----------
-    slip : ndarray
-    before, last : int
-        Rows where the speed leaves its branch, and where it follows the voltage again.
-    up : bool
-        Whether the voltage rises.
     """
     level = slip[before:]
     highest, largest = int(np.argmax(level)), float(level.max())
@@ -267,15 +207,7 @@ def time_beyond_threshold(time: np.ndarray, Omega: np.ndarray, threshold: float)
 
 
 def explain_not_passed(leg: SweepLeg, up: bool, resonance: float) -> str:
-    """Explain in words why the speed does not pass the resonance for good.
-
-    Parameters
-    ----------
-    leg : SweepLeg
-    up : bool
-    resonance : float
-        Speed of the resonance over omega.
-    """
+    """Explain in words why the speed does not pass the resonance for good."""
     if not len(leg.time):
         return f"the voltage does not {'rise' if up else 'fall'}"
     speed = np.abs(leg.Omega)

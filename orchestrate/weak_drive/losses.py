@@ -27,21 +27,11 @@ SAME = 2e-4  # of K omega: brackets so close are of one loss
 
 
 class Loss(NamedTuple):
-    """Store one loss of stability on a ramp, certain or suspected.
+    """Store one loss of stability on a ramp, certain or suspected."""
 
-    Attributes
-    ----------
-    passing : Passing
-        By rows of the run.
-    verdict : Verdict
-        Of held voltages.
-    voltage : float
-        Where it is, for the order of several, V.
-    """
-
-    passing: Passing
-    verdict: Verdict
-    voltage: float
+    passing: Passing  # by rows of the run
+    verdict: Verdict  # of held voltages
+    voltage: float  # where it is, for the order of several, V
 
     @property
     def is_sure(self) -> bool:
@@ -98,14 +88,6 @@ def is_crossed(losses: Sequence[Verdict], ends: np.ndarray, sign: float) -> bool
 
     The last one is what it shows at the passing of the resonance. A place that begins beyond all of
     them is another loss.
-
-    Parameters
-    ----------
-    losses : sequence of Verdict
-        In the order of the ramp.
-    ends : ndarray, shape (2,)
-        Voltages where the place begins and ends, V.
-    sign : float
     """
     if len(losses) < 2:
         return False
@@ -130,22 +112,7 @@ def gather_losses(
     places: Sequence[Passing],
     further: Sequence[tuple[int, Verdict]],
 ) -> tuple[Loss | None, list[Loss]]:
-    """Combine record and verdicts: return the loss at the resonance, and all others.
-
-    Parameters
-    ----------
-    table : dict of ndarray
-    rows : ndarray
-        Of the direction.
-    passing : Passing, optional
-        Of the resonance.
-    primary : Verdict
-        On the largest change of the held course through the resonance.
-    places : sequence of Passing
-        Further places of the record.
-    further : sequence of (int, Verdict)
-        Verdicts on these, and of the course through the resonance.
-    """
+    """Combine record and verdicts: return the loss at the resonance, and all others."""
     through = [verdict for place, verdict in further if place == THROUGH]
     covered = [
         places[place] for place, verdict in further if place >= 0 and verdict.outcome == NOT_ASKED

@@ -62,20 +62,13 @@ def split_state(
 
 
 class Algorithm(NamedTuple):
-    """Describe a coupling algorithm: passes per step and order of extrapolation.
+    """Describe a coupling algorithm: passes per step and order of extrapolation."""
 
-    Attributes
-    ----------
-    passes : int
-        How often a step is done, one side after the other, the structure first; 0: both sides at
-        once. From 2 on the states are saved and restored.
-    terms : int
-        Of the acceleration that the structure is told in the first pass: 1 held constant, 2 a line,
-        3 a parabola, 4 a cubic.
-    text : str
-    """
-
+    # how often a step is done, one side after the other, the structure first; 0: both sides at
+    # once. From 2 on the states are saved and restored
     passes: int
+    # of the acceleration that the structure is told in the first pass: 1 held constant, 2 a line, 3
+    # a parabola, 4 a cubic
     terms: int
     text: str
 
@@ -95,38 +88,24 @@ ALGORITHMS = {
 
 @dataclass(frozen=True)
 class Scheme:
-    """Set the coupling algorithm, the communication step and its error control.
+    """Set the coupling algorithm, the communication step and its error control."""
 
-    Attributes
-    ----------
-    algorithm : str
-        Of ``ALGORITHMS``.
-    h : float
-        Communication interval, s: the longest step, and all of them without ``tolerance``.
-    matched : bool
-        Exchange forces and accelerations that are exact on average; else through points only.
-    tolerance : float
-        Step control: a step is halved whose defect is larger than this part of the work exchanged
-        in it, and the next is twice as long where it may be, up to ``h``; 0: all are ``h``. Needs
-        an algorithm that goes back.
-    halvings : int
-        How often ``h`` is halved at most.
-    easy : float
-        Part of the tolerance: after a step with a smaller defect the length is doubled.
-    converged : float
-        Change of the force between two iterations, over its size, that counts as none.
-    beginning : tuple of int
-        Relative lengths of the parts of the first step, for algorithms that cannot go back: nothing
-        is known yet to extrapolate from.
-    """
-
-    algorithm: str = "rollback"
+    algorithm: str = "rollback"  # of `ALGORITHMS`
+    # communication interval, s: the longest step, and all of them without `tolerance`
     h: float = 0.1
+    # exchange forces and accelerations that are exact on average; else through points only
     matched: bool = True
+    # step control: a step is halved whose defect is larger than this part of the work exchanged in
+    # it, and the next is twice as long where it may be, up to `h`; 0: all are `h`. Needs an
+    # algorithm that goes back
     tolerance: float = 0.0
-    halvings: int = 6
+    halvings: int = 6  # how often `h` is halved at most
+    # part of the tolerance: after a step with a smaller defect the length is doubled
     easy: float = 1.0 / 64.0
+    # change of the force between two iterations, over its size, that counts as none
     converged: float = 1e-14
+    # relative lengths of the parts of the first step, for algorithms that cannot go back: nothing
+    # is known yet to extrapolate from
     beginning: tuple[int, ...] = (1, 1, 2, 4, 8)
 
     def __post_init__(self) -> None:
@@ -160,31 +139,6 @@ class Master:
     """Step two initialised FMU instances together and exchange force and acceleration.
 
     :class:`.compiled.CompiledMaster` does the same with the same bits, faster.
-
-    Parameters
-    ----------
-    oscillator, shaker : Instance
-    structure : Structure
-    scheme : Scheme
-    start_time : float
-        Of both instances, s.
-
-    Attributes
-    ----------
-    time : float
-        s.
-    voltage : float
-        V.
-    motion : OscillatorOutputs
-    shaking : ShakerOutputs
-        Outputs of both sides at ``time``.
-    balance : EnergyBalance
-    h_before : float
-        Length of the last step, s.
-    level : int
-        How often ``h`` is halved for the next step.
-    revolution : Revolution, optional
-        Is told every step, halves too.
     """
 
     def __init__(
@@ -229,24 +183,7 @@ class Master:
         h: float | None = None,
         kept: np.ndarray | None = None,
     ) -> int:
-        """Run communication intervals until a revolution ends; return the next index.
-
-        Parameters
-        ----------
-        voltages : sequence of float
-            Of each, V.
-        first : int
-            The one to begin with.
-        h : float, optional
-            Their length, s, where it is not the scheme's.
-        kept : ndarray, shape (len(voltages), len(get_state())), optional
-            Takes the memory after each.
-
-        Returns
-        -------
-        int
-            The one that comes next.
-        """
+        """Run communication intervals until a revolution ends; return the next index."""
         for i in range(first, len(voltages)):
             self.step(voltages[i], h)
             if kept is not None:

@@ -33,14 +33,7 @@ SAMPLES = 400  # of a flight, whose gap is positive
 
 @lru_cache(maxsize=64)
 def elastic_resonance(structure: Structure, drive: Drive) -> float:
-    """Compute the undamped resonance speed with one elastic impact a revolution.
-
-    Parameters
-    ----------
-    structure : Structure
-        Taken as delaminated.
-    drive : Drive
-    """
+    """Compute the undamped resonance speed with one elastic impact a revolution."""
     from scipy.optimize import brentq
 
     w, n = free_modes(structure, drive)

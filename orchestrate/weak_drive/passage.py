@@ -68,17 +68,10 @@ KEPT = "sampled "  # before the names of samples in a table that has revolutions
 
 @dataclass(frozen=True)
 class PassageJob(Job):
-    """Run the coupled FMUs and keep the state after every communication step.
-
-    Attributes
-    ----------
-    run : CoupleJob
-    around : float, optional
-        Time before and after each jump that is kept, s; all where there is none.
-    """
+    """Run the coupled FMUs and keep the state after every communication step."""
 
     run: CoupleJob
-    around: float | None
+    around: float | None  # time before and after each jump that is kept, s; all where there is none
 
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
     chunk_size: ClassVar[int] = 10_000

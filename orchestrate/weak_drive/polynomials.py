@@ -13,22 +13,7 @@ POWERS = [[i + k + 1.0 for k in range(5)] for i in range(5)]  # of s in the inte
 
 
 def matched_cubic(first: float, last: float, mean: float, moment: float, h: float) -> Cubic:
-    """Return the cubic with given end values, mean and first moment over a step.
-
-    Parameters
-    ----------
-    first, last : float
-        Values at the step's beginning and end.
-    mean, moment : float
-        Integrals of f ds and of s f ds over s = t/h in [0, 1].
-    h : float
-        Length of the step.
-
-    Returns
-    -------
-    tuple of float
-        Value and first to third derivative at the beginning.
-    """
+    """Return the cubic with given end values, mean and first moment over a step."""
     a1, a2, a3 = last - first, mean - first, moment - 0.5 * first
     b = 3.0 * a1 + 36.0 * a2 - 60.0 * a3
     c = -12.0 * a1 - 96.0 * a2 + 180.0 * a3

@@ -25,25 +25,16 @@ MOST_EVENTS = 12
 
 @dataclass
 class Path:
-    """Store what a slow ramp meets in one direction: jumps, landings, slow losses, end.
+    """Store what a slow ramp meets in one direction: jumps, landings, slow losses, end."""
 
-    Attributes
-    ----------
-    jumps : list of int
-        Folds at which its speed jumps, in turn, by their places along ``bifurcation``.
-    landings : list of float
-        The speeds to which it jumps, rad/s; one fewer than jumps where that is not known.
-    slow_losses : list of int
-        Neimark-Sacker points before a fold: there the motion is lost slowly, and a ramp that
-        nothing disturbs goes on to the fold.
-    end : str
-        Why no more is known; empty where the ramp leaves the range of speeds.
-    """
-
+    # folds at which its speed jumps, in turn, by their places along `bifurcation`
     jumps: list[int] = field(default_factory=list)
+    # the speeds to which it jumps, rad/s; one fewer than jumps where that is not known
     landings: list[float] = field(default_factory=list)
+    # neimark-Sacker points before a fold: there the motion is lost slowly, and a ramp that nothing
+    # disturbs goes on to the fold
     slow_losses: list[int] = field(default_factory=list)
-    end: str = ""
+    end: str = ""  # why no more is known; empty where the ramp leaves the range of speeds
 
 
 class Motions(NamedTuple):
@@ -65,14 +56,7 @@ class Motions(NamedTuple):
 
 
 class Branches:
-    """Store the legs and the bifurcations of one structure, and follow ramps on them.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Of :func:`orchestrate.drive_branch`.
-    structure : str
-    """
+    """Store the legs and the bifurcations of one structure, and follow ramps on them."""
 
     def __init__(self, data: xr.Dataset, structure: str) -> None:
         """Read legs and bifurcations of one structure from the dataset."""
@@ -218,18 +202,6 @@ class Branches:
 
 
 def ramp_paths(data: xr.Dataset, structure: str) -> dict[str, Path]:
-    """Return what slow ramps up and down the voltage meet on traced branches.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        Of :func:`orchestrate.drive_branch`.
-    structure : str
-        ``"bonded"`` or ``"delaminated"``.
-
-    Returns
-    -------
-    dict of Path
-    """
+    """Return what slow ramps up and down the voltage meet on traced branches."""
     branches = Branches(data, structure)
     return {"up": branches.follow_ramp(True), "down": branches.follow_ramp(False)}

@@ -22,18 +22,10 @@ LATE = 3.0  # of the rotor's time 1/b: how much later a ramp may show what it lo
 
 @dataclass(frozen=True)
 class RampRecord:
-    """Search the revolutions of a run for passages of the resonance and suspected jumps.
+    """Search the revolutions of a run for passages of the resonance and suspected jumps."""
 
-    Attributes
-    ----------
-    job : CoupledRun
-        What was run.
-    table : dict of ndarray
-        Its revolutions, a row each.
-    """
-
-    job: CoupledRun
-    table: Table
+    job: CoupledRun  # what was run
+    table: Table  # its revolutions, a row each
 
     @property
     def sense(self) -> float:

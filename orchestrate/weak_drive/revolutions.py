@@ -36,15 +36,7 @@ COLUMNS = {
 
 
 class Revolutions:
-    """Collect a run's steps into rows, one per revolution of the motor.
-
-    Parameters
-    ----------
-    master : Master
-        At the start; its steps are watched from now on.
-    impact_count : callable
-        The number of impacts so far, asked at the end of a revolution.
-    """
+    """Collect a run's steps into rows, one per revolution of the motor."""
 
     def __init__(self, master: Master, impact_count: Callable[[], float]) -> None:
         """Start the record of the first revolution."""
@@ -52,13 +44,7 @@ class Revolutions:
         self._now = master.revolution = Revolution.begin(master.motion, master.shaking)
 
     def add(self) -> tuple[float, ...] | None:
-        """Return the row of a revolution if the last step completed one, else None.
-
-        Returns
-        -------
-        tuple of float, or None
-            In the order of ``COLUMNS``, when a revolution is complete, forward or backward.
-        """
+        """Return the row of a revolution if the last step completed one, else None."""
         master, now = self._master, self._now
         turns = master.shaking.angle / TURN
         if not now.is_complete(turns):

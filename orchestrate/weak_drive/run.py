@@ -32,28 +32,16 @@ def oscillator_start(structure: Structure) -> dict[str, float | bool]:
 
 @dataclass(frozen=True)
 class CoupledRun(Job):
-    """Define what determines a coupled run: system, schedule, scheme and control.
-
-    Attributes
-    ----------
-    structure : Structure
-    drive : Drive
-    schedule : Schedule
-    scheme : Scheme
-    speed_start : float
-        Of the motor, rad/s.
-    hold: float
-        Time for which a voltage is held at most, where the record does not tell a jump, s.
-    control : Controller, optional
-        What takes the voltage from the schedule; the motor gets all of it where there is none.
-    """
+    """Define what determines a coupled run: system, schedule, scheme and control."""
 
     structure: Structure
     drive: Drive
     schedule: Schedule
     scheme: Scheme
-    speed_start: float
+    speed_start: float  # of the motor, rad/s
+    # time for which a voltage is held at most, where the record does not tell a jump, s
     hold: float
+    # what takes the voltage from the schedule; the motor gets all of it where there is none
     control: Controller | None = None
 
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
@@ -64,14 +52,7 @@ class CoupledRun(Job):
 
 
 class Run:
-    """Step both FMU instances of a coupled run and collect its revolutions.
-
-    Parameters
-    ----------
-    job : CoupledRun
-    oscillator, shaker : Instance
-        Not yet initialised.
-    """
+    """Step both FMU instances of a coupled run and collect its revolutions."""
 
     def __init__(self, job: CoupledRun, oscillator: Instance, shaker: Instance) -> None:
         """Initialise both FMU instances and create their master."""
@@ -98,14 +79,7 @@ class Run:
         return voltage
 
     def revolve(self, steps: Sequence[int], kept: np.ndarray | None = None) -> Table:
-        """Run some communication steps; return the table of completed revolutions.
-
-        Parameters
-        ----------
-        steps : sequence of int
-        kept : ndarray, optional
-            Takes the master's memory after each step, a row each.
-        """
+        """Run some communication steps; return the table of completed revolutions."""
         rows, begin = [], 0
         for voltages in self.voltage_batches(steps):
             piece = None if kept is None else kept[begin : begin + len(voltages)]

@@ -57,18 +57,10 @@ class Schedule(ABC):
 
 @dataclass(frozen=True)
 class Constant(Schedule):
-    """Keep the voltage constant for a duration.
+    """Keep the voltage constant for a duration."""
 
-    Attributes
-    ----------
-    value : float
-        V.
-    time : float
-        s.
-    """
-
-    value: float
-    time: float
+    value: float  # V
+    time: float  # s
 
     def __post_init__(self) -> None:
         """Check voltage and duration."""
@@ -93,27 +85,6 @@ class Constant(Schedule):
 class Ramp(Schedule):
     """Ramp the voltage from the first to the last one, and back.
 
-    Attributes
-    ----------
-    first, last : float
-        V.
-    rate : float
-        Change of the voltage per time, V/s, > 0; on average, where ``increment`` is not 0.
-    settle : float
-        Time at ``first`` before, s.
-    increment : float
-        Height of steps, V; 0 for a ramp.
-    back : bool
-        Whether it goes back to ``first`` again.
-    spin_up : float
-        Time in which the voltage rises from ``low`` to ``first`` at the very beginning, s.
-    low : float
-        Voltage at which it spins up from, V.
-
-    Raises
-    ------
-    InputError
-
     Examples
     --------
     >>> ramp = Ramp(first=1.0, last=1.2, rate=0.001, settle=50.0)
@@ -121,14 +92,16 @@ class Ramp(Schedule):
     [1.0, 1.0, 1.1, 1.2, 1.1, 1.0]
     """
 
+    # V
     first: float
     last: float
-    rate: float
-    settle: float = 0.0
-    increment: float = 0.0
-    back: bool = True
+    rate: float  # change of the voltage per time, V/s, > 0; on average, where `increment` is not 0
+    settle: float = 0.0  # time at `first` before, s
+    increment: float = 0.0  # height of steps, V; 0 for a ramp
+    back: bool = True  # whether it goes back to `first` again
+    # time in which the voltage rises from `low` to `first` at the very beginning, s
     spin_up: float = 0.0
-    low: float = 0.0
+    low: float = 0.0  # voltage at which it spins up from, V
 
     def __post_init__(self) -> None:
         """Check voltages, rate and times."""

@@ -38,23 +38,13 @@ PATIENCE = 600.0  # slowest time constants in the default limit
 
 
 class Outcome(NamedTuple):
-    """Store whether and where the speed has settled, and how that was decided.
+    """Store whether and where the speed has settled, and how that was decided."""
 
-    Attributes
-    ----------
-    decision : int
-        Key of ``DECISIONS``: how it was decided.
-    passed : bool
-        Whether the speed, as a mean over ``MEAN`` revolutions, has settled beyond the resonance.
-    time : float
-        From which it is beyond, s; NaN where it is not.
-    speed : float
-        The mean speed at last, rad/s; NaN where the motor was not simulated, or is undecided.
-    """
-
-    decision: int
+    decision: int  # key of `DECISIONS`: how it was decided
+    # whether the speed, as a mean over `MEAN` revolutions, has settled beyond the resonance
     passed: bool = False
-    time: float = math.nan
+    time: float = math.nan  # from which it is beyond, s; NaN where it is not
+    # the mean speed at last, rad/s; NaN where the motor was not simulated, or is undecided
     speed: float = math.nan
 
     @property
@@ -64,55 +54,26 @@ class Outcome(NamedTuple):
 
 
 class SettledEnd(NamedTuple):
-    """Store the settled end of a speed record and how much it may still change.
+    """Store the settled end of a speed record and how much it may still change."""
 
-    Attributes
-    ----------
-    decision : int
-        ``CONVERGED`` or ``BOUNDED``.
-    last : ndarray
-        Mean speeds over omega.
-    margin : float
-        What it may still change, over omega: it has a side where the threshold is further away.
-    """
-
-    decision: int
-    last: np.ndarray
+    decision: int  # `CONVERGED` or `BOUNDED`
+    last: np.ndarray  # mean speeds over omega
+    # what it may still change, over omega: it has a side where the threshold is further away
     margin: float
 
 
 @dataclass(frozen=True)
 class SettlingTest:
-    """Set the thresholds and times of the test for a settled speed.
+    """Set the thresholds and times of the test for a settled speed."""
 
-    Attributes
-    ----------
-    threshold : float
-        Speed between motions below and beyond the resonance, rad/s.
-    omega : float
-        Unit of the speeds' changes, rad/s.
-    slow : float
-        Slowest time constant, s.
-    motor : float
-        Time constant of the motor, s.
-    stay : int
-        Fewest revolutions on one side.
-    """
-
-    threshold: float
-    omega: float
-    slow: float
-    motor: float
-    stay: int
+    threshold: float  # speed between motions below and beyond the resonance, rad/s
+    omega: float  # unit of the speeds' changes, rad/s
+    slow: float  # slowest time constant, s
+    motor: float  # time constant of the motor, s
+    stay: int  # fewest revolutions on one side
 
     def judge_record(self, time: np.ndarray, speed: np.ndarray) -> Outcome:
-        """Decide from the speed's record: captured, passed or undecided.
-
-        Parameters
-        ----------
-        time, speed : ndarray, shape (n,)
-            Ends of the revolutions, s, and their mean speeds, rad/s; from the start on.
-        """
+        """Decide from the speed's record: captured, passed or undecided."""
         if len(speed) < 2 * MEAN:
             return Outcome(UNDECIDED)
         means = running_mean(np.abs(speed) / self.omega, MEAN)
@@ -203,18 +164,6 @@ def time_past_the_fold(structure: Structure, drive: Drive, distance: float) -> f
     """Estimate how long the speed creeps past the upper fold, s.
 
     Near the fold the speed obeys x' = r (distance + q x^2 / 2): it takes pi/(r sqrt(q distance/2)).
-
-    Parameters
-    ----------
-    structure : Structure
-    drive : Drive
-    distance : float
-        Of the voltage from the fold's, over K omega.
-
-    Returns
-    -------
-    float
-        0 where there is no fold.
     """
     folds = averaged.folds(structure, drive)
     if not folds:
@@ -232,14 +181,6 @@ def time_past_the_fold(structure: Structure, drive: Drive, distance: float) -> f
 
 
 def usual_limit(structure: Structure, drive: Drive, distance: float) -> float:
-    """Return the default time after which an unsettled start is undecided, s.
-
-    Parameters
-    ----------
-    structure : Structure
-    drive : Drive
-    distance : float
-        Of voltages from the fold's that are to be decided, over K omega.
-    """
+    """Return the default time after which an unsettled start is undecided, s."""
     creeping = time_past_the_fold(structure.as_bonded(), drive, distance)
     return PATIENCE * longest_time_constant(structure, drive) + 10.0 * creeping

@@ -37,49 +37,26 @@ HEAVY = 1e6  # times its inertia, a rotor that keeps its speed
 
 
 class Period(NamedTuple):
-    """Store what a simulation of one period shows: amplitude, impacts, best start.
+    """Store what a simulation of one period shows: amplitude, impacts, best start."""
 
-    Attributes
-    ----------
-    amplitude : float
-        Half the range of x1, m.
-    impacts : int
-    revolutions : int
-    clear : int
-        Steps from the start to where the gap is widest, or with ``together`` the masses are
-        pressed hardest.
-    share : float
-        The gap at the start over the widest one, or that of the forces; 1 where bonded.
-    together : bool
-        Whether the period of a preloaded structure is to begin in contact.
-    sticks : bool
-        Whether the masses of a preloaded structure are in contact at a communication point.
-    """
-
-    amplitude: float
+    amplitude: float  # half the range of x1, m
     impacts: int
     revolutions: int
+    # steps from the start to where the gap is widest, or with `together` the masses are pressed
+    # hardest
     clear: int
-    share: float
-    together: bool = False
+    share: float  # the gap at the start over the widest one, or that of the forces; 1 where bonded
+    together: bool = False  # whether the period of a preloaded structure is to begin in contact
+    # whether the masses of a preloaded structure are in contact at a communication point
     sticks: bool = False
 
 
 class Shot(NamedTuple):
-    """Store the state of both FMUs after one period, and the number of impacts.
+    """Store the state of both FMUs after one period, and the number of impacts."""
 
-    Attributes
-    ----------
-    end : ndarray
-        The state, each quantity over its unit, and the angle beyond full turns.
-    impacts : int
-        On the way.
-    contact : bool
-        Whether the masses were in permanent contact at a communication point on the way.
-    """
-
-    end: Floats
-    impacts: int
+    end: Floats  # the state, each quantity over its unit, and the angle beyond full turns
+    impacts: int  # on the way
+    # whether the masses were in permanent contact at a communication point on the way
     contact: bool
 
     def is_connected_to(self, other: Shot) -> bool:
@@ -105,30 +82,6 @@ class Shooter:
 
     A structure under a preload may stay in contact for good, or part for a short time only: its
     periods begin in contact then, with the state of one mass, and have to end in contact.
-
-    Parameters
-    ----------
-    fmus : tuple of Instance
-        Of the structure and of the shaker.
-    structure : Structure
-    drive : Drive
-    revolutions : int
-        After which the motion is to repeat.
-    steps : int
-        Communication steps in each.
-    length : float
-        Unit of the displacements, m: about the amplitude.
-
-    Attributes
-    ----------
-    together : bool
-        Whether periods begin with the masses in contact; always where bonded.
-    size : int
-        Quantities of the state; the voltage's place among the unknowns.
-    angle : float
-        Of the motor at the start, rad.
-    matrix : ndarray, shape (size + 1, size + 2)
-        The residual's Jacobian.
     """
 
     accuracy: float = RESIDUAL
@@ -254,14 +207,7 @@ class Shooter:
         return not self.structure.bonded and master.motion.x_rel == 0.0
 
     def shoot(self, unknowns: Floats) -> Shot:
-        """Simulate one period from given unknowns; return the final state and impacts.
-
-        Raises
-        ------
-        NoConvergenceError
-            Where the FMUs cannot begin there, as with masses through each other, or do not end
-            with them together though the period began so.
-        """
+        """Simulate one period from given unknowns; return the final state and impacts."""
         try:
             master, voltage = self.begin_period(unknowns)
             kept = np.empty((self.count, len(master.get_state())))
@@ -291,13 +237,7 @@ class Shooter:
         return Period(amplitude, impacts, self.turns, *self.best_start(kept[:-1]))
 
     def best_start(self, kept: Floats) -> tuple[int, float, bool, bool]:
-        """Find the point of a period that is farthest from impacts, to begin there.
-
-        Parameters
-        ----------
-        kept : ndarray, shape (n, memory)
-            A master's memory at the communication points of a period.
-        """
+        """Find the point of a period that is farthest from impacts, to begin there."""
         sizes = kept[:, STATE_INDEX["x_rel"]]
         together, sticks = self.together and not sizes.any(), False
         if self.structure.preload > 0.0:
@@ -342,13 +282,7 @@ class Shooter:
         return end_state
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
-        """Return the Jacobian by differences, or updated by Broyden's secant rule.
-
-        Raises
-        ------
-        NoConvergenceError
-            Where there is no derivative.
-        """
+        """Return the Jacobian by differences, or updated by Broyden's secant rule."""
         if at_root or not self.matrix.size:
             return self.renew_jacobian(unknowns)
         residual = self.residual(unknowns)
@@ -366,13 +300,7 @@ class Shooter:
         self.matrix, self._last = matrix, (root, np.zeros(self.size + 1))
 
     def renew_jacobian(self, unknowns: Floats) -> Floats:
-        """Compute the Jacobian by finite differences.
-
-        Raises
-        ------
-        NoConvergenceError
-            Where there is none.
-        """
+        """Compute the Jacobian by finite differences."""
         base = self.shoot(unknowns)
         matrix = np.stack(
             [self.derivative(unknowns, i, base) for i in range(len(unknowns))], axis=1
@@ -384,14 +312,7 @@ class Shooter:
         return self.matrix
 
     def derivative(self, unknowns: Floats, which: int, base: Shot) -> Floats:
-        """Compute the derivative of the final state by one unknown.
-
-        Raises
-        ------
-        NoConvergenceError
-            Where a grazing is so near that no differences agree: some 2e-6 of the unit. Rounding
-            changes them by a thousandth of that at most, so all machines draw the same line.
-        """
+        """Compute the derivative of the final state by one unknown."""
         known: dict[float, Shot] = {0.0: base}
 
         def end_state_shifted_by(change: float) -> Floats | None:

@@ -30,112 +30,67 @@ FIRST = 4  # revolutions of a hold whose speed is still that of the ramp
 
 
 class HeldPoint(NamedTuple):
-    """Store where the speed settled at a held voltage, and the state reached.
+    """Store where the speed settled at a held voltage, and the state reached."""
 
-    Attributes
-    ----------
-    voltage : float
-        V.
-    speed : float
-        Mean speed over omega that it settles at; NaN where it had not settled in time.
-    error : float
-        Of the speed of an irregular motion; 0 where it settles.
-    begin : float
-        Mean speed of the first revolutions; NaN where there are none.
-    state : dict of ndarray
-        Of the run, to go on from.
-    origin : float
-        Voltage from which it was reached in one step, V; NaN where that was a state of the run.
-    least, most : float
-        Extremes of its mean speeds on the way there, over omega; NaN where there are none.
-    """
-
-    voltage: float
-    speed: float
-    error: float
-    begin: float
-    state: Table
+    voltage: float  # V
+    speed: float  # mean speed over omega that it settles at; NaN where it had not settled in time
+    error: float  # of the speed of an irregular motion; 0 where it settles
+    begin: float  # mean speed of the first revolutions; NaN where there are none
+    state: Table  # of the run, to go on from
+    # voltage from which it was reached in one step, V; NaN where that was a state of the run
     origin: float
+    # extremes of its mean speeds on the way there, over omega; NaN where there are none
     least: float = math.nan
     most: float = math.nan
 
 
 @dataclass(frozen=True)
 class HoldSettings:
-    """Set steps, tolerances and limits of the held-voltage test.
+    """Set steps, tolerances and limits of the held-voltage test."""
 
-    Attributes
-    ----------
-    block : int
-        Revolutions of a mean speed; a multiple of the periods after which motions usually repeat.
-    tolerance : float
-        Of the speed that a motion settles at, over omega.
-    width : float
-        Of the bracket of voltages that is asked for, over K omega.
-    finest : float
-        Shortest step of the voltage, over K omega: where the speed still changes much over one, and
-        comes back, nothing is decided.
-    distinct : float
-        Largest difference of two settled speeds that may be of the same motion, over omega.
-    two_motions : float
-        Smallest difference of two settled speeds at one voltage that makes a jump, over omega.
-    smallest_jump : float
-        Change of the settled speed between neighbours, over omega, below which there is no jump. It
-        is less than 0.866 ``two_motions``: between two folds that are close, speeds at one voltage
-        differ by 2/sqrt(3) of what the speed jumps by at either, or less. So no steps find a jump
-        that others rule out.
-    further_motions, further_jump : float
-        The same two for jumps beside the largest one.
-    least_told, told_near : float
-        Change of the speed over omega at a loss below which it is undecided, and the voltage, V,
-        shortly before which it is told all the same: voltages are held there at every rate.
-    suspected_jump : float
-        The same where a record suggests a jump: fast ramps show none that is smaller, so that
-        whether it is told would depend on the rate.
-    largest_scatter : float
-        Change of the speed between neighbours, over omega, that is never put down to the scatter of
-        irregular motions: speeds that are known no better rule out no jump.
-    again : int
-        How often a voltage is held again before the end of its motion counts as a loss, and how
-        often one is reached again from an irregular motion.
-    by_chance : float
-        Range of voltages, over K omega, in which a motion may end meanwhile: where it does in a
-        wider one, it ends by chance or has long been unstable, and nothing is decided.
-    stair : float
-        Longest first step of the voltage, over K omega, and
-    max_stairs : int
-        how many of them there are at most.
-    short : float
-        Longest step, over K omega, in which a motion is followed at first that a loss leads to.
-    past : float
-        How far past the passing of the ramp the steps go, over K omega.
-    max_holds : int
-        Most voltages that are held after them.
-    rates : tuple of float
-        Of ramps from the end of a motion, over K omega in a time 1/omega: usual ones, whatever that
-        of the run was.
-    """
-
+    # revolutions of a mean speed; a multiple of the periods after which motions usually repeat
     block: int = 24
-    tolerance: float = 1e-4
-    width: float = 1e-4
+    tolerance: float = 1e-4  # of the speed that a motion settles at, over omega
+    width: float = 1e-4  # of the bracket of voltages that is asked for, over K omega
+    # shortest step of the voltage, over K omega: where the speed still changes much over one, and
+    # comes back, nothing is decided
     finest: float = 1e-6
+    # largest difference of two settled speeds that may be of the same motion, over omega
     distinct: float = 2e-3
+    # smallest difference of two settled speeds at one voltage that makes a jump, over omega
     two_motions: float = 5e-3
+    # change of the settled speed between neighbours, over omega, below which there is no jump. It
+    # is less than 0.866 `two_motions`: between two folds that are close, speeds at one voltage
+    # differ by 2/sqrt(3) of what the speed jumps by at either, or less. So no steps find a jump
+    # that others rule out
     smallest_jump: float = 4e-3
+    # the same two for jumps beside the largest one
     further_motions: float = SMALLEST
     further_jump: float = 0.8 * SMALLEST
+    # change of the speed over omega at a loss below which it is undecided, and the voltage, V,
+    # shortly before which it is told all the same: voltages are held there at every rate
     least_told: float = 0.0
     told_near: float = math.nan
+    # the same where a record suggests a jump: fast ramps show none that is smaller, so that whether
+    # it is told would depend on the rate
     suspected_jump: float = CLEAR
+    # change of the speed between neighbours, over omega, that is never put down to the scatter of
+    # irregular motions: speeds that are known no better rule out no jump
     largest_scatter: float = 8e-3
+    # how often a voltage is held again before the end of its motion counts as a loss, and how often
+    # one is reached again from an irregular motion
     again: int = 3
+    # range of voltages, over K omega, in which a motion may end meanwhile: where it does in a wider
+    # one, it ends by chance or has long been unstable, and nothing is decided
     by_chance: float = 2e-4
-    stair: float = 4e-3
-    max_stairs: int = 25
+    stair: float = 4e-3  # longest first step of the voltage, over K omega, and
+    max_stairs: int = 25  # how many of them there are at most
+    # longest step, over K omega, in which a motion is followed at first that a loss leads to
     short: float = 5e-4
-    past: float = 0.02
-    max_holds: int = 200
+    past: float = 0.02  # how far past the passing of the ramp the steps go, over K omega
+    max_holds: int = 200  # most voltages that are held after them
+    # of ramps from the end of a motion, over K omega in a time 1/omega: usual ones, whatever that
+    # of the run was
     rates: tuple[float, ...] = (2e-4, 1e-4, 5e-5)
 
 
@@ -143,22 +98,6 @@ class VoltageHolder:
     """Restore states of a past ramp and hold voltages from there until speeds settle.
 
     Voltages are those of the mirror image in which the motor turns forward.
-
-    Parameters
-    ----------
-    begin : callable
-        Begins a run with another schedule.
-    schedule : Schedule
-        Of the run.
-    step : float
-        Its communication step, s.
-    omega, volts : float
-        The units of speed and voltage.
-    longest : float
-        Time for which a voltage is held at most, s.
-    settings : HoldSettings, optional
-    sense : float
-        Of the rotation: -1 where the motor turns backward, else 1.
     """
 
     def __init__(

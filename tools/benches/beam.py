@@ -62,34 +62,22 @@ class Section:
 
 @dataclass(frozen=True, kw_only=True)
 class DelaminatedBeam:
-    """A beam clamped at one end or both, delaminated between two positions.
+    """A beam clamped at one end or both, delaminated between two positions."""
 
-    Attributes
-    ----------
-    length, thickness, width : float
-        m
-    modulus, density : float
-        N/m2, kg/m3
-    first, last : float
-        Where the delamination begins and ends, parts of the length; equal where there is none.
-        ``last = 1`` opens at the free end.
-    share : float
-        Thickness of the upper beam, parts of the whole.
-    clamped_both : bool
-    elements : int
-        Over the whole length.
-    """
-
+    # m
     length: float = 0.5
     thickness: float = 0.0148
     width: float = 0.03
+    # N/m2, kg/m3
     modulus: float = 40e9
     density: float = 1800.0
+    # where the delamination begins and ends, parts of the length; equal where there is none. `last
+    # = 1` opens at the free end
     first: float = 0.4
     last: float = 1.0
-    share: float = 0.4
+    share: float = 0.4  # thickness of the upper beam, parts of the whole
     clamped_both: bool = False
-    elements: int = 40
+    elements: int = 40  # over the whole length
 
     def section(self, share: float) -> Section:
         """Return the cross-section of a layer that has a share of the thickness."""
@@ -203,16 +191,7 @@ class DelaminatedBeam:
         return bool(inside[node] and (before or after))
 
     def modes(self, count: int) -> tuple[Floats, Floats, Floats]:
-        """Compute the lowest modes without contact; return frequencies, shapes, participations.
-
-        Returns
-        -------
-        frequency : ndarray
-            rad/s
-        shapes : ndarray
-            (all displacements, modes), mass-normalised.
-        participation : ndarray
-        """
+        """Compute the lowest modes without contact; return frequencies, shapes, participations."""
         stiffness, inertia, pull = self.matrices
         squares, shapes = eigh(stiffness, inertia, subset_by_index=[0, count - 1])
         return np.sqrt(squares), self.constraint_matrix() @ shapes, shapes.T @ pull
@@ -242,21 +221,7 @@ class DelaminatedBeam:
         sensor: float | None = None,
         contact_every: int = 1,
     ) -> ModalSystem:
-        """Return the beam as a ``ModalSystem`` with contacts at the delamination's nodes.
-
-        Parameters
-        ----------
-        faces : Faces
-            Their frequency is that of the layers' masses between two nodes on the penalty.
-        zeta : float
-            Damping ratio of all modes.
-        modes : int
-        sensor : float, optional
-            Place of the accelerometers on both faces, m; by default
-            :meth:`single_mass_position`.
-        contact_every : int
-            Nodes from one contact to the next.
-        """
+        """Return the beam as a ``ModalSystem`` with contacts at the delamination's nodes."""
         frequency, shapes, participation = self.modes(modes)
         position = np.array([self.single_mass_position() if sensor is None else sensor])
         faces_rows = [self.deflection_rows(shapes, layer, position)[0] for layer in (1, 2)]

@@ -25,25 +25,15 @@ BASE = 1.0 / 3000.0  # s: longest step, for what the base does
 
 @dataclass(frozen=True, kw_only=True)
 class Bench:
-    """A shaker with an excitation and sensors on base and faces.
-
-    Attributes
-    ----------
-    excitation : Excitation
-    box, face1, face2 : Sensor
-        ``face2`` is None where there is one accelerometer only.
-    rate : float
-        Samples of the record, Hz.
-    steps : float
-        Of the integration, in a period of the fastest oscillation.
-    """
+    """A shaker with an excitation and sensors on base and faces."""
 
     excitation: Excitation
+    # `face2` is None where there is one accelerometer only
     box: Sensor = field(default_factory=Sensor)
     face1: Sensor = field(default_factory=Sensor)
     face2: Sensor | None = None
-    rate: float = 2000.0
-    steps: float = STEPS
+    rate: float = 2000.0  # samples of the record, Hz
+    steps: float = STEPS  # of the integration, in a period of the fastest oscillation
 
     def steps_per_sample(self, system: ModalSystem) -> int:
         """Return the number of integration steps per sample for a system."""
@@ -64,20 +54,7 @@ class Bench:
         return base[::2], integrate(system, base, step), factor
 
     def measure(self, system: ModalSystem, seed: int) -> tuple[xr.Dataset, Motion]:
-        """Shake a system; return the sensors' record as a dataset, and the true motion.
-
-        Parameters
-        ----------
-        system : ModalSystem
-            Its outputs are what the sensors of both faces feel.
-        seed : int
-            Of the noise.
-
-        Returns
-        -------
-        record : xarray.Dataset
-        motion : Motion
-        """
+        """Shake a system; return the sensors' record as a dataset, and the true motion."""
         base, motion, factor = self.simulate(system)
         rngs = np.random.default_rng(seed).spawn(3)
         fine = factor * self.rate

@@ -45,13 +45,7 @@ class CSystem(ctypes.Structure):
 
 @functools.cache
 def load_library() -> Any:
-    """Return the compiled library's integration function; compile it once per process.
-
-    Raises
-    ------
-    RuntimeError
-        Where it cannot be compiled here.
-    """
+    """Return the compiled library's integration function; compile it once per process."""
     run = loaded_function(SOURCE)
     if run is None:
         raise RuntimeError(f"{SOURCE.name} cannot be compiled: expected ziglang or a C compiler")
@@ -72,22 +66,7 @@ def integrate(
     position: Floats | None = None,
     velocity: Floats | None = None,
 ) -> Motion:
-    """Integrate a system's motion over a base acceleration with equal steps; return it.
-
-    Parameters
-    ----------
-    system : ModalSystem
-    base : ndarray
-        The base's acceleration at the ends and in the middle of all steps, m/s2.
-    step : float
-        s.
-    position, velocity : ndarray, optional
-        Of the modes at the beginning; by default at rest in :func:`equilibrium`.
-
-    Raises
-    ------
-    Escaped
-    """
+    """Integrate a system's motion over a base acceleration with equal steps; return it."""
     if position is None:
         position = equilibrium(system)
     base = np.ascontiguousarray(base, dtype=float)

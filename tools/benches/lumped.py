@@ -16,28 +16,14 @@ TURN = 2.0 * math.pi
 
 @dataclass(frozen=True, kw_only=True)
 class Faces:
-    """Contact law of two faces: stiffness by frequency, restitution, clearance and friction.
+    """Contact law of two faces: stiffness by frequency, restitution, clearance and friction."""
 
-    Attributes
-    ----------
-    law : str
-        ``"linear"``, ``"hunt-crossley"`` or ``"hertz"``.
-    frequency : float
-        Hz, of both masses on the contact's stiffness.
-    restitution : float
-        At the closing speed ``speed``, in m/s.
-    speed : float
-    clearance : float
-        m; negative where the faces are pressed into each other.
-    friction : float
-        Coefficient with which sliding of closed faces brakes the bending of both.
-    """
-
-    law: str = "hunt-crossley"
-    frequency: float = 1000.0
-    restitution: float = 0.6
+    law: str = "hunt-crossley"  # `"linear"`, `"hunt-crossley"` or `"hertz"`
+    frequency: float = 1000.0  # hz, of both masses on the contact's stiffness
+    restitution: float = 0.6  # at the closing speed `speed`, in m/s
     speed: float = 0.05
-    clearance: float = 0.0
+    clearance: float = 0.0  # m; negative where the faces are pressed into each other
+    # coefficient with which sliding of closed faces brakes the bending of both
     friction: float = 0.0
 
     def contacts(self, rows: Floats, clearance: Floats, mass: float) -> Contacts:
@@ -63,34 +49,20 @@ class Faces:
 
 @dataclass(frozen=True, kw_only=True)
 class Halves:
-    """Both halves of a beam as masses on springs.
+    """Both halves of a beam as masses on springs."""
 
-    Attributes
-    ----------
-    m1, m2 : float
-        kg
-    f1, f2 : float
-        Hz, natural frequency of each half alone.
-    zeta1, zeta2 : float
-        Damping ratio of each half alone.
-    """
-
+    # kg
     m1: float = 1.5
     m2: float = 1.2
+    # hz, natural frequency of each half alone
     f1: float = 42.0
     f2: float = 52.0
+    # damping ratio of each half alone
     zeta1: float = 0.008
     zeta2: float = 0.008
 
     def delaminated(self, faces: Faces, cubic: float = 0.0) -> ModalSystem:
-        """Return a ``ModalSystem`` of two masses that touch by a contact law.
-
-        Parameters
-        ----------
-        faces : Faces
-        cubic : float
-            N/(kg m3) of each mass: both harden (or soften, below 0) alike.
-        """
+        """Return a ``ModalSystem`` of two masses that touch by a contact law."""
         roots = np.sqrt([self.m1, self.m2])
         gap = np.array([[-1.0, 1.0]]) / roots
         reduced = self.m1 * self.m2 / (self.m1 + self.m2)
@@ -108,17 +80,7 @@ class Halves:
         )
 
     def bonded(self, cubic: float = 0.0, friction: float = 0.0, sag: float = 0.0) -> ModalSystem:
-        """Return a ``ModalSystem`` of one mass that carries both sensors.
-
-        Parameters
-        ----------
-        cubic : float
-            N/(kg m3)
-        friction : float
-            Dry friction of the support, N/kg.
-        sag : float
-            m from where the cubic spring is at its softest (or stiffest) to the place at rest.
-        """
+        """Return a ``ModalSystem`` of one mass that carries both sensors."""
         whole = self.bonded_beam()
         row = np.array([[1.0 / math.sqrt(whole.mass)]])
         dry = Frictions(row, np.array([friction * whole.mass]), np.zeros(1), np.array([1e-3]))
@@ -174,42 +136,20 @@ class BondedBeam:
 
 @dataclass(frozen=True, kw_only=True)
 class Clamp:
-    """A clamp with play, which the root of a sound beam strikes.
+    """A clamp with play, which the root of a sound beam strikes."""
 
-    Attributes
-    ----------
-    faces : Faces
-        Of the root and the stops; its clearance is not used.
-    play : float
-        m from the root at rest to each stop; negative where it is pressed against it.
-    both_sides : bool
-        Whether there are two stops.
-    mass : float
-        Of the root, parts of the beam's.
-    centring : float
-        Stiffness that holds the root, parts of the beam's.
-    """
-
-    faces: Faces
+    faces: Faces  # of the root and the stops; its clearance is not used
+    # m from the root at rest to each stop; negative where it is pressed against it
     play: float = 2e-4
-    both_sides: bool = True
-    mass: float = 0.1
-    centring: float = 3.0
+    both_sides: bool = True  # whether there are two stops
+    mass: float = 0.1  # of the root, parts of the beam's
+    centring: float = 3.0  # stiffness that holds the root, parts of the beam's
 
 
 def cubic_stiffness(change: float, f: float, amplitude: float) -> float:
     """Return the cubic stiffness over mass, N/(kg m3), for a relative change of frequency.
 
     By the first approximation of Duffing's oscillator, ``w**2 = w0**2 + 3/4 cubic amplitude**2``.
-
-    Parameters
-    ----------
-    change : float
-        0.3 where the frequency at the amplitude is 30 % higher, below 0 where it is lower.
-    f : float
-        Hz, at small amplitudes.
-    amplitude : float
-        m
     """
     return 4.0 / 3.0 * (TURN * f) ** 2 * ((1.0 + change) ** 2 - 1.0) / amplitude**2
 

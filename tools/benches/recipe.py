@@ -32,65 +32,34 @@ TRIES = 20  # of a softening beam whose motion escapes
 
 @dataclass(frozen=True)
 class Setup:
-    """Test conditions of a beam: level, noise, number of sensors, excitation.
+    """Test conditions of a beam: level, noise, number of sensors, excitation."""
 
-    Attributes
-    ----------
-    level : float
-        Peak of the base, m/s2; of noise twice the root mean square.
-    noise : float
-        Of the accelerometers, over the root mean square of what they read.
-    sensors : int
-    excitation : str
-    """
-
-    level: float
-    noise: float
+    level: float  # peak of the base, m/s2; of noise twice the root mean square
+    noise: float  # of the accelerometers, over the root mean square of what they read
     sensors: int
     excitation: str
 
 
 @dataclass(frozen=True, kw_only=True)
 class Truth:
-    """The true properties of a specimen and its measurement, to judge verdicts by.
+    """The true properties of a specimen and its measurement, to judge verdicts by."""
 
-    Attributes
-    ----------
-    kind : str
-        Of the recipe.
-    is_delaminated : bool
-    opened : bool
-        Whether the faces parted by more than ``OPENED`` in the record.
-    touched : bool
-        Whether they touched.
-    f1, f2, zeta1, zeta2 : float
-        Of both halves alone, Hz and 1; of a sound beam both are those of the whole.
-    clearance : float
-        m
-    restitution : float
-        Mean over the impacts; NaN where there was none, and of finite elements.
-    largest_gap : float
-        m
-    change : float
-        Relative change of the frequency at the largest deflection, of a beam that hardens.
-    size : float
-        Length of the delamination over that of the beam; NaN for two masses.
-    setup : Setup
-    """
-
-    kind: str
+    kind: str  # of the recipe
     is_delaminated: bool
-    opened: bool
-    touched: bool
+    opened: bool  # whether the faces parted by more than `OPENED` in the record
+    touched: bool  # whether they touched
+    # of both halves alone, Hz and 1; of a sound beam both are those of the whole
     f1: float
     f2: float
     zeta1: float
     zeta2: float
-    clearance: float = 0.0
+    clearance: float = 0.0  # m
+    # mean over the impacts; NaN where there was none, and of finite elements
     restitution: float = math.nan
-    largest_gap: float = 0.0
+    largest_gap: float = 0.0  # m
+    # relative change of the frequency at the largest deflection, of a beam that hardens
     change: float = 0.0
-    size: float = math.nan
+    size: float = math.nan  # length of the delamination over that of the beam; NaN for two masses
     setup: Setup
 
 
@@ -122,29 +91,16 @@ class Specimen:
 
 @dataclass(frozen=True, kw_only=True)
 class Conditions:
-    """Ranges from which a test's conditions are drawn, uniformly in the logarithm.
-
-    Attributes
-    ----------
-    noise : (float, float)
-    level : (float, float)
-        m/s2
-    excitation : str
-        One of ``EXCITATIONS``, or ``"any"``: one up in ten is log, stepped, random.
-    sensors : int
-        1 or 2, or 0 for either.
-    size : (float, float)
-        Length of the delamination of a beam of finite elements.
-    off : float
-        How far guesses may be off.
-    """
+    """Ranges from which a test's conditions are drawn, uniformly in the logarithm."""
 
     noise: tuple[float, float] = (0.01, 0.05)
-    level: tuple[float, float] = (2.0, 10.0)
+    level: tuple[float, float] = (2.0, 10.0)  # m/s2
+    # one of `EXCITATIONS`, or `"any"`: one up in ten is log, stepped, random
     excitation: str = "up"
-    sensors: int = 0
+    sensors: int = 0  # 1 or 2, or 0 for either
+    # length of the delamination of a beam of finite elements
     size: tuple[float, float] = (0.1, 0.9)
-    off: float = 0.1
+    off: float = 0.1  # how far guesses may be off
 
 
 def draw_log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
@@ -347,18 +303,7 @@ def draw_guess(rng: np.random.Generator, own: Specimen, off: float) -> Structure
 def draw(
     rng: np.random.Generator, kind: str, conditions: Conditions | None = None, rate: float = 2000.0
 ) -> Case:
-    """Draw a beam and a bench and measure it; return record, guess and truth as a ``Case``.
-
-    Parameters
-    ----------
-    rng : numpy.random.Generator
-        All depends on it.
-    kind : str
-        One of ``KINDS``.
-    conditions : Conditions, optional
-    rate : float
-        Samples of the record, Hz.
-    """
+    """Draw a beam and a bench and measure it; return record, guess and truth as a ``Case``."""
     conditions = conditions or Conditions()
     level, noise = (
         draw_log_uniform(rng, *conditions.level),

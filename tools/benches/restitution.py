@@ -10,11 +10,6 @@ from scipy.optimize import brentq
 def linear_restitution(ratio: float) -> float:
     """Return the restitution of a spring-dashpot contact without pull, by damping ratio.
 
-    Parameters
-    ----------
-    ratio : float
-        Damping ratio of the contact, 0 to 1.
-
     Notes
     -----
     The contact ends where its force is zero, before the depth is: with cos(b) = ratio that is at

@@ -13,70 +13,39 @@ LAWS = ("linear", "hunt-crossley", "hertz")  # in the order of integrator.c
 
 @dataclass(frozen=True)
 class Contacts:
-    """Contacts that push where their gap is closed, and never pull.
+    """Contacts that push where their gap is closed, and never pull."""
 
-    Attributes
-    ----------
-    rows : ndarray
-        (contacts, modes): the gap of each, in m, is ``rows @ q + clearance``.
-    clearance : ndarray
-        m; negative where the faces are pressed into each other.
-    stiffness, damping : ndarray
-        Depth d and closing speed d' make the force ``k d + c d'`` (``"linear"``),
-        ``k d (1 + c d')`` (``"hunt-crossley"``), or that times ``sqrt(d)`` (``"hertz"``).
-    law : str
-    longest_impact : float
-        s; a contact that lasts longer is no impact, and not counted for the restitution.
-    """
-
-    rows: Floats
-    clearance: Floats
+    rows: Floats  # (contacts, modes): the gap of each, in m, is `rows @ q + clearance`
+    clearance: Floats  # m; negative where the faces are pressed into each other
+    # depth d and closing speed d' make the force `k d + c d'` (`"linear"`), `k d (1 + c d')`
+    # (`"hunt-crossley"`), or that times `sqrt(d)` (`"hertz"`)
     stiffness: Floats
     damping: Floats
     law: str = "linear"
+    # s; a contact that lasts longer is no impact, and not counted for the restitution
     longest_impact: float = 2e-3
 
 
 @dataclass(frozen=True)
 class CubicSprings:
-    """Forces ``-stiffness ((x + offset)**3 - offset**3)`` along ``x = rows @ q``.
+    """Forces ``-stiffness ((x + offset)**3 - offset**3)`` along ``x = rows @ q``."""
 
-    Attributes
-    ----------
-    rows : ndarray
-        (springs, modes)
-    stiffness : ndarray
-        N/m3
-    offset : ndarray
-        m; away from zero the spring is stiffer to one side than to the other, as that of a beam
-        which sags: even orders without any impact.
-    """
-
-    rows: Floats
-    stiffness: Floats
+    rows: Floats  # (springs, modes)
+    stiffness: Floats  # N/m3
+    # m; away from zero the spring is stiffer to one side than to the other, as that of a beam which
+    # sags: even orders without any impact
     offset: Floats
 
 
 @dataclass(frozen=True)
 class Frictions:
-    """Dry friction along ``rows @ q``, regularised below a speed.
+    """Dry friction along ``rows @ q``, regularised below a speed."""
 
-    Attributes
-    ----------
-    rows : ndarray
-        (frictions, modes)
-    force : ndarray
-        N, whatever the contacts do.
-    coefficient : ndarray
-        Times the sum of all contact forces: sliding faces rub as long as they are pressed together.
-    speed : ndarray
-        m/s: the force is ``F v/sqrt(v**2 + speed**2)``.
-    """
-
-    rows: Floats
-    force: Floats
+    rows: Floats  # (frictions, modes)
+    force: Floats  # N, whatever the contacts do
+    # times the sum of all contact forces: sliding faces rub as long as they are pressed together
     coefficient: Floats
-    speed: Floats
+    speed: Floats  # m/s: the force is `F v/sqrt(v**2 + speed**2)`
 
 
 def empty_contacts(modes: int) -> Contacts:
@@ -92,26 +61,12 @@ def empty_springs(modes: int) -> CubicSprings:
 
 @dataclass(frozen=True)
 class ModalSystem:
-    """A linear structure as mass-normalised modes, with its nonlinear forces.
+    """A linear structure as mass-normalised modes, with its nonlinear forces."""
 
-    Attributes
-    ----------
-    frequency : ndarray
-        rad/s, of each mode.
-    damping_ratio : ndarray
-    participation : ndarray
-        ``-participation * a`` is the modal force of the base's acceleration a.
-    output_rows : ndarray
-        (outputs, modes): absolute acceleration is ``a + output_rows @ q''``.
-    contacts : Contacts, optional
-    springs : CubicSprings, optional
-    frictions : Frictions, optional
-    """
-
-    frequency: Floats
+    frequency: Floats  # rad/s, of each mode
     damping_ratio: Floats
-    participation: Floats
-    output_rows: Floats
+    participation: Floats  # `-participation * a` is the modal force of the base's acceleration a
+    output_rows: Floats  # (outputs, modes): absolute acceleration is `a + output_rows @ q''`
     contacts: Contacts | None = None
     springs: CubicSprings | None = None
     frictions: Frictions | None = None
@@ -124,35 +79,19 @@ class ModalSystem:
 
 @dataclass(frozen=True)
 class Motion:
-    """Result of an integration: accelerations, peaks, gaps, impacts and restitution.
+    """Result of an integration: accelerations, peaks, gaps, impacts and restitution."""
 
-    Attributes
-    ----------
-    acceleration : ndarray
-        (outputs, steps + 1), absolute acceleration, m/s2, at the ends of all steps.
-    position, velocity : ndarray
-        Of the modes, at the end.
-    largest_gap, largest_force : ndarray
-        Of each contact, m and N.
-    time_open : ndarray
-        s.
-    impacts : ndarray
-        Contacts that were short.
-    restitution : ndarray
-        Sum of speeds after these over that before them; NaN without any.
-    closing_speed : ndarray
-        Mean before an impact, m/s; NaN without any.
-    spring_peaks : ndarray
-        Largest absolute deflection of each cubic spring, m.
-    """
-
+    # (outputs, steps + 1), absolute acceleration, m/s2, at the ends of all steps
     acceleration: Floats
+    # of the modes, at the end
     position: Floats
     velocity: Floats
+    # of each contact, m and N
     largest_gap: Floats
     largest_force: Floats
-    time_open: Floats
-    impacts: Floats
-    restitution: Floats
-    closing_speed: Floats
+    time_open: Floats  # s
+    impacts: Floats  # contacts that were short
+    restitution: Floats  # sum of speeds after these over that before them; NaN without any
+    closing_speed: Floats  # mean before an impact, m/s; NaN without any
+    # largest absolute deflection of each cubic spring, m
     spring_peaks: Floats = field(default_factory=lambda: np.zeros(0))

@@ -72,14 +72,7 @@ def format_record(record: xr.Dataset, name: str) -> str:
 
 
 def write_records(folder: Path = FOLDER, bench: Bench = BENCH) -> list[Path]:
-    """Shake the three beams and write their records; return the paths.
-
-    Parameters
-    ----------
-    folder : Path
-    bench : Bench
-        With the tutorial's rate and excitation unless a test makes it shorter.
-    """
+    """Shake the three beams and write their records; return the paths."""
     folder.mkdir(parents=True, exist_ok=True)
     paths = []
     for stem, beam in BEAMS.items():

@@ -75,15 +75,7 @@ def draw_two_masses() -> Figure:
 def draw_verdicts(
     records: Mapping[str, xr.Dataset], begin: float = 12.0, span: float = 0.15
 ) -> Figure:
-    """Draw sensor signals of beams with the verdict on each record; return the figure.
-
-    Parameters
-    ----------
-    records : mapping of xarray.Dataset
-        Of :func:`orchestrate.read_record`, by the verdict on each.
-    begin, span : float
-        Piece of the record that is shown, s.
-    """
+    """Draw sensor signals of beams with the verdict on each record; return the figure."""
     figure = Figure(figsize=(10.0, 4.2), layout="constrained")
     planes = figure.subplots(len(records), 3, width_ratios=(1.2, 2.4, 0.9), squeeze=False)
     for (beam, trace, word), (verdict, data) in zip(planes, records.items(), strict=True):

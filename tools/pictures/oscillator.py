@@ -68,14 +68,7 @@ def draw_scheme(width: float = 4.8) -> Figure:
 
 @styled
 def draw_example(times: np.ndarray, values: Mapping[str, np.ndarray]) -> Figure:
-    """Draw displacements, gap and permanent contact over time; return the figure.
-
-    Parameters
-    ----------
-    times : ndarray, shape (n,)
-    values : mapping of ndarray
-        ``x1``, ``x2``, ``x_rel``, ``in_contact``.
-    """
+    """Draw displacements, gap and permanent contact over time; return the figure."""
     figure, (top, bottom) = make_panels(2, 1, (9, 5), sharex=True)
     top.plot(times, values["x1"], label=r"$\xi_1$")
     top.plot(times, values["x2"], label=r"$\xi_2$", ls="--")

@@ -36,19 +36,7 @@ class CallGraph:
     called: dict[str, set[str]]
 
     def stack_bytes(self, function: str, without: tuple[str, ...] = ()) -> int:
-        """Return the stack bytes of a call, without those of the C library.
-
-        Parameters
-        ----------
-        function : str
-        without : tuple of str
-            Names of functions that are not called.
-
-        Raises
-        ------
-        RecursionError
-            Where a function calls itself, through others too.
-        """
+        """Return the stack bytes of a call, without those of the C library."""
         return self._stack_bytes(function, without, ())
 
     def _stack_bytes(self, function: str, without: tuple[str, ...], path: tuple[str, ...]) -> int:
@@ -80,13 +68,7 @@ def plain_name(title: str) -> str:
 
 
 def call_graph(sources: Path, compiler: str, *flags: str) -> CallGraph:
-    """Compile an FMU's sources by gcc and return their call graph.
-
-    Raises
-    ------
-    ValueError
-        Where a function's stack has no bound: it has an array of variable length.
-    """
+    """Compile an FMU's sources by gcc and return their call graph."""
     sizes: dict[str, int] = {}
     called: dict[str, set[str]] = {}
     for file in c_files(sources):

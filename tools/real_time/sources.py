@@ -35,13 +35,7 @@ def missing_programs(*programs: str) -> list[str]:
 def run_command(
     *command: str | PathLike[str], cwd: Path | None = None, timeout: float = 600.0
 ) -> str:
-    """Run a command in a folder; return what it prints.
-
-    Raises
-    ------
-    RuntimeError
-        Where it fails, with what it said.
-    """
+    """Run a command in a folder; return what it prints."""
     done = subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=timeout)
     if done.returncode:
         raise RuntimeError(f"{' '.join(map(str, command))}: {done.stdout}{done.stderr}")

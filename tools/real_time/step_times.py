@@ -21,17 +21,10 @@ PARTS = {"median": 0.5, "99.9 %": 0.999, "99.999 %": 0.99999, "worst": 1.0}
 
 @dataclass(frozen=True)
 class StepTimes:
-    """Histogram of the times of communication steps.
+    """Histogram of the times of communication steps."""
 
-    Attributes
-    ----------
-    histogram : Counter
-        Steps by nanoseconds.
-    evaluations, impacts, contacts : int
-        Most evaluations in a step; impacts and permanent contacts in all of them.
-    """
-
-    histogram: Counter[int]
+    histogram: Counter[int]  # steps by nanoseconds
+    # most evaluations in a step; impacts and permanent contacts in all of them
     evaluations: int
     impacts: int
     contacts: int

@@ -48,13 +48,7 @@ def run_campaign(
 def keep_partial_run(
     campaign: Campaign, seed: int, budget: int, store: Path = STORE
 ) -> ledger_file.LedgerEntry:
-    """Return a ledger entry for the first finished batches of a run that was stopped.
-
-    Raises
-    ------
-    InputError
-        Where the first batch is not there.
-    """
+    """Return a ledger entry for the first finished batches of a run that was stopped."""
     job = make_job(campaign, seed, budget)
     path = store / f"{campaign.name}-{seed}-{budget}-{job.sources[:6]}.nc"
     find = finder({})

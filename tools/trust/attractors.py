@@ -54,16 +54,7 @@ def draw(rng: np.random.Generator) -> DrawnStructure:
 
 
 class ReportedMotion:
-    """A periodic attractor as reported, with its motion simulated by the FMU.
-
-    Parameters
-    ----------
-    fmu : Path
-    structure : Structure
-    eta : float
-    reported : xarray.Dataset
-        Of :func:`orchestrate.attractors`, at one value and one attractor.
-    """
+    """A periodic attractor as reported, with its motion simulated by the FMU."""
 
     def __init__(self, fmu: Path, structure: Structure, eta: float, reported: xr.Dataset) -> None:
         """Read the reported motion and compute its stroboscopic states."""

@@ -11,76 +11,35 @@ from typing import Any, ClassVar
 
 @dataclass(frozen=True)
 class BatchOutcome:
-    """Result of a batch: units done, findings, counts and notes.
+    """Result of a batch: units done, findings, counts and notes."""
 
-    Attributes
-    ----------
-    done : int
-        Units done: flights, impacts, faults.
-    findings : int
-        Of these, where the promise did not hold.
-    worst : float
-        The largest of what the campaign measures; 0 where it measures nothing.
-    counts : mapping of str to int
-        What else was counted, to be summed.
-    notes : tuple of str
-        A line a finding, with what is needed to see it again.
-    rows : tuple of list
-        What was measured of each unit, where the campaign keeps that.
-    """
-
-    done: int
-    findings: int = 0
-    worst: float = 0.0
-    counts: Mapping[str, int] = field(default_factory=dict)
-    notes: tuple[str, ...] = ()
+    done: int  # units done: flights, impacts, faults
+    findings: int = 0  # of these, where the promise did not hold
+    worst: float = 0.0  # the largest of what the campaign measures; 0 where it measures nothing
+    counts: Mapping[str, int] = field(default_factory=dict)  # what else was counted, to be summed
+    notes: tuple[str, ...] = ()  # A line a finding, with what is needed to see it again
+    # what was measured of each unit, where the campaign keeps that
     rows: tuple[list[Any], ...] = ()
 
 
 class Campaign(ABC):
-    """A promise, and how a campaign attacks it; subclasses define ``run``.
+    """A promise, and how a campaign attacks it; subclasses define ``run``."""
 
-    Attributes
-    ----------
-    name, title : str
-        For the command line, and for people.
-    asks : str
-        What must hold, as sentences.
-    unit : str
-        What is counted.
-    target : int
-        How many of them are wanted.
-    batch : int
-        How many make a chunk of the job.
-    measures : str
-        What ``worst`` is; empty where nothing is measured.
-    package : bool
-        Whether the package is under test: a digest of its sources then names what was tested, else
-        the FMU's GUID.
-    """
-
+    # for the command line, and for people
     name: ClassVar[str]
     title: ClassVar[str]
-    asks: ClassVar[str]
-    unit: ClassVar[str]
-    target: ClassVar[int]
-    batch: ClassVar[int]
-    measures: ClassVar[str] = ""
+    asks: ClassVar[str]  # what must hold, as sentences
+    unit: ClassVar[str]  # what is counted
+    target: ClassVar[int]  # how many of them are wanted
+    batch: ClassVar[int]  # how many make a chunk of the job
+    measures: ClassVar[str] = ""  # what `worst` is; empty where nothing is measured
+    # whether the package is under test: a digest of its sources then names what was tested, else
+    # the FMU's GUID
     package: ClassVar[bool] = False
 
     @abstractmethod
     def run(self, fmu: Path, seed: int, count: int) -> BatchOutcome:
-        """Attack the promise with ``count`` units from a seed; return the outcome.
-
-        Parameters
-        ----------
-        fmu : Path
-            The native FMI 3.0 FMU of the oscillator.
-        seed : int
-            All that is drawn depends on it.
-        count : int
-            Units to do.
-        """
+        """Attack the promise with ``count`` units from a seed; return the outcome."""
 
     def report(self, rows: Sequence[Sequence[Any]]) -> list[str]:
         """Return Markdown lines for the ledger's page, from the measured rows of all runs."""

@@ -25,21 +25,12 @@ PATIENCE = 60.0  # s
 
 @dataclass(frozen=True)
 class FinishedCommand:
-    """Result of a command that has ended: exit code, output, error output, seconds.
+    """Result of a command that has ended: exit code, output, error output, seconds."""
 
-    Attributes
-    ----------
-    code : int
-        Its exit code; minus the signal's number where one ended it.
-    out, err : str
-    seconds : float
-        From its start.
-    """
-
-    code: int
+    code: int  # its exit code; minus the signal's number where one ended it
     out: str
     err: str
-    seconds: float
+    seconds: float  # from its start
 
     @property
     def lines(self) -> list[str]:
@@ -49,17 +40,7 @@ class FinishedCommand:
 
 
 class ChildCommand:
-    """A command that runs in a forked child.
-
-    Parameters
-    ----------
-    arguments : sequence of str
-        Of ``python -m orchestrate``.
-    folder : Path
-        For temporary files and both outputs.
-    prepare : callable, optional
-        Called in the child first.
-    """
+    """A command that runs in a forked child."""
 
     def __init__(
         self,

@@ -37,13 +37,7 @@ def fork_coroutine(life: Callable[[], Coroutine[Any, Any, None]], log: Path) -> 
 
 
 class DaskNodes:
-    """A Dask scheduler and two workers as processes.
-
-    Parameters
-    ----------
-    folder : Path
-        For logs and what workers keep.
-    """
+    """A Dask scheduler and two workers as processes."""
 
     def __init__(self, folder: Path) -> None:
         """Create the folder and start scheduler and workers."""

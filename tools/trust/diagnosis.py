@@ -133,22 +133,13 @@ def judge_case(case: Case) -> dict[str, Any]:
 
 
 class DetectorAnswer(NamedTuple):
-    """The detector's answer: verdict and numbers.
+    """The detector's answer: verdict and numbers."""
 
-    Attributes
-    ----------
-    verdict : str
-        Or that it refused, or failed.
-    numbers : mapping of str to float
-        The ratio of its misfits, the smallest opening that it says it would have seen; of
-        ``FITTED`` the values, and their standard errors.
-    message : str
-        Where it refused or failed.
-    """
-
-    verdict: str
+    verdict: str  # or that it refused, or failed
+    # the ratio of its misfits, the smallest opening that it says it would have seen; of `FITTED`
+    # the values, and their standard errors
     numbers: Mapping[str, float]
-    message: str = ""
+    message: str = ""  # where it refused or failed
 
 
 def run_detector(case: Case) -> DetectorAnswer:
@@ -193,18 +184,7 @@ def normalized_deviations(parameters: Mapping[str, float], truth: Truth) -> dict
 
 
 def verdict_problem(verdict: str, truth: Truth, message: str = "", smallest: float = 0.0) -> str:
-    """Return what is wrong with a verdict; empty where nothing is.
-
-    Parameters
-    ----------
-    verdict : str
-    truth : Truth
-    message : str
-        Of a detector that refused or failed.
-    smallest : float
-        Opening from which the detector says that it would have seen it, m. It says so of faces at
-        the sensor; here the largest opening counts, wherever it is.
-    """
+    """Return what is wrong with a verdict; empty where nothing is."""
     if verdict == FAILED or (verdict == REFUSED and truth.setup.excitation != "random"):
         return f"{verdict}: {message}"
     if verdict == DELAMINATED and not truth.is_delaminated:

@@ -57,17 +57,7 @@ def payloads(address: str) -> list[str]:
 
 
 def write_forged_sweep(place: Path, chance: random.Random, good: Any, address: str) -> None:
-    """Write a sweep's result in which some or all texts are markup.
-
-    Parameters
-    ----------
-    place : Path
-    chance : random.Random
-    good : xarray.Dataset
-        Of a sweep.
-    address : str
-        That nobody is to ask.
-    """
+    """Write a sweep's result in which some or all texts are markup."""
     bad = payloads(address)
     data = good.copy()
     texts = [str(name) for name, value in data.attrs.items() if isinstance(value, str)]

@@ -55,26 +55,7 @@ def held_speeds(
     part: float = 1.0,
     rate: float = RATE,
 ) -> np.ndarray:
-    """Compute the settled mean speed at each of a series of held voltages.
-
-    Parameters
-    ----------
-    system : System
-    first : float
-        Voltage over K omega at which the motor begins as on a ramp of `couple`: with its no-load
-        speed, or from below the resonance.
-    voltages : sequence of float
-        Those that are held, over K omega.
-    part : float
-        Of the usual time of a hold.
-    rate : float
-        Of the voltage between holds, of K omega in a time 1/omega.
-
-    Returns
-    -------
-    ndarray
-        Over omega; NaN where a speed has not settled.
-    """
+    """Compute the settled mean speed at each of a series of held voltages."""
     structure, drive = system
     hold = part * (LONG + LONG_OF_ROTOR / drive.b(structure))
     times, course, ends = *begin_course(system, first, voltages[0]), []

@@ -37,48 +37,29 @@ SOURCES = (
 
 @dataclass(frozen=True)
 class LedgerEntry:
-    """One run of a campaign as an entry of the ledger.
-
-    Attributes
-    ----------
-    campaign : str
-    seed, budget : int
-        As given.
-    done, findings : int
-    worst : float
-        The largest of what is measured, and
-    worst_seed : int
-        the seed of the batch that it was in.
-    counts : dict of str to int
-    notes : list of str
-        Of findings.
-    seconds : float
-        Of the processor.
-    date, version, fmu, package, machine : str
-        ``fmu`` is the GUID of the FMU, ``package`` a digest of the sources of ``orchestrate``,
-    campaigns : str
-        and this one of the campaigns' own and the benches'; empty in entries from before there was
-        one.
-    rows : list of list
-        What was measured of each unit, where the campaign keeps that.
-    """
+    """One run of a campaign as an entry of the ledger."""
 
     campaign: str
+    # as given
     seed: int
     budget: int
     done: int
     findings: int
-    worst: float
-    worst_seed: int
+    worst: float  # the largest of what is measured, and
+    worst_seed: int  # the seed of the batch that it was in
     counts: dict[str, int]
-    notes: list[str]
-    seconds: float
+    notes: list[str]  # of findings
+    seconds: float  # of the processor
+    # `fmu` is the GUID of the FMU, `package` a digest of the sources of `orchestrate`,
     date: str
     version: str
     fmu: str
     package: str
     machine: str
+    # and this one of the campaigns' own and the benches'; empty in entries from before there was
+    # one
     campaigns: str = ""
+    # what was measured of each unit, where the campaign keeps that
     rows: list[list[Any]] = field(default_factory=list)
 
     def command(self) -> str:

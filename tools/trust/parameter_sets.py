@@ -22,20 +22,11 @@ Draw = Callable[[np.random.Generator, Values], None]
 
 @dataclass(frozen=True)
 class ParameterSet:
-    """A structure, its start, its excitation and a duration.
+    """A structure, its start, its excitation and a duration."""
 
-    Attributes
-    ----------
-    kind : str
-        Name of the class it was drawn from.
-    values : dict of str to float
-        Variables of the FMU, by name; those left out have their start values.
-    start_time, duration : float
-        s.
-    """
-
-    kind: str
-    values: Values
+    kind: str  # name of the class it was drawn from
+    values: Values  # variables of the FMU, by name; those left out have their start values
+    # s
     start_time: float
     duration: float
 
@@ -268,11 +259,6 @@ def draw_parameter_set(seed: int, number: int) -> ParameterSet:
     One in four belongs to a second class besides its own; one in four begins at a clock of up to
     1e12 s, all in the class ``late``; four in ten have a clearance, as many each of what was
     added later.
-
-    Parameters
-    ----------
-    seed, number : int
-        Not negative.
 
     Examples
     --------

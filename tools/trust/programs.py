@@ -17,18 +17,7 @@ OPTIONS = ("-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-fc
 
 @functools.cache
 def compile_program(fmu: Path, name: str) -> Path:
-    """Compile ``native/NAME.c`` against an FMI 3.0 FMU; return the program's path.
-
-    Parameters
-    ----------
-    fmu : Path
-    name : str
-
-    Returns
-    -------
-    Path
-        In a temporary folder of the process, kept until its end.
-    """
+    """Compile ``native/NAME.c`` against an FMI 3.0 FMU; return the program's path."""
     folder = temporary_folder() / describe(fmu).digest[:16] / name
     return importers.compile_against(fmu, folder, [NATIVE / f"{name}.c"], OPTIONS)
 

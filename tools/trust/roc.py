@@ -11,15 +11,9 @@ Floats = NDArray[np.float64]
 
 
 class RocCurve(NamedTuple):
-    """Rates of true and false positives over falling thresholds.
+    """Rates of true and false positives over falling thresholds."""
 
-    Attributes
-    ----------
-    false, true : ndarray
-        Parts of the negative and of the positive cases above the threshold, from (0, 0) to (1, 1).
-    threshold : ndarray
-    """
-
+    # parts of the negative and of the positive cases above the threshold, from (0, 0) to (1, 1)
     false: Floats
     true: Floats
     threshold: Floats
@@ -35,15 +29,7 @@ class RocCurve(NamedTuple):
 
 
 def compute_curve(numbers: ArrayLike, is_positive: ArrayLike) -> RocCurve:
-    """Compute the ROC curve of numbers whose large values shall mean a positive case.
-
-    Parameters
-    ----------
-    numbers : array_like
-        Larger ones speak for the positive case; NaN is below all.
-    is_positive : array_like
-        The truth; both kinds have to be there.
-    """
+    """Compute the ROC curve of numbers whose large values shall mean a positive case."""
     values = np.nan_to_num(np.asarray(numbers, dtype=float), nan=-np.inf)
     positive = np.asarray(is_positive, dtype=bool)
     if positive.all() or not positive.any():

@@ -73,25 +73,12 @@ BEFORE = {"border": ("branch", "--eta", "2.6", "--limits", "2.6:2.7", *PLAIN)}
 
 @dataclass
 class Trial:
-    """One fault during one command.
+    """One fault during one command."""
 
-    Attributes
-    ----------
-    name : str
-        Of the command.
-    folder : Path
-        Its results are in ``results`` below it.
-    expected : dict of str to bytes
-        Results of the command where nothing happens.
-    seconds : float
-        That it takes then.
-    chance : random.Random
-    """
-
-    name: str
-    folder: Path
-    expected: dict[str, bytes]
-    seconds: float
+    name: str  # of the command
+    folder: Path  # its results are in `results` below it
+    expected: dict[str, bytes]  # results of the command where nothing happens
+    seconds: float  # that it takes then
     chance: random.Random
 
     @property
@@ -170,17 +157,11 @@ def run_undisturbed(name: str, holder: Path) -> tuple[dict[str, bytes], float]:
 
 
 class DisturbanceCampaign(Campaign):
-    """Base of campaigns with one fault per command.
+    """Base of campaigns with one fault per command."""
 
-    Attributes
-    ----------
-    faults : mapping of str to callable
-        What happens, in turn; each gives what was wrong, an empty string where nothing was.
-    commands : sequence of str
-        To which it happens, drawn at random; who stands there twice is drawn twice as often.
-    """
-
+    # what happens, in turn; each gives what was wrong, an empty string where nothing was
     faults: ClassVar[Mapping[str, Callable[[Any], str]]]
+    # to which it happens, drawn at random; who stands there twice is drawn twice as often
     commands: ClassVar[Sequence[str]]
     unit, package = "faults", True
 

@@ -37,24 +37,14 @@ SLOPES = (-0.6, 0.3)  # least slopes d eta0 / d Omega of drives that nearly have
 
 
 class Truth(NamedTuple):
-    """Store where a slow ramp must lose its motion, by the traced branches.
+    """Store where a slow ramp must lose its motion, by the traced branches."""
 
-    Attributes
-    ----------
-    kind : str
-        ``FOLD``, ``TORUS``, ``NONE`` where it loses none, or ``UNKNOWN``.
-    low, high : float
-        Voltages over K omega between which it may be lost.
-    further : tuple of float
-        Voltages over K omega of other folds at which it jumps too.
-    against : tuple of float
-        Voltages over K omega of folds past which the speed falls back to that of another motion.
-    """
-
-    kind: str
+    kind: str  # `FOLD`, `TORUS`, `NONE` where it loses none, or `UNKNOWN`
+    # voltages over K omega between which it may be lost
     low: float = np.nan
     high: float = np.nan
-    further: tuple[float, ...] = ()
+    further: tuple[float, ...] = ()  # voltages over K omega of other folds at which it jumps too
+    # voltages over K omega of folds past which the speed falls back to that of another motion
     against: tuple[float, ...] = ()
 
     @property
@@ -64,25 +54,14 @@ class Truth(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """Store what `couple` reports for one direction, with voltages over K omega.
+    """Store what `couple` reports for one direction, with voltages over K omega."""
 
-    Attributes
-    ----------
-    said : str
-        ``"lost"``, ``"none"``, ``"undecided"`` or ``"not passed"``.
-    low, high : float
-        Where it is lost: the bracket of held voltages, or the one voltage of the record.
-    held : bool
-        Whether held voltages decided.
-    further : tuple of Answer
-        On further jumps of the direction, sure and undecided ones.
-    """
-
-    said: str
+    said: str  # `"lost"`, `"none"`, `"undecided"` or `"not passed"`
+    # where it is lost: the bracket of held voltages, or the one voltage of the record
     low: float
     high: float
-    held: bool
-    further: tuple[Answer, ...] = ()
+    held: bool  # whether held voltages decided
+    further: tuple[Answer, ...] = ()  # on further jumps of the direction, sure and undecided ones
 
 
 def draw_system(rng: np.random.Generator) -> System:

@@ -20,25 +20,14 @@ FEWEST_LINES = 8  # samples in a segment
 
 @dataclass(frozen=True)
 class Averaging:
-    """How a record is divided into segments for Welch's method.
+    """How a record is divided into segments for Welch's method."""
 
-    Attributes
-    ----------
-    length, overlap : int
-        Samples of a segment, and those it shares with the next.
-    window : str
-        Of :func:`scipy.signal.get_window`.
-    segments : int
-        How many there are.
-    resolution : float
-        Distance of the lines, Hz.
-    """
-
+    # samples of a segment, and those it shares with the next
     length: int
     overlap: int
-    window: str
-    segments: int
-    resolution: float
+    window: str  # of scipy.signal.get_window
+    segments: int  # how many there are
+    resolution: float  # distance of the lines, Hz
 
     @property
     def options(self) -> dict[str, Any]:
@@ -70,24 +59,7 @@ class Averaging:
 def averaging(
     channels: Channels, resolution: float | None, window: str, overlap: float, fewest: int = 1
 ) -> Averaging:
-    """Divide a record into overlapping windowed segments.
-
-    Parameters
-    ----------
-    channels : Channels
-    resolution : float, optional
-        Distance of the lines, Hz; by default such that 16 segments fit without overlap.
-    window : str
-        One of ``WINDOWS``.
-    overlap : float
-        Part of a segment that the next one shares, 0 to 0.95.
-    fewest : int
-        Segments that are needed.
-
-    Raises
-    ------
-    InputError
-    """
+    """Divide a record into overlapping windowed segments."""
     checked_word("window", window, WINDOWS)
     part = checked_number("overlap", overlap, 0.0, 0.95)
     count, rate = len(channels.time), channels.sample_rate

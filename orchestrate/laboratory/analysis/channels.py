@@ -30,47 +30,19 @@ RATE_TOLERANCE = 0.01  # between the attribute sample_rate and the time's steps
 
 @dataclass(frozen=True)
 class Channels:
-    """Acceleration channels of a record as one array.
+    """Acceleration channels of a record as one array."""
 
-    Attributes
-    ----------
-    time : ndarray, shape (n,)
-        s.
-    sample_rate : float
-        Hz.
-    names : tuple of str
-        Of ``CHANNELS``.
-    values : ndarray, shape (channels, n)
-        m/s2.
-    title : str
-        Of the record.
-    box_label : str
-        What messages call the box's acceleration: the column of the file that it was read from.
-    """
-
-    time: Floats
-    sample_rate: float
-    names: tuple[str, ...]
-    values: Floats
-    title: str
+    time: Floats  # s
+    sample_rate: float  # hz
+    names: tuple[str, ...]  # of `CHANNELS`
+    values: Floats  # m/s2
+    title: str  # of the record
+    # what messages call the box's acceleration: the column of the file that it was read from
     box_label: str = BOX
 
     @classmethod
     def from_record(cls, record: xr.Dataset, needed: tuple[str, ...] = ()) -> Channels:
-        """Check a record, or a result of :func:`orchestrate.shake`, and take its channels.
-
-        Parameters
-        ----------
-        record : xarray.Dataset
-        needed : tuple of str
-            Channels that it must have, beside one at least.
-
-        Raises
-        ------
-        InputError
-            Where it is no dataset over ``time``, its steps differ, a channel is missing or has
-            values that are not finite.
-        """
+        """Check a record, or a result of :func:`orchestrate.shake`, and take its channels."""
         import xarray as xr
 
         if not isinstance(record, xr.Dataset) or "time" not in record.coords:
@@ -116,11 +88,8 @@ def channel_variable(record: xr.Dataset, name: str) -> xr.DataArray | None:
 
 
 def sample_rate(time: Floats, stated: Any) -> float:
-    """Return the sampling rate of equally spaced times, Hz; the stated one if they agree with it.
-
-    Raises
-    ------
-    InputError
+    """Return the sampling rate of equally spaced times, Hz; the stated one if they agree with
+    it.
     """
     steps = np.diff(time)
     if not np.isfinite(time).all() or not (steps > 0.0).all():
@@ -145,12 +114,7 @@ def sample_rate(time: Floats, stated: Any) -> float:
 
 
 def finite(name: str, array: xr.DataArray, time: Floats) -> Floats:
-    """Return a channel's values as floats; raise if one is not finite.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return a channel's values as floats; raise if one is not finite."""
     values = np.asarray(array.values, dtype=float)
     if not np.isfinite(values).all():
         wrong = int(np.flatnonzero(~np.isfinite(values))[0])
@@ -180,23 +144,7 @@ def attributes(analysis: str, heading: str, title: str, **settings: Any) -> dict
 def checked_number(
     name: str, value: Any, low: float, high: float, unit: str = "", open_end: bool = False
 ) -> float:
-    """Return a number as a float; raise if it is outside its range.
-
-    Parameters
-    ----------
-    name : str
-    value : float
-    low, high : float
-        Ends of the range.
-    unit : str
-        For the message.
-    open_end : bool
-        Whether ``high`` itself is outside.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return a number as a float; raise if it is outside its range."""
     try:
         number = float(value)
     except (TypeError, ValueError):

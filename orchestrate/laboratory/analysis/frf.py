@@ -121,19 +121,7 @@ def frf(
 
 
 def estimate(box: Floats, response: Floats, cross: Floats) -> Floats:
-    """Estimate H1, H2 and Hv from spectra of the box, of the responses, and between them.
-
-    Parameters
-    ----------
-    box : ndarray, shape (n,)
-    response : ndarray, shape (channels, n)
-    cross : ndarray, shape (channels, n)
-        Complex: the box's spectrum, conjugate, times the response's.
-
-    Returns
-    -------
-    ndarray, shape (3, channels, n)
-    """
+    """Estimate H1, H2 and Hv from spectra of the box, of the responses, and between them."""
     power = np.abs(cross) ** 2
     difference = response - box
     root = np.sqrt(difference**2 + 4.0 * power)

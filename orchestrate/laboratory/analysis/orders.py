@@ -36,29 +36,14 @@ LEAST_LEVEL = 1e-6  # of the largest amplitude of the box: below, it is at rest
 
 @dataclass(frozen=True)
 class Window:
-    """One window of a record, in which the orders are fitted.
+    """One window of a record, in which the orders are fitted."""
 
-    Attributes
-    ----------
-    part : slice
-        Samples.
-    weights : ndarray
-        Of the squares, Hann's over the phase.
-    offset : ndarray
-        Time from the middle, in half lengths of the window.
-    phase : ndarray
-        rad.
-    time : float
-        Of the middle, s.
-    frequency, rate : float
-        In the middle, Hz, and its derivative, Hz/s.
-    """
-
-    part: slice
-    weights: Floats
-    offset: Floats
-    phase: Floats
-    time: float
+    part: slice  # samples
+    weights: Floats  # of the squares, Hann's over the phase
+    offset: Floats  # time from the middle, in half lengths of the window
+    phase: Floats  # rad
+    time: float  # of the middle, s
+    # in the middle, Hz, and its derivative, Hz/s
     frequency: float
     rate: float
 
@@ -155,20 +140,7 @@ def fit_windows(
     periods: float,
     overlap: float,
 ) -> tuple[list[Window], Floats, Floats]:
-    """Fit orders in windows of a record by least squares; return windows, amplitudes, residuals.
-
-    Returns
-    -------
-    windows : list of Window
-    amplitudes : ndarray, shape (channels, orders, windows)
-        Complex, see :func:`fit`.
-    residual : ndarray, shape (channels, windows)
-
-    Raises
-    ------
-    InputError
-        As :func:`track_orders`.
-    """
+    """Fit orders in windows of a record by least squares; return windows, amplitudes, residuals."""
     measured = phase is None
     angle = measured_phase(channels) if measured else given_phase(channels, phase)
     if isinstance(phase, SteppedSine):
@@ -194,12 +166,7 @@ def fit_windows(
 
 
 def checked_orders(orders: int | Sequence[float]) -> tuple[float, ...]:
-    """Return the orders to track as floats, 1 always first; raise if they are no orders.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the orders to track as floats, 1 always first; raise if they are no orders."""
     expected = f"expected a whole number of 1 to {MOST_ORDERS}, or orders > 0 with 1 among them"
     try:
         if np.ndim(orders) == 0:
@@ -219,12 +186,7 @@ def checked_orders(orders: int | Sequence[float]) -> tuple[float, ...]:
 
 
 def given_phase(channels: Channels, phase: SweptSine | SteppedSine | ArrayLike | None) -> Floats:
-    """Return the excitation's phase at each sample as the user gives it, rad.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the excitation's phase at each sample as the user gives it, rad."""
     if isinstance(phase, (SweptSine, SteppedSine)):
         return phase.phase(channels.time)
     try:
@@ -242,12 +204,7 @@ def given_phase(channels: Channels, phase: SweptSine | SteppedSine | ArrayLike |
 
 
 def measured_phase(channels: Channels) -> Floats:
-    """Return the phase of the box's acceleration as a sine, by its analytic signal; rad.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the phase of the box's acceleration as a sine, by its analytic signal; rad."""
     from scipy.signal import hilbert
 
     box = channels.box - channels.box.mean()
@@ -293,19 +250,7 @@ def moves_as_sine(
 def divide(
     channels: Channels, phase: Floats, periods: float, overlap: float, smooth: bool
 ) -> Iterator[Window]:
-    """Divide a record into windows of equal phase.
-
-    Parameters
-    ----------
-    channels : Channels
-    phase : ndarray, shape (n,)
-        rad.
-    periods : float
-        In a window.
-    overlap : float
-    smooth : bool
-        Whether the phase is measured: it is replaced by a polynomial in each window.
-    """
+    """Divide a record into windows of equal phase."""
     edge = EDGE * TURN if smooth else 0.0
     length = TURN * periods
     grown = np.maximum.accumulate(phase)
@@ -319,13 +264,7 @@ def divide(
 
 
 def dwells(channels: Channels, stepped: SteppedSine, phase: Floats) -> Iterator[Window]:
-    """Yield a stepped sine's windows: the measured part of each frequency recorded whole.
-
-    Raises
-    ------
-    InputError
-        Where it has none.
-    """
+    """Yield a stepped sine's windows: the measured part of each frequency recorded whole."""
     step = 0.5 / channels.sample_rate
     ends = stepped.measured_times()
     inside = (ends[:, 0] >= channels.time[0] - step) & (ends[:, 1] <= channels.time[-1] + step)

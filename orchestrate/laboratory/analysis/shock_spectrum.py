@@ -94,12 +94,7 @@ def shock_spectrum(
 
 
 def natural_frequencies(channels: Channels, given: ArrayLike | None) -> Floats:
-    """Return the natural frequencies of the oscillators, Hz: those given, or a default range.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the natural frequencies of the oscillators, Hz: those given, or a default range."""
     highest = HIGHEST * channels.sample_rate
     if given is None:
         octaves = math.log2(highest * channels.duration)
@@ -117,21 +112,7 @@ def natural_frequencies(channels: Channels, given: ArrayLike | None) -> Floats:
 
 
 def peaks(channels: Channels, frequency: float, damping: float) -> tuple[Floats, Floats]:
-    """Compute an oscillator's largest absolute response; return it during and after the record.
-
-    Parameters
-    ----------
-    channels : Channels
-    frequency : float
-        Natural frequency, Hz.
-    damping : float
-        Damping ratio.
-
-    Returns
-    -------
-    (ndarray, ndarray)
-        Each of shape (channels,), m/s2.
-    """
+    """Compute an oscillator's largest absolute response; return it during and after the record."""
     from scipy.signal import lfilter
 
     rate = channels.sample_rate
@@ -159,22 +140,7 @@ def straight_between(values: Floats, parts: int) -> Floats:
 def ramp_invariant(
     frequency: float, damping: float, rate: float
 ) -> tuple[list[float], list[float]]:
-    """Return numerator and denominator of the ramp-invariant filter from base to response.
-
-    Parameters
-    ----------
-    frequency : float
-        Natural frequency, Hz.
-    damping : float
-        Damping ratio.
-    rate : float
-        Sampling rate, Hz.
-
-    Returns
-    -------
-    (list of float, list of float)
-        Numerator and denominator for :func:`scipy.signal.lfilter`.
-    """
+    """Return numerator and denominator of the ramp-invariant filter from base to response."""
     angle = 2.0 * math.pi * frequency / rate
     damped = angle * math.sqrt(1.0 - damping**2)
     decay = math.exp(-damping * angle)

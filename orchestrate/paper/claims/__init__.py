@@ -14,14 +14,6 @@ SECTIONS = (section1, section2, section3, section3_influence, section4, section5
 
 
 def check_all_claims(datasets: Mapping[str, xr.Dataset], full: bool = True) -> list[dict[str, str]]:
-    """Check all claims against the computed datasets; return a row of texts for each.
-
-    Parameters
-    ----------
-    datasets : mapping of xarray.Dataset
-        By name.
-    full : bool
-        Whether at the full resolution; else what it takes is not decided.
-    """
+    """Check all claims against the computed datasets; return a row of texts for each."""
     results = Results(datasets, full)
     return [claim.row(results) for claim in CLAIMS]

@@ -14,13 +14,7 @@ LEAST = 0.01  # share of chaotic or neutral responses from which a region is cal
 
 
 def region_rows(datasets: Mapping[str, xr.Dataset]) -> list[dict[str, str]]:
-    """Return a row of texts for each region of each case: limits, chaotic share, verdict.
-
-    Parameters
-    ----------
-    datasets : mapping of xarray.Dataset
-        By name.
-    """
+    """Return a row of texts for each region of each case: limits, chaotic share, verdict."""
     results = Results(datasets)
     return [
         {"case": f"e = {case.e:g}, D = {case.get('D'):g}", **region_row(results, name, region)}
@@ -45,13 +39,7 @@ def region_row(results: Results, case: str, region: Region) -> dict[str, str]:
 
 
 def answer_sentences(datasets: Mapping[str, xr.Dataset]) -> list[str]:
-    """Return a sentence each on largest impulses, coexisting attractors and spectra.
-
-    Parameters
-    ----------
-    datasets : mapping of xarray.Dataset
-        By name.
-    """
+    """Return a sentence each on largest impulses, coexisting attractors and spectra."""
     return [
         *(
             describe_largest_impulse(
@@ -65,16 +53,7 @@ def answer_sentences(datasets: Mapping[str, xr.Dataset]) -> list[str]:
 
 
 def describe_largest_impulse(data: xr.Dataset, run_on: xr.Dataset, parameter: str) -> str:
-    """Return a sentence on a map's largest impulse: where it is, and its size in a longer run.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        The map.
-    run_on : xarray.Dataset
-        Its largest response, followed longer.
-    parameter : str
-    """
+    """Return a sentence on a map's largest impulse: where it is, and its size in a longer run."""
     impulses = data.impulse_max
     best = impulses.where(impulses == impulses.max(), drop=True)
     near = impulses.max(parameter) > 0.5 * impulses.max()

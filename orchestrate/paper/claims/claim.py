@@ -30,23 +30,12 @@ BOTH, SWEPT, EXACT, NEITHER = (
 
 @dataclass(frozen=True)
 class Finding:
-    """Result of checking a claim: a text with numbers, a verdict, and a reason.
-
-    Attributes
-    ----------
-    value : str
-    verdict : str
-        Of ``WORDS``.
-    why : str
-        A sentence with numbers where the verdict is not plain.
-    agrees : str
-        Of a limit: with which of the two that were found the paper's number agrees.
-    """
+    """Result of checking a claim: a text with numbers, a verdict, and a reason."""
 
     value: str
-    verdict: str
-    why: str = ""
-    agrees: str = ""
+    verdict: str  # of `WORDS`
+    why: str = ""  # A sentence with numbers where the verdict is not plain
+    agrees: str = ""  # of a limit: with which of the two that were found the paper's number agrees
 
 
 Check = Callable[[Results], Finding]
@@ -54,30 +43,15 @@ Check = Callable[[Results], Finding]
 
 @dataclass(frozen=True)
 class Claim:
-    """A claim of the paper with the function that checks it against results.
-
-    Attributes
-    ----------
-    section : str
-    text : str
-        What the paper says.
-    printed : str
-        Its value, as printed.
-    how : str
-        How it is found.
-    tolerance : str
-    check : callable
-        From :class:`.results.Results` to a :class:`Finding`.
-    full : bool
-        Whether it takes the full resolution to decide: the paper's 500 periods, or many starts.
-    """
+    """A claim of the paper with the function that checks it against results."""
 
     section: str
-    text: str
-    printed: str
-    how: str
+    text: str  # what the paper says
+    printed: str  # its value, as printed
+    how: str  # how it is found
     tolerance: str
-    check: Check
+    check: Check  # from results.Results to a Finding
+    # whether it takes the full resolution to decide: the paper's 500 periods, or many starts
     full: bool = False
 
     def row(self, results: Results) -> dict[str, str]:
@@ -124,20 +98,7 @@ def rounds_to(value: float, printed: str) -> bool:
 def check_limit(
     edges: Edges, limit: Limit, printed: str, why: str = "", slack: float | None = None
 ) -> Finding:
-    """Compare a printed limit with the sweep's and the exact one; return the finding.
-
-    Parameters
-    ----------
-    edges : (float, float)
-        Neighbouring frequencies of the sweep, the paper's protocol, between which it lies: it
-        counts as their middle, so that no end of theirs agrees by touching alone.
-    limit : Limit
-        Of stability.
-    printed : str
-    why : str
-    slack : float, optional
-        Within which it agrees; by default half a unit of the last printed digit.
-    """
+    """Compare a printed limit with the sweep's and the exact one; return the finding."""
     low, high = edges
     near = (half_unit(printed) if slack is None else slack) + 1e-9
     swept = abs(0.5 * (low + high) - float(printed)) <= near

@@ -25,19 +25,7 @@ def register_limit(
     tolerance: str = LIMIT,
     full: bool = True,
 ) -> None:
-    """Add a claim on a printed limit, checked by one of this module's functions.
-
-    Parameters
-    ----------
-    section, text, printed
-        Of the claim.
-    find : callable
-        From the results, the printed number and ``where`` to a finding.
-    *where
-        Case, orbit mT/k, a frequency inside of its window.
-    how, tolerance, full
-        Of the claim.
-    """
+    """Add a claim on a printed limit, checked by one of this module's functions."""
     enter = register_claim(section, text, printed, how, tolerance, full)
     enter(lambda results: find(results, printed, *where))
 

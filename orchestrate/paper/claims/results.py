@@ -19,33 +19,19 @@ Edges = tuple[float, float]  # two neighbouring frequencies
 
 
 class Shares(NamedTuple):
-    """Shares of responses between two frequencies that are chaotic, and neutral.
+    """Shares of responses between two frequencies that are chaotic, and neutral."""
 
-    Attributes
-    ----------
-    chaotic, neutral : float
-        Their shares.
-    """
-
+    # their shares
     chaotic: float
     neutral: float
 
 
 class Limit(NamedTuple):
-    """An exact limit of stability: frequency, kind of bifurcation, orbit.
-
-    Attributes
-    ----------
-    value : float
-    kind : str
-        What happens there.
-    orbit : str
-        mT/k: k impacts in m periods.
-    """
+    """An exact limit of stability: frequency, kind of bifurcation, orbit."""
 
     value: float
-    kind: str
-    orbit: str
+    kind: str  # what happens there
+    orbit: str  # mT/k: k impacts in m periods
 
     @property
     def digits(self) -> int:
@@ -54,15 +40,7 @@ class Limit(NamedTuple):
 
 
 class Results:
-    """The paper's computed datasets, with access by case.
-
-    Parameters
-    ----------
-    datasets : mapping of xarray.Dataset
-        By name.
-    full : bool
-        Whether at the full resolution.
-    """
+    """The paper's computed datasets, with access by case."""
 
     def __init__(self, datasets: Mapping[str, xr.Dataset], full: bool = True) -> None:
         self._datasets = datasets

@@ -71,15 +71,7 @@ def linear_curve(numbers: np.ndarray, speed: np.ndarray) -> np.ndarray:
 
 
 def fit_linear_curve(speed: np.ndarray, amplitude: np.ndarray) -> tuple[np.ndarray, float]:
-    """Fit a linear oscillator's curve to amplitudes; return its numbers and the largest error.
-
-    Returns
-    -------
-    ndarray, shape (3,)
-        As :func:`linear_curve` takes them.
-    float
-        Largest distance over the amplitude there.
-    """
+    """Fit a linear oscillator's curve to amplitudes; return its numbers and the largest error."""
     from scipy.optimize import least_squares
 
     top = float(amplitude.max())

@@ -140,14 +140,7 @@ def check_chattering(results: Results) -> Finding:
 
 
 def is_endless(rows: xr.Dataset, e: float) -> bool:
-    """Return whether impacts form a geometric sequence in time, down to gamma.
-
-    Parameters
-    ----------
-    rows : xarray.Dataset
-        Over gamma.
-    e : float
-    """
+    """Return whether impacts form a geometric sequence in time, down to gamma."""
     order = np.argsort(-rows.gamma.values)
     gammas, counts = rows.gamma.values[order], rows.impacts.values[order]
     with np.errstate(divide="ignore"):  # at e = 1 more impacts than any number
