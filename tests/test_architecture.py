@@ -377,6 +377,23 @@ def taken(node: ast.AST) -> list[str]:
     return [argument.arg for argument in every if argument.arg not in ("self", "cls")]
 
 
+FACE = (ROOT / "orchestrate" / "__init__.pyi").read_text(encoding="utf-8")
+PUBLIC = set(re.findall(r" as (\w+)$", FACE, re.MULTILINE)) | {"Running", "ExcitationSignal"}
+SECTION = re.compile(r"^(Parameters|Attributes|Returns|Yields|Raises)\n-{3,}", re.MULTILINE)
+PUBLIC_MODULES = {"errors", "units", "running/formats", "running/options"}
+
+
+@pytest.mark.parametrize("file", [file for file in FILES if not file.startswith("fmu_src/")])
+def test_blocks_of_numpydoc_are_for_the_public_face(file):
+    """Internal docstrings are sentences; the meaning and unit of a field are comments."""
+    if file.removeprefix("orchestrate/").removesuffix(".py") in PUBLIC_MODULES:
+        return
+    inside = [node for node in tree_of(file).body if getattr(node, "name", None) not in PUBLIC]
+    kinds = (*FUNCTIONS, ast.ClassDef)
+    nodes = [node for part in inside for node in ast.walk(part) if isinstance(node, kinds)]
+    assert [node.name for node in nodes if SECTION.search(ast.get_docstring(node) or "")] == []
+
+
 def test_the_reader_of_docstrings():
     text = (
         "Idea.\n\nParameters\n----------\na, b : int\n    Two.\n*c : str\n\nReturns\n-------\nd\n"
