@@ -62,6 +62,7 @@ class SweepJob(SeriesQuestion):
     peak_periods: int = 8
     asked: ClassVar[str] = "sweep"
     chunk_size: ClassVar[int] = 100
+    in_threads: ClassVar[bool] = True
     sequential: ClassVar[bool] = True
     warmup_items: ClassVar[int] = 16  # most responses forget where they came from within as many
 
