@@ -258,7 +258,11 @@ class CosimulateJob(Question):
                 **impact_variables(table),
             },
             {"time": variable("time", table["time"], "s", "communication points")},
-            {"title": f"{self.structure.label()} on {description.name}", "drive": description.name},
+            {
+                "title": f"{self.structure.label()} on {description.name}",
+                "drive": description.name,
+                "recorded": ",".join(self.record),
+            },
         )
 
 
