@@ -47,7 +47,7 @@ def add_parser(commands: Commands) -> None:
     held = "its other inputs: a number, or a CSV file with time in s and value"
     group.add_argument("--input", action="extend", help=held, **several)
     record = "variables of the drive that are stored"
-    group.add_argument("--record", default="", metavar="A,B,...", help=record)
+    group.add_argument("--record", metavar="A,B,...", help=record)
     question = commands.add_function_options(parser, "the run")
     question.add("duration", positive_number, metavar="S", help="of the run, s")
     question.add("step", positive_number, metavar="S", help="communication step, s")
@@ -72,7 +72,7 @@ def run(arguments: argparse.Namespace) -> None:
         "connect": pairs("--connect", arguments.connect),
         "parameters": read_numbers("--parameter", arguments.parameter),
         "inputs": read_inputs(arguments.input),
-        "record": tuple(name for name in arguments.record.split(",") if name),
+        "record": tuple(name for name in (arguments.record or "").split(",") if name),
     }
     answer_question(arguments, structure, question, print_result, draw_result)
 

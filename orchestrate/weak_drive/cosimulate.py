@@ -281,7 +281,7 @@ def cosimulate(
     inputs: Mapping[str, float | Course | tuple[ArrayLike, ArrayLike]] | None = None,
     duration: float,
     step: float,
-    record: Sequence[str] = (),
+    record: Sequence[str] | None = None,
     start: ArrayLike | None = None,
     estimate: bool = True,
     **running: Unpack[Running],
@@ -308,7 +308,7 @@ def cosimulate(
         Its other inputs: a number, times in s with values, or a :class:`orchestrate.Course`.
     duration, step : float
         Of the run, and the communication step, s.
-    record : sequence of str
+    record : sequence of str, optional
         Variables of the drive that are stored.
     start : array_like of 4 floats, optional
         x1, x2 in m, v1, v2 in m/s at time 0, relative to the box; at rest by default.
@@ -373,7 +373,7 @@ def cosimulate(
         inputs=checked_inputs(inputs or {}, description, duration),
         duration=float(duration),
         step=float(duration) / count if description.has_fixed_step else float(step),
-        record=checked_record(record, description),
+        record=checked_record(record or (), description),
         start=checked_state("start", start, structure),
         estimate=bool(estimate),
     )
