@@ -43,6 +43,7 @@ SHORT_NAMES = {  # names of the hypotheses as arguments
     "stop": 3,
     "stop on the other side": 4,
 }
+SAME_LEVEL = 0.1  # of the largest level: a tone whose level varies less has one
 FITTED_DIMENSIONS = ("hypothesis", "channel", "order", "window")
 
 
@@ -87,8 +88,8 @@ def fit(
     Raises
     ------
     InputError
-        Where the record is none of a swept or stepped sine and no resonance curve, or an argument
-        is no such name.
+        Where the record is none of a swept or stepped sine and no resonance curve, is one tone that
+        has fewer numbers than are fitted, or an argument is no such name.
 
     Notes
     -----
@@ -141,6 +142,7 @@ def fit(
         delaminated=kind == DELAMINATED,
         kind=kind,
     )
+    check_tones(job)
     return answer(job, running, finder(running))
 
 
@@ -168,6 +170,22 @@ def checked_data(record: xr.Dataset, guess: Structure | None = None) -> RecordDa
             text = f"record: the response is largest at {resonance:.3g} Hz, {text}: are the times"
             warnings.warn(f"{text} in s, and is the guess one of this beam?", stacklevel=3)
     return RecordData.from_channels(channels)
+
+
+def check_tones(job: FitJob) -> None:
+    """Check that fewer numbers are fitted than a record of one tone has: three orders a sensor."""
+    evidence, hypothesis = job.evidence, job.hypotheses[-1]
+    seconds = np.array([part.stop - part.start for part in evidence.windows.parts]) / evidence.rate
+    free, numbers = hypothesis.bounds(evidence), len(FITTED_ORDERS) * len(evidence.masses)
+    is_tone = float(np.ptp(evidence.frequency)) < 1.0 / float(seconds.max())
+    if (
+        is_tone
+        and np.ptp(evidence.level) < SAME_LEVEL * evidence.level.max()
+        and len(free) >= numbers
+    ):
+        text = f"one tone of {evidence.frequency.mean():.4g} Hz has {numbers} numbers"
+        expected = "expected a sweep, or fewer in free="
+        raise InputError(f"record: {text}, {len(free)} are fitted; {expected}")
 
 
 def is_curve(record: xr.Dataset) -> bool:

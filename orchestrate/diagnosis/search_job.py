@@ -7,14 +7,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..access import OSCILLATOR, Player
 from ..laboratory.analysis.channels import Channels
-from ..laboratory.record import record as made_record
 from ..running.job import Inputs, Job, Table
 from ..structures import Structure
 from .curve_evidence import CurveData
@@ -25,10 +24,7 @@ from .evidence import Evidence
 from .fitting import POLISH_ROUNDS, Search, Solution, distinct_minima
 from .hypotheses import SOUND, STARTING_SPLITS, Delaminated, DelaminatedWithClearance, Hypothesis
 from .misfit import misfit
-from .orders import RecordOrders, record_orders
-
-if TYPE_CHECKING:
-    import xarray as xr
+from .orders import RecordOrders, channel_orders
 
 Floats = NDArray[np.float64]
 BONDED_STEPS = 15  # steps downhill from the bonded solution
@@ -68,11 +64,10 @@ class RecordData:
         values = tuple(tuple(row.tolist()) for row in channels.values)
         return cls(channels.names, channels.sample_rate, float(channels.time[0]), values)
 
-    def dataset(self) -> xr.Dataset:
-        """Return the record as a dataset."""
-        named = dict(zip(self.names, self.channels, strict=True))
+    def to_channels(self) -> Channels:
+        """Return the record as channels, which were checked before."""
         time = self.begin + np.arange(len(self.channels[0])) / self.sample_rate
-        return made_record(time=time, sample_rate=self.sample_rate, **named)  # type: ignore[arg-type]
+        return Channels(time, self.sample_rate, self.names, np.array(self.channels), "record")
 
     def evidence(self) -> Evidence:
         """Return the evidence of the record."""
@@ -92,7 +87,7 @@ def cached_evidence(data: RecordData | CurveData) -> Evidence:
 @lru_cache(maxsize=2)
 def cached_orders(data: RecordData) -> RecordOrders:
     """Return the orders of the whole record, computed once per process."""
-    return record_orders(data.dataset())
+    return channel_orders(data.to_channels())
 
 
 @lru_cache(maxsize=2)

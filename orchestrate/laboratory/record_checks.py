@@ -2,12 +2,89 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from itertools import combinations
+
 import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+PLAUSIBLE = (0.05, 2e5)  # largest absolute values that accelerometers read in tests, m/s2
+CLIPPED = 5e-4  # share of samples at repeated extremes from which a channel is saturated
+CONSTANT = 0.02  # share of the samples, in a row, from which one value is no reading
+FEWEST_CONSTANT = 20  # samples
+MOVING = 0.1  # rms over the usual one from which another channel moves there
+SAME = 1e-9  # of the peak: two sensors never differ so little
+COUNTING = 0.9  # share of equal steps in a counter
 BAND = 1e-3  # of the peak-to-peak value: readings so close to an extreme are at it
 PLATEAU = 3  # samples in a row at an extreme that no sine has
+
+
+def doubtful_channels(time: Floats, channels: Mapping[str, Floats]) -> list[tuple[str, str, str]]:
+    """Return what makes channels, the base first, doubtful: (channel, what it is, what to do)."""
+    doubts = []
+    for name, values in channels.items():
+        other = next((one for key, one in channels.items() if key != name), values)
+        wrong_unit, share = implausible_unit(values), clipped_share(values)
+        constant = constant_part(values, other)
+        if wrong_unit:
+            doubts.append((name, wrong_unit, "expected m/s2"))
+        if share > CLIPPED:
+            text = f"saturated: {100.0 * share:.2g} % of its samples repeat its extreme values"
+            doubts.append((name, text, "record it again with a wider range"))
+        if constant is not None:
+            first, last = time[constant.start], time[constant.stop - 1]
+            text = f"keeps the value {values[constant.start]:.4g} from {first:.4g} to {last:.4g} s"
+            doubts.append((name, text, "expected a reading: look for a loose cable"))
+    for first, second in combinations(channels, 2):
+        values, off = channels[first], np.abs(channels[first] - channels[second])
+        if np.ptp(values) > 0.0 and off.max() <= SAME * np.abs(values).max():
+            doubts.append((second, f"the same values as {first}", "expected a channel each"))
+    return doubts
+
+
+def implausible_unit(values: Floats) -> str:
+    """Return a question on the unit of numbers that are hardly in m/s2; empty if they may be."""
+    peak, low, high = float(np.abs(values).max()), *PLAUSIBLE
+    mean, spread = abs(float(values.mean())), float(values.std())
+    if 0.0 < peak < low:
+        return f"no more than {peak:.3g} m/s2: are these numbers in g, or in V?"
+    if peak > high:
+        return f"up to {peak:.3g} m/s2: are these numbers in mV, or counts?"
+    if abs(mean - 1.0) < 0.03 and spread < 0.5 * mean:
+        return f"a mean of {mean:.3g} m/s2, as gravity has in g: are these numbers in g?"
+    return ""
+
+
+def constant_part(values: Floats, other: Floats) -> slice | None:
+    """Return the longest part with one value in which another channel moves; None without one."""
+    changes = np.flatnonzero(np.diff(values)) + 1
+    ends = np.concatenate([[0], changes, [len(values)]])
+    longest = int(np.argmax(np.diff(ends)))
+    part = slice(int(ends[longest]), int(ends[longest + 1]))
+    if part.stop - part.start < max(CONSTANT * len(values), FEWEST_CONSTANT):
+        return None
+    return part if other[part].std() > MOVING * other.std() else None
+
+
+def ascends(values: Floats) -> bool:
+    """Return whether values ascend from first to last, as times and counters do."""
+    steps = np.diff(values)
+    return bool((steps >= 0.0).all() and (steps > 0.0).any())
+
+
+def first_hole(values: Floats) -> int | None:
+    """Return the row after which a counter goes on that misses some; None if it is none, or whole.
+
+    A counter has equal steps up in nine of ten rows or more; where it falls it begins again.
+    """
+    steps = np.diff(values)
+    usual = float(np.median(steps)) if len(steps) else 0.0
+    equal = np.abs(steps - usual) <= 0.5 * usual
+    if not usual > 0.0 or equal.mean() < COUNTING:
+        return None
+    holes = np.flatnonzero(steps > 1.5 * usual)
+    return int(holes[0]) + 1 if len(holes) else None
 
 
 def clipped_share(values: Floats) -> float:

@@ -92,6 +92,18 @@ def test_wrong_arguments_are_named(arguments, text):
         orchestrate.fit(record(), guess(), **arguments)
 
 
+def test_more_parameters_than_the_numbers_of_one_tone_are_not_fitted():
+    """Three orders of one sensor do not determine five parameters; two are fitted."""
+    time = np.arange(3000) / RATE
+    orders = [np.sin(2.0 * np.pi * n * 33.0 * time + 0.4 * n) for n in (1, 2)]
+    channels = {"box_acceleration": 2.0 * orders[0], "acceleration1": 9.0 * orders[0] + orders[1]}
+    tone = orchestrate.record(**channels, sample_rate=RATE)
+    with pytest.raises(orchestrate.InputError, match="one tone of 33 Hz has 3 numbers, 5 are fit"):
+        orchestrate.fit(tone, guess(), **LIMIT)
+    answer = orchestrate.fit(tone, guess(), hypothesis="bonded", **LIMIT)
+    assert np.isfinite(answer.value).all()
+
+
 def test_random_vibration_is_refused_in_one_line():
     rng = np.random.default_rng(2)
     noise = rng.standard_normal((2, 20_000))
