@@ -131,6 +131,7 @@ class Findings:
         """Return the conditions under which a record decides anything."""
         factor = factor_outside(self.resonance, *self.guessed)
         low, high = self.guessed
+        most = 100.0 * self.settings.end_response
         away = f"a factor of {factor:.3g} from the guess's {low:.3g} to {high:.3g} Hz"
         return [
             Condition(
@@ -142,8 +143,8 @@ class Findings:
             Condition(
                 self.end_response <= self.settings.end_response,
                 "The sweep does not pass the resonance: the response at one of its ends is "
-                f"{digits(100.0 * self.end_response)} % of the largest one, at "
-                f"{self.resonance:.3g} Hz, where {digits(100.0 * self.settings.end_response)} % "
+                f"{digits(100.0 * self.end_response, most)} % of the largest one, at "
+                f"{self.resonance:.3g} Hz, where {digits(most)} % "
                 "shows it as passed.",
                 "A sweep that passes the resonance, from well below it to well above it.",
             ),
@@ -157,6 +158,7 @@ class Findings:
     def delaminated_conditions(self) -> list[Condition]:
         """Return the conditions of "delaminated"."""
         enough, most = self.deciding_ratio, self.largest_misfit
+        odds = digits(self.odds, self.settings.odds)
         alone = "is all that is seen, as two modes of a sound beam show it too: it decides"
         ratio = f"The ratio is {self.ratio:.3g}, where {enough:g} is enough."
         if self.is_difference_alone:
@@ -165,8 +167,8 @@ class Findings:
             Condition(self.is_opening_seen, "Neither order 2 nor a difference of faces is seen."),
             Condition(
                 self.delaminated_misfit <= most,
-                f"The delaminated model's misfit is {digits(self.delaminated_misfit)}, where at "
-                f"most {most:g} describes a record.",
+                f"The delaminated model's misfit is {digits(self.delaminated_misfit, most)}, where "
+                f"at most {most:g} describes a record.",
             ),
             Condition(
                 self.ratio >= enough,
@@ -183,13 +185,14 @@ class Findings:
             ),
             Condition(
                 self.ratio < enough or not self.odds < self.settings.odds,
-                f"The odds of delaminated against sound are {digits(self.odds)} to 1, where "
+                f"The odds of delaminated against sound are {odds} to 1, where "
                 f"{self.settings.odds:g} is enough.",
             ),
         ]
 
     def no_opening_conditions(self) -> list[Condition]:
         """Return the conditions of "no opening seen"."""
+        sound, most = self.settings.sound, 100.0 * self.settings.hidden
         return [
             Condition(not self.is_opening_seen, "Something is seen to open."),
             Condition(
@@ -198,13 +201,13 @@ class Findings:
             ),
             Condition(
                 self.sound_misfit <= self.settings.sound,
-                f"The best sound model's misfit is {digits(self.sound_misfit)}, where at most "
-                f"{self.settings.sound:g} describes a record.",
+                f"The best sound model's misfit is {digits(self.sound_misfit, sound)}, where at "
+                f"most {sound:g} describes a record.",
             ),
             Condition(
                 self.hidden <= self.settings.hidden,
-                f"Noise hides an order 2 of up to {digits(100.0 * self.hidden)} % of order 1, "
-                f"where at most {digits(100.0 * self.settings.hidden)} % may be hidden.",
+                f"Noise hides an order 2 of up to {digits(100.0 * self.hidden, most)} % of order "
+                f"1, where at most {digits(most)} % may be hidden.",
                 "The same sweep with less noise, or at a higher level.",
             ),
         ]
@@ -290,13 +293,13 @@ class Findings:
         """Return sentences that say by which numbers the verdict was decided, or stopped."""
         sentences = [
             f"Order 2 is up to {digits(100.0 * self.order2)} % of order 1, "
-            f"{digits(self.excess)} times the size from which it counts as seen."
+            f"{digits(self.excess, 1.0)} times the size from which it counts as seen."
         ]
         if self.sensors > 1:
-            apart = f"{digits(self.apart)} times the difference from which it counts as seen"
+            apart = f"{digits(self.apart, 1.0)} times the difference from which it counts as seen"
             sentences.append(f"The two faces differ by {apart}.")
         if math.isfinite(self.bursts):
-            power = f"{digits(self.bursts)} times the power from which they count as impacts"
+            power = f"{digits(self.bursts, 1.0)} times the power from which they count as impacts"
             sentences.append(f"Bursts once a period have {power}.")
         misfit = (
             f'The best sound model, "{self.sound}", has a misfit of {digits(self.sound_misfit)}'
@@ -349,15 +352,16 @@ class Findings:
         return text
 
 
-def digits(value: float) -> str:
-    """Format a number with two significant digits, without an exponent.
+def digits(value: float, limit: float = math.nan) -> str:
+    """Format a number with two significant digits, or with as many as tell it from a limit.
 
     Examples
     --------
-    >>> digits(0.1234), digits(113.0)
-    ('0.12', '110')
+    >>> digits(0.1234), digits(113.0), digits(1.2004, limit=1.2), digits(1.3, limit=1.2)
+    ('0.12', '110', '1.2004', '1.3')
     """
-    return f"{float(f'{value:.2g}'):.10g}"
+    rounded = (float(f"{value:.{count}g}") for count in range(2, 17))
+    return f"{next((one for one in rounded if one != limit), value):.10g}"
 
 
 def factor_outside(value: float, low: float, high: float) -> float:

@@ -188,3 +188,10 @@ def test_a_ratio_that_one_part_of_the_record_makes_is_not_certain():
     burst = one.copy()
     burst[..., 50:60] *= 12.0
     assert 0.02 < resampled_share(burst, one, 1.5) < 0.98
+
+
+def test_a_number_beyond_its_limit_is_not_written_as_the_limit():
+    """It read: a misfit of 1.2, where at most 1.2 describes a record."""
+    beyond = replace(QUIET, sound_misfit=1.203, delaminated_misfit=1.203)
+    assert "misfit is 1.203, where at most 1.2 describes" in replace(beyond).reason()
+    assert "1.004 times the size" in replace(OPENED, excess=1.0041).reason()
