@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..laboratory.record_checks import CLIPPED
 from .misfit import soft_squares
 
 Floats = NDArray[np.float64]
@@ -42,7 +43,7 @@ class Settings:
     odds: float = 1.0
     hidden: float = 0.1  # largest order 2 that noise may hide, over order 1
     # share of a channel's samples at repeated extreme values from which it counts as saturated
-    clipped: float = 1e-4
+    clipped: float = CLIPPED
     # response at an end of the sweep, over the largest one, above which the resonance counts as not
     # passed
     end_response: float = 0.7

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 PLAUSIBLE = (0.05, 2e5)  # largest absolute values that accelerometers read in tests, m/s2
-CLIPPED = 5e-4  # share of samples at repeated extremes from which a channel is saturated
+CLIPPED = 1e-4  # share of samples at repeated extremes from which a channel is saturated
 CONSTANT = 0.02  # share of the samples, in a row, from which one value is no reading
 FEWEST_CONSTANT = 20  # samples
 MOVING = 0.1  # rms over the usual one from which another channel moves there
