@@ -61,7 +61,7 @@ PARTS: dict[str, set[str]] = {  # and of fmu_src
     "kernels.shaker": {"kernels.numerics"},
     "runtime": set(),
     "models": {"kernels.oscillator", "kernels.shaker", "runtime", "version"},
-    "export": {"runtime"},
+    "export": {"runtime", "kernels.repetition"},
 }
 DYNAMIC = {"orchestrate/__init__.py", "fmu_src/export/sources.py"}
 ONLY_IN = {  # packages of others, and the one place of ours that may know them
@@ -206,10 +206,11 @@ def test_tests_are_known_to_tests_alone(file):
     assert not uses(file, "tests")
 
 
-def test_the_sources_of_the_fmus_are_known_in_five_places():
+def test_the_sources_of_the_fmus_are_known_in_six_places():
     found = {file for file in users("fmu_src") if file.startswith("orchestrate/")}
     access = {f"orchestrate/access/{name}.py" for name in ("c_library", "exported", "webassembly")}
-    assert found == {*access, "orchestrate/structures/ranges.py", "orchestrate/version.py"}
+    rule = "orchestrate/response/multiplicity.py"
+    assert found == {*access, rule, "orchestrate/structures/ranges.py", "orchestrate/version.py"}
 
 
 @pytest.mark.parametrize("file", FILES)

@@ -8,11 +8,17 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ..kernels import repetition
 from .archive import guid_of
 from .compiler import link
 from .errors import CannotExport
 from .platforms import PLATFORMS
 from .sources import import_closure
+from .translation.kernel import translate
+
+KERNELS = {  # headers that a source may include, translated from Python
+    "repetition.h": {"decide": repetition.decide, "repeat": repetition.repeat},
+}
 
 
 def guid(source: Path) -> str:
@@ -36,8 +42,12 @@ def export(source: Path, platform: str) -> bytes:
     """
     if platform not in PLATFORMS:
         raise CannotExport(f"platform {platform}: expected one of {', '.join(PLATFORMS)}")
-    header = f'#define TOKEN "{guid(source)}"\n'.encode()
-    return link(platform, source.stem, {source.name: source.read_bytes(), "token.h": header})
+    text = source.read_bytes()
+    files = {source.name: text, "token.h": f'#define TOKEN "{guid(source)}"\n'.encode()}
+    for name, entries in KERNELS.items():
+        if name.encode() in text:
+            files[name] = translate(entries).encode()
+    return link(platform, source.stem, files)
 
 
 def file_name(source: Path, platform: str) -> str:

@@ -22,7 +22,17 @@ module               idea
 ===================  =================================================================
 """
 
-from .begin import REST, begin, gap_between, last_samples, sampled, samples_per_step
+from .begin import (
+    REST,
+    SAMPLE_SERIES,
+    START_PARAMETERS,
+    begin,
+    four_numbers,
+    gap_between,
+    last_samples,
+    sampled,
+    samples_per_step,
+)
 from .c_library import build_libraries
 from .channel import Channel
 from .description import Description, describe
@@ -30,7 +40,7 @@ from .event_loop import Played
 from .events import NO_INPUT, EventInstance
 from .exported import FORMS, MODELS, PLAIN_FORMS, build, find, finder, sources_of, up_to_date
 from .impacts import STATE, Impacts
-from .instance import Instance
+from .instance import Instance, function_addresses
 from .models import OSCILLATOR, SHAKER
 from .play import PLAYED, Player
 from .webassembly import build_web_kernels
@@ -43,7 +53,9 @@ __all__ = [
     "PLAIN_FORMS",
     "PLAYED",
     "REST",
+    "SAMPLE_SERIES",
     "SHAKER",
+    "START_PARAMETERS",
     "STATE",
     "Channel",
     "Description",
@@ -59,6 +71,8 @@ __all__ = [
     "describe",
     "find",
     "finder",
+    "four_numbers",
+    "function_addresses",
     "gap_between",
     "last_samples",
     "samples_per_step",

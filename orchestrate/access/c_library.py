@@ -47,11 +47,17 @@ def library(source: Path, folder: str | PathLike[str] | None = None) -> Path | N
 
 def loaded_function(source: Path) -> Any:
     """Load the C function ``run`` of a source's shared library; None without a library."""
+    loaded = loaded_library(source)
+    return None if loaded is None else loaded.run
+
+
+def loaded_library(source: Path) -> Any:
+    """Load a C source's shared library; None where there is none."""
     path = library(source)
     if path is None:
         return None
     try:
-        return ctypes.CDLL(str(path)).run
+        return ctypes.CDLL(str(path))
     except OSError as reason:  # such as a folder from which nothing may be run
         log.info("%s cannot be loaded, Python does the same: %s", path, reason)
         return None

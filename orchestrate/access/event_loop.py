@@ -11,7 +11,7 @@ import ctypes
 import functools
 import logging
 from collections.abc import Sequence
-from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p, cast
+from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -22,6 +22,7 @@ from ..errors import FmuError
 from .c_library import loaded_function
 from .channel import Channel
 from .impacts import EVENT_OUTPUTS, Impacts
+from .instance import function_addresses
 from .stepping import SteppingInstance
 
 log = logging.getLogger(__name__)
@@ -163,10 +164,8 @@ class CompiledEventLoop(EventLoop):
         self._run = run_function()
         self._buffer = np.empty((IMPACT_CAPACITY, len(EVENT_OUTPUTS) + 2))
         names = self.inputs, self.outputs, EVENT_OUTPUTS, ("in_contact",)
-        dll = instance._fmu.dll
         self._calls = Calls(
-            instance._fmu.component,
-            *(cast(dll[f"fmi3{name}"], c_void_p).value for name in FUNCTIONS),
+            *function_addresses(instance, FUNCTIONS),
             *(references(instance, some) for some in names),
             *map(len, names[:3]),
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Sequence
-from ctypes import byref, c_bool, c_double, c_int, c_size_t, c_uint, c_void_p
+from ctypes import byref, c_bool, c_double, c_int, c_size_t, c_uint, c_void_p, cast
 from functools import partial
 from os import PathLike
 from types import TracebackType
@@ -21,6 +21,13 @@ from .library import loaded
 REAL_TYPES = ("Real", "Float64")
 INTEGER_TYPES = ("Integer", "Int32")
 Prepared = Callable[[], None]
+
+
+def function_addresses(instance: Instance, names: Sequence[str]) -> tuple[int, ...]:
+    """Return the addresses of an FMI 3.0 instance and of functions of FMI, for compiled code."""
+    dll = instance._fmu.dll
+    functions = (cast(dll[f"fmi3{name}"], c_void_p).value or 0 for name in names)
+    return (instance._fmu.component, *functions)
 
 
 class Transfer(NamedTuple):
@@ -56,6 +63,7 @@ class Instance:
         self._messages: list[str] = []
         self._readers: dict[tuple[str, ...], tuple[Transfer, NDArray[np.float64]]] = {}
         self._transfers: dict[tuple[str, ...], list[Transfer]] = {}
+        self.cache: dict[object, Any] = {}  # what callers prepare once for this instance
         self._open = False
         try:
             self._fmu = loaded(self.description, name)

@@ -16,7 +16,7 @@ from ..checks import REQUIRES_DELAMINATED, checked_integer
 from ..errors import InputError
 from ..response.labels import si_state_coordinate, variable
 from ..response.questions import Point, Question, checked_point, checked_state
-from ..response.respond import stroboscopic_samples
+from ..response.response_loop import stroboscopic_samples
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Excitation, Structure

@@ -19,7 +19,8 @@ from ..access import STATE, EventInstance, Instance, begin
 from ..constants import TURN
 from ..errors import FmuError, InputError
 from ..response.questions import Point
-from ..response.respond import Response, respond, stroboscopic_samples
+from ..response.respond import Response, respond
+from ..response.response_loop import stroboscopic_samples
 from .clusters import AttractorSettings, run_until_settled
 from .continuation import NoConvergenceError
 from .families import Setting

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ..access import EventInstance, Instance, begin
 from ..access.description import describe
 from ..response.questions import Point
-from ..response.respond import stroboscopic_samples
+from ..response.response_loop import stroboscopic_samples
 from .clusters import AttractorSettings, irregular_clusters
 from .decision import MotionDecider
 from .settled_motion import IRREGULAR, ORBIT, Floats, SettledMotion

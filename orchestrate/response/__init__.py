@@ -7,6 +7,7 @@ module                      idea
 :mod:`.labels`              dataset variables with units and long names
 :mod:`.equations`           accelerations from the state: (6) and (18)
 :mod:`.multiplicity`        period of a response in excitation periods
+:mod:`.response_loop`       many steady-state responses by one call of compiled code
 :mod:`.respond`             steady-state response at one operating point
 :mod:`.peaks`               largest displacements and accelerations of both masses
 :mod:`.simulate`            a motion in time

@@ -13,10 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..access import Instance, sampled
 from .equations import Flags, Floats, MotionCoefficients, in_touch
 from .questions import Point
-from .respond import Response
 
 POINTS = 200  # states over the periods looked at: as many as the FMU keeps in a step
 PEAKS = ("x1_max", "x2_max", "a1_max", "a2_max")
@@ -65,21 +63,6 @@ class BoxMotion(NamedTuple):
     def forcing(self, sine: Floats, cosine: Floats) -> tuple[Floats, Floats]:
         """Return the inertial forcing and its time derivative from the phase's sine and cosine."""
         return self.amplitude * sine, self.amplitude * self.frequency * cosine
-
-
-def periods_to_sample(multiplicity: int, max_periods: int) -> int:
-    """Return how many periods to sample: the multiplicity, or half of the most if none."""
-    return min(multiplicity, max_periods) or (max_periods + 1) // 2
-
-
-def sample_periods(
-    instance: Instance, point: Point, response: Response, first: int, periods: int
-) -> Floats:
-    """Run the FMU over some periods; return their states, equally spaced, with the start."""
-    period = point.excitation.period
-    instance.set(x_rel_max_on=False)
-    states = sampled(instance, first * period, (first + periods) * period, POINTS)
-    return np.concatenate([response.samples[-1:], states])
 
 
 def peaks(

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import STATE, Instance, begin, gap_between, last_samples, samples_per_step
+from ..access import Instance, four_numbers, gap_between
 from ..structures import Excitation, Structure
 from .multiplicity import (
     REPEATED,
@@ -19,9 +18,9 @@ from .multiplicity import (
     Repetition,
     decide_multiplicity,
     find_repetition,
-    scale_states,
 )
 from .questions import Point
+from .response_loop import COUNTS, LoopSettings, Responses, response_loop, round_state
 from .threshold import exceeds_threshold
 
 
@@ -41,11 +40,6 @@ class Response:
     has_to_impact: bool = False
 
     @cached_property
-    def states(self) -> NDArray[np.float64]:
-        """Return the samples over the motion's size, see :func:`.multiplicity.scale_states`."""
-        return scale_states(self.samples, self.frequency, self.x_rel_max)
-
-    @cached_property
     def multiplicity(self) -> int:
         """Return the least number of periods after which states repeat, 0 if they do not.
 
@@ -55,11 +49,17 @@ class Response:
 
     def repetition(self, tolerance: float) -> Repetition:
         """Return the multiplicity within a tolerance, and the largest deviation from it."""
-        return find_repetition(self.states, tolerance)
+        return find_repetition(self.samples, self.frequency, self.x_rel_max, tolerance)
 
     def decision(self, tolerance: float) -> Decision:
         """Return the multiplicity as decided by how deviations decay, and how it was decided."""
-        n, decided = decide_multiplicity(self.states, tolerance)
+        return self.checked(
+            decide_multiplicity(self.samples, self.frequency, self.x_rel_max, tolerance)
+        )
+
+    def checked(self, decision: Decision) -> Decision:
+        """Return a decision, undecided where impacts have to come that there are none of."""
+        n, decided = decision
         is_late = decided == REPEATED and self.lacks_impacts(self.impacts_per_period, n)
         return Decision(n, UNDECIDED if is_late else decided)
 
@@ -95,43 +95,10 @@ class Response:
         """Return the gap at the samples, m."""
         return gap_between(self.samples, self.gap_offset)
 
-    @cached_property
+    @property
     def end(self) -> tuple[float, ...]:
         """Return the rounded state at the last sample, from which the next response starts."""
         return round_state(self.samples[-1], self.gap_offset)
-
-
-def round_state(
-    state: NDArray[np.float64], gap_offset: float = 0.0, bits: int = 44
-) -> tuple[float, ...]:
-    """Round a state to 44 bits (13 digits), so that it hardly depends on its history.
-
-    Rounding never settles: what has converged to one response from two sides goes on to differ in
-    its last digits for good. Without them it is the same to the last bit, and parts of a sweep that
-    are begun elsewhere join it.
-
-    Examples
-    --------
-    >>> round_state(np.array([0.25, 0.3, 1.0, -1.0]))
-    (0.25, 0.30000000000001137, 1.0, -1.0)
-    """
-    x1, x2, v1, v2 = state.tolist()
-    velocities = round_to_bits(v1, v2, bits)
-    if gap_offset == 0.0:
-        return (*round_to_bits(x1, x2, bits), *velocities)
-    face_1, face_2 = round_to_bits(x1, x1 + float(gap_between(state, gap_offset)), bits)
-    return (face_1, face_2 - gap_offset, *velocities)
-
-
-def round_to_bits(first: float, second: float, bits: int) -> tuple[float, float]:
-    """Round two numbers to a number of binary digits of the larger one."""
-    digit = math.ldexp(1.0, math.frexp(max(abs(first), abs(second)))[1] - bits)
-    if digit == 0.0:  # of the smallest numbers there are
-        return first, second
-    return (
-        math.copysign(round(first / digit) * digit, first),
-        math.copysign(round(second / digit) * digit, second),
-    )
 
 
 def respond(
@@ -144,40 +111,31 @@ def respond(
     tolerance: float,
 ) -> Response:
     """Simulate a transient and samples from a state at phase 0; return the response."""
-    period = excitation.period
-    begin(instance, structure, excitation, start)
-    if transient:
-        instance.step(0.0, transient * period)
-    impacts, contacts, touching = instance.get("impact_count", "contact_count", "in_contact")
-    states, peak = stroboscopic_samples(instance, period, transient, samples)
-    impacts_after, contacts_after = instance.get("impact_count", "contact_count")
-    return Response(
-        samples=states,
-        x_rel_max=peak,
-        impacts_per_period=(impacts_after - impacts) / samples,
-        impact_count=impacts_after,
-        permanent_contact=bool(touching) or contacts_after > contacts,
-        frequency=excitation.frequency,
-        tolerance=tolerance,
-        gap_offset=structure.gap_offset,
-        has_to_impact=exceeds_threshold(structure, excitation),
-    )
+    points = [Point(structure, excitation)]
+    settings = LoopSettings(transient=transient, samples=samples)
+    results = response_loop(instance).respond(points, [four_numbers(start)], settings)
+    return next(responses_from(results, points, tolerance))
 
 
-def stroboscopic_samples(
-    instance: Instance, period: float, transient: int, samples: int
-) -> tuple[NDArray[np.float64], float]:
-    """Run the FMU over some periods; return states at phase 0, and the largest gap."""
-    room = samples_per_step(instance)
-    states, peak = np.empty((len(STATE), samples)).T, 0.0
-    for done in range(0, samples, room):
-        count = min(room, samples - done)
-        first = transient + done
-        instance.set(x_rel_max_on=True, sample_count=count)
-        instance.step(first * period, (first + count) * period)
-        states[done : done + count] = last_samples(instance, count)
-        peak = max(peak, *instance.get("x_rel_max"))
-    return states, peak
+def responses_from(
+    results: Responses, points: Sequence[Point], tolerance: float
+) -> Iterator[Response]:
+    """Yield the responses of a loop's rows."""
+    count = results.states.shape[1]
+    columns = zip(*(results.counts[name].tolist() for name in COUNTS), strict=True)
+    for i, (point, numbers) in enumerate(zip(points, columns, strict=True)):
+        before, contacts_before, touching, after, contacts_after, *_ = numbers
+        yield Response(
+            samples=results.states[i],
+            x_rel_max=float(results.x_rel_max[i]),
+            impacts_per_period=(after - before) / count,
+            impact_count=after,
+            permanent_contact=bool(touching) or contacts_after > contacts_before,
+            frequency=point.excitation.frequency,
+            tolerance=tolerance,
+            gap_offset=point.structure.gap_offset,
+            has_to_impact=exceeds_threshold(*point),
+        )
 
 
 def count_impacts_until(instance: Instance, before: int, time: float, target: float) -> int:
@@ -186,28 +144,3 @@ def count_impacts_until(instance: Instance, before: int, time: float, target: fl
         instance.step(time, target)
     count: int = instance.get("impact_count")[0]
     return count - before
-
-
-def count_impacts(instance: Instance, point: Point, start: ArrayLike, periods: int) -> int:
-    """Run the FMU some periods from a state at phase 0; return the number of impacts."""
-    begin(instance, *point, start)
-    (before,) = instance.get("impact_count")
-    return count_impacts_until(instance, before, 0.0, periods * point.excitation.period)
-
-
-def follow_responses(
-    instance: Instance,
-    points: Iterable[Point],
-    start: ArrayLike,
-    transient: int,
-    samples: int,
-    tolerance: float,
-    gap_offset: float | None = None,
-) -> Iterator[Response]:
-    """Yield the response at each point, started from the end state of the one before."""
-    for structure, excitation in points:
-        if gap_offset is not None and gap_offset != structure.gap_offset and np.any(start):
-            start = np.add(start, (0.0, gap_offset - structure.gap_offset, 0.0, 0.0))
-        response = respond(instance, structure, excitation, start, transient, samples, tolerance)
-        yield response
-        start, gap_offset = response.end, response.gap_offset

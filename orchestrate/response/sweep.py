@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
@@ -18,15 +18,10 @@ from ..running.runner import answer
 from ..structures import Structure
 from .labels import Dims, Variable, flags, nondimensional_state_coordinate, variable, yes_or_no
 from .multiplicity import DECIDED, REPEATED, Decision
-from .peaks import PEAKS, peaks, periods_to_sample, sample_periods
-from .questions import (
-    Point,
-    SeriesQuestion,
-    checked_positive,
-    series_arguments,
-    start_states,
-)
-from .respond import Response, count_impacts_until, follow_responses, respond
+from .peaks import PEAKS, POINTS, peaks
+from .questions import Point, SeriesQuestion, checked_positive, series_arguments, start_states
+from .respond import Response, responses_from
+from .response_loop import LoopSettings, periods_to_sample, response_loop
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -49,6 +44,7 @@ RESPONSE_QUANTITIES = {  # one a response: units, long name
     "a1_max": ("m/s2", "largest absolute acceleration of mass 1 between impacts"),
     "a2_max": ("m/s2", "largest absolute acceleration of mass 2 between impacts"),
 }
+DECISION = ("multiplicity", "decided", "later_impacts")
 END = "state at the last sample, from which the next value starts"
 MULTIPLICITY = "least n such that the state repeats after n periods; 0: none"
 HOW_DECIDED = "how the multiplicity was decided; where it is undecided it is a guess"
@@ -66,6 +62,7 @@ class SweepJob(SeriesQuestion):
     peak_periods: int = 8
     asked: ClassVar[str] = "sweep"
     chunk_size: ClassVar[int] = 100
+    in_threads: ClassVar[bool] = True
     sequential: ClassVar[bool] = True
     warmup_items: ClassVar[int] = 16  # most responses forget where they came from within as many
 
@@ -107,44 +104,45 @@ class SweepJob(SeriesQuestion):
         start, offset = self.start, self.structure.gap_offset
         if previous is not None:
             start, offset = previous["end"][-1], float(previous["gap_offset"][-1])
-        settings = self.transient, self.samples, self.tolerance, offset
-        with Instance(fmus[OSCILLATOR]) as instance:
-            return self.table(instance, items, follow_responses(instance, items, start, *settings))
+        return self.table(fmus, items, [start], is_chain=True, chain_gap=offset)
 
     def table(
-        self, instance: Instance, items: Sequence[Point], responses: Iterable[Response]
+        self, fmus: Mapping[str, Path], points: Sequence[Point], starts: ArrayLike, **chain: Any
     ) -> Table:
-        """Return a chunk's table from its responses, each read while the FMU stands at its end."""
-        rows = [
-            self.row(instance, point, response)
-            for point, response in zip(items, responses, strict=True)
-        ]
-        spans, orbits = ([row.pop(name) for row in rows] for name in ("span", "orbit"))
+        """Return a chunk's table: responses one from the other, or each from its own start."""
+        settings = LoopSettings(
+            transient=self.transient,
+            samples=self.samples,
+            tolerance=self.tolerance,
+            peak_periods=self.peak_periods,
+            peak_points=POINTS,
+            **chain,
+        )
+        with Instance(fmus[OSCILLATOR]) as instance:
+            results = response_loop(instance).respond(points, starts, settings)
+        responses = responses_from(results, points, self.tolerance)
+        found = zip(responses, *(results.counts[name].tolist() for name in DECISION), strict=True)
+        rows = [self.row(response, Decision(n, how), later) for response, n, how, later in found]
         table = {name: np.array([row[name] for row in rows]) for name in rows[0]}
-        return {**table, **peaks(items, spans, np.array(orbits))}
+        table["end"] = results.ends
+        spans = [periods_to_sample(n, self.peak_periods) for n in results.counts["multiplicity"]]
+        return {**table, **peaks(points, spans, results.orbits)}
 
-    def row(self, instance: Instance, point: Point, response: Response) -> dict[str, Any]:
-        """Return one response's numbers by column name, and its states sampled for peaks."""
-        n, decided = response.decision(self.tolerance)
-        span = periods_to_sample(n, self.peak_periods)
-        first = self.transient + self.samples
-        states = sample_periods(instance, point, response, first, span)
+    def row(self, response: Response, decision: Decision, later: int) -> dict[str, Any]:
+        """Return one response's numbers by column name; ``later``: impacts after its periods."""
+        n, decided = response.checked(decision)
         impacts = response.impacts_per_period
         if decided == REPEATED:
-            done, end = ((first + count) * point.excitation.period for count in (span, n))
-            count = count_impacts_until(instance, response.impact_count, done, end)
+            count = later - response.impact_count
             impacts, decided = count / n, response.confirm(Decision(n, decided), count)
         return {
             "gap": response.gap,
-            "end": response.end,
             "gap_offset": response.gap_offset,
             "x_rel_max": response.x_rel_max,
             "impacts_per_period": impacts,
             "permanent_contact": response.permanent_contact,
             "multiplicity": n,
             "decided": decided,
-            "span": span,
-            "orbit": states,
         }
 
     def boundary_state(self, table: Table) -> bytes:
@@ -229,13 +227,7 @@ class RunOnJob(SweepJob):
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[Any], previous: Table | None) -> Table:
         """Compute a chunk of responses, each from its own start."""
-        settings = self.transient, self.samples, self.tolerance
-        with Instance(fmus[OSCILLATOR]) as instance:
-            responses = (
-                respond(instance, point.structure, point.excitation, start, *settings)
-                for point, start in items
-            )
-            return self.table(instance, [point for point, _ in items], responses)
+        return self.table(fmus, [point for point, _ in items], [start for _, start in items])
 
 
 def multiplicity_variables(along: Dims, table: Table) -> dict[str, Variable]:

@@ -1,10 +1,12 @@
-"""A browser with the explorer in it: what the tests ask of one, Chromium or Firefox."""
+"""Headless Chromium with the explorer in it, driven by selenium."""
 
 import base64
+import json
 import time
-from abc import ABC, abstractmethod
 
 import numpy as np
+
+from tools.chromium import start_chromium
 
 COMPLETE = "return document.getElementById('diagram').dataset.complete === 'true'"
 PACK = """
@@ -20,40 +22,51 @@ const { left, top, width, height } = element.getBoundingClientRect();
 return arguments[1].map(([x, y]) => [Math.round(left + x * width), Math.round(top + y * height)]);
 """
 ENTER, TAB = "\ue007", "\ue004"  # as WebDriver names keys
-UNFINISHED = (".crdownload", ".part")
+UNFINISHED = ".crdownload"
 
 
-class Browser(ABC):
-    """What the tests ask of it."""
+class Browser:
+    """The page in a window: clicks, keys, what it shows, and what it computed to the last bit."""
 
-    leave: tuple[str, ...] = (TAB,)  # keys with which a field is left
+    leave = (TAB,)  # keys with which a field is left
 
-    def __init__(self, downloads):
-        self.downloads = downloads
+    def __init__(self, program, driver, downloads):
+        self.driver, self.downloads = start_chromium(program, driver, downloads), downloads
 
-    @abstractmethod
     def navigate(self, url):
-        """Load a page."""
+        self.driver.get(url)
 
-    @abstractmethod
     def run(self, script, *arguments):
         """What a script returns."""
+        return self.driver.execute_script(script, *arguments)
 
-    @abstractmethod
     def drag(self, places):
         """Press the mouse at the first place of the window, in pixels, release it at the last."""
+        from selenium.webdriver.common.actions.action_builder import ActionBuilder
 
-    @abstractmethod
+        actions = ActionBuilder(self.driver, duration=20)
+        mouse = actions.pointer_action
+        mouse.move_to_location(*places[0]).pointer_down()
+        for place in places[1:]:
+            mouse.move_to_location(*place)
+        mouse.pointer_up()
+        actions.perform()
+
     def keys(self, *keys, held=None):
         """Type, while another key is held."""
+        from selenium.webdriver import ActionChains
 
-    @abstractmethod
+        chain = ActionChains(self.driver)
+        if held:
+            chain.key_down(held)
+        chain.send_keys(*keys)
+        if held:
+            chain.key_up(held)
+        chain.perform()
+
     def console(self):
         """What went wrong since this was asked last."""
-
-    @abstractmethod
-    def quit(self):
-        """The end."""
+        return [json.dumps(line) for line in self.driver.get_log("browser")]
 
     def open(self, page, fragment=""):
         self.navigate("about:blank")
@@ -107,7 +120,7 @@ class Browser(ABC):
         while time.monotonic() < end:
             known = list(self.downloads.iterdir())
             found = [path for path in self.downloads.glob(name) if path.stat().st_size]
-            if found and not any(path.suffix in UNFINISHED for path in known):
+            if found and not any(path.suffix == UNFINISHED for path in known):
                 return found[0]
             time.sleep(0.05)
         raise AssertionError(f"no {name} among {list(self.downloads.iterdir())}")

@@ -62,19 +62,19 @@ def test_what_a_file_says_is_text_on_its_page_and_no_markup(page, forged):
     assert MARKUP not in forged.read_text(encoding="utf-8")
 
 
-def test_no_script_of_a_file_runs_and_none_that_is_added_to_its_page(window, forged):
-    window.open(forged)
-    assert MARKUP in window.run("return document.querySelector('footer').textContent")
+def test_no_script_of_a_file_runs_and_none_that_is_added_to_its_page(chromium, forged):
+    chromium.open(forged)
+    assert MARKUP in chromium.run("return document.querySelector('footer').textContent")
     for add in (
         "const one = document.createElement('script'); one.textContent = 'window.forged = 3';"
         "document.body.append(one)",
         "document.body.insertAdjacentHTML('beforeend', '<img src=x onerror=\"forged = 4\">')",
     ):
-        window.run(add)
-    window.run("setTimeout(() => { window.later = true; }, 300)")
-    window.until("return window.later")
-    assert window.run("return window.forged ?? null") is None
-    assert len(window.console()) >= 2  # what the policy has kept from running
+        chromium.run(add)
+    chromium.run("setTimeout(() => { window.later = true; }, 300)")
+    chromium.until("return window.later")
+    assert chromium.run("return window.forged ?? null") is None
+    assert len(chromium.console()) >= 2  # what the policy has kept from running
 
 
 def test_no_module_of_the_page_makes_elements_of_text():

@@ -49,68 +49,68 @@ def own(browser):
     browser.until(READY)
 
 
-def test_the_papers_motions_are_those_of_a_beam_in_hertz(opened):
+def test_the_papers_motions_are_those_of_a_beam_in_hertz(browser):
     """Its ratios stay, and so do motion, impacts and diagram; back in the paper's units it is
     Figure 6's structure again, bit for bit.
     """
-    opened.chosen()
-    eta = opened.run("return explorer.eta")
-    impacts = opened.run("return explorer.inspector.found.response.impacts")
-    own(opened)
-    assert float(opened.get("hertz", "value")) == pytest.approx(40.0 * eta)
-    assert float(opened.get("f2", "value")) == pytest.approx(40.0 * np.sqrt(1.2), rel=1e-6)
-    assert opened.run("return explorer.inspector.found.response.impacts") == impacts
+    browser.chosen()
+    eta = browser.run("return explorer.eta")
+    impacts = browser.run("return explorer.inspector.found.response.impacts")
+    own(browser)
+    assert float(browser.get("hertz", "value")) == pytest.approx(40.0 * eta)
+    assert float(browser.get("f2", "value")) == pytest.approx(40.0 * np.sqrt(1.2), rel=1e-6)
+    assert browser.run("return explorer.inspector.found.response.impacts") == impacts
     gap = 9.80665 / (2.0 * np.pi * 40.0) ** 2  # 1 g is so much for a eta^2
-    peak = opened.run("return explorer.inspector.found.response.peak")
-    assert f"largest gap, mm{1e3 * gap * peak:.4g}" in opened.text("numbers")
+    peak = browser.run("return explorer.inspector.found.response.peak")
+    assert f"largest gap, mm{1e3 * gap * peak:.4g}" in browser.text("numbers")
     for words in ("frequency, Hz", "amplitude of the box, mm", "acceleration of the box, g1"):
-        assert words in opened.text("numbers")
-    opened.run(
+        assert words in browser.text("numbers")
+    browser.run(
         "const units = document.getElementById('units'); units.value = 'paper';"
         "units.dispatchEvent(new Event('change'))"
     )
-    assert opened.run("return explorer.structure") == opened.run("return explorer.table.usual")
+    assert browser.run("return explorer.structure") == browser.run("return explorer.table.usual")
 
 
-def test_a_frequency_carried_over_from_the_papers_beam_goes_with_the_new_beam(opened):
+def test_a_frequency_carried_over_from_the_papers_beam_goes_with_the_new_beam(browser):
     """Until a frequency in Hz was chosen: then it stays."""
-    opened.run("explorer.choose(2.997, true)")
-    own(opened)
-    assert float(opened.get("hertz", "value")) == pytest.approx(119.88)
-    typed(opened, "f1", "12")
-    typed(opened, "f2", "14")
-    opened.until(READY)
-    assert float(opened.get("hertz", "value")) == pytest.approx(12 * 2.997, rel=1e-6)
-    low, high = opened.run(f"return [{DIAGRAM}.low, {DIAGRAM}.high]")
-    assert low < opened.run("return explorer.eta") < high
+    browser.run("explorer.choose(2.997, true)")
+    own(browser)
+    assert float(browser.get("hertz", "value")) == pytest.approx(119.88)
+    typed(browser, "f1", "12")
+    typed(browser, "f2", "14")
+    browser.until(READY)
+    assert float(browser.get("hertz", "value")) == pytest.approx(12 * 2.997, rel=1e-6)
+    low, high = browser.run(f"return [{DIAGRAM}.low, {DIAGRAM}.high]")
+    assert low < browser.run("return explorer.eta") < high
     assert (low, high) == pytest.approx((0.1, 8.0))
-    typed(opened, "hertz", "20")
-    typed(opened, "f1", "13")
-    opened.until(READY)
-    assert float(opened.get("hertz", "value")) == pytest.approx(20.0)
+    typed(browser, "hertz", "20")
+    typed(browser, "f1", "13")
+    browser.until(READY)
+    assert float(browser.get("hertz", "value")) == pytest.approx(20.0)
 
 
 @pytest.mark.slow
-def test_a_beam_of_42_and_55_hertz_is_what_the_commands_compute(opened, tmp_path):
-    opened.open(Path(opened.run("return location.pathname")), "#from=1&to=1.3&eta=1.2")
-    own(opened)
+def test_a_beam_of_42_and_55_hertz_is_what_the_commands_compute(browser, tmp_path):
+    browser.open(Path(browser.run("return location.pathname")), "#from=1&to=1.3&eta=1.2")
+    own(browser)
     for name, text in {"f1": "42", "f2": "55", "zeta-number": "0.7", "level": "0.5"}.items():
-        typed(opened, name, text)
-    typed(opened, "hertz", "50.25")
-    opened.until(READY)
-    structure = opened.run("return explorer.structure")
+        typed(browser, name, text)
+    typed(browser, "hertz", "50.25")
+    browser.until(READY)
+    structure = browser.run("return explorer.structure")
     names = ("m1", "m2", "k1", "k2", "d1", "d2", "e")
     beam = orchestrate.Structure.from_halves(m1=1, m2=1, f1=42, f2=55, zeta1=0.007, zeta2=0.007)
     assert [structure[name] for name in names] == pytest.approx([getattr(beam, n) for n in names])
-    assert opened.run("return explorer.inspector.choice.point.frequency") == 2.0 * np.pi * 50.25
-    (motion,) = pasted(opened.text("motion-command"), tmp_path / "motion")
-    states = opened.numbers("explorer.inspector.found.motion.states").reshape(-1, 4)
+    assert browser.run("return explorer.inspector.choice.point.frequency") == 2.0 * np.pi * 50.25
+    (motion,) = pasted(browser.text("motion-command"), tmp_path / "motion")
+    states = browser.numbers("explorer.inspector.found.motion.states").reshape(-1, 4)
     assert states[:, 0].tobytes() == motion.x1.values.tobytes()
-    assert " --hz 50.25 --g 0.5 " in opened.text("motion-command")
-    arguments = cli.make_parser().parse_args(shlex.split(opened.text("command"))[3:])
+    assert " --hz 50.25 --g 0.5 " in browser.text("motion-command")
+    arguments = cli.make_parser().parse_args(shlex.split(browser.text("command"))[3:])
     assert arguments.hz and float(arguments.g) == 0.5
-    (swept,) = pasted(opened.text("command"), tmp_path / "sweep")
-    gaps = opened.numbers(f"{DIAGRAM}.lanes[0].found.flatMap((one) => Array.from(one.gaps))")
+    (swept,) = pasted(browser.text("command"), tmp_path / "sweep")
+    gaps = browser.numbers(f"{DIAGRAM}.lanes[0].found.flatMap((one) => Array.from(one.gaps))")
     assert gaps.tobytes() == swept.xi_rel.values.tobytes()
 
 
@@ -130,20 +130,20 @@ SHOWN = {  # states of the page: a link's words, and what is done then
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SHOWN)
-def test_every_command_that_the_page_shows_runs_when_it_is_pasted(opened, page, tmp_path, name):
+def test_every_command_that_the_page_shows_runs_when_it_is_pasted(browser, page, tmp_path, name):
     fragment, done = SHOWN[name]
-    opened.open(page, fragment)
-    opened.until(READY)
-    opened.run(done)
-    opened.until(READY)
-    (motion,) = pasted(opened.text("motion-command"), tmp_path / "motion")
-    states = opened.numbers("explorer.inspector.found.motion.states").reshape(-1, 4)
+    browser.open(page, fragment)
+    browser.until(READY)
+    browser.run(done)
+    browser.until(READY)
+    (motion,) = pasted(browser.text("motion-command"), tmp_path / "motion")
+    states = browser.numbers("explorer.inspector.found.motion.states").reshape(-1, 4)
     assert states[:, 1].tobytes() == motion.x2.values.tobytes()
-    results = pasted(opened.text("command"), tmp_path / "sweep")
-    lanes = opened.run(f"return {DIAGRAM}.lanes.map((lane) => lane.direction)")
+    results = pasted(browser.text("command"), tmp_path / "sweep")
+    lanes = browser.run(f"return {DIAGRAM}.lanes.map((lane) => lane.direction)")
     for number, way in enumerate(lanes):
         found = f"{DIAGRAM}.lanes[{number}].found.flatMap((one) => Array.from(one.gaps))"
-        mine = opened.numbers(found).tobytes()
+        mine = browser.numbers(found).tobytes()
         theirs = [
             one.sel(direction=way) if "direction" in one.dims else one
             for one in results
@@ -162,42 +162,42 @@ WRONG = {  # a field, what is typed, and what is said beside it
 STATE = "return JSON.stringify([explorer.structure, explorer.level, explorer.eta, location.hash])"
 
 
-def test_what_is_wrong_with_a_number_stands_beside_its_field_and_nothing_changes(opened):
-    opened.chosen()
-    before = opened.run(STATE)
+def test_what_is_wrong_with_a_number_stands_beside_its_field_and_nothing_changes(browser):
+    browser.chosen()
+    before = browser.run(STATE)
     for name, (text, words) in WRONG.items():
-        typed(opened, name, text)
-        assert opened.text(f"{name}-wrong") == words
-        assert not opened.get(f"{name}-wrong", "hidden")
-        assert opened.run(
+        typed(browser, name, text)
+        assert browser.text(f"{name}-wrong") == words
+        assert not browser.get(f"{name}-wrong", "hidden")
+        assert browser.run(
             "const [field, note] = [arguments[0], `${arguments[0]}-wrong`].map((id) =>"
             " document.getElementById(id)); return field.nextElementSibling === note &&"
             " field.getAttribute('aria-describedby') === note.id",
             name,
         )
-        assert opened.run(STATE) == before
-    typed(opened, "e-number", "0.6")
-    assert opened.run("return explorer.structure.e") == 0.6
-    assert opened.text("e-number-wrong") == ""
+        assert browser.run(STATE) == before
+    typed(browser, "e-number", "0.6")
+    assert browser.run("return explorer.structure.e") == 0.6
+    assert browser.text("e-number-wrong") == ""
 
 
-def test_a_number_that_is_being_typed_is_left_alone(opened):
+def test_a_number_that_is_being_typed_is_left_alone(browser):
     from selenium.webdriver.common.keys import Keys
 
-    opened.chosen()
-    opened.run("const at = document.getElementById('eta-number'); at.focus(); at.select()")
-    opened.keys("2.")
-    opened.run("explorer.refreshDiagram()")  # as when the diagram is complete
-    opened.keys("5", Keys.TAB)
-    assert opened.run("return explorer.eta") == 2.5
+    browser.chosen()
+    browser.run("const at = document.getElementById('eta-number'); at.focus(); at.select()")
+    browser.keys("2.")
+    browser.run("explorer.refreshDiagram()")  # as when the diagram is complete
+    browser.keys("5", Keys.TAB)
+    assert browser.run("return explorer.eta") == 2.5
 
 
-def test_a_link_with_wrong_numbers_opens_the_usual_view(opened, page):
-    opened.chosen()
-    before = json.loads(opened.run(STATE))
-    opened.open(page, "#e=7&m1=-1&eta=1e9&from=-3&to=0&g=1e99&start=1,2&direction=sideways")
-    opened.chosen()
-    assert json.loads(opened.run(STATE))[:3] == before[:3]
+def test_a_link_with_wrong_numbers_opens_the_usual_view(browser, page):
+    browser.chosen()
+    before = json.loads(browser.run(STATE))
+    browser.open(page, "#e=7&m1=-1&eta=1e9&from=-3&to=0&g=1e99&start=1,2&direction=sideways")
+    browser.chosen()
+    assert json.loads(browser.run(STATE))[:3] == before[:3]
 
 
 def record(frequency=30.0, level=2.0, rate=1000.0, count=3000):
@@ -207,26 +207,26 @@ def record(frequency=30.0, level=2.0, rate=1000.0, count=3000):
     return time, level * np.sin(phase) + 0.1 * level * np.sin(3.0 * phase)
 
 
-def test_a_measured_record_is_laid_over_the_models_spectrum(opened):
-    opened.chosen()
+def test_a_measured_record_is_laid_over_the_models_spectrum(browser):
+    browser.chosen()
     time, values = record()
     rows = "\n".join(
         f"{1e3 * t:.3f};{a:.9f}".replace(".", ",") for t, a in zip(time, values, strict=True)
     )
-    opened.run(FILE, "rig.csv", f"rig 7, 2024\nt [ms];Acc 1 [g]\n{rows}\n")
-    opened.until("return explorer.inspector.measured")
-    assert opened.text("record-status") == "rig.csv: Acc 1 in g; 3000 values, 1000 a second"
+    browser.run(FILE, "rig.csv", f"rig 7, 2024\nt [ms];Acc 1 [g]\n{rows}\n")
+    browser.until("return explorer.inspector.measured")
+    assert browser.text("record-status") == "rig.csv: Acc 1 in g; 3000 values, 1000 a second"
     measured = "explorer.inspector.measured"
     lines, amplitudes = (
-        opened.numbers(f"{measured}.{name}") for name in ("frequency", "amplitude")
+        browser.numbers(f"{measured}.{name}") for name in ("frequency", "amplitude")
     )
     for line, expected in ((30.0, 2.0), (90.0, 0.2)):
         near = np.abs(lines - line) < 1.0
         assert amplitudes[near].max() / 9.80665 == pytest.approx(expected, rel=0.02)
         assert lines[near][amplitudes[near].argmax()] == pytest.approx(line, abs=0.25)
-    assert opened.run("return explorer.level.unit") == "g"  # so that the axis is in Hz
-    opened.until("return explorer.inspector.spectra")
-    opened.until(
+    assert browser.run("return explorer.level.unit") == "g"  # so that the axis is in Hz
+    browser.until("return explorer.inspector.spectra")
+    browser.until(
         "return document.getElementById('spectrum').getAttribute('aria-label').includes('measured')"
     )
 
@@ -242,14 +242,14 @@ UNREADABLE = {  # a file, and what is said of it
 }
 
 
-def test_what_cannot_be_read_is_said_in_a_line_and_nothing_changes(opened):
-    opened.chosen()
-    before = opened.run(STATE)
+def test_what_cannot_be_read_is_said_in_a_line_and_nothing_changes(browser):
+    browser.chosen()
+    before = browser.run(STATE)
     for name, (text, words) in UNREADABLE.items():
-        opened.run(FILE, f"{name}.csv", text)
-        opened.until(
+        browser.run(FILE, f"{name}.csv", text)
+        browser.until(
             f"return document.getElementById('record-status').textContent.includes('{name}.csv: ')"
         )
-        assert words in opened.text("record-status")
-        assert opened.run(STATE) == before
-    assert opened.run("return explorer.inspector.measured") is None
+        assert words in browser.text("record-status")
+        assert browser.run(STATE) == before
+    assert browser.run("return explorer.inspector.measured") is None

@@ -14,7 +14,8 @@ from orchestrate import cli
 from orchestrate.access import OSCILLATOR, Instance, find
 from orchestrate.explorer.page import explore
 from orchestrate.response.questions import Point
-from orchestrate.response.respond import follow_responses
+from orchestrate.response.respond import responses_from
+from orchestrate.response.response_loop import LoopSettings, response_loop
 from orchestrate.structures import Excitation, Structure
 
 from ...sparing import ordinary
@@ -53,7 +54,9 @@ def test_every_response_has_the_samples_of_the_file_to_the_last_bit(browser, swe
         Point(PAPER, Excitation.nondimensional(float(eta), PAPER)) for eta in swept.eta.values
     ]
     with Instance(find(OSCILLATOR).path) as instance:
-        responses = list(follow_responses(instance, points, (0.0,) * 4, 500, 200, 1e-2))
+        settings = LoopSettings(transient=500, samples=200, is_chain=True)
+        results = response_loop(instance).respond(points, [(0.0,) * 4], settings)
+        responses = list(responses_from(results, points, 1e-2))
     for mine, theirs in (("impacts", "impacts_per_period"), ("multiplicity", "multiplicity")):
         numbers = browser.numbers(f"{found}.map((one) => one.{mine})")
         assert np.array_equal(numbers, [getattr(one, theirs) for one in responses])
@@ -207,8 +210,7 @@ def test_keys_alone_do_it(browser):
     assert browser.run(f"return {DIAGRAM}.high - {DIAGRAM}.low") == whole
 
 
-def test_the_page_opens_with_a_motion_that_moves_and_sound_is_a_key_away(everywhere):
-    browser = everywhere
+def test_the_page_opens_with_a_motion_that_moves_and_sound_is_a_key_away(browser):
     eta = browser.chosen()
     assert eta == pytest.approx(0.7, abs=0.03) and f"eta={eta}" in browser.run(
         "return location.hash"
@@ -227,23 +229,12 @@ def test_the_page_opens_with_a_motion_that_moves_and_sound_is_a_key_away(everywh
     assert browser.run("return !explorer.inspector.sound.playing")
 
 
-def test_the_animation_stops_at_an_impact(browser):
-    browser.run("explorer.choose(1.2)")
-    browser.chosen()
-    browser.click("impact")
-    turn = browser.run("return explorer.inspector.animation.turn")
-    times = browser.numbers(f"{MOTION}.impactTime") / browser.run(f"return {MOTION}.period") - 700
-    assert np.abs(times - turn).min() < 1e-9 and browser.text("play") == "Play"
-    browser.click("play")
-    browser.until(f"return explorer.inspector.animation.turn !== {turn}")
-
-
-def test_without_a_sweep_the_page_computes_its_own(window, tmp_path, exported):
+def test_without_a_sweep_the_page_computes_its_own(chromium, tmp_path, exported):
     structure = orchestrate.Structure(e=0.3)
-    window.open(explore(structure, output=tmp_path / "page.html"), "#from=1.0&to=1.1")
-    found = orchestrate.sweep(structure, eta=etas(window)[:40], progress=False)
-    assert gaps(window)[:40].tobytes() == found.xi_rel.values.tobytes()
-    assert window.console() == []
+    chromium.open(explore(structure, output=tmp_path / "page.html"), "#from=1.0&to=1.1")
+    found = orchestrate.sweep(structure, eta=etas(chromium)[:40], progress=False)
+    assert gaps(chromium)[:40].tobytes() == found.xi_rel.values.tobytes()
+    assert chromium.console() == []
 
 
 @pytest.mark.parametrize("clearance", [0.0, 3.0, -1.0])
@@ -277,13 +268,6 @@ def test_the_weak_drive_is_the_masters(browser, clearance):
         assert np.array_equal(mine, found[name].values), name
 
 
-def test_the_motor_waits_until_it_is_started(browser):
-    browser.run("document.getElementById('drive').scrollIntoView()")
-    browser.run("setTimeout(() => (window.later = true), 300)")
-    browser.until("return window.later")
-    assert browser.run("return [explorer.drive.running, explorer.drive.rows.length]") == [False, 0]
-
-
 def test_the_motor_runs_and_is_stopped(browser):
     browser.settle_at("ramp-up")
     browser.click("ramp-up")
@@ -298,33 +282,33 @@ def test_the_motor_runs_and_is_stopped(browser):
     assert browser.run("return explorer.drive.rows.at(-1).voltage > explorer.drive.rows[0].voltage")
 
 
-def check_command_gives_the_motion(window, folder, capsys):
+def check_command_gives_the_motion(chromium, folder, capsys):
     """Run the command that the page shows; its motion has the bits of the page's."""
-    command = shlex.split(window.text("motion-command"))
+    command = shlex.split(chromium.text("motion-command"))
     assert cli.main([*command[3:], "--output", str(folder)]) == 0, capsys.readouterr().err
     (path,) = folder.glob("*.nc")
     with xr.open_dataset(path) as motion:
-        states = window.numbers(f"{MOTION}.states").reshape(-1, 4)
+        states = chromium.numbers(f"{MOTION}.states").reshape(-1, 4)
         assert states[:, 0].tobytes() == motion.x1.values.tobytes()
 
 
-def test_a_sweep_in_hertz_and_metres_is_looked_into(window, tmp_path, capsys):
+def test_a_sweep_in_hertz_and_metres_is_looked_into(chromium, tmp_path, capsys):
     beam = orchestrate.Structure.from_file("beam")
     turns = 2.0 * np.pi * np.linspace(11.0, 16.0, 41)
     data = orchestrate.sweep(beam, frequency=turns, amplitude=1e-3, direction="up")
-    window.open(explore(data, output=tmp_path / "page.html"))
-    assert gaps(window)[:10] == pytest.approx(data.xi_rel.values[:10], rel=1e-6, abs=1e-9)
-    window.run("explorer.choose(1.05)")
-    window.chosen()
-    check_command_gives_the_motion(window, tmp_path, capsys)
-    near = window.run("return explorer.inspector.choice.point")
-    window.run("explorer.open(1.0, 1.1)")
-    window.until("return explorer.regions.complete")
-    index = int(np.abs(etas(window) - near["eta"]).argmin())
-    peak = window.run(f"return {DIAGRAM}.lanes[0].found[{index}].peak")
+    chromium.open(explore(data, output=tmp_path / "page.html"))
+    assert gaps(chromium)[:10] == pytest.approx(data.xi_rel.values[:10], rel=1e-6, abs=1e-9)
+    chromium.run("explorer.choose(1.05)")
+    chromium.chosen()
+    check_command_gives_the_motion(chromium, tmp_path, capsys)
+    near = chromium.run("return explorer.inspector.choice.point")
+    chromium.run("explorer.open(1.0, 1.1)")
+    chromium.until("return explorer.regions.complete")
+    index = int(np.abs(etas(chromium) - near["eta"]).argmin())
+    peak = chromium.run(f"return {DIAGRAM}.lanes[0].found[{index}].peak")
     row = data.isel(frequency=int(np.abs(data.eta.values - near["eta"]).argmin()))
     assert peak == pytest.approx(float(row.xi_rel_max), rel=0.05)
-    assert window.console() == []
+    assert chromium.console() == []
 
 
 TURNS = [2.0 * np.pi * hertz for hertz in (12.0, 12.25, 12.5)]
@@ -337,30 +321,30 @@ EXCITATIONS = {  # an excitation, and what the command has of it; no option says
 
 
 @pytest.mark.parametrize("kind", ordinary(EXCITATIONS, ["metres"]))
-def test_the_commands_of_an_own_beam_compute_what_is_shown(window, tmp_path, kind, capsys):
+def test_the_commands_of_an_own_beam_compute_what_is_shown(chromium, tmp_path, kind, capsys):
     frequency, amplitude, words = EXCITATIONS[kind]
     beam = orchestrate.Structure.from_file("beam")
     asked = {"frequency": frequency, "amplitude": amplitude, "direction": "up", "transient": 20}
     data = orchestrate.sweep(beam, **asked, samples=5, progress=False)
-    window.open(explore(data, output=tmp_path / "page.html"))
-    command = window.text("command")
+    chromium.open(explore(data, output=tmp_path / "page.html"))
+    command = chromium.text("command")
     assert words in command
     (again,) = pasted(command, tmp_path / "sweep")
     assert again.xi_rel.values.tobytes() == data.xi_rel.values.tobytes()
-    assert window.console() == []
+    assert chromium.console() == []
 
 
-def test_the_motion_of_an_own_beam_is_computed_by_its_command(window, tmp_path, capsys):
+def test_the_motion_of_an_own_beam_is_computed_by_its_command(chromium, tmp_path, capsys):
     beam = orchestrate.Structure.from_file("beam")
-    window.open(explore(beam, output=tmp_path / "page.html"), "#from=1&to=1.2&eta=1.1")
-    window.chosen()
-    check_command_gives_the_motion(window, tmp_path, capsys)
-    numbers = window.text("numbers")
-    point = window.run("return explorer.inspector.choice.point")
+    chromium.open(explore(beam, output=tmp_path / "page.html"), "#from=1&to=1.2&eta=1.1")
+    chromium.chosen()
+    check_command_gives_the_motion(chromium, tmp_path, capsys)
+    numbers = chromium.text("numbers")
+    point = chromium.run("return explorer.inspector.choice.point")
     assert f"frequency, Hz{point['frequency'] / (2 * np.pi):.6g}" in numbers
     for words in ("amplitude of the box, mm", "acceleration of the box, g", "largest gap, mm"):
         assert words in numbers
-    assert window.console() == []
+    assert chromium.console() == []
 
 
 def test_a_number_counts_when_it_has_been_typed(browser):
@@ -376,29 +360,6 @@ def test_a_number_counts_when_it_has_been_typed(browser):
     assert browser.run("return document.getElementById('e-number').validationMessage") == (
         "expected 0 to 1"
     )
-
-
-def test_bonded_curves_are_inside_their_axes(browser):
-    browser.run("explorer.choose(1.0484, true)")  # near the resonance of the bonded structure
-    browser.chosen()
-    browser.until("return explorer.inspector.bonded")
-    charts = """
-    const kept = {};
-    const old = explorer.inspector.pictures.show;
-    explorer.inspector.pictures.show = (name, chart, words) => {
-      kept[name] = chart;
-      old(name, chart, words);
-    };
-    document.getElementById("beside").click();
-    return ["history", "phase"].map((name) => {
-      const { x, y, series } = kept[name];
-      const [bonded] = series.filter(({ label }) => label === "undamaged");
-      const ends = (values) => [Math.min(...values), Math.max(...values)];
-      return [x.low, x.high, y.low, y.high, ...ends(bonded.x), ...ends(bonded.y)];
-    });
-    """
-    for left, right, low, high, first, last, least, most in browser.run(charts):
-        assert left <= first and last <= right and low < least and most < high
 
 
 TAKE = "explorer.inspector.takeSpectra({ exponent: { value: arguments[0], error: 0.001 } })"

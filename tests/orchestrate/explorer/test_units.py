@@ -1,6 +1,5 @@
 """The page in the units that it was asked for: axes, fields, numbers, commands, what is saved."""
 
-import math
 import re
 import shlex
 
@@ -12,7 +11,7 @@ from orchestrate.constants import GRAVITY, TURN
 from orchestrate.explorer.page import explore
 from orchestrate.units import Units
 
-from .conftest import SLOW, typed
+from .conftest import typed
 
 BEAM = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0, "zeta1": 0.007, "zeta2": 0.007}
 READY = "return explorer.regions.complete && !explorer.regions.quick && explorer.inspector.found"
@@ -48,7 +47,11 @@ def beam(exported):
 
 
 @pytest.mark.parametrize(
-    "units", [units if i == 0 else pytest.param(units, marks=SLOW) for i, units in enumerate(ASKED)]
+    "units",
+    [
+        units if i == 0 else pytest.param(units, marks=pytest.mark.slow)
+        for i, units in enumerate(ASKED)
+    ],
 )
 def test_the_page_follows_the_units_asked_for(chromium, beam, units, tmp_path):
     turns, lengths, pushes, times, turn, length, push = ASKED[units]
@@ -107,74 +110,8 @@ def test_its_commands_and_what_it_saves_are_in_these_units(chromium, beam, tmp_p
     assert browser.console() == []
 
 
-@pytest.mark.slow
-def test_a_frequency_ratio_stands_beside_lengths_in_mm(chromium, beam, tmp_path):
-    browser = chromium
-    browser.open(explore(beam, units="eta, mm", output=tmp_path / "page.html"))
-    browser.until(READY)
-    typed(browser, "hertz", "1.25")
-    browser.until(READY)
-    assert browser.run("return explorer.eta") == pytest.approx(1.25, rel=1e-8)
-    assert browser.run(LABEL, "hertz") == "as ratio η = Ω/ω"
-    diagram = browser.run(SHOWN)[0]
-    assert diagram == ["shaking frequency η = Ω/ω", "gap, mm"]
-    assert "frequency η = Ω/ω1.25" in browser.text("numbers")
-    assert browser.console() == []
-
-
-@pytest.mark.slow
-def test_a_measured_spectrum_lies_on_the_axis_of_the_page(chromium, beam, tmp_path):
-    """A line of 30 Hz at 1800 rpm."""
-    browser = chromium
-    browser.open(explore(beam, units="rpm", output=tmp_path / "page.html"))
-    browser.until(READY)
-    browser.until("return explorer.inspector.spectra")
-    rows = "".join(f"{i / 1e3},{math.sin(TURN * 30.0 * i / 1e3):.9f}\\n" for i in range(3000))
-    browser.run(
-        "const given = new DataTransfer();"
-        f"given.items.add(new File([`t [s],a1 [g]\\n{rows}`], 'rig.csv'));"
-        "window.dispatchEvent(new DragEvent('drop', { dataTransfer: given, cancelable: true }));"
-    )
-    browser.until("return explorer.inspector.measured")
-    series = """
-    const kept = {};
-    const { inspector } = explorer;
-    const old = inspector.pictures.show;
-    inspector.pictures.show = (name, chart) => (kept[name] = chart);
-    inspector.drawSpectrum();
-    inspector.pictures.show = old;
-    const { x, y } = kept.spectrum.series.find(({ label }) => label === "measured");
-    return [x[y.indexOf(Math.max(...y))], kept.spectrum.x.high, x[x.length - 1]];
-    """
-    place, end, last = browser.run(series)
-    assert place == pytest.approx(1800.0, abs=30.0)
-    assert last <= end * 1.01
-    assert browser.console() == []
-
-
 def test_a_sweep_by_ratios_is_shown_in_ratios_alone(swept, tmp_path):
     for units in ("Hz", "mm", "m/s2"):
         with pytest.raises(orchestrate.InputError, match="expected eta, or a structure instead"):
             explore(swept, units=units, output=tmp_path / "page.html")
     assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.slow
-def test_a_sweep_in_hertz_is_shown_in_any_units(chromium, beam, tmp_path):
-    """Also in those that the sweep itself is shown in."""
-    etas = [1.0 + 0.01 * i for i in range(11)]
-    turns = [eta * beam.omega for eta in etas]
-    amplitude = [5.0 / turn**2 for turn in turns]
-    asked = {"frequency": turns, "amplitude": amplitude, "transient": 100, "samples": 20}
-    data = orchestrate.sweep(beam, **asked, direction="up", progress=False)
-    for units, own, words in (
-        ("rpm", "", "shaking frequency, rpm"),
-        ("", "rpm, um", "shaking frequency, rpm"),
-        ("eta", "rpm", "shaking frequency η = Ω/ω"),
-    ):
-        shown = data.assign_attrs(shown_in=own) if own else data
-        chromium.open(explore(shown, units=units, output=tmp_path / "page.html"))
-        chromium.until(READY)
-        assert chromium.run("return explorer.regions.view.axes.x.label") == words
-        assert chromium.run("return explorer.regions.diagram === explorer.regions.shipped")
-    assert chromium.console() == []

@@ -69,11 +69,11 @@ window.came = came;
 
 
 @pytest.fixture
-def probed(opened):
+def probed(browser):
     """The page, with the kernel and what workers compute at hand."""
-    opened.run(bundle({**read_modules(), "probe": PROBE}, "probe"))
-    opened.until("return Boolean(window.probe)")
-    return opened
+    browser.run(bundle({**read_modules(), "probe": PROBE}, "probe"))
+    browser.until("return Boolean(window.probe)")
+    return browser
 
 
 @pytest.mark.parametrize("task", TASKS)
@@ -114,11 +114,11 @@ def test_a_motion_that_paused_goes_on_as_if_it_had_not(probed):
     assert first == second > 2 and count > 80_000 and alike
 
 
-def test_a_click_comes_before_all_that_is_asked_later(opened):
+def test_a_click_comes_before_all_that_is_asked_later(browser):
     """Without its urgency the two that are newer have the only worker in turn."""
-    opened.chosen()
-    opened.until("return explorer.regions.complete && explorer.inspector.exponent !== undefined")
-    opened.run(FIRST)
-    opened.until("return ['clicked', 'after', 'last'].every((name) => came.includes(name))")
-    came = opened.run("return came")
+    browser.chosen()
+    browser.until("return explorer.regions.complete && explorer.inspector.exponent !== undefined")
+    browser.run(FIRST)
+    browser.until("return ['clicked', 'after', 'last'].every((name) => came.includes(name))")
+    came = browser.run("return came")
     assert set(came[: came.index("clicked")]) <= {"before"}, came

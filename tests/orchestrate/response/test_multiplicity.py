@@ -5,6 +5,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+from fmu_src.kernels import repetition
 from orchestrate.access import OSCILLATOR, EventInstance, Instance, find
 from orchestrate.dynamics.continuation import NoConvergenceError
 from orchestrate.dynamics.families import Setting
@@ -19,8 +20,6 @@ from orchestrate.response.multiplicity import (
     Decision,
     decide_multiplicity,
     find_repetition,
-    scale_states,
-    spread_over_returns,
 )
 from orchestrate.response.questions import Point
 from orchestrate.response.respond import Response, respond
@@ -31,7 +30,12 @@ GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 
 
 def multiplicity(samples, tolerance, frequency=1.0, gap=None):
-    return find_repetition(scale_states(samples, frequency, gap), tolerance).multiplicity
+    gap = 2.0 * np.abs(samples).max() if gap is None else gap  # no smaller than any difference
+    return find_repetition(samples, frequency, gap, tolerance).multiplicity
+
+
+def decide(samples):
+    return decide_multiplicity(samples, 1.0, 1.0, TOLERANCE)
 
 
 @st.composite
@@ -165,9 +169,12 @@ def test_a_gap_of_rounding_errors_is_none(seed):
 def test_nothing_depends_on_the_amplitude(seed, power):
     samples = np.random.default_rng(seed).normal(size=(40, 4))
     scale = 2.0**power
-    once = scale_states(samples, 1.7, 0.3)
-    np.testing.assert_array_equal(scale_states(scale * samples, 1.7, scale * 0.3), once)
-    assert find_repetition(once, 1e3).deviation == np.abs(np.diff(once[20:], axis=0)).max()
+    once = find_repetition(samples, 1.7, 0.3, 1e3)
+    assert find_repetition(scale * samples, 1.7, scale * 0.3, 1e3) == once
+    later = samples[20:] / (1.0, 1.0, 1.7, 1.7)
+    gap, rate = (later[:, 2 * i + 1] - later[:, 2 * i] for i in (0, 1))
+    parts = [*(later.T / np.abs(later).max()), gap / 0.3, rate / max(0.3, np.abs(rate).max())]
+    assert once == (1, np.abs(np.diff(parts)).max())
 
 
 def test_masses_at_rest_are_no_obstacle():
@@ -206,7 +213,7 @@ def states_of(deviation, count=200, of_velocity=np.zeros_like):
     samples = np.tile([0.2, 0.8, 2.0, -1.0], (count, 1))
     samples[:, 0] += deviation(n)
     samples[:, 2] += of_velocity(n)
-    return scale_states(samples, 1.0, 1.0)
+    return samples
 
 
 def doubling(multiplier, count=200, width=0.0):
@@ -218,29 +225,31 @@ def doubling(multiplier, count=200, width=0.0):
 def test_what_has_died_or_dies_fast_has_repeated(orbit, more, multiplier):
     samples = repeat(orbit, 8 * len(orbit) + more + 40)
     rest = 1e-3 * np.abs(orbit).max() * multiplier ** np.arange(len(samples))
-    n, decided = decide_multiplicity(scale_states(samples + rest[:, None]), TOLERANCE)
+    n, decided = decide_multiplicity(
+        samples + rest[:, None], 1.0, 2.0 * np.abs(samples).max(), TOLERANCE
+    )
     assert n == len(orbit)
     assert decided == REPEATED
 
 
 @pytest.mark.parametrize("multiplier", [0.5, 0.9, 0.97])
 def test_a_stable_response_next_to_a_period_doubling_is_none_of_two_periods(multiplier):
-    assert decide_multiplicity(doubling(multiplier), TOLERANCE) == (1, REPEATED)
+    assert decide(doubling(multiplier)) == (1, REPEATED)
 
 
 @pytest.mark.parametrize("multiplier", [0.99, 0.995, 0.999, 0.9999])
 def test_while_the_deviation_is_larger_than_the_tolerance_it_is_undecided(multiplier):
     states = doubling(multiplier, 100)
-    assert find_repetition(states, TOLERANCE).multiplicity == 2  # the tolerance alone says so
-    n, decided = decide_multiplicity(states, TOLERANCE)
+    assert find_repetition(states, 1.0, 1.0, TOLERANCE).multiplicity == 2  # alone
+    n, decided = decide(states)
     assert decided == UNDECIDED or n == 1
 
 
 @pytest.mark.parametrize("width", [1e-7, 1e-5, 1e-3, 0.1])
 def test_the_tolerance_does_not_hide_a_narrow_period_doubling(width):
     states = doubling(0.8, width=width)
-    assert find_repetition(states, TOLERANCE).multiplicity == (1 if width < 0.01 else 2)
-    assert decide_multiplicity(states, TOLERANCE) == (2, REPEATED)
+    assert find_repetition(states, 1.0, 1.0, TOLERANCE).multiplicity == (1 if width < 0.01 else 2)
+    assert decide(states) == (2, REPEATED)
 
 
 @pytest.mark.parametrize("angle", [0.117, 0.291, GOLDEN])
@@ -248,8 +257,8 @@ def test_a_deviation_that_dies_while_it_turns_round_repeats_after_one_period(ang
     def spiral(n, multiplier):
         return 0.1 * multiplier**n * np.cos(2.0 * np.pi * angle * n)
 
-    assert decide_multiplicity(states_of(lambda n: spiral(n, 0.9)), TOLERANCE) == (1, REPEATED)
-    n, decided = decide_multiplicity(states_of(lambda n: spiral(n, 0.99)), TOLERANCE)
+    assert decide(states_of(lambda n: spiral(n, 0.9))) == (1, REPEATED)
+    n, decided = decide(states_of(lambda n: spiral(n, 0.99)))
     assert (n, decided) in [(1, REPEATED), (1, UNDECIDED)]
 
 
@@ -257,8 +266,10 @@ def test_a_deviation_that_dies_while_it_turns_round_repeats_after_one_period(ang
 def test_the_spread_is_that_of_states_a_multiple_of_n_periods_apart(n, more, seed):
     runs = np.random.default_rng(seed).uniform(-1.0, 1.0, (2, 6, n + more))
     expected = [max(np.ptp(run[:, k::n], axis=1).max() for k in range(n)) for run in runs]
-    assert spread_over_returns(runs, n).tolist() == expected
-    assert float(spread_over_returns(runs[0], n)) == expected[0]
+    for run, spread in zip(runs, expected, strict=True):
+        head = [0.0] * repetition.HEAD
+        head[repetition.LATER] = count = run.shape[1]
+        assert repetition.spread_over_returns([*head, *run.ravel()], 0, count, n) == spread
 
 
 @given(st.floats(0.0, 1.0), st.floats(0.05, 0.45))
@@ -270,24 +281,41 @@ def test_a_torus_has_repeated_after_no_number_of_periods(phase, angle):
 
     states = states_of(lambda n: 0.3 * np.cos(turn(n)), of_velocity=lambda n: np.sin(turn(n)))
     exact = min(abs(angle * n - round(angle * n)) for n in range(1, 51)) < 1e-4
-    assert exact or decide_multiplicity(states, TOLERANCE).decided != REPEATED
+    assert exact or decide(states).decided != REPEATED
 
 
 def test_what_leaves_an_unstable_orbit_is_undecided():
-    assert decide_multiplicity(states_of(lambda n: 1e-9 * 1.08**n), TOLERANCE) == (1, UNDECIDED)
+    assert decide(states_of(lambda n: 1e-9 * 1.08**n)) == (1, UNDECIDED)
 
 
 def test_noise_narrower_than_the_tolerance_is_undecided_and_wider_irregular():
     noise = np.random.default_rng(3).uniform(-1.0, 1.0, (30, 200))
-    narrow = [
-        decide_multiplicity(states_of(lambda n, row=row: 1e-3 * row), TOLERANCE) for row in noise
-    ]
+    narrow = [decide(states_of(lambda n, row=row: 1e-3 * row)) for row in noise]
     assert {found.multiplicity for found in narrow} == {1}
     assert sum(found.decided == UNDECIDED for found in narrow) >= 28  # chance may look like dying
-    wide = {
-        decide_multiplicity(states_of(lambda n, row=row: 0.2 * row), TOLERANCE) for row in noise
-    }
+    wide = {decide(states_of(lambda n, row=row: 0.2 * row)) for row in noise}
     assert wide == {(0, IRREGULAR)}
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_compiled_and_in_python_the_rule_is_the_same(seed):
+    random = np.random.default_rng(seed)
+    n, count, decay = random.integers(1, 30), random.choice([1, 7, 40, 60, 200]), random.uniform()
+    samples = random.normal(size=(n, 4))[np.arange(count) % n]
+    samples += (
+        10.0 ** random.uniform(-9, 0)
+        * random.normal(size=4)
+        * decay ** np.arange(count).reshape(-1, 1)
+    )
+    memory = [0.0] * repetition.memory_size(count)
+    memory[: repetition.MULTIPLICITY] = count, 1.3, 2.0, TOLERANCE
+    memory[repetition.HEAD : repetition.HEAD + samples.size] = samples.ravel()
+    repetition.decide(memory, 0.0)
+    decided = memory[repetition.MULTIPLICITY], memory[repetition.DECIDED]
+    assert decide_multiplicity(samples, 1.3, 2.0, TOLERANCE) == decided
+    repetition.repeat(memory, 0.0)
+    repeated = memory[repetition.MULTIPLICITY], memory[repetition.DEVIATION]
+    assert find_repetition(samples, 1.3, 2.0, TOLERANCE) == repeated
 
 
 def newton(instance, point, state, periods):

@@ -1,0 +1,275 @@
+"""How often a response repeats: the rule of :mod:`.multiplicity`, written once for Python and C.
+
+In the subset of Python that :mod:`fmu_src.export.translation` translates, over a flat memory: a
+head, the stroboscopic states as they come, the later half of them over the motion's size, a row for
+each co-ordinate, and room for deviations.
+"""
+
+# slots of the head, then the states
+COUNT, FREQUENCY, GAP, TOLERANCE, MULTIPLICITY, DECIDED, DEVIATION, LATER, AWAY, HEAD = range(10)
+STATE, COLUMNS = 4, 6  # numbers of a state, and of a scaled one: the gap and its rate come last
+IRREGULAR, REPEATED, UNDECIDED = 0, 1, 2
+MIN_RELATIVE_GAP = 2.0**-20  # of the motion's size: smaller gaps are not compared with their own
+ROUNDING = 1e-9  # of the motion's size: what is left of deviations that have died, with room
+BLOCKS = 5  # parts of the later half from each of which to the next a dying deviation shrinks
+CHANCE = 1.0512710963760241  # exp(0.05): ratio of deviations that chance makes
+MAX_DRIFT = 1e-4  # of a distance that stays: change over the samples, of one that dies it is more
+MAX_DYING_RATIO = 0.8  # ratio of deviations late and early, below which they die
+MIN_VISITS = 5  # a quarter of the samples over it: periods after which states are seen often enough
+MAX_CONTRACTION = 0.5  # ratio of deviations that shrink, beyond chance
+NEGLIGIBLE = 1e-3  # of the tolerance: counts as no deviation where it is seen a few times only
+INFINITE = float("inf")
+
+
+def memory_size(count: int) -> int:
+    """Return how many numbers the memory has for so many samples."""
+    return HEAD + (STATE + COLUMNS + 1) * count
+
+
+def decide(m, time):
+    """Decide a response's multiplicity: its deviations must have died or be decaying."""
+    scale(m)
+    count, limit, tolerance = int(m[LATER]), longest(m), m[TOLERANCE]
+    many = int(count / 4)
+    nearly, drifting, n = 0, 0, next_repetition(m, 0, limit, tolerance)
+    while n > 0:
+        largest = measure_deviations(m, n)
+        if n > many:
+            if nearly == 0 and drifting == 0 and largest <= NEGLIGIBLE * tolerance:
+                return conclude(m, n, REPEATED)
+            if nearly == 0 and drifting == 0:
+                nearly = n
+            break
+        growth = growth_ratio(m, count - n)
+        spread = spread_over_returns(m, 0, count, n)
+        left = ROUNDING
+        minimum = spread / MAX_DRIFT
+        if spread > ROUNDING:
+            left = remaining_change(m, n, spread)
+            minimum = tolerance
+        if minimum < 4.0 * left:
+            minimum = 4.0 * left
+        if left <= tolerance and has_persistent_difference(m, n, minimum):
+            return conclude(m, n, REPEATED)
+        if spread > tolerance and not changes(growth):
+            drifting = n
+        elif nearly == 0:
+            nearly = n
+        n = next_repetition(m, n, limit, tolerance)
+    ratio = MAX_CONTRACTION
+    last = many
+    if nearly > 0:
+        ratio = MAX_DYING_RATIO
+        last = nearly
+    if last > int(many / MIN_VISITS):
+        last = int(many / MIN_VISITS)
+    for shorter in range(1, last + 1):
+        if contraction_ratio(m, shorter) < ratio:
+            return conclude(m, shorter, UNDECIDED)
+    if nearly > 0:
+        return conclude(m, nearly, UNDECIDED)
+    return conclude(m, 0, IRREGULAR)
+
+
+def repeat(m, time):
+    """Find the least multiplicity within the tolerance, and the largest deviation from it."""
+    scale(m)
+    n = next_repetition(m, 0, longest(m), m[TOLERANCE])
+    m[DEVIATION] = INFINITE
+    if n > 0:
+        m[DEVIATION] = measure_deviations(m, n)
+    return conclude(m, n, IRREGULAR)
+
+
+def conclude(m, n, decided):
+    """Write the result into the memory."""
+    m[MULTIPLICITY] = n
+    m[DECIDED] = decided
+    return 0
+
+
+def longest(m):
+    """Return the largest number of periods to test: a quarter of the samples."""
+    quarter = int(m[COUNT] / 4)
+    if quarter < 1:
+        quarter = 1
+    return quarter
+
+
+def scale(m):
+    """Divide the later half of the states by the motion's size, which makes it homogeneous.
+
+    The length is the largest of all displacements, and velocities over the frequency, in that half.
+    The gap is compared with the largest gap, and its rate with the larger one of that and itself.
+    """
+    count = int(m[COUNT])
+    first = int(count / 2)
+    later = count - first
+    m[LATER] = later
+    states = HEAD + STATE * first
+    rows = HEAD + STATE * count
+    m[AWAY] = rows + COLUMNS * count
+    size, rate = 0.0, 0.0
+    for k in range(later):
+        at = states + STATE * k
+        x1, x2 = m[at], m[at + 1]
+        v1, v2 = m[at + 2] / m[FREQUENCY], m[at + 3] / m[FREQUENCY]
+        size = max(size, abs(x1), abs(x2), abs(v1), abs(v2))
+        rate = max(rate, abs(v2 - v1))
+    if size == 0.0:
+        size = 1.0
+    of_gap = max(m[GAP], MIN_RELATIVE_GAP * size)
+    of_rate = max(of_gap, rate)
+    for k in range(later):
+        at = states + STATE * k
+        x1, x2 = m[at], m[at + 1]
+        v1, v2 = m[at + 2] / m[FREQUENCY], m[at + 3] / m[FREQUENCY]
+        m[rows + k] = x1 / size
+        m[rows + later + k] = x2 / size
+        m[rows + 2 * later + k] = v1 / size
+        m[rows + 3 * later + k] = v2 / size
+        m[rows + 4 * later + k] = (x2 - x1) / of_gap
+        m[rows + 5 * later + k] = (v2 - v1) / of_rate
+
+
+def scaled_rows(m):
+    """Return the slot at which the scaled states begin."""
+    return HEAD + STATE * int(m[COUNT])
+
+
+def next_repetition(m, before, limit, tolerance):
+    """Return the next number of periods after which all states agree within the tolerance, or 0."""
+    count, rows = int(m[LATER]), scaled_rows(m)
+    for n in range(before + 1, limit + 1):
+        if n < count and agree(m, rows, count, n, tolerance):
+            return n
+    return 0
+
+
+def agree(m, rows, count, n, tolerance):
+    """Return whether all states n periods apart agree within the tolerance."""
+    for k in range(count - n):
+        for column in range(COLUMNS):
+            at = rows + column * count + k
+            if not abs(m[at + n] - m[at]) <= tolerance:
+                return False
+    return True
+
+
+def measure_deviations(m, n):
+    """Write the largest difference of each state from that n periods before; return the largest."""
+    count, rows, away = int(m[LATER]), scaled_rows(m), int(m[AWAY])
+    largest = 0.0
+    for k in range(count - n):
+        deviation = 0.0
+        for column in range(COLUMNS):
+            at = rows + column * count + k
+            deviation = max(deviation, abs(m[at + n] - m[at]))
+        m[away + k] = deviation
+        largest = max(largest, deviation)
+    return largest
+
+
+def largest_between(m, first, last):
+    """Return the largest of the deviations in a range."""
+    away = int(m[AWAY])
+    largest = 0.0
+    for k in range(first, last):
+        largest = max(largest, m[away + k])
+    return largest
+
+
+def growth_ratio(m, length):
+    """Return the maximum of the later half of deviations over that of the earlier half."""
+    half = int(length / 2)
+    if half < 1:
+        half = 1
+    early, late = largest_between(m, 0, half), largest_between(m, length - half, length)
+    if early == 0.0 or late == 0.0:
+        return 1.0
+    return late / early
+
+
+def changes(growth):
+    """Return whether a ratio of deviations is more than chance makes."""
+    return growth > CHANCE or growth * CHANCE < 1.0
+
+
+def spread_over_returns(m, first, last, n):
+    """Return how far states in a range lie apart at most that n, 2n, 3n ... periods separate."""
+    count, rows = int(m[LATER]), scaled_rows(m)
+    widest, end = 0.0, first + n
+    if end > last:
+        end = last
+    for column in range(COLUMNS):
+        row = rows + column * count
+        for phase in range(first, end):
+            low = high = m[row + phase]
+            k = phase + n
+            while k < last:
+                low = min(low, m[row + k])
+                high = max(high, m[row + k])
+                k = k + n
+            widest = max(widest, high - low)
+    return widest
+
+
+def remaining_change(m, n, spread):
+    """Estimate how far n-periodic states still drift (geometric series); infinite if steady.
+
+    What shrinks by q over the samples and has moved by the spread still moves by spread q/(1 - q).
+    """
+    ratio = contraction_ratio(m, n)
+    if ratio >= MAX_DYING_RATIO:
+        return INFINITE
+    q = ratio * ratio  # over twice the time
+    return spread * q / (1.0 - q)
+
+
+def contraction_ratio(m, n):
+    """Return the late spread of states n periods apart over the early one; 1 if unknown.
+
+    The spread over many periods sees a deviation that turns round, and that is small after one turn
+    of n periods by chance, at its full size.
+    """
+    count = int(m[LATER])
+    half = int(count / 2)
+    if 4 * n > half:  # seen too seldom: from the deviations themselves
+        measure_deviations(m, n)
+        length = count - n
+        if length < BLOCKS:
+            return 1.0
+        before, end = INFINITE, 0
+        for block in range(BLOCKS):
+            begin = end
+            end = begin + int(length / BLOCKS)
+            if block < length % BLOCKS:
+                end = end + 1
+            largest = largest_between(m, begin, end)
+            if largest >= before:
+                return 1.0
+            before = largest
+        return growth_ratio(m, length)
+    early = spread_over_returns(m, 0, half, n)
+    late = spread_over_returns(m, count - half, count, n)
+    if early == 0.0:
+        return 1.0
+    return late / early
+
+
+def has_persistent_difference(m, n, minimum):
+    """Return whether states a divisor of n periods apart keep a steady difference.
+
+    Next to a period doubling the deviation after half the periods dies slowly: while it does,
+    nothing tells the response from the doubled one.
+    """
+    count = int(m[LATER])
+    for divisor in range(1, n):
+        if n % divisor == 0:
+            measure_deviations(m, divisor)
+            length = count - divisor
+            if largest_between(m, length - n, length) <= minimum:
+                return False
+            if changes(growth_ratio(m, length)):
+                return False
+    return True
