@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import zipfile
 from collections.abc import Mapping, Sequence
+from decimal import Decimal
 from os import PathLike
 from pathlib import Path
 from xml.etree import ElementTree as ET
@@ -110,6 +111,7 @@ def add_master(system: ET.Element, step: float) -> None:
     Its C interface reads ``oms:FixedStepMaster``, its Python interface the attributes of
     ``oms:SimulationInformation``, by the name of the solver that it gives to co-simulation FMUs.
     """
+    length = format(Decimal(repr(step)), "f")  # its schema takes no exponent
     annotations = ET.SubElement(system, qualified_tag("ssd", "Annotations"))
     annotation = ET.SubElement(
         annotations, qualified_tag("ssc", "Annotation"), type="org.openmodelica"
@@ -117,12 +119,12 @@ def add_master(system: ET.Element, step: float) -> None:
     information = ET.SubElement(
         ET.SubElement(annotation, qualified_tag("oms", "Annotations")),
         qualified_tag("oms", "SimulationInformation"),
-        {"name": "oms_ma_default", "method": "oms_ma", "fixedStepSize": repr(step)},
+        {"name": "oms_ma_default", "method": "oms_ma", "fixedStepSize": length},
     )
     ET.SubElement(
         information,
         qualified_tag("oms", "FixedStepMaster"),
-        {"description": "oms-ma", "stepSize": repr(step), "relativeTolerance": "1e-4"},
+        {"description": "oms-ma", "stepSize": length, "relativeTolerance": "0.0001"},
     )
 
 

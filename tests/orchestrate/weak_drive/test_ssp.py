@@ -129,7 +129,7 @@ def test_omsimulator_finds_its_step(tmp_path):
     """Its C reader goes by the prefixes as they are written; its Python reader takes the solver by
     the name that it gives to co-simulation FMUs.
     """
-    path = write_ssp(tmp_path / "drive.ssp", *QUICK, voltage=VOLTAGE, step=0.004)
+    path = write_ssp(tmp_path / "drive.ssp", *QUICK, voltage=VOLTAGE, step=4e-5)
     node = minidom.parseString(zipfile.ZipFile(path).read("SystemStructure.ssd"))
     for name in (
         "ssd:SystemStructureDescription",
@@ -143,10 +143,10 @@ def test_omsimulator_finds_its_step(tmp_path):
         (node,) = (child for child in node.childNodes if child.nodeName == name)
         if name == "ssc:Annotation":
             assert node.getAttribute("type") == "org.openmodelica"
-    assert float(node.getAttribute("stepSize")) == 0.004
+    assert float(node.getAttribute("stepSize")) == 4e-5
     assert node.getAttribute("description") == "oms-ma"
     solver = dict(node.parentNode.attributes.items())
-    assert solver == {"name": "oms_ma_default", "method": "oms_ma", "fixedStepSize": "0.004"}
+    assert solver == {"name": "oms_ma_default", "method": "oms_ma", "fixedStepSize": "0.00004"}
 
 
 def test_mistakes(tmp_path):
