@@ -55,7 +55,7 @@ def c_variable(variable: Variable, model: Model) -> str:
     return "    {" + ", ".join(cells) + "},"
 
 
-def shim_definitions(model: Model, slots: dict[str, int]) -> dict[str, str]:
+def shim_definitions(model: Model, slots: dict[str, int], real_outputs: bool) -> dict[str, str]:
     """Return the macros of the model that the C shim uses, value by name."""
     inputs = [
         f"orders 1 to {v.input_derivatives} of {v.name}"
@@ -71,6 +71,7 @@ def shim_definitions(model: Model, slots: dict[str, int]) -> dict[str, str]:
         "STOP_SLOT": str(model.stop_slot),
         "SET_SLOT": str(model.set_slot),
         "VARIABLE_COUNT": f"{len(model.variables)}u",
+        "REAL_OUTPUTS": str(int(real_outputs)),
         "REFRESH": str(int(model.refresh is not None)),
         "COAST": str(int(model.coast is not None)),
         "EVENT_CLOCK": str(int(model.clock is not None)),
@@ -85,7 +86,7 @@ def shim_definitions(model: Model, slots: dict[str, int]) -> dict[str, str]:
     }
 
 
-def model_header(model: Model, token: str, digest: str) -> bytes:
+def model_header(model: Model, token: str, digest: str, real_outputs: bool = False) -> bytes:
     """Return the file ``model.h``.
 
     Parameters
@@ -95,12 +96,14 @@ def model_header(model: Model, token: str, digest: str) -> bytes:
         GUID or instantiation token.
     digest : str
         Fingerprint of the model: saved states bear it.
+    real_outputs : bool
+        Outputs of other types can be read as Real too.
     """
     slots = {variable.name: variable.slot for variable in model.variables}
     known = {
         "MODEL_TOKEN": c_string(token),
         "STATE_MAGIC": c_string(f"vibroimpact state {digest}"),
-        **shim_definitions(model, slots),
+        **shim_definitions(model, slots, real_outputs),
         **self_test.self_test_definitions(model),
     }
     arrays = [f"    {{{slots[array.first]}, {array.size}}}," for array in model.arrays]

@@ -316,10 +316,14 @@ class Slave:
         found = []
         for reference in references:
             known = 0 <= reference < len(self.model.variables)
-            if not known or self.model.variables[reference].type != kind:
-                text = f"valueReference = {reference}: expected one of the {kind} variables"
-                self.refuse(f"{text} in modelDescription.xml")
-            found.append(self.model.variables[reference])
+            variable = self.model.variables[reference] if known else None
+            if variable is None or variable.type != kind:
+                text = f"valueReference = {reference}: "
+                if variable:
+                    text += f"{variable.name} is one of the {variable.type} variables, "
+                text += f"expected one of the {kind} variables in modelDescription.xml"
+                self.refuse(text)
+            found.append(variable)
         return found
 
     def read(self, references: Sequence[int], kind: str) -> list[float]:

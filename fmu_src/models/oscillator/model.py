@@ -54,5 +54,6 @@ MODEL = Model(
         ),
     ),
     series_count="sample_count",
+    excitation=("box_amplitude", "box_frequency"),
     clock=Clock("impact", "Ticks at each impact", "impact_count"),
 )

@@ -307,9 +307,20 @@ void differentiate(const Instance *instance, double memory[MEMORY_SIZE]) {
 }
 
 const Variable *find(Instance *instance, const char *call, unsigned reference, Type type) {
-    if (reference < VARIABLE_COUNT && VARIABLES[reference].type == type) return &VARIABLES[reference];
+    const Variable *variable = reference < VARIABLE_COUNT ? &VARIABLES[reference] : NULL;
+    bool real = variable && REAL_OUTPUTS && variable->calculated;  /* so described; by its own type it can be read all the same */
+    if (variable && (variable->type == type || (real && type == REAL))) return variable;
     char text[TEXT];
-    snprintf(text, sizeof text, "valueReference = %u: expected one of this type in modelDescription.xml", reference);
+    snprintf(text, sizeof text, "valueReference = %u: ", reference);
+    if (variable) {
+        append(text, variable->name);
+        append(text, " is one of the ");
+        append(text, TYPE_NAMES[real ? REAL : variable->type]);
+        append(text, " variables, ");
+    }
+    append(text, "expected one of the ");
+    append(text, TYPE_NAMES[type]);
+    append(text, " variables in modelDescription.xml");
     refuse(instance, call, text);
     return NULL;
 }

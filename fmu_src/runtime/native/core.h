@@ -72,6 +72,8 @@ Status enter_initialization(Instance *, const char *call);
 Status exit_initialization(Instance *, const char *call);
 Status step(Instance *, const char *call, double current, double size);
 
+extern const char *const TYPE_NAMES[];  /* of FMI's version, in the order of Type */
+
 /* Find the variable of a reference, of a type; NULL after a refusal. */
 const Variable *find(Instance *, const char *call, unsigned reference, Type type);
 Status may_set(Instance *, const char *call, const Variable *, double value);

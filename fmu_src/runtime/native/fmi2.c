@@ -9,6 +9,8 @@
 #define SETTABLE (INSTANTIATED | INITIALIZING | STEPPING)
 #define READABLE (INITIALIZING | STEPPING | STOPPED | TERMINATED)
 
+const char *const TYPE_NAMES[] = {"Real", "Integer", "Boolean"};
+
 static void report(Instance *instance, Status status, const char *text) {
     const fmi2CallbackFunctions *callbacks = instance->logger;
     if (!callbacks || !callbacks->logger) return;

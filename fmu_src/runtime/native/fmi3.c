@@ -10,6 +10,8 @@
 #define CALCULATED (INITIALIZING | STEPPING | EVENT | STOPPED | TERMINATED)
 #define READABLE (INSTANTIATED | CALCULATED)  /* start values, before anything is calculated */
 
+const char *const TYPE_NAMES[] = {"Float64", "Int32", "Boolean"};
+
 static void report(Instance *instance, Status status, const char *text) {
     if (instance->logger) ((fmi3LogMessageCallback)(size_t)instance->logger)(instance->environment, (fmi3Status)status, "logStatusError", text);
 }
