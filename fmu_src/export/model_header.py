@@ -6,7 +6,7 @@ import math
 
 from ..runtime.table import Model, Variable
 from . import self_test
-from .description_common import LOG_CATEGORIES
+from .description_common import TAKEN_CATEGORIES
 from .description_fmi3 import ARRAY_BASE, CLOCK_REFERENCE
 
 TYPES = """\
@@ -80,8 +80,8 @@ def shim_definitions(model: Model, slots: dict[str, int], real_outputs: bool) ->
         "ARRAY_BASE": f"{ARRAY_BASE}u",
         "ARRAY_COUNT": f"{len(model.arrays)}u",
         "MESSAGE_COUNT": str(max(model.messages) + 1),
-        "CATEGORY_COUNT": str(len(LOG_CATEGORIES)),
-        "CATEGORY_NAMES": c_string(" or ".join(LOG_CATEGORIES)),
+        "CATEGORY_COUNT": str(len(TAKEN_CATEGORIES)),
+        "CATEGORY_NAMES": c_string(" or ".join(TAKEN_CATEGORIES)),
         "INPUT_DERIVATIVES": c_string(", ".join(inputs) or "none"),
     }
 
@@ -106,6 +106,7 @@ def model_header(model: Model, token: str, digest: str, real_outputs: bool = Fal
         **shim_definitions(model, slots, real_outputs),
         **self_test.self_test_definitions(model),
     }
+    categories = ", ".join(map(c_string, TAKEN_CATEGORIES))
     arrays = [f"    {{{slots[array.first]}, {array.size}}}," for array in model.arrays]
     lines = [
         "/* Generated from the variable table. */",
@@ -121,7 +122,7 @@ def model_header(model: Model, token: str, digest: str, real_outputs: bool = Fal
         "static const Array ARRAYS[] = {",
         *(arrays or ["    {0, 0},"]),
         "};",
-        f"static const char *const CATEGORIES[] = {{{', '.join(map(c_string, LOG_CATEGORIES))}}};",
+        f"static const char *const CATEGORIES[] = {{{categories}}};",
         "static const char *const MESSAGES[] = {",
         *(f"    [{code}] = {c_string(text)}," for code, text in sorted(model.messages.items())),
         "};",
