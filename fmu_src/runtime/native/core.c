@@ -252,9 +252,8 @@ static Status refuse_step(Instance *instance, const char *call, double current, 
     return refuse(instance, call, text);
 }
 
-/* A step so short that the time stays the same is done, and reported once. */
+/* Report once that a step is so short that the time stays the same; it is done all the same. */
 static Status warn_short_step(Instance *instance, const char *call, double current, double size) {
-    if (size == 0 || current + size != current || instance->warned) return OK;
     char text[TEXT] = "communicationStepSize = ";
     append_number(text, size);
     append(text, " s: too short to change the time, ");
@@ -291,7 +290,8 @@ Status step(Instance *instance, const char *call, double current, double size) {
     if (!(size >= 0 && size < INFINITY && fabs(current - reached) <= rounding) || target - instance->stop_time > rounding)
         return refuse_step(instance, call, current, size);
     if (target < reached) target = reached;  /* the importer's clock may be a rounding behind */
-    Status warning = warn_short_step(instance, call, current, size);
+    bool short_step = size > 0 && current + size == current && !instance->warned;
+    Status warning = short_step ? warn_short_step(instance, call, current, size) : OK;
 #if COAST
     if (!kernel_coast(memory, target)) return warning;
 #endif
