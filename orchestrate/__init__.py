@@ -24,7 +24,7 @@ What is asked
     :func:`signs` of delamination in it, :func:`fit` a structure to it and :func:`detect` whether
     it is delaminated, :func:`detect_all` of many; :func:`plan_test` for a record that shows it;
     :func:`orbit`, :func:`branch`, :func:`border` for what is periodic, :func:`manifold` for what
-    leaves it; :func:`couple`, :func:`couple_all`,
+    leaves it; :func:`cosimulate`, :func:`couple`, :func:`couple_all`,
     :func:`capture`, :func:`passage`, :func:`waterfall`, :func:`jump_voltages`,
     :func:`drive_branch` and :func:`drive_spectra` for the weak drive, its voltage a
     :class:`Course`, a :class:`SpeedControl` or a :class:`SpeedGradient` too; :func:`write_ssp`

@@ -58,6 +58,7 @@ from .version import __version__ as __version__
 from .weak_drive.capture import capture as capture
 from .weak_drive.controllers import SpeedControl as SpeedControl
 from .weak_drive.controllers import SpeedGradient as SpeedGradient
+from .weak_drive.cosimulate import cosimulate as cosimulate
 from .weak_drive.couple import couple as couple
 from .weak_drive.couple_all import couple_all as couple_all
 from .weak_drive.drive_branch import drive_branch as drive_branch

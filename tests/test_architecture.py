@@ -45,7 +45,7 @@ FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know bes
     "weak_drive": BELOW_ANSWERS | {"response", "dynamics"},
     "figures": GROUND | {"structures"},
     "reports": GROUND | {"structures", "running", "figures"},
-    "paper": BELOW_ANSWERS | {"response", "dynamics", "weak_drive", "figures"},
+    "paper": BELOW_ANSWERS | {"__init__", "response", "dynamics", "weak_drive", "figures"},
     "__init__": BELOW_ANSWERS
     | {"response", "dynamics", "laboratory", "diagnosis", "weak_drive", "figures", "reports"},
     "explorer": BELOW_ANSWERS,

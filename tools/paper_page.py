@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from orchestrate.files import write_whole
-from orchestrate.paper.claims.claim import WORDS
+from orchestrate.paper.claims import WORDS
 from tools.marked import MARK, replace_part
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"

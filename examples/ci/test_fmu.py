@@ -22,13 +22,18 @@ import fmpy
 import pytest
 from fmpy import fmi2, fmi3
 
-FMU = os.environ.get("FMU", "TwoMassImpactOscillator.fmu")
+FMU = os.environ.get("FMU", "")
 CHAOS = {"box_amplitude": 1.0 / 1.13**2, "box_frequency": 1.13}
 STATE = ("x1", "x2", "v1", "v2", "x_rel", "phase", "impact_count", "impact_time", "impact_energy")
 messages: list[str] = []
+if not Path(FMU).is_file():
+    state = f"names no file, {FMU!r}" if FMU else "is not set"
+    expected = "expected the path of TwoMassImpactOscillator.fmu"
+    raise pytest.Collector.CollectError(f"environment variable FMU {state}: {expected}")
 model = fmpy.read_model_description(FMU)
 if model.modelName != "TwoMassImpactOscillator":
-    raise ValueError(f"{FMU}: a {model.modelName}; expected a TwoMassImpactOscillator")
+    expected = "expected a TwoMassImpactOscillator"
+    raise pytest.Collector.CollectError(f"FMU={FMU}: a {model.modelName}, {expected}")
 folder = tempfile.TemporaryDirectory()
 fmpy.extract(FMU, folder.name)
 

@@ -71,9 +71,11 @@ DISPLAY_UNITS = {  # how many of them an SI unit is
     "s": {"ms": 1e3},
 }
 LOG_CATEGORIES = {
+    "logStatusWarning": "Steps too short to advance the time, once",
     "logStatusError": "Errors and discarded steps: what was wrong, its value and what is expected",
-    "logAll": "All messages",
 }
+# the standard's name for all of them: taken, not offered, since a good run has no message
+TAKEN_CATEGORIES = (*LOG_CATEGORIES, "logAll")
 
 
 def float_text(value: float) -> str:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from ..runtime.table import Variable
 from .archive import read_folder
 from .companions import companions, icon_path
 from .sources import ROOT, Files, load_model
 
 
-def documentation_files(folder: str, digest: str, form: str) -> Files:
+def documentation_files(
+    folder: str, digest: str, form: str, variables: tuple[Variable, ...]
+) -> Files:
     """Return the files of ``documentation/``, the icon, and what other standards ask for beside.
 
     Parameters
@@ -19,6 +22,8 @@ def documentation_files(folder: str, digest: str, form: str) -> Files:
         Fingerprint of the sources, to be told on the page.
     form : str
         Of :mod:`.forms`: the page tells each form's own truth.
+    variables : tuple of Variable
+        As the form's model description has them.
 
     Returns
     -------
@@ -27,13 +32,15 @@ def documentation_files(folder: str, digest: str, form: str) -> Files:
     place = ROOT / "models" / folder
     files = read_folder(place / "documentation", "documentation/")
     template = files.pop("documentation/index.html.in").decode()
-    files["documentation/index.html"] = model_page(template, folder, digest, form)
+    files["documentation/index.html"] = model_page(template, folder, digest, form, variables)
     files.update(read_folder(place / "reference", "documentation/reference/"))
     files[icon_path(form[:4])] = (place / "model.png").read_bytes()
     return {**files, **companions(load_model(folder))}
 
 
-def model_page(template: str, folder: str, digest: str, form: str) -> bytes:
+def model_page(
+    template: str, folder: str, digest: str, form: str, variables: tuple[Variable, ...]
+) -> bytes:
     """Return the model's page, its variable table filled in."""
     import jinja2
 
@@ -43,5 +50,6 @@ def model_page(template: str, folder: str, digest: str, form: str) -> bytes:
         keep_trailing_newline=True,
         loader=jinja2.FileSystemLoader(ROOT / "models"),
     )
-    known = {"model": load_model(folder), "digest": digest, "form": form}
-    return environment.from_string(template).render(known).encode()
+    known = {"digest": digest, "form": form, "variables": variables}
+    page = environment.from_string(template).render(model=load_model(folder), **known)
+    return page.encode()

@@ -6,7 +6,7 @@ import math
 
 from ..runtime.table import Model, Variable
 from . import self_test
-from .description_common import LOG_CATEGORIES
+from .description_common import TAKEN_CATEGORIES
 from .description_fmi3 import ARRAY_BASE, CLOCK_REFERENCE
 
 TYPES = """\
@@ -55,7 +55,7 @@ def c_variable(variable: Variable, model: Model) -> str:
     return "    {" + ", ".join(cells) + "},"
 
 
-def shim_definitions(model: Model, slots: dict[str, int]) -> dict[str, str]:
+def shim_definitions(model: Model, slots: dict[str, int], real_outputs: bool) -> dict[str, str]:
     """Return the macros of the model that the C shim uses, value by name."""
     inputs = [
         f"orders 1 to {v.input_derivatives} of {v.name}"
@@ -71,6 +71,7 @@ def shim_definitions(model: Model, slots: dict[str, int]) -> dict[str, str]:
         "STOP_SLOT": str(model.stop_slot),
         "SET_SLOT": str(model.set_slot),
         "VARIABLE_COUNT": f"{len(model.variables)}u",
+        "REAL_OUTPUTS": str(int(real_outputs)),
         "REFRESH": str(int(model.refresh is not None)),
         "COAST": str(int(model.coast is not None)),
         "EVENT_CLOCK": str(int(model.clock is not None)),
@@ -79,13 +80,13 @@ def shim_definitions(model: Model, slots: dict[str, int]) -> dict[str, str]:
         "ARRAY_BASE": f"{ARRAY_BASE}u",
         "ARRAY_COUNT": f"{len(model.arrays)}u",
         "MESSAGE_COUNT": str(max(model.messages) + 1),
-        "CATEGORY_COUNT": str(len(LOG_CATEGORIES)),
-        "CATEGORY_NAMES": c_string(" or ".join(LOG_CATEGORIES)),
+        "CATEGORY_COUNT": str(len(TAKEN_CATEGORIES)),
+        "CATEGORY_NAMES": c_string(" or ".join(TAKEN_CATEGORIES)),
         "INPUT_DERIVATIVES": c_string(", ".join(inputs) or "none"),
     }
 
 
-def model_header(model: Model, token: str, digest: str) -> bytes:
+def model_header(model: Model, token: str, digest: str, real_outputs: bool = False) -> bytes:
     """Return the file ``model.h``.
 
     Parameters
@@ -95,14 +96,17 @@ def model_header(model: Model, token: str, digest: str) -> bytes:
         GUID or instantiation token.
     digest : str
         Fingerprint of the model: saved states bear it.
+    real_outputs : bool
+        Outputs of other types can be read as Real too.
     """
     slots = {variable.name: variable.slot for variable in model.variables}
     known = {
         "MODEL_TOKEN": c_string(token),
         "STATE_MAGIC": c_string(f"vibroimpact state {digest}"),
-        **shim_definitions(model, slots),
+        **shim_definitions(model, slots, real_outputs),
         **self_test.self_test_definitions(model),
     }
+    categories = ", ".join(map(c_string, TAKEN_CATEGORIES))
     arrays = [f"    {{{slots[array.first]}, {array.size}}}," for array in model.arrays]
     lines = [
         "/* Generated from the variable table. */",
@@ -118,7 +122,7 @@ def model_header(model: Model, token: str, digest: str) -> bytes:
         "static const Array ARRAYS[] = {",
         *(arrays or ["    {0, 0},"]),
         "};",
-        f"static const char *const CATEGORIES[] = {{{', '.join(map(c_string, LOG_CATEGORIES))}}};",
+        f"static const char *const CATEGORIES[] = {{{categories}}};",
         "static const char *const MESSAGES[] = {",
         *(f"    [{code}] = {c_string(text)}," for code, text in sorted(model.messages.items())),
         "};",

@@ -8,7 +8,7 @@ from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 
-from ..runtime.table import Model
+from ..runtime.table import BOOLEAN, REAL, Model, Variable
 from .archive import guid_of, write_archive
 from .compiler import link_all
 from .description_fmi2 import fmi2_xml
@@ -92,11 +92,27 @@ def guid(folder: str, form: str) -> str:
 def plain_model(model: Model) -> Model:
     """Return a model as its plain form describes it.
 
-    Scalars alone, without the states kept inside a step: tools' lists of variables stay short, and
-    what stumbles over arrays or clocks has none to stumble over.
+    - Scalars alone, without the states kept inside a step: tools' lists of variables stay short,
+      and what stumbles over arrays or clocks has none to stumble over.
+    - Real outputs alone, for importers that read every output as Real.
+    - An excitation of the model's own by tunable parameters: importers that write 0 to inputs left
+      open would stop it.
+
+    Names and value references stay.
     """
     scalars = [v for v in model.variables if not v.series and v.name != model.series_count]
-    return replace(model, variables=tuple(scalars), arrays=(), clock=None)
+    variables = tuple(plain_variable(v, v.name in model.excitation) for v in scalars)
+    return replace(model, variables=variables, arrays=(), clock=None)
+
+
+def plain_variable(variable: Variable, excites: bool) -> Variable:
+    """Return a variable as the plain form describes it."""
+    if excites:
+        return replace(variable, causality="parameter", variability="tunable", initial="exact")
+    if variable.causality != "output" or variable.type == REAL:
+        return variable
+    limits = (0.0, 1.0) if variable.type == BOOLEAN else (variable.minimum, variable.maximum)
+    return replace(variable, type=REAL, unit="1", minimum=limits[0], maximum=limits[1])
 
 
 def export(
@@ -131,17 +147,17 @@ def export(
     """
     model, digest = load_model(folder), model_digest(folder)
     version, token = form[:4], guid(folder, form)
-    header = {"model.h": model_header(model, token, digest)}
+    header = {"model.h": model_header(model, token, digest, real_outputs="-plain" in form)}
     shim = {**shim_sources(version), **fmi_headers(version), **header}
-    told = plain_model(model) if "-plain" in form else model
+    described = plain_model(model) if "-plain" in form else model
     kernel = kernel_source(folder)
     sources = {**shim, "kernel.c": kernel}
     files = source_files(model.name, version, sources)
-    files["modelDescription.xml"] = model_description(told, token, version, sources)
+    files["modelDescription.xml"] = model_description(described, token, version, sources)
     if not form.endswith("-sources"):
         made = link_all(platforms or usual(), model.name, kernel, shim)
         files.update(binary_files(version, model.name, made))
-    files.update(documentation_files(folder, digest, form))
+    files.update(documentation_files(folder, digest, form, described.variables))
     python = {k: v for k, v in model_sources(folder).items() if k.startswith("kernels/")}
     files.update({f"documentation/{name}": content for name, content in python.items()})
     check_unedited()

@@ -94,7 +94,7 @@ def export(folder: str, target: Path) -> Path:
             (package / name).write_bytes(library)
         files = run_pythonfmu(script, package, Path(scratch) / "built.fmu")
     files["modelDescription.xml"] = fmi2_xml(model, guid(folder), PYTHON)
-    files.update(documentation_files(folder, digest, "fmi2-python"))
+    files.update(documentation_files(folder, digest, "fmi2-python", model.variables))
     check_unedited()
     path = target / f"{model.name}.fmu"
     write_archive(path, files)

@@ -21,7 +21,7 @@ from .compiled import load_compiled
 from .table import BOOLEAN, INTEGER, REAL, Model, Variable, explain
 
 PHASES = INSTANTIATED, INITIALIZING, STEPPING, TERMINATED = 0.0, 1.0, 2.0, 3.0
-ERRORS, ALL = "logStatusError", "logAll"  # categories of messages
+ERRORS, WARNINGS, ALL = "logStatusError", "logStatusWarning", "logAll"  # of messages
 STATE_MAGIC = b"vibroimpact state "
 STATE_HEAD, CHECKSUM = 64, 8  # bytes
 
@@ -138,6 +138,7 @@ class Slave:
         self._phase = INSTANTIATED
         self._start_time = 0.0
         self._stop_time = float("inf")  # of the experiment, not of the state
+        self._warned = False  # of a step too short to advance the time
         self._stale = True  # outputs do not belong to the values set yet (initialisation mode)
         self._polynomial = self.model.polynomial
         self._checked: dict[str, Any] = {REAL: None, INTEGER: None, BOOLEAN: None}
@@ -275,7 +276,19 @@ class Slave:
             problem = f"doStep failed inside: {error!r}"
         if problem:
             self.complain(problem)
+        elif step_size > 0.0 and current_time + step_size == current_time:
+            self.warn_short_step(current_time, step_size)
         return not problem
+
+    def warn_short_step(self, time: float, step_size: float) -> None:
+        """Log once that a step is so short that the time stays the same."""
+        from pythonfmu.enums import Fmi2Status
+
+        if not self._warned:
+            self._warned = True
+            text = f"communicationStepSize = {step_size!r} s: too short to change the time, "
+            text += f"{time!r} s, expected a longer one; reported once"
+            self.log(text, Fmi2Status.warning, WARNINGS)
 
     def step_problem(self, current_time: float, step_size: float) -> str:
         """Say why a step cannot be tried; return an empty string if it can."""
@@ -316,10 +329,14 @@ class Slave:
         found = []
         for reference in references:
             known = 0 <= reference < len(self.model.variables)
-            if not known or self.model.variables[reference].type != kind:
-                text = f"valueReference = {reference}: expected one of the {kind} variables"
-                self.refuse(f"{text} in modelDescription.xml")
-            found.append(self.model.variables[reference])
+            variable = self.model.variables[reference] if known else None
+            if variable is None or variable.type != kind:
+                text = f"valueReference = {reference}: "
+                if variable:
+                    text += f"{variable.name} is one of the {variable.type} variables, "
+                text += f"expected one of the {kind} variables in modelDescription.xml"
+                self.refuse(text)
+            found.append(variable)
         return found
 
     def read(self, references: Sequence[int], kind: str) -> list[float]:

@@ -265,6 +265,8 @@ class Model:
     terminals : tuple of Terminal
     series_count : str
         The parameter that says how many elements of the series a step fills.
+    excitation : tuple of str
+        Inputs that describe an excitation of the model's own: parameters in the plain form.
     """
 
     name: str
@@ -291,6 +293,7 @@ class Model:
     clock: Clock | None = None
     terminals: tuple[Terminal, ...] = ()
     series_count: str = ""
+    excitation: tuple[str, ...] = ()
     refresh: Entry | None = None
     coast: Entry | None = None
 

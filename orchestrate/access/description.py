@@ -31,6 +31,8 @@ class Description:
     identifier: str = ""  # name of its binary for co-simulation; empty where it has none
     # exponents of SI units, by name of the unit; those that are not 0
     units: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
+    factors: Mapping[str, float] = field(default_factory=dict)  # of units: in SI, what one of it is
+    has_fixed_step: bool = False  # whether all communication steps have to be of one length
     digest: str = ""  # of the file's bytes
 
     @property
@@ -99,6 +101,10 @@ def read_description(path: Path) -> Description:
             needs_tool=bool(co_simulation and co_simulation.needsExecutionTool),
             identifier=co_simulation.modelIdentifier if co_simulation else "",
             units={unit.name: exponents(unit.baseUnit) for unit in xml.unitDefinitions},
+            factors={u.name: float(u.baseUnit.factor) for u in xml.unitDefinitions if u.baseUnit},
+            has_fixed_step=bool(
+                co_simulation and not co_simulation.canHandleVariableCommunicationStepSize
+            ),
             digest=digest,
         )
     return dataclasses.replace(_known[digest], path=path)

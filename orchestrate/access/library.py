@@ -5,21 +5,24 @@ from __future__ import annotations
 import atexit
 import copy
 import sys
+import threading
 from typing import Any
 
 from .description import Description
 from .unpacked import unpacked
 
+_lock = threading.Lock()
 _loaded: dict[tuple[str, str], Any] = {}  # by folder and binary
 
 
 def loaded(description: Description, name: str) -> Any:
     """Return FMPy's FMU object for a new, not yet instantiated instance; the binary is cached."""
     key = str(unpacked(description)), description.identifier
-    if key not in _loaded:
-        _loaded[key] = load(description, key[0])
-        if sys.platform == "win32":  # which deletes no binary that is loaded
-            atexit.register(_loaded[key].freeLibrary)
+    with _lock:
+        if key not in _loaded:
+            _loaded[key] = load(description, key[0])
+            if sys.platform == "win32":  # which deletes no binary that is loaded
+                atexit.register(_loaded[key].freeLibrary)
     fmu = copy.copy(_loaded[key])
     fmu.instanceName = name
     return fmu

@@ -27,6 +27,7 @@ from . import (
     branch,
     build,
     capture,
+    cosimulate,
     couple,
     diagnose,
     drive_branch,
@@ -52,7 +53,7 @@ from .process import Terminated, handled_signals, safe_outputs
 COMMANDS = (
     *(build, simulate, shake, analyse, diagnose, resonance, spectra, sweep, map),
     *(lyapunov, poincare, attractors, basin, orbit, manifold, branch, border),
-    *(couple, capture, passage, jump_voltages, drive_branch),
+    *(cosimulate, couple, capture, passage, jump_voltages, drive_branch),
     *(explore, report, paper),
 )
 SUCCESS, FAILURE, MISTAKE, INTERRUPTED, TERMINATED = 0, 1, 2, 130, 143

@@ -7,6 +7,9 @@ delamination) hears the impacts still, while its order 2 stays below any thresho
 Dry friction shakes it too, at both ends of the stroke, half a period apart and with opposite signs:
 half the sum of the signal and of itself half a period later, which holds the even orders, does not
 show it. Of one impact a period half the power is in this even part, and half in the odd one.
+
+Samples that are missing make single bursts: what comes in less than a third of the periods of an
+interval does not count, so that motions with an impact every third period are heard still.
 """
 
 from __future__ import annotations
@@ -16,12 +19,16 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from ..constants import TURN
 from ..laboratory.analysis.channels import BOX, Channels
 from ..laboratory.analysis.orders import EDGE, measured_phase
 from .response_signs import default_band_edge
 
 Floats = NDArray[np.float64]
 AVERAGING_TIME, MIN_INTERVALS = 2.0, 16  # s of each mean of the power; how many there are at least
+IN_PERIODS = (
+    1.0 / 3.0
+)  # of an interval's periods: bursts in fewer, as of lost samples, do not count
 QUIET = 0.2  # quantile of the means that is taken for the power of noise
 MAX_NOISE_RISE = 1.5  # power over that of noise from which bursts count as seen
 NOISE_DEVIATIONS = 6.0  # standard deviations of a mean by which noise may exceed its power
@@ -65,7 +72,8 @@ def one_sided_rise(signal: Floats, phase: Floats, part: slice, width: int) -> fl
     later = np.interp(phase[part] + math.pi, phase, np.arange(len(phase)))
     finer = np.asarray(resample_poly(signal, FINER, 1))
     opposite = np.interp(later, np.arange(len(finer)) / FINER, finer)
-    even, odd = (mean_power(0.5 * (signal[part] + s * opposite), width) for s in (1.0, -1.0))
+    turns = ((phase[part] - phase[part.start]) / TURN).astype(int)
+    even, odd = (mean_power(0.5 * (signal[part] + s * opposite), turns, width) for s in (1.0, -1.0))
     noise = np.quantile(even, QUIET), np.quantile(odd, QUIET)
     if not min(noise) > 0.0:
         return 0.0
@@ -73,8 +81,18 @@ def one_sided_rise(signal: Floats, phase: Floats, part: slice, width: int) -> fl
     return float(np.max(np.where(one_sided, even / noise[0], 0.0)))
 
 
-def mean_power(signal: Floats, width: int) -> Floats:
-    """Return the mean square of a signal in intervals of ``width`` samples that overlap by half."""
-    total = np.concatenate([[0.0], np.cumsum(signal**2)])
-    starts = np.arange(0, len(signal) - width + 1, max(width // 2, 1))
-    return np.asarray((total[starts + width] - total[starts]) / width)
+def mean_power(signal: Floats, turns: NDArray[np.intp], width: int) -> Floats:
+    """Return the mean square of a signal in intervals of about ``width`` samples, half overlapping.
+
+    Powers of single periods above that of all but ``IN_PERIODS`` of them count no more than it.
+    Arguments are shape (n,): the signal, and the number of the period of each sample.
+    """
+    count = np.maximum(np.bincount(turns), 1)
+    power = np.bincount(turns, signal**2) / count
+    begins = turns[np.arange(0, len(signal) - width + 1, max(width // 2, 1))]
+    ends = turns[np.arange(width - 1, len(signal), max(width // 2, 1))] + 1
+    means = []
+    for begin, end in zip(begins, ends, strict=True):
+        limit = np.quantile(power[begin:end], 1.0 - IN_PERIODS, method="lower")
+        means.append(np.average(np.minimum(power[begin:end], limit), weights=count[begin:end]))
+    return np.array(means)

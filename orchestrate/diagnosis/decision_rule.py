@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..laboratory.record_checks import CLIPPED
 from .misfit import soft_squares
 
 Floats = NDArray[np.float64]
@@ -15,17 +16,52 @@ DELAMINATED = "delaminated"
 NOT_SEEN = "no opening seen"
 NOT_DESCRIBED = "not described"
 UNDECIDED = "undecided"
-RATIO = 1.5  # by which the delaminated misfit has to be smaller than the best sound one
-# The same where two faces are seen to move apart, as those of no sound structure do
-RATIO_OF_FACES_APART = 1.05
-SOUND_DESCRIBES = 1.2  # largest misfit of a sound hypothesis that describes a record
-DELAMINATED_DESCRIBES = 3.0  # of the delaminated one: real contacts are not the model's
-DESCRIBES_FACES_APART = 4.0  # the same where two faces are seen to move apart
-CERTAIN = 0.9  # share of the resampled records in which the ratio has to hold
 RESAMPLED, BLOCKS, SEED = 1000, 20, 7
 CLOSE = 1.25  # a factor: a quantity so near to its border may lie on the other side of it
 MISFIT_MEANING = "A misfit of 1 is as far as noise and the usual error of a good model explain."
 UNSURE = (0.02, 0.98)  # shares of resampled records between which the ratio is not sure
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Thresholds of :meth:`Findings.verdict`."""
+
+    # by which the delaminated misfit has to be smaller than the best sound one: where order 2 is
+    # seen, where two faces move apart as well, and where their difference is all that is seen
+    ratio: float = 1.5
+    ratio_apart: float = 1.05
+    ratio_difference: float = 5.0
+    # largest misfit of a sound hypothesis, and of a delaminated one, that describes a record; the
+    # last where order 2 or bursts show as well that two faces part: real contacts are not the
+    # model's
+    sound: float = 1.2
+    delaminated: float = 3.0
+    delaminated_apart: float = 4.0
+    # share of the resampled records in which the ratio has to be exceeded, and least odds of
+    # delaminated against sound
+    share: float = 0.9
+    odds: float = 1.0
+    hidden: float = 0.1  # largest order 2 that noise may hide, over order 1
+    # share of a channel's samples at repeated extreme values from which it counts as saturated
+    clipped: float = CLIPPED
+    # response at an end of the sweep, over the largest one, above which the resonance counts as not
+    # passed
+    end_response: float = 0.7
+    # factor between the resonance and the guess's frequencies from which they do not belong
+    # together
+    guess_factor: float = 2.0
+
+
+SETTINGS = Settings()
+
+
+@dataclass(frozen=True)
+class Condition:
+    """Hold whether a condition of a verdict is fulfilled, and what to say where it is not."""
+
+    holds: bool
+    otherwise: str  # A sentence: what stops the verdict
+    advice: str = ""  # the measurement that would settle it, where that is not the usual one
 
 
 @dataclass(frozen=True)
@@ -55,6 +91,145 @@ class Findings:
     last: float
     # smallest opening at the sensor that would have been seen at every frequency, m
     smallest: float
+    hidden: float  # largest order 2 that would not have been seen, over order 1
+    clipped: float  # share of samples at repeated extreme values, of the channel that has most
+    # response at an end of the sweep over the largest one, the larger of both ends
+    end_response: float
+    resonance: float  # frequency of that largest one, Hz
+    guessed: tuple[float, float]  # lower and higher frequency of the guess's halves, Hz
+    # odds of delaminated against sound by simulated records; NaN where there are none
+    simulated_odds: float = math.nan
+    settings: Settings = SETTINGS
+
+    def verdict(self) -> str:
+        """Apply the rule and return one of the four verdicts.
+
+        - A record of a saturated channel, of a sweep that does not pass the resonance, or of a
+          resonance far from the guess's frequencies is "undecided".
+        - "delaminated": order 2 is seen and the misfit is at most 3 and 1.5 times smaller than the
+          best sound one; at most 4 and 1.05 times smaller where two faces move apart and order 2
+          or bursts exceed their thresholds; 3 and 5 times where the faces' difference is all there
+          is. The ratio is exceeded in nine of ten resampled records, and the odds are 1 or more.
+        - "no opening seen": order 2, the difference of the faces and bursts are below their
+          thresholds, a sound misfit is at most 1.2, and noise hides no order 2 of a tenth of order
+          1.
+        - "not described": neither kind of hypothesis has a misfit as small as that.
+        - "undecided": all else.
+        """
+        usable, delaminated, not_seen = (
+            all(one.holds for one in conditions)
+            for conditions in (
+                self.record_conditions(),
+                self.delaminated_conditions(),
+                self.no_opening_conditions(),
+            )
+        )
+        if usable and (delaminated or not_seen):
+            return DELAMINATED if delaminated else NOT_SEEN
+        return UNDECIDED if self.is_described or not usable else NOT_DESCRIBED
+
+    def record_conditions(self) -> list[Condition]:
+        """Return the conditions under which a record decides anything."""
+        factor = factor_outside(self.resonance, *self.guessed)
+        low, high = self.guessed
+        most = 100.0 * self.settings.end_response
+        away = f"a factor of {factor:.3g} from the guess's {low:.3g} to {high:.3g} Hz"
+        return [
+            Condition(
+                self.clipped <= self.settings.clipped,
+                f"{digits(100.0 * self.clipped)} % of a channel's samples are at its extreme "
+                "values: it is saturated.",
+                "The same sweep with a larger range of the sensors, or at a lower level.",
+            ),
+            Condition(
+                self.end_response <= self.settings.end_response,
+                "The sweep does not pass the resonance: the response at one of its ends is "
+                f"{digits(100.0 * self.end_response, most)} % of the largest one, at "
+                f"{self.resonance:.3g} Hz, where {digits(most)} % "
+                "shows it as passed.",
+                "A sweep that passes the resonance, from well below it to well above it.",
+            ),
+            Condition(
+                factor <= self.settings.guess_factor,
+                f"The response is largest at {self.resonance:.3g} Hz, {away}.",
+                "None yet: are the times of the record in s, and is the guess one of this beam?",
+            ),
+        ]
+
+    def delaminated_conditions(self) -> list[Condition]:
+        """Return the conditions of "delaminated"."""
+        enough, most = self.deciding_ratio, self.largest_misfit
+        odds = digits(self.odds, self.settings.odds)
+        alone = "is all that is seen, as two modes of a sound beam show it too: it decides"
+        ratio = f"The ratio is {self.ratio:.3g}, where {enough:g} is enough."
+        if self.is_difference_alone:
+            ratio = f"The faces' difference {alone} from a ratio of {enough:g} on."
+        return [
+            Condition(self.is_opening_seen, "Neither order 2 nor a difference of faces is seen."),
+            Condition(
+                self.delaminated_misfit <= most,
+                f"The delaminated model's misfit is {digits(self.delaminated_misfit, most)}, where "
+                f"at most {most:g} describes a record.",
+            ),
+            Condition(
+                self.ratio >= enough,
+                ratio,
+                "Both sensors exactly opposite each other, on the axis of the beam, and a higher "
+                "level."
+                if self.is_difference_alone
+                else "",
+            ),
+            Condition(
+                self.ratio < enough or self.share >= self.settings.share,
+                f"The ratio exceeds {enough:g} in {self.share:.2g} of the records that are put "
+                f"together of its blocks, where {self.settings.share:g} is enough.",
+            ),
+            Condition(
+                self.ratio < enough or not self.odds < self.settings.odds,
+                f"The odds of delaminated against sound are {odds} to 1, where "
+                f"{self.settings.odds:g} is enough.",
+            ),
+        ]
+
+    def no_opening_conditions(self) -> list[Condition]:
+        """Return the conditions of "no opening seen"."""
+        sound, most = self.settings.sound, 100.0 * self.settings.hidden
+        return [
+            Condition(not self.is_opening_seen, "Something is seen to open."),
+            Condition(
+                not self.is_impact_heard,
+                "Something strikes once a period: faces away from the sensor, or a loose part.",
+            ),
+            Condition(
+                self.sound_misfit <= self.settings.sound,
+                f"The best sound model's misfit is {digits(self.sound_misfit, sound)}, where at "
+                f"most {sound:g} describes a record.",
+            ),
+            Condition(
+                self.hidden <= self.settings.hidden,
+                f"Noise hides an order 2 of up to {digits(100.0 * self.hidden, most)} % of order "
+                f"1, where at most {digits(most)} % may be hidden.",
+                "The same sweep with less noise, or at a higher level.",
+            ),
+        ]
+
+    @property
+    def is_described(self) -> bool:
+        """Return whether one of the hypotheses describes the record."""
+        delaminated = self.delaminated_misfit <= self.largest_misfit
+        return delaminated or self.sound_misfit <= self.settings.sound
+
+    @property
+    def stops(self) -> list[Condition]:
+        """Return what stops the verdict: of the record, or of the verdict that is nearest."""
+        nearest = (
+            self.delaminated_conditions() if self.is_opening_seen else self.no_opening_conditions()
+        )
+        for conditions in (self.record_conditions(), nearest):
+            broken = [one for one in conditions if not one.holds]
+            if broken and self.verdict() in (UNDECIDED, NOT_DESCRIBED):
+                return broken
+        return []
 
     @property
     def ratio(self) -> float:
@@ -72,13 +247,28 @@ class Findings:
         return self.bursts > 1.0
 
     @property
+    def is_difference_alone(self) -> bool:
+        """Whether two faces move differently, as in two modes, and nothing else is seen."""
+        return self.apart > 1.0 and not (self.excess > 1.0 or self.is_impact_heard)
+
+    @property
     def deciding_ratio(self) -> float:
-        """Ratio of misfits from which the delaminated model is taken for the better one."""
-        return deciding_ratio(self.apart)
+        """Return the ratio of misfits from which the delaminated model is taken to be better."""
+        if self.is_difference_alone:
+            return self.settings.ratio_difference
+        return self.settings.ratio_apart if self.apart > 1.0 else self.settings.ratio
+
+    @property
+    def largest_misfit(self) -> float:
+        """Return the misfit up to which the delaminated model describes the record."""
+        is_parted = self.apart > 1.0 and not self.is_difference_alone
+        return self.settings.delaminated_apart if is_parted else self.settings.delaminated
 
     @property
     def odds(self) -> float:
-        """Odds of delaminated against sound, by the share of resampled records."""
+        """Odds of delaminated against sound, by simulated records or by resampled ones."""
+        if math.isfinite(self.simulated_odds):
+            return self.simulated_odds
         return (self.share * RESAMPLED + 0.5) / ((1.0 - self.share) * RESAMPLED + 0.5)
 
     @property
@@ -100,33 +290,17 @@ class Findings:
             return made
         return replace(made, share=float(made.ratio >= made.deciding_ratio))
 
-    def verdict(self) -> str:
-        """Apply the rule and return one of the four verdicts."""
-        sound = self.sound_misfit <= SOUND_DESCRIBES
-        describes = DESCRIBES_FACES_APART if self.apart > 1.0 else DELAMINATED_DESCRIBES
-        delaminated = self.delaminated_misfit <= describes
-        better = delaminated and self.ratio >= self.deciding_ratio
-        if not self.is_opening_seen:
-            if sound:
-                return UNDECIDED if self.is_impact_heard else NOT_SEEN
-            return UNDECIDED if better else NOT_DESCRIBED
-        if better:
-            return DELAMINATED if self.share >= CERTAIN else UNDECIDED
-        if sound or delaminated:
-            return UNDECIDED
-        return NOT_DESCRIBED
-
     def reason(self) -> str:
-        """Return sentences that say by which numbers the verdict was decided."""
+        """Return sentences that say by which numbers the verdict was decided, or stopped."""
         sentences = [
             f"Order 2 is up to {digits(100.0 * self.order2)} % of order 1, "
-            f"{digits(self.excess)} times the size from which it counts as seen."
+            f"{digits(self.excess, 1.0)} times the size from which it counts as seen."
         ]
         if self.sensors > 1:
-            apart = f"{digits(self.apart)} times the difference from which it counts as seen"
+            apart = f"{digits(self.apart, 1.0)} times the difference from which it counts as seen"
             sentences.append(f"The two faces differ by {apart}.")
         if math.isfinite(self.bursts):
-            power = f"{digits(self.bursts)} times the power from which they count as impacts"
+            power = f"{digits(self.bursts, 1.0)} times the power from which they count as impacts"
             sentences.append(f"Bursts once a period have {power}.")
         misfit = (
             f'The best sound model, "{self.sound}", has a misfit of {digits(self.sound_misfit)}'
@@ -136,17 +310,15 @@ class Findings:
             enough = f"{self.deciding_ratio:g} times is enough to decide"
             misfit += f", {other}: that is {self.ratio:.3g} times as large, where {enough}"
         sentences.append(f"{misfit}.")
-        return " ".join([*sentences, MISFIT_MEANING, *self.heard_only(), *self.imperfection()])
-
-    def heard_only(self) -> list[str]:
-        """Return a sentence on impacts that move the sensor too little for order 2, if any."""
-        if self.is_opening_seen or not self.is_impact_heard:
-            return []
-        return ["Something strikes once a period: faces away from the sensor, or a loose part."]
+        stops = [one.otherwise for one in self.stops]
+        return " ".join([*sentences, MISFIT_MEANING, *stops, *self.imperfection()])
 
     def imperfection(self) -> list[str]:
         """Return a sentence on a model that decides but describes the record poorly, if it does."""
-        described = self.ratio >= RATIO and self.delaminated_misfit <= DELAMINATED_DESCRIBES
+        described = (
+            self.ratio >= self.settings.ratio
+            and self.delaminated_misfit <= self.settings.delaminated
+        )
         if self.verdict() != DELAMINATED or described:
             return []
         return [
@@ -156,6 +328,7 @@ class Findings:
 
     def next_measurement(self) -> str:
         """Recommend, in a sentence, the measurement that would decide or confirm the verdict."""
+        advice = [one.advice for one in self.stops if one.advice]
         other = "an accelerometer on the other face" if self.sensors == 1 else "a slower sweep"
         return {
             DELAMINATED: "A sweep in the other direction and another level should give the same "
@@ -164,7 +337,7 @@ class Findings:
             "threshold only, and below it no record tells them from bonded ones.",
             NOT_DESCRIBED: "Sweeps up and down at two levels after the clamp is tightened and "
             "loose parts are taken away: what is seen is neither a sound beam nor this one.",
-            UNDECIDED: f"Sweeps up and down at twice the level, with {other}.",
+            UNDECIDED: (advice or [f"Sweeps up and down at twice the level, with {other}."])[0],
         }[self.verdict()]
 
     def seen_up_to(self) -> str:
@@ -180,23 +353,30 @@ class Findings:
         return text
 
 
-def digits(value: float) -> str:
-    """Format a number with two significant digits, without an exponent.
+def digits(value: float, limit: float = math.nan) -> str:
+    """Format a number with two significant digits, or with as many as tell it from a limit.
 
     Examples
     --------
-    >>> digits(0.1234), digits(113.0)
-    ('0.12', '110')
+    >>> digits(0.1234), digits(113.0), digits(1.2004, limit=1.2), digits(1.3, limit=1.2)
+    ('0.12', '110', '1.2004', '1.3')
     """
-    return f"{float(f'{value:.2g}'):.10g}"
+    rounded = (float(f"{value:.{count}g}") for count in range(2, 17))
+    return f"{next((one for one in rounded if one != limit), value):.10g}"
 
 
-def deciding_ratio(apart: float) -> float:
-    """Return the ratio of misfits that decides: a smaller one where two faces move differently."""
-    return RATIO_OF_FACES_APART if apart > 1.0 else RATIO
+def factor_outside(value: float, low: float, high: float) -> float:
+    """Return by which factor a value lies below or above a range; at most 1 inside.
+
+    Examples
+    --------
+    >>> factor_outside(10.0, 20.0, 30.0), factor_outside(45.0, 20.0, 30.0)
+    (2.0, 1.5)
+    """
+    return max(value / high, low / value)
 
 
-def resampled_share(sound: Floats, delaminated: Floats, ratio: float = RATIO) -> float:
+def resampled_share(sound: Floats, delaminated: Floats, ratio: float) -> float:
     """Return the share of block-bootstrap samples in which the ratio of misfits is exceeded."""
     one, other = (soft_squares(values).mean(axis=(0, 1)) for values in (sound, delaminated))
     blocks = np.array_split(np.arange(len(one)), min(BLOCKS, len(one)))

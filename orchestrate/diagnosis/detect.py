@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..access import Player, finder
+from ..laboratory.record_checks import clipped_share
 from ..response.labels import Variable, flags, variable
 from ..response.questions import checked_structure
 from ..running.job import Inputs, Table
@@ -16,8 +17,8 @@ from ..running.runner import answer
 from ..structures import Structure
 from .bootstrap import Bootstrap, bootstrap
 from .bursts import burst_excess
-from .decision_rule import Findings, deciding_ratio, resampled_share
-from .even_orders import smallest_openings
+from .decision_rule import DELAMINATED, NOT_SEEN, Findings, resampled_share
+from .even_orders import smallest_openings, thresholds
 from .evidence import Evidence
 from .fit import Results, checked_data, checked_free, delaminated_guess, text_coordinate
 from .hypotheses import FREE
@@ -89,24 +90,30 @@ def detect(
         ``frequency_low``, ``frequency_high`` in Hz); of the whole record ``sample_rate``,
         ``record_duration``, ``sweep_low`` and ``sweep_high``; ``order2`` and its
         ``order2_threshold`` over ``window``. Over ``hypothesis``: ``misfit``, ``evaluations``,
-        ``minima``, ``value`` and ``standard_error`` of its parameters, ``misfit_at`` and the
-        ``fitted`` orders over ``window``, beside what is ``measured``. Attributes ``reason``,
-        ``settle``, ``simulated``, ``seen_up_to``, ``assumed`` and ``direction`` of the sweep.
+        ``minima``, ``value`` and ``standard_error`` of its parameters (NaN but of the hypotheses
+        that the verdict is about and that describe the record), ``misfit_at`` and the ``fitted``
+        orders over ``window``, beside what is ``measured``. Attributes ``reason``, ``settle``,
+        ``simulated``, ``seen_up_to``, ``assumed`` and ``direction`` of the sweep.
 
     Raises
     ------
     InputError
-        Where the record is none of a swept or stepped sine.
+        Where the record is none of a swept or stepped sine, or sampled too slowly for order 2.
+
+    Warns
+    -----
+    UserWarning
+        Where the resonance is a factor of 2 or more from the guess's frequencies.
 
     Notes
     -----
     Sound hypotheses are one mass on a linear spring, on one that hardens or softens, with dry
-    friction, or with a stop on one side. "Delaminated" needs order 2 at five times the noise and at
-    half a hundredth of order 1 (or two faces whose order 1 differs), and a misfit 1.5 times smaller
-    than that of the best sound hypothesis, in nine of ten records put together of its blocks; 1.05
-    times is enough where two faces are seen to move apart, as those of no sound structure do. Where
-    bursts once a period at high frequencies tell of impacts, and nothing else opens, the word is
-    "undecided".
+    friction, or with a stop on one side. The rule is that of
+    :meth:`orchestrate.diagnosis.decision_rule.Findings.verdict`: "delaminated" needs order 2 at
+    five times the noise and at half a hundredth of order 1 and a misfit 1.5 times smaller than that
+    of the best sound hypothesis, in nine of ten records put together of its blocks. 1.05 times is
+    enough where two faces are seen to move apart as well, and 5 times are needed where that is all:
+    a torsion mode of a sound beam does it too. What stopped a verdict is in ``reason``.
     Where a number is near its border, records of the best sound and of the best delaminated fit are
     simulated and both are fitted to each: the odds are the ratio of the densities of the ratio of
     misfits, under both, at the measured one. Elsewhere they are the shares of resampled records.
@@ -123,10 +130,11 @@ def detect(
     >>> str(answer.verdict.values)
     'no opening seen'
     """
+    structure = delaminated_guess(guess)
     job = DetectJob(
         name=f"detect_{checked_structure(guess).label()}",
-        data=checked_data(record),
-        guess=delaminated_guess(guess),
+        data=checked_data(record, structure),
+        guess=structure,
         free=checked_free(free),
     )
     return answer(job, running, finder(running))
@@ -156,6 +164,8 @@ class DetectJob(SearchJob):
         findings, even = findings_from_results(results), results.even
         whole = cached_orders(self.data)
         simulated = Bootstrap.from_row(findings.ratio, table["end_bootstrap"][0])
+        if simulated is not None:
+            findings = replace(findings, simulated_odds=simulated.odds_with_error()[0])
         every, coordinates = results.comparison()
         scalars = {
             "verdict": ((), findings.verdict(), {"long_name": "verdict"}),
@@ -178,7 +188,7 @@ class DetectJob(SearchJob):
             "order2": variable("window", even.ratio, "1", "order 2 over order 1"),
             "order2_threshold": variable("window", even.threshold, "1", "size that counts as seen"),
         }
-        numbers = results.parameters()
+        numbers = results.parameters(stated_hypotheses(results, findings))
         del numbers["asked"]
         coordinates["truth"] = text_coordinate("truth", TRUTHS, "what was simulated")
         return xr.Dataset({**scalars, **every, **numbers}, coordinates).assign_attrs(
@@ -247,6 +257,17 @@ def bootstrap_inputs(results: Results) -> tuple[Evidence, Evidence, list[Fitted]
     return evidence, cached_coarse_evidence(job.data), made[:count], other
 
 
+def stated_hypotheses(results: Results, findings: Findings) -> NDArray[np.bool_]:
+    """Return of each hypothesis whether its numbers are stated: it describes a decided record.
+
+    The errors of a fit that has missed hold nothing.
+    """
+    word, count = findings.verdict(), len(results.job.sound)
+    sound = word == NOT_SEEN and results.misfit[:count] <= findings.settings.sound
+    parted = word == DELAMINATED and results.misfit[count:] <= findings.largest_misfit
+    return np.concatenate([np.full(count, sound), np.full(len(results.misfit) - count, parted)])
+
+
 def findings_from_results(results: Results) -> Findings:
     """Collect the quantities that the decision rule needs from the results of the fits."""
     job, even = results.job, results.even
@@ -257,8 +278,9 @@ def findings_from_results(results: Results) -> Findings:
     observed = evidence.frequency[np.isfinite(opening)]
     whole = cached_orders(job.data)
     bursts = burst_excess(whole.channels, float(whole.windows.frequency.max()))
-    ratio = deciding_ratio(even.moved_apart)
-    return Findings(
+    response = (np.abs(evidence.measured[:, 0]) / evidence.level).max(axis=0)
+    low, high = sorted((job.guess.f1, job.guess.f2))
+    findings = Findings(
         excess=even.excess,
         order2=even.largest,
         apart=even.moved_apart,
@@ -267,11 +289,18 @@ def findings_from_results(results: Results) -> Findings:
         sound_misfit=float(results.misfit[sound]),
         delaminated=job.hypotheses[other].name,
         delaminated_misfit=float(results.misfit[other]),
-        share=resampled_share(results.residuals[sound], results.residuals[other], ratio),
+        share=math.nan,
         sensors=len(evidence.masses),
         low=float(evidence.level.min()),
         high=float(evidence.level.max()),
         first=float(observed.min()),
         last=float(observed.max()),
         smallest=float(np.nanmax(opening)),
+        hidden=float(np.nanmax(np.fmin.reduce(thresholds(evidence), axis=0))),
+        clipped=max(clipped_share(row) for row in whole.channels.values),
+        end_response=float(max(response[0], response[-1]) / response.max()),
+        resonance=evidence.resonance,
+        guessed=(low, high),
     )
+    residuals = results.residuals[sound], results.residuals[other]
+    return replace(findings, share=resampled_share(*residuals, findings.deciding_ratio))

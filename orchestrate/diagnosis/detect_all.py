@@ -74,7 +74,7 @@ def checked_job(
 ) -> DetectJob:
     """Check one record and return the job that decides on it."""
     try:
-        data = checked_data(record)
+        data = checked_data(record, guess)
     except InputError as error:
         raise InputError(f"{name}: {error}") from None
     return DetectJob(name=name, data=data, guess=guess, free=free)

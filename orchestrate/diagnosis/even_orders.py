@@ -119,8 +119,8 @@ def average_over_windows(values: Floats) -> Floats:
 def sensor_difference(evidence: Evidence, threshold: Floats) -> Floats:
     """Return the difference of two sensors over its threshold, the larger of orders 1 and 2.
 
-    Two faces of one body move alike, whatever it does. The best gain and delay between the sensors
-    are taken out, as order 1 tells them.
+    Two faces of one body in one mode move alike, whatever it does. The best gain and delay between
+    the sensors are taken out, as order 1 tells them.
     """
     if len(evidence.measured) < 2:
         return np.full(threshold.shape[1], np.nan)

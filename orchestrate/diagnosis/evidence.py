@@ -53,9 +53,7 @@ def cut_to_resonance(orders: RecordOrders) -> tuple[Channels, float]:
     The rest is long and holds little: a fit would spend half its time there.
     """
     windows, channels = orders.windows, orders.channels
-    rows = [channels.names.index(name) for name in orders.sensors]
-    response = (np.abs(orders.amplitude[rows, 0]) / orders.level).max(axis=0)
-    ratio = windows.frequency / windows.frequency[np.argmax(response)]
+    ratio = windows.frequency / orders.resonance
     inside = np.flatnonzero((ratio > FITTED_RANGE[0]) & (ratio < FITTED_RANGE[1]))
     begin = windows.parts[inside[0]].start - round((START_UP + 0.5) * channels.sample_rate)
     part = slice(max(begin, 0), windows.parts[inside[-1]].stop)

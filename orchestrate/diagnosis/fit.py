@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -19,6 +20,7 @@ from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
 from .curve_evidence import CurveData
+from .decision_rule import SETTINGS, factor_outside
 from .even_orders import EvenOrders, even_orders
 from .evidence import FITTED_ORDERS, Evidence
 from .hypotheses import FREE, REPORTED, Hypothesis
@@ -41,6 +43,7 @@ SHORT_NAMES = {  # names of the hypotheses as arguments
     "stop": 3,
     "stop on the other side": 4,
 }
+SAME_LEVEL = 0.1  # of the largest level: a tone whose level varies less has one
 FITTED_DIMENSIONS = ("hypothesis", "channel", "order", "window")
 
 
@@ -85,8 +88,8 @@ def fit(
     Raises
     ------
     InputError
-        Where the record is none of a swept or stepped sine and no resonance curve, or an argument
-        is no such name.
+        Where the record is none of a swept or stepped sine and no resonance curve, is one tone that
+        has fewer numbers than are fitted, or an argument is no such name.
 
     Notes
     -----
@@ -125,7 +128,11 @@ def fit(
     chosen = checked_free(free)
     kind = checked_word("hypothesis", hypothesis, (DELAMINATED, *SHORT_NAMES))
     structure = delaminated_guess(guess)
-    data = CurveData.from_curve(record, structure) if is_curve(record) else checked_data(record)
+    data = (
+        CurveData.from_curve(record, structure)
+        if is_curve(record)
+        else checked_data(record, structure)
+    )
     job = FitJob(
         name=f"fit_{checked_structure(guess).label()}",
         data=data,
@@ -135,6 +142,7 @@ def fit(
         delaminated=kind == DELAMINATED,
         kind=kind,
     )
+    check_tones(job)
     return answer(job, running, finder(running))
 
 
@@ -150,11 +158,34 @@ def checked_free(free: Sequence[str]) -> tuple[str, ...]:
     return names
 
 
-def checked_data(record: xr.Dataset) -> RecordData:
+def checked_data(record: xr.Dataset, guess: Structure | None = None) -> RecordData:
     """Check that a record's base moves as a sine, and return its channels for a job."""
     channels = checked_channels(record)
-    channel_orders(channels)
+    resonance = channel_orders(channels).resonance
+    if guess is not None:
+        low, high = sorted((guess.f1, guess.f2))
+        factor = factor_outside(resonance, low, high)
+        if factor > SETTINGS.guess_factor:
+            text = f"a factor of {factor:.3g} from the guess's {low:.3g} to {high:.3g} Hz"
+            text = f"record: the response is largest at {resonance:.3g} Hz, {text}: are the times"
+            warnings.warn(f"{text} in s, and is the guess one of this beam?", stacklevel=3)
     return RecordData.from_channels(channels)
+
+
+def check_tones(job: FitJob) -> None:
+    """Check that fewer numbers are fitted than a record of one tone has: three orders a sensor."""
+    evidence, hypothesis = job.evidence, job.hypotheses[-1]
+    seconds = np.array([part.stop - part.start for part in evidence.windows.parts]) / evidence.rate
+    free, numbers = hypothesis.bounds(evidence), len(FITTED_ORDERS) * len(evidence.masses)
+    is_tone = float(np.ptp(evidence.frequency)) < 1.0 / float(seconds.max())
+    if (
+        is_tone
+        and np.ptp(evidence.level) < SAME_LEVEL * evidence.level.max()
+        and len(free) >= numbers
+    ):
+        text = f"one tone of {evidence.frequency.mean():.4g} Hz has {numbers} numbers"
+        expected = "expected a sweep, or fewer in free="
+        raise InputError(f"record: {text}, {len(free)} are fitted; {expected}")
 
 
 def is_curve(record: xr.Dataset) -> bool:
@@ -187,7 +218,9 @@ class FitJob(SearchJob):
         results = Results.from_table(self, table)
         position = len(self.hypotheses) - 1
         every, coordinates = results.comparison()
-        made = xr.Dataset({**every, **results.parameters()}, coordinates).isel(hypothesis=position)
+        made = xr.Dataset(
+            {**every, **results.parameters(np.full(len(self.hypotheses), True))}, coordinates
+        ).isel(hypothesis=position)
         name = self.hypotheses[position].name
         named = made.drop_vars("hypothesis").dropna("parameter", how="all", subset=["asked"])
         if isinstance(self.data, CurveData):
@@ -257,15 +290,19 @@ class Results:
             known.update(dict.fromkeys(known.keys() & set(FREE), (math.nan, math.nan)))
         return known
 
-    def parameters(self) -> dict[str, Variable]:
-        """Return all hypotheses' values and errors; ``asked`` is 1 where one has the parameter."""
+    def parameters(self, stated: NDArray[np.bool_]) -> dict[str, Variable]:
+        """Return values and errors of the hypotheses that are ``stated``, NaN of the others.
+
+        ``asked`` is 1 where one has the parameter.
+        """
         every = [self.reported_values(position) for position in range(len(self.values))]
         shape = (len(every), len(REPORTED))
         value, error, asked = np.full(shape, np.nan), np.full(shape, np.nan), np.full(shape, np.nan)
         for row, known in enumerate(every):
             for name, (number, deviation) in known.items():
                 column = list(REPORTED).index(name)
-                value[row, column], error[row, column] = number, deviation
+                if stated[row]:
+                    value[row, column], error[row, column] = number, deviation
                 asked[row, column] = 1.0
         over = ("hypothesis", "parameter")
         return {

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from ..structures import Structure
 
 Floats = NDArray[np.float64]
+POINTS_AROUND = 201  # frequencies around one of a grid
 
 
 def opening_force(structure: Structure, frequency: ArrayLike) -> Floats:
@@ -43,6 +44,16 @@ def opening_force(structure: Structure, frequency: ArrayLike) -> Floats:
     motion = -m / (k - w**2 * m + 1j * w * (structure.d1 + structure.d2))
     own = structure.k2 - w**2 * structure.m2 + 1j * w * structure.d2
     return np.asarray(np.abs(structure.m2 + own * motion))
+
+
+def largest_opening_force(structure: Structure, frequency: Floats) -> Floats:
+    """Return the largest :func:`opening_force` around each frequency, half way to its neighbours.
+
+    A sweep passes the resonance between two frequencies of a grid, where the faces open first.
+    """
+    ends = np.concatenate([frequency[:1], 0.5 * (frequency[1:] + frequency[:-1]), frequency[-1:]])
+    around = np.linspace(ends[:-1], ends[1:], POINTS_AROUND)
+    return np.asarray(opening_force(structure, around).max(axis=0))
 
 
 def sweep_rate(f: float, zeta: float) -> float:

@@ -142,6 +142,13 @@ class RecordOrders:
         """Amplitude of the base's order 1, m/s2, shape (windows,)."""
         return np.abs(self.order(1.0, BOX))
 
+    @property
+    def resonance(self) -> float:
+        """Frequency at which a sensor moves most for the base's amplitude, Hz."""
+        rows = [self.channels.names.index(name) for name in self.sensors]
+        response = (np.abs(self.amplitude[rows, 0]) / self.level).max(axis=0)
+        return float(self.windows.frequency[np.argmax(response)])
+
 
 def record_orders(record: xr.Dataset) -> RecordOrders:
     """Compute the orders of a record of a swept or stepped sine.
@@ -180,11 +187,30 @@ def checked_channels(record: xr.Dataset) -> Channels:
 
 def channel_orders(channels: Channels) -> RecordOrders:
     """Compute the orders of channels and their floors; see :func:`record_orders`."""
-    windows, amplitude = sine_windows(channels)
+    windows, amplitude = windows_with_order_2(channels, *sine_windows(channels))
     whole, off = amplitude[:, : len(ORDERS)], amplitude[:, len(ORDERS) :]
     squares = np.nanmean(np.abs(off) ** 2, axis=1)
     floor = np.sqrt(np.stack([moving_average(row) for row in squares]))
     return RecordOrders(windows, channels, whole, floor, np.quantile(floor, 0.2, axis=1))
+
+
+def windows_with_order_2(
+    channels: Channels, windows: OrderWindows, amplitude: Complexes
+) -> tuple[OrderWindows, Complexes]:
+    """Drop the windows whose order 2 is above what the sampling rate resolves."""
+    resolved = np.isfinite(amplitude[0, ORDERS.index(2.0)])
+    rows = [row for row, name in enumerate(channels.names) if name != BOX]
+    level = np.abs(amplitude[channels.names.index(BOX), 0])
+    peak = np.argmax((np.abs(amplitude[rows, 0]) / level).max(axis=0))
+    if not resolved[peak]:
+        rate, frequency = channels.sample_rate, windows.frequency[peak]
+        text = f"{rate:.4g} samples a second are {rate / frequency:.3g} in a period of"
+        text = f"record: {text} {frequency:.3g} Hz, where it moves most"
+        raise InputError(f"{text}; expected {2.0 / NYQUIST:.3g} or more, to read order 2")
+    kept = np.flatnonzero(resolved)
+    if len(kept) == len(windows):
+        return windows, amplitude
+    return windows.select(kept, len(windows.orders)), amplitude[:, :, kept]
 
 
 def decimated(channels: Channels, highest: float, kept: float = SAMPLES_PER_PERIOD) -> Channels:

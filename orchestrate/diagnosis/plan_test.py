@@ -20,7 +20,7 @@ from ..laboratory.swept_sine import SweptSine
 from ..response.labels import variable, yes_or_no
 from ..running.options import Running
 from ..structures import Structure
-from .opening import opening_force, sweep_rate
+from .opening import largest_opening_force, sweep_rate
 from .undamaged import SoundStructure
 
 if TYPE_CHECKING:
@@ -122,7 +122,8 @@ def plan_test(
         the sound structure in standard deviations of the noise in one window, and its parts
         ``distance_first`` (order 1, which a sound beam of other numbers may imitate) and
         ``distance_harmonics`` (orders 2 and 3, which no linear one has); ``opening``, the largest
-        gap in m; ``closing_force`` in N: faces pressed together by more stay shut there.
+        gap in m; ``closing_force`` in N: faces pressed together by more stay shut there, and half
+        way to the neighbouring frequencies.
         Over ``frequency``: ``smallest_level`` in m/s2 from which orders 2 and 3 count, and
         ``opening_level`` in m/s2 from which a preloaded structure opens (0 without preload). Over
         ``level``: ``smallest_opening`` in m and ``smallest_split`` (difference between the halves'
@@ -312,7 +313,7 @@ def plan_dataset(
     first, higher = (np.stack(rows) for rows in zip(*distances, strict=True))
     opening = np.stack([sweep.opening for sweep in sweeps])
     over, unit = ("level", "frequency"), "standard deviations of the noise in a window"
-    kept = levels[:, None] * opening_force(test.structure, f)
+    kept = levels[:, None] * largest_opening_force(test.structure, f)
     splits = smallest_splits(levels, limit, split_distances)
     split = "smallest difference between the halves that counts, relative to the guess's"
     answer = xr.Dataset(
@@ -339,7 +340,7 @@ def smallest_detectable(
     test: SweepComputation, sweeps: Sequence[Sweep], limit: float, higher: Floats, opening: Floats
 ) -> dict[str, Any]:
     """Return the smallest levels and openings that count, and where sensors overload."""
-    force = opening_force(test.structure, test.frequency)
+    force = largest_opening_force(test.structure, test.frequency)
     with np.errstate(divide="ignore", invalid="ignore"):
         smallest = np.where(higher[-1] > 0.0, limit * sweeps[-1].level / higher[-1], np.inf)
         open_from = test.structure.preload / force

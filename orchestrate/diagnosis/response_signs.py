@@ -137,8 +137,14 @@ def noise_from_off_orders(windows: Sequence[Window], powers: Sequence[Floats]) -
     windows, and the median hardly.
     """
     samples = np.array([window.part.stop - window.part.start for window in windows])
-    medians = [np.nanmedian(power * samples, axis=-1) for power in powers]
+    medians = [median_of_columns(power * samples) for power in powers]
     return np.asarray(np.sqrt(np.fmin.reduce(medians) / (6.0 * math.log(2.0))))
+
+
+def median_of_columns(values: Floats) -> Floats:
+    """Return the median of each row over the columns without NaN; NaN where there are none."""
+    known = values[:, np.isfinite(values).all(axis=0)]
+    return np.median(known, axis=-1) if known.size else np.full(len(values), np.nan)
 
 
 def curves_by_direction(
@@ -173,7 +179,7 @@ def signs_of_spectra(channels: Channels) -> ResponseSigns:
     """Compute the response at the lines that the box excites; such a record has no orders."""
     frequency, box, rows, cross = spectra(channels)
     excited = excited_lines(frequency, box)
-    density = np.median(rows[:, noise_lines(frequency, channels.sample_rate)], axis=-1)
+    density = median_of_columns(rows[:, noise_lines(frequency, channels.sample_rate)])
     response = cross[:, excited] / box[excited]
     curve = Curve(
         0,

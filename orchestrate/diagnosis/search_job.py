@@ -7,28 +7,24 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..access import OSCILLATOR, Player
 from ..laboratory.analysis.channels import Channels
-from ..laboratory.record import record as made_record
 from ..running.job import Inputs, Job, Table
 from ..structures import Structure
 from .curve_evidence import CurveData
-from .decision_rule import SOUND_DESCRIBES
+from .decision_rule import SETTINGS
 from .errors import estimate
 from .even_orders import even_orders
 from .evidence import Evidence
 from .fitting import POLISH_ROUNDS, Search, Solution, distinct_minima
 from .hypotheses import SOUND, STARTING_SPLITS, Delaminated, DelaminatedWithClearance, Hypothesis
 from .misfit import misfit
-from .orders import RecordOrders, record_orders
-
-if TYPE_CHECKING:
-    import xarray as xr
+from .orders import RecordOrders, channel_orders
 
 Floats = NDArray[np.float64]
 BONDED_STEPS = 15  # steps downhill from the bonded solution
@@ -68,11 +64,10 @@ class RecordData:
         values = tuple(tuple(row.tolist()) for row in channels.values)
         return cls(channels.names, channels.sample_rate, float(channels.time[0]), values)
 
-    def dataset(self) -> xr.Dataset:
-        """Return the record as a dataset."""
-        named = dict(zip(self.names, self.channels, strict=True))
+    def to_channels(self) -> Channels:
+        """Return the record as channels, which were checked before."""
         time = self.begin + np.arange(len(self.channels[0])) / self.sample_rate
-        return made_record(time=time, sample_rate=self.sample_rate, **named)  # type: ignore[arg-type]
+        return Channels(time, self.sample_rate, self.names, np.array(self.channels), "record")
 
     def evidence(self) -> Evidence:
         """Return the evidence of the record."""
@@ -92,7 +87,7 @@ def cached_evidence(data: RecordData | CurveData) -> Evidence:
 @lru_cache(maxsize=2)
 def cached_orders(data: RecordData) -> RecordOrders:
     """Return the orders of the whole record, computed once per process."""
-    return record_orders(data.dataset())
+    return channel_orders(data.to_channels())
 
 
 @lru_cache(maxsize=2)
@@ -121,7 +116,7 @@ def may_be_delaminated(evidence: Evidence, bonded_motion: Floats, sound_misfit: 
     describe the record.
     """
     even = even_orders(evidence, evidence.fitted_orders(bonded_motion))
-    return even.is_opening_seen or sound_misfit > SOUND_DESCRIBES
+    return even.is_opening_seen or sound_misfit > SETTINGS.sound
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -179,7 +174,7 @@ class SearchJob(Job):
         search = Search(self.hypotheses[position], self.evidence)
         starts = search.hypothesis.starts(self.evidence)
         found = search.best_minima(starts, keep=3, coarse=10, fine=20)
-        if found[0].misfit > SOUND_DESCRIBES:  # a jump of the response makes it rugged
+        if found[0].misfit > SETTINGS.sound:  # a jump of the response makes it rugged
             found[0] = search.polish(found[0])
         return solutions_table(position, found, search.evaluations)
 
@@ -247,6 +242,11 @@ class SearchJob(Job):
     def refine_best(self, search: Search, starts: Sequence[Solution]) -> list[Solution]:
         """Refine the best coarse solutions, first near the resonance, then on the whole record."""
         coarse = Search(search.hypothesis, cached_coarse_evidence(self.data), search.player)
+        hypothesis = search.hypothesis
+        assert isinstance(hypothesis, Delaminated)
+        guessed = hypothesis.values_from_structure(self.guess, self.evidence)
+        both = [guessed, with_halves_exchanged(guessed)]
+        starts = [*starts, *coarse.rank_starts(both)]
         chosen = without_neighbours(self.sort_by_misfit_and_guess(search, starts))[
             :CONTINUED_STARTS
         ]
@@ -347,15 +347,28 @@ class SearchJob(Job):
         }
 
 
+def with_halves_exchanged(values: Mapping[str, float]) -> dict[str, float]:
+    """Return the numbers of a delaminated structure whose halves have changed places."""
+    zeta1, zeta2 = values["log_zeta1"], values["log_zeta2"]
+    return {**values, "split": -values["split"], "log_zeta1": zeta2, "log_zeta2": zeta1}
+
+
 def without_neighbours(solutions: Sequence[Solution]) -> list[Solution]:
-    """Drop the solutions that have nearly the split and clearance of a better one."""
+    """Drop the solutions that have nearly the split and clearance of a better one.
+
+    Halves that change places are another solution, however near each other their frequencies are.
+    """
     found: list[Solution] = []
     for one in solutions:
-        steps = ((one.values.get(n, 0.0), s, n) for n, s in MIN_DISTANCES.items())
-        sizes = [[abs(v - other.values.get(n, 0.0)) / s for other in found] for v, s, n in steps]
-        if all(max(distances) > 1.0 for distances in zip(*sizes, strict=True)):
+        if not any(is_neighbour(one.values, other.values) for other in found):
             found.append(one)
     return found
+
+
+def is_neighbour(one: Mapping[str, float], other: Mapping[str, float]) -> bool:
+    """Return whether two solutions have the same half below and nearly the same numbers."""
+    near = all(abs(one.get(n, 0.0) - other.get(n, 0.0)) <= s for n, s in MIN_DISTANCES.items())
+    return near and one.get("split", 0.0) * other.get("split", 0.0) >= 0.0
 
 
 def solutions_table(position: int, solutions: Sequence[Solution], evaluations: int) -> Table:

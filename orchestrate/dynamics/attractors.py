@@ -70,8 +70,6 @@ class AttractorsJob(SeriesQuestion):
     seed: int = 0
     scale: Numbers | None = None
     width: float = 3.0
-    # name of a sweep over the same parameter whose gaps are taken instead of those from rest
-    follows: str = ""
     settings: AttractorSettings = AttractorSettings()
     asked: ClassVar[str] = "attractors"
     chunk_size: ClassVar[int] = 240
@@ -88,10 +86,6 @@ class AttractorsJob(SeriesQuestion):
                 f"{self.series.name}; expected one number or one for each"
             )
 
-    def needs(self) -> tuple[str, ...]:
-        """Return the name of the sweep that sets the starts' scale; an empty tuple without one."""
-        return (self.follows,) if self.follows else ()
-
     def count(self) -> int:
         """Return the number of items: all starts at all values, and one that groups them."""
         return self.starts * super().count() + 1
@@ -99,7 +93,7 @@ class AttractorsJob(SeriesQuestion):
     def items(self, inputs: Inputs) -> Sequence[RandomStart | None]:
         """Return the items: each start at each value, then None, which stands for grouping."""
         points = self.series.points
-        scales = self.half_widths(inputs)
+        scales = self.half_widths()
         starts = [
             RandomStart(value_index, point, scales[value_index], number)
             for value_index, point in enumerate(points)
@@ -107,19 +101,11 @@ class AttractorsJob(SeriesQuestion):
         ]
         return [*starts, None]
 
-    def half_widths(self, inputs: Inputs) -> Sequence[float | None]:
+    def half_widths(self) -> Sequence[float | None]:
         """Return the half width, m, of the box of starts at each value; None: from the response."""
-        series = self.series
-        if self.follows:
-            along = {series.name: list(series.values)}
-            gaps = inputs[self.follows].xi_rel_max.sel(along, method="nearest").values
-            lengths = (point.length for point in series.points)
-            return [
-                self.width * float(gap) * length for gap, length in zip(gaps, lengths, strict=True)
-            ]
         if isinstance(self.scale, tuple):
             return self.scale
-        return [self.scale] * len(series.points)
+        return [self.scale] * len(self.series.points)
 
     def progress_note(self, first: int) -> str:
         """Return a note for the progress bar while the last item gathers attractors, else none."""
@@ -153,7 +139,7 @@ class AttractorsJob(SeriesQuestion):
             states = random_starts(self.starts, scale, seed, point.structure)
         else:
             size = size_from_rest(instance, point, self.settings)
-            gap = scale or self.width * (size.gap or point.length)
+            gap = self.width * (size.gap or point.length)
             states = starts_in_both_boxes(self.starts, gap, size, seed, point)
         for item in group:
             yield states[item.number]

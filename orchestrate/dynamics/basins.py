@@ -137,8 +137,8 @@ class BasinJob(Question):
     gathers: ClassVar[bool] = True
     item: ClassVar[str] = "start"
 
-    def plane(self, inputs: Inputs) -> Plane:
-        """Return the plane of starts; subclasses may take it from other results."""
+    def plane(self) -> Plane:
+        """Return the plane of starts."""
         return Plane(Point(self.structure, self.excitation), self.x, self.y, self.at)
 
     def count(self) -> int:
@@ -151,7 +151,7 @@ class BasinJob(Question):
         Its excitation begins at phase 0, as do the responses after each start has been brought
         there; the phase of a start is its own.
         """
-        plane = self.plane(inputs)
+        plane = self.plane()
         states, phases = plane.starts()
         rows = zip(map(tuple, states.tolist()), phases.tolist(), strict=True)
         structure, excitation = plane.point
@@ -195,7 +195,7 @@ class BasinJob(Question):
         """Return the dataset: the attractor number of each start, and the attractors."""
         import xarray as xr
 
-        plane = self.plane(inputs)
+        plane = self.plane()
         text = "attractor that the start leads to; -1: the masses would overlap"
         sides = (plane.y, plane.x)
         labels = table["labels"][0].reshape([side.number for side in sides])
@@ -398,6 +398,6 @@ def check_plane(job: BasinJob) -> None:
     """Raise if the structure is bonded, or the masses overlap at every start of the plane."""
     if job.structure.bonded:
         raise InputError(REQUIRES_DELAMINATED)
-    states, _ = job.plane({}).starts()
+    states, _ = job.plane().starts()
     if not (gap_between(states, job.structure.gap_offset) >= 0.0).any():
         raise InputError("x and y: the masses overlap at every start; expected some with x2 >= x1")

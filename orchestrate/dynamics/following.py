@@ -6,23 +6,15 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..access import OSCILLATOR, REST, STATE, EventInstance, Impacts, Instance, begin
-from ..errors import InputError
-from ..response.questions import Point, SeriesQuestion, checked_states
+from ..response.questions import Point, SeriesQuestion, State
 from ..running.job import Inputs, Table
 from .variational import nondimensional_impacts
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from ..response.questions import Series
-
-State = tuple[float, ...]
 
 
 class FollowedResponse(NamedTuple):
@@ -42,19 +34,11 @@ class StartStatesQuestion(SeriesQuestion, ABC):
     # one state at phase 0 after the other, x1, x2 in m, v1, v2 in m/s: one for all values of the
     # parameter, or one for each
     start: tuple[float, ...] = REST
-    # name of a sweep over the same parameter whose responses are followed instead
-    follows: str = ""
-
-    def needs(self) -> tuple[str, ...]:
-        """Return the name of the sweep that gives the starts; an empty tuple without one."""
-        return (self.follows,) if self.follows else ()
 
     def items(self, inputs: Inputs) -> Sequence[FollowedResponse]:
         """Return for each parameter value the response to follow, with its start state."""
         series = self.series
         rows = np.reshape(self.start, (-1, 4))
-        if self.follows:
-            rows = end_states(inputs[self.follows], series)
         starts = np.broadcast_to(rows, (len(series.points), 4)).tolist()
         return [
             FollowedResponse(*item) for item in zip(series.points, map(tuple, starts), strict=True)
@@ -87,35 +71,6 @@ class ImpactsQuestion(StartStatesQuestion, ABC):
     @abstractmethod
     def row(self, impacts: Impacts, item: FollowedResponse) -> Sequence[float]:
         """Return the numbers that one response's impacts give; subclasses choose them."""
-
-
-def end_states(swept: xr.Dataset, series: Series) -> NDArray[np.float64]:
-    """Return a sweep's end states at the series' values (nearest), in m and m/s, (n, 4)."""
-    rows = swept.end_state.sel({series.name: list(series.values)}, method="nearest")
-    states: NDArray[np.float64] = rows.values * series.scales()
-    return states
-
-
-def start_states(start: ArrayLike | xr.Dataset | None, question: SeriesQuestion) -> State:
-    """Return the start states given by the user: one for all, one per value, or of a sweep."""
-    series = question.series
-    if hasattr(start, "end_state"):
-        swept: xr.Dataset = start  # type: ignore[assignment]
-        there = swept.end_state.dims
-        known: ArrayLike = swept[series.name].values if series.name in there else []
-        if there != (series.name, "coordinate") or not np.isin(series.values, known).all():
-            raise InputError(
-                f"start: a dataset over {', '.join(map(str, there))}; expected a sweep in one "
-                f"direction over the same values of {series.name}"
-            )
-        return tuple(end_states(swept, series).ravel().tolist())
-    rows = checked_states("start", start, question.structure)
-    if len(rows) not in (1, len(series.values)):
-        raise InputError(
-            f"start: {len(rows)} states; expected one, or one for each of {len(series.values)} "
-            f"values of {series.name}"
-        )
-    return tuple(rows.ravel().tolist())
 
 
 def state_after_transient(instance: Instance, item: FollowedResponse, transient: int) -> State:

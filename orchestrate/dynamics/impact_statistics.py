@@ -13,11 +13,11 @@ from numpy.typing import ArrayLike
 from ..access import Impacts, finder
 from ..checks import checked_integer
 from ..response.labels import column_variables
-from ..response.questions import series_arguments
+from ..response.questions import series_arguments, start_states
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .following import FollowedResponse, ImpactsQuestion, start_states
+from .following import FollowedResponse, ImpactsQuestion
 from .lyapunov import Exponent, exact_exponent_without_impacts, largest_exponent
 from .variational import contact_durations_after, period_in_tau
 

@@ -20,12 +20,12 @@ from ..access import Impacts, finder
 from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import Variable, flags, variable
-from ..response.questions import Point, checked_positive, series_arguments
+from ..response.questions import Point, checked_positive, series_arguments, start_states
 from ..response.threshold import exceeds_threshold
 from ..running.job import Inputs, Table
 from ..running.runner import answer
 from ..structures import Structure
-from .following import FollowedResponse, ImpactsQuestion, start_states
+from .following import FollowedResponse, ImpactsQuestion
 from .lyapunov_growth import block_growth, growth_by_batch_means
 from .lyapunov_spectrum import (
     STATES,

@@ -15,6 +15,7 @@ module                    idea
 :mod:`.analog_filter`     the exact response of an analogue filter
 :mod:`.sensors`           what accelerometers read of a history
 :mod:`.record`            the one dataset of channels, measured or simulated
+:mod:`.record_checks`     saturated, dead and identical channels, lost samples
 :mod:`.run_up`            the run of a weak drive as a record
 :mod:`.columns`           which columns of a file are its channels, and their units
 :mod:`.record_csv`        columns of numbers as text

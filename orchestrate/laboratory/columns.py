@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -13,9 +14,11 @@ from numpy.typing import NDArray
 from ..constants import GRAVITY, TURN
 from ..errors import InputError
 from .record import CHANNELS, SHORT_NAMES
+from .record_checks import ascends, first_hole
 
 Floats = NDArray[np.float64]
 INCH = 0.0254
+MOST_NAMES = 12  # of columns in a message
 ACCELERATIONS = {  # in m/s2
     **dict.fromkeys(("m/s2", "m/s/s", "ms-2", "m/sec2", "ms2"), 1.0),
     **dict.fromkeys(("g", "gn", "g0", "gs", "gpk", "gpeak"), GRAVITY),
@@ -46,13 +49,47 @@ TIMES = {  # in s
     **dict.fromkeys(("us", "\u00b5s", "\u03bcs"), 1e-6),
     "min": 60.0,
 }
-NAMES = {  # as files call them; letters and digits alone, small
-    "time": ("time", "t", "zeit"),
-    "box_acceleration": ("boxacceleration", "box", "base", "table", "shaker", "abox", "abase"),
-    "acceleration1": ("acceleration1", "mass1", "a1", "acc1", "accel1", "face1", "beam", "face"),
-    "acceleration2": ("acceleration2", "mass2", "a2", "acc2", "accel2", "face2"),
+# What files call a quantity, as patterns of names in small letters and digits alone
+SENSOR = "(?:a|acc|accel|acceleration|accelerometer|beschleunigung|sensor|aufnehmer)?"
+BASE = "(?:base|basis|box|table|tisch|schwingtisch|shaker|shakertable|erreger|aufnahme)"
+FACE = "(?:face|mass|masse|fläche)"
+NUMBERED = f"(?:a|acc|accel|acceleration|beschleunigung|{SENSOR}{FACE})"
+NAMES = {
+    "time": "time|t|zeit|temps",
+    "box_acceleration": f"{SENSOR}{BASE}{SENSOR}[xyz]?",
+    "acceleration1": f"{NUMBERED}1{SENSOR}[xyz]?|{SENSOR}(?:beam|balken|face){SENSOR}[xyz]?",
+    "acceleration2": f"{NUMBERED}2{SENSOR}[xyz]?",
 }
-HEADING = re.compile(r"^(?P<name>.*?)[\s_]*[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
+MOTION = "(?:amplitude|acceleration|acc|a|face|mass|velocity|v|displacement|x)"
+RATIO = "(?:transmissibility|ratio|response|magnitude)"
+SWEPT = "f|hz|freq|frequenz|frequency"
+HEADING = re.compile(r"(?P<name>.*?)[\s_/]*[\[(](?P<unit>[^\[\]()]*)[\])]")
+QUOTIENT = re.compile(r"(?P<name>.+?)(?:\s*[/,]\s*|\s+in\s+)(?P<unit>.*\D.*|-)")
+TEXTS = {  # what a field is that is no number
+    "a clock time": r"\d{1,2}:\d\d(:\d\d([.,]\d+)?)?",
+    "a date": r"(\d{1,2}[./-]\d{1,2}[./-]\d{2,4}|\d{4}-\d\d-\d\d)([T ].*)?",
+    "a number with thousands separators": r"[+-]?\d{1,3}([.,' \xa0\u202f]\d{3})+([.,]\d+)?",
+}
+
+
+def names_of_face(number: str, plain: str) -> dict[str, str]:
+    """Return the patterns of the columns of a face in a resonance curve, by what they are."""
+    motion, alone = f"(?:{MOTION}|{RATIO}){plain}", "|order|harmonic" if number == "1" else ""
+    return {
+        f"amplitude{number}": f"{motion}|(?:{MOTION}|{RATIO}){number}order1",
+        f"phase{number}": f"phase{plain}",
+        f"amplitude{number}_order2": f"(?:{motion}order{alone})2",
+        f"amplitude{number}_order3": f"(?:{motion}order{alone})3",
+        f"floor{number}": f"(?:floor|noise){plain}",
+    }
+
+
+CURVE_NAMES = {
+    "frequency": SWEPT,
+    "level": f"input|drive|excitation|level|{SENSOR}{BASE}(?:acceleration|amplitude|level)?",
+    **names_of_face("1", "1?"),  # a face that has no number is the first
+    **names_of_face("2", "2"),
+}
 
 
 @dataclass(frozen=True)
@@ -61,7 +98,8 @@ class Column:
 
     name: str
     unit: str  # as it stands there; empty where there is none
-    values: Floats
+    values: Floats  # NaN in a column of texts
+    text: str = ""  # the first one of such a column
 
 
 @dataclass(frozen=True)
@@ -70,10 +108,9 @@ class Columns:
 
     path: str
     columns: list[Column]
-    sample_rate: float | None = None  # hz, where the file says it
+    sample_rate: float | None = None  # Hz, where the file says it
     first_row: int = 0  # number of the first values in the file's own count
-    # what a record written by this package says of itself
-    attributes: dict[str, Any] = field(default_factory=dict)
+    attributes: dict[str, Any] = field(default_factory=dict)  # what our own records say
 
 
 def split_heading(heading: str) -> tuple[str, str]:
@@ -81,13 +118,20 @@ def split_heading(heading: str) -> tuple[str, str]:
 
     Examples
     --------
-    >>> split_heading("Acc 1 [g]"), split_heading("base (m/s^2)"), split_heading("time")
-    (('Acc 1', 'g'), ('base', 'm/s^2'), ('time', ''))
+    >>> split_heading("Acc 1 [g]"), split_heading("base / m/s²"), split_heading("time")
+    (('Acc 1', 'g'), ('base', 'm/s²'), ('time', ''))
     """
-    found = HEADING.match(heading.strip().strip('"').strip())
-    if found is None:
-        return heading.strip().strip('"').strip(), ""
-    return found["name"].strip(), found["unit"].strip()
+    plain = heading.strip().strip('"').strip()
+    parts = HEADING.fullmatch(plain)
+    if parts is None and (quotient := QUOTIENT.fullmatch(plain)) and is_unit(quotient["unit"]):
+        parts = quotient
+    return (plain, "") if parts is None else (parts["name"].strip(), parts["unit"].strip())
+
+
+def describe_text(text: str) -> str:
+    """Return a text in quotes, and what it is where that is known: a clock time, for instance."""
+    kinds = [kind for kind, pattern in TEXTS.items() if re.fullmatch(pattern, text)]
+    return ", ".join([repr(text[:40]), *kinds[:1]])
 
 
 def plain_unit(text: str) -> str:
@@ -131,12 +175,19 @@ def converted_channels(
     """
     known = channels_by_name(table) if columns is None else {}
     places = known or channel_places(table, columns)
+    check_counters(table, places)
+    if known:
+        warn_of_unread(table, places)
     by_order = ", by their order: no name is known" if columns is None and not known else ""
     time, read_as = None, {"columns": taken_text(table, places) + by_order}
     if "time" in places:
         column = table.columns[places.pop("time")]
         label = column_label(table, column)
-        time = scaled_values(table, column, si_factor(label, column.unit or "s", TIMES))
+        if not column.text:
+            time = scaled_values(table, column, si_factor(label, column.unit or "s", TIMES))
+        elif table.sample_rate is None:
+            text = f"{describe_text(column.text)}; expected numbers in s, or sample_rate="
+            raise InputError(f"{label}, row {table.first_row}: {text}")
     if not places:
         raise InputError(f"{table.path}: no channel; expected one of {', '.join(CHANNELS)}")
     values = {}
@@ -191,6 +242,9 @@ def column_label(table: Columns, column: Column) -> str:
 
 def scaled_values(table: Columns, column: Column, factor: float) -> Floats:
     """Return a column as numbers times a unit's factor; raise naming a non-number's row."""
+    if column.text:
+        text = f"{describe_text(column.text)}; expected numbers"
+        raise InputError(f"{column_label(table, column)}, row {table.first_row}: {text}")
     wrong = np.flatnonzero(~np.isfinite(column.values))
     if len(wrong):
         row, value = wrong[0] + table.first_row, column.values[wrong[0]]
@@ -210,16 +264,61 @@ def channel_places(
     """
     wanted = (*(() if table.sample_rate else ("time",)), *CHANNELS)
     if columns is None:
-        if len(table.columns) > len(wanted):
-            names = ", ".join(column.name for column in table.columns[:8])
-            text = "expected columns=, which of them are time and channels"
-            raise InputError(f"{table.path}: {len(table.columns)} columns {names}; {text}")
-        return dict(zip(wanted, range(len(table.columns)), strict=False))
+        return places_by_order(table, wanted)
     places = places_asked_for(table, columns, wanted, ("time", *CHANNELS))
     if "time" in wanted and "time" not in places:
-        named = [i for i, one in enumerate(table.columns) if one.name.lower() in NAMES["time"]]
-        places["time"] = (named or [0])[0]
+        places["time"] = places_by_name(table, {"time": NAMES["time"]}).get("time", 0)
     return places
+
+
+def places_by_order(table: Columns, wanted: Sequence[str]) -> dict[str, int]:
+    """Return the column index of each quantity by order; refuse directions and further columns."""
+    numbers = [i for i, one in enumerate(table.columns) if not one.text]
+    if "time" in wanted:
+        numbers = sorted({0, *numbers})  # a time that is a text is refused later
+    else:
+        numbers = [i for i in numbers if not ascends(table.columns[i].values)]
+    names = [table.columns[i].name.lower() for i in numbers]
+    stems = [name[:-1] for name in names if name.endswith(("x", "y", "z"))]
+    expected = "expected columns=, which of them are time and channels"
+    if len(stems) > len(set(stems)):
+        text = f"directions of one sensor among the columns {column_names(table)}"
+        raise InputError(f"{table.path}: {text}; {expected}")
+    if len(numbers) > len(wanted):
+        text = f"{len(table.columns)} columns {column_names(table)}"
+        raise InputError(f"{table.path}: {text}; {expected}")
+    return dict(zip(wanted, numbers, strict=False))
+
+
+def check_counters(table: Columns, places: Mapping[str, int]) -> None:
+    """Check that no column beside the channels is a counter that misses samples."""
+    for i, column in enumerate(table.columns):
+        row = None if i in places.values() or column.text else first_hole(column.values)
+        if row is not None:
+            text = f"{column.values[row]:.9g} after {column.values[row - 1]:.9g}"
+            expected = "expected equal steps: samples are lost, cut the record there"
+            label = column_label(table, column)
+            raise InputError(f"{label}, row {row + table.first_row}: {text}; {expected}")
+
+
+def warn_of_unread(table: Columns, places: Mapping[str, int]) -> None:
+    """Warn of columns by no usual name that may be accelerations, by their unit or without one."""
+    unread = [
+        f'"{one.name}"'
+        for i, one in enumerate(table.columns)
+        if not (i in places.values() or one.text or ascends(one.values))
+        and (not one.unit or plain_unit(one.unit) in ACCELERATIONS)
+    ]
+    if unread:
+        text = f"not read: {', '.join(unread)}; columns= says which column is which"
+        warnings.warn(f"{table.path}: {text}", UserWarning, stacklevel=4)
+
+
+def column_names(table: Columns) -> str:
+    """Return the names of a file's first columns, and how many more there are, as a text."""
+    names = [column.name for column in table.columns]
+    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
+    return ", ".join(names[:MOST_NAMES]) + more
 
 
 def places_asked_for(
@@ -241,18 +340,32 @@ def places_asked_for(
 def channels_by_name(table: Columns) -> dict[str, int]:
     """Return the column index of time and channels by their usual names; empty if no channel."""
     known = places_by_name(table, NAMES)
+    if "time" not in known and not table.sample_rate:
+        units = [plain_unit(one.unit) for one in table.columns]
+        density = [unit for unit in units if re.fullmatch(r".+/\W*hz", unit)]
+        if density or "hz" in units or places_by_name(table, {"frequency": SWEPT}):
+            kind = "a spectral density" if density else "an FRF, a spectrum or a resonance curve"
+            text = f"{kind} over the frequency in the columns {column_names(table)}"
+            expected = "expected accelerations over time; read_curve reads resonance curves"
+            raise InputError(f"{table.path}: {text}; {expected}")
     return known if set(known) & set(CHANNELS) else {}
 
 
-def places_by_name(table: Columns, names: Mapping[str, Sequence[str]]) -> dict[str, int]:
-    """Return the column index of each quantity whose usual names are among the headings."""
+def places_by_name(table: Columns, names: Mapping[str, str]) -> dict[str, int]:
+    """Return the column index of each quantity by its usual names; raise where several have one."""
     plain = [re.sub(r"[\W_]", "", column.name.lower()) for column in table.columns]
-    return {
-        name: plain.index(one)
-        for name, all_names in names.items()
-        for one in all_names
-        if one in plain
-    }
+    places = {}
+    for name, pattern in names.items():
+        fits = [i for i, one in enumerate(plain) if re.fullmatch(pattern, one)]
+        fits = [i for i in fits if not table.columns[i].text] or fits
+        fits = [i for i in fits if table.columns[i].name == name] or fits
+        if len(fits) > 1:
+            which = ", ".join(f'"{table.columns[i].name}"' for i in fits)
+            text = f"columns {which} may each be {SHORT_NAMES.get(name, name)}"
+            raise InputError(f"{table.path}: {text}; expected columns=, which of them is which")
+        if fits:
+            places[name] = fits[0]
+    return places
 
 
 def column_index(table: Columns, wish: str | int) -> int:
@@ -263,5 +376,5 @@ def column_index(table: Columns, wish: str | int) -> int:
     number = isinstance(wish, int) and not isinstance(wish, bool)
     if number and 0 <= int(wish) < len(names):
         return int(wish)
-    text = f"expected one of {', '.join(names[:12])}, or 0 to {len(names) - 1}"
+    text = f"expected one of {column_names(table)}, or 0 to {len(names) - 1}"
     raise InputError(f"{table.path}: no column {wish!r}; {text}")

@@ -13,16 +13,19 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from .columns import (
     ANGLES,
+    CURVE_NAMES,
     FREQUENCIES,
     RATIOS,
     Column,
     Columns,
     column_label,
+    column_names,
     places_asked_for,
     places_by_name,
     plain_unit,
     si_factor,
     taken_text,
+    warn_of_unread,
 )
 from .record_csv import read_csv
 from .record_files import check_file, file_kind
@@ -33,51 +36,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
-AMPLITUDES = ("amplitude", "acceleration", "acc", "a", "face", "mass", "displacement", "x")
-RATIO_NAMES = ("transmissibility", "ratio", "response", "magnitude")
 MOST_DEGREES = 7.0  # a phase without a unit that goes beyond it, 2 pi and some, is in degrees
-
-
-def names_of_face(number: str) -> dict[str, tuple[str, ...]]:
-    """Return the names that files give to the columns of a face, in small letters and digits."""
-    words = AMPLITUDES + RATIO_NAMES
-    plain = words if number == "1" else ()  # a face that has no number is the first
-    first = tuple(f"{word}{number}" for word in words)
-    made = {
-        f"amplitude{number}": (*plain, *first, *(f"{word}order1" for word in first)),
-        f"phase{number}": (*(("phase",) if number == "1" else ()), f"phase{number}"),
-        f"floor{number}": (*(("floor", "noise") if number == "1" else ()), f"floor{number}"),
-    }
-    for order in "23":
-        alone = (f"order{order}", f"harmonic{order}") if number == "1" else ()
-        made[f"amplitude{number}_order{order}"] = (
-            *alone,
-            *(f"{word}order{order}" for word in (*plain, *first)),
-        )
-    return made
-
-
-NAMES = {  # what a curve's columns are, and how files call them
-    "frequency": ("f", "hz", "freq", "frequenz", "frequency"),
-    "level": (
-        "input",
-        "drive",
-        "excitation",
-        "shaker",
-        "table",
-        "box",
-        "boxacceleration",
-        "boxamplitude",
-        "basis",
-        "base",
-        "baseacceleration",
-        "baseamplitude",
-        "baselevel",
-        "level",
-    ),
-    **names_of_face("1"),
-    **names_of_face("2"),
-}
 
 
 def read_curve(
@@ -149,6 +108,8 @@ def read_curve(
     check_file(path)
     table = read_csv(path, gaps=True)
     places = curve_places(table, columns)
+    if columns is None:
+        warn_of_unread(table, places)
     made = curve_columns(table, places, unit, level)
     words = {"title": f"Resonance curve {path.name}", "source": path.name}
     words["columns"] = taken_text(table, places)
@@ -163,14 +124,14 @@ def curve_places(
 ) -> dict[str, int]:
     """Return the column index of each quantity of a curve, as asked for or by usual names."""
     if columns is None:
-        places = places_by_name(table, NAMES)
+        places = places_by_name(table, CURVE_NAMES)
     else:
-        places = places_asked_for(table, columns, tuple(NAMES), tuple(NAMES))
+        places = places_asked_for(table, columns, tuple(CURVE_NAMES), tuple(CURVE_NAMES))
     lacking = [] if "frequency" in places else ["frequency"]
     lacking += [] if {"amplitude1", "amplitude2"} & set(places) else ["amplitude1"]
     if lacking:
-        names = ", ".join(column.name for column in table.columns[:8])
         text = "expected columns=, which of them is which"
+        names = column_names(table)
         raise InputError(f"{table.path}: no {lacking[0]} among the columns {names}; {text}")
     return places
 

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
 from ..response.labels import variable
+from .record_checks import doubtful_channels
 from .signals import HERTZ, checked
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ CHANNELS = {  # long names
 SHORT_NAMES = {"box_acceleration": "base", "acceleration1": "face 1", "acceleration2": "face 2"}
 FEWEST = 4
 UNEVEN = 0.05  # largest distance of a time from equal steps, parts of a step
-PLAUSIBLE = (0.05, 2e5)  # largest absolute values that accelerometers read in tests, m/s2
+LAST_TIMES = 20  # which show to how many digits times are rounded: the late ones have fewest
 
 
 def record(
@@ -48,7 +49,7 @@ def record(
     box_acceleration, acceleration1, acceleration2 : array_like, optional
         Absolute accelerations of the box and the masses, m/s2; one of them at least.
     sample_rate : float, optional
-        Hz; by default from ``time``.
+        Hz; by default from ``time``. Of both the rate corrects times that are rounded.
     source : str
         Where it comes from: a file, ``"measured"``, ``"simulated"``.
     sensors : str or mapping of str to str
@@ -70,7 +71,8 @@ def record(
     Warns
     -----
     UserWarning
-        Where the numbers look as if they had another unit.
+        Where a channel looks as if it had another unit, is saturated, keeps one value while the
+        base moves, or is the same as another.
 
     Examples
     --------
@@ -110,10 +112,11 @@ def checked_record(
     for name, one in values.items():
         if len(one) != len(times):
             raise InputError(f"{name}: {len(one)} values; expected {len(times)}, as the times")
-    rate = checked_rate(times, rate, first_row)
-    for name, one in values.items():
-        if attributes.get("source") != "simulated":  # whose unit is known
-            warn_if_implausible(name, one)
+    times, rate = checked_times(times, rate, first_row)
+    if attributes.get("source") != "simulated":
+        for name, what, advice in doubtful_channels(times, values):
+            text = f"{what}{'' if what.endswith('?') else ';'} {advice}"
+            warnings.warn(f"{channel_label(name)}: {text}", UserWarning, stacklevel=4)
     return xr.Dataset(
         {name: variable("time", one, "m/s2", CHANNELS[name]) for name, one in values.items()},
         {"time": variable("time", times, "s", "time")},
@@ -138,44 +141,57 @@ def checked_numbers(name: str, given: Any, first_row: int = 0) -> Floats:
     return values
 
 
-def checked_rate(times: Floats, rate: float | None, first_row: int = 0) -> float:
-    """Return the sampling rate of equally spaced times, Hz; raise if they are not."""
-    falling = np.flatnonzero(np.diff(times) <= 0.0)
+def checked_times(times: Floats, rate: float | None, first_row: int = 0) -> tuple[Floats, float]:
+    """Return equally spaced times and their rate, Hz; a stated rate corrects rounded times."""
+    count, resolution = np.arange(len(times)), time_resolution(times)
+    if rate is not None:
+        spread = float(np.ptp(times - count / rate))
+        if spread <= UNEVEN / rate:
+            return times, rate
+        if spread <= rounding_error(resolution, 1.0 / rate):
+            return times[0] + count / rate, rate
+    step = float(times[-1] - times[0]) / (len(times) - 1)
+    off = float(np.abs(times - times[0] - step * count).max())
+    is_rounded = off <= rounding_error(resolution, step)
+    if rate is not None and (is_rounded or off <= UNEVEN * step):
+        raise InputError(f"sample_rate = {rate!r} Hz: expected {1.0 / step:.6g}, as the times have")
+    if off <= UNEVEN * step:
+        return times, float(f"{1.0 / step:.10g}")  # the digits of the times are not those of it
+    steps = np.diff(times)
+    usual = float(np.median(steps))
+    falling = np.flatnonzero(steps <= 0.0)
+    away = falling if len(falling) else np.flatnonzero(np.abs(steps - usual) > 2.0 * UNEVEN * usual)
+    row = int(away[0]) + 1 if len(away) else 1
     if len(falling):
-        row = int(falling[0]) + 1
-        text = f"{times[row]:.9g} s after {times[row - 1]:.9g} s"
-        raise InputError(f"time, row {row + first_row}: {text}; expected ascending times")
-    span = float(times[-1] - times[0])
-    steps = len(times) - 1
-    usual = float(np.median(np.diff(times))) if rate is None else 1.0 / rate
-    away = np.abs(np.diff(times) - usual) > 2.0 * UNEVEN * usual
-    even = np.abs(times - times[0] - np.arange(steps + 1) * (span / steps)) <= UNEVEN * span / steps
-    if away.any() or not even.all():
-        row = int(np.flatnonzero(away)[0]) + 1 if away.any() else int(np.flatnonzero(~even)[0])
-        text = f"a step of {times[row] - times[row - 1]:.6g} s where others are {usual:.6g} s"
-        raise InputError(f"time, row {row + first_row}: {text}; expected equal steps")
-    own = steps / span
-    if rate is None:
-        return float(f"{own:.10g}")  # the digits of the times are not those of the rate
-    if abs(own - rate) > 0.01 * rate:
-        raise InputError(f"sample_rate = {rate!r} Hz: expected {own:.6g}, as the times have")
-    return rate
-
-
-def warn_if_implausible(name: str, values: Floats) -> None:
-    """Warn where a channel looks as if it were not in m/s2."""
-    peak, low, high = float(np.abs(values).max()), *PLAUSIBLE
-    mean, spread = abs(float(values.mean())), float(values.std())
-    if 0.0 < peak < low:
-        text = f"no more than {peak:.3g} m/s2: are these numbers in g, or in V"
-    elif peak > high:
-        text = f"up to {peak:.3g} m/s2: are these numbers in mV, or counts"
-    elif abs(mean - 1.0) < 0.03 and spread < 0.5 * mean:
-        text = f"a mean of {mean:.3g} m/s2, as gravity has in g: are these numbers in g"
+        text = f"{times[row]:.9g} s after {times[row - 1]:.9g} s; expected ascending times"
     else:
-        return
-    text = f"{channel_label(name)}: {text}? expected m/s2"
-    warnings.warn(text, UserWarning, stacklevel=5)
+        text = f"a step of {steps[row - 1]:.6g} s where others are {usual:.6g} s"
+        text += "; expected equal steps"
+    if is_rounded:
+        text += f": they are rounded to {resolution:g} s, give sample_rate="
+    raise InputError(f"time, row {row + first_row}: {text}")
+
+
+def rounding_error(resolution: float, step: float) -> float:
+    """Return the range of the errors of rounded times, s: 0 where the step needs no rounding."""
+    whole = resolution and abs(step / resolution - round(step / resolution)) < 1e-6
+    return 0.0 if whole else resolution * (1.0 + 1e-6)
+
+
+def time_resolution(times: Floats) -> float:
+    """Return the power of ten that the last times are multiples of, s; 0 if there is none.
+
+    Examples
+    --------
+    >>> time_resolution(np.array([9.9998, 10.001, 10.002])), time_resolution(np.arange(4) / 3.0)
+    (0.001, 0.0)
+    """
+    last = times[-min(LAST_TIMES, len(times) // 2 + 1) :]
+    for digits in range(10):
+        scaled = last * 10.0**digits
+        if np.abs(scaled - np.round(scaled)).max() < 1e-4:
+            return float(10.0**-digits)
+    return 0.0
 
 
 def channel_label(name: str) -> str:

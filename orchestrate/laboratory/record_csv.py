@@ -1,28 +1,33 @@
 """Columns of numbers as text, as analysers and spreadsheets write them.
 
 Separators are semicolon, tab, comma or blanks; decimals have a point, or a comma where that is not
-the separator. What stands above the first line of numbers is the heading: its last line with as
-many fields has the names, or the units if a line above it has the names.
+the separator, or in quotes. What stands above the first line of numbers is the heading: its last
+line with as many fields has the names, or the units if a line above it has the names. Columns of
+texts, as of clock times, are kept as such.
 """
 
 from __future__ import annotations
 
 import csv
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from io import StringIO
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from .columns import Column, Columns, is_unit, split_heading
+from .columns import TEXTS, Column, Columns, describe_text, is_unit, split_heading
 
 MOST_HEADING = 200  # lines
 SEPARATORS = (";", "\t", ",", " ")
 POINT = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan|inf(inity)?)", re.I)
 COMMA = re.compile(r"[+-]?(\d+,?\d*|,\d+)([eE][+-]?\d+)?|[+-]?(nan|inf(inity)?)", re.I)
+NUMBERS = {".": POINT, ",": COMMA}
+TEXT = re.compile("|".join((r".*[^\W\d_].*", TEXTS["a clock time"], TEXTS["a date"])))
+TEXT_LINES = 10  # lines after the first that have texts in the same columns
 BYTE_ORDERS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
 
 
@@ -33,6 +38,7 @@ class Dialect:
     separator: str
     decimal: str
     first: int  # line of the first numbers, counted from 0
+    texts: frozenset[int] = frozenset()  # columns of texts
 
     def fields(self, line: str) -> list[str]:
         """Split a line into its fields; a separator at its end is dropped."""
@@ -44,7 +50,7 @@ class Dialect:
 
 
 def read_csv(path: Path, gaps: bool = False) -> Columns:
-    """Read all columns of a text file."""
+    """Read all columns of a text file; with ``gaps`` fields may be empty, which makes them NaN."""
     data = path.read_bytes()
     text = decode_text(path, data)
     lines = text.split("\n", MOST_HEADING + 1)[: MOST_HEADING + 1]
@@ -57,7 +63,11 @@ def read_csv(path: Path, gaps: bool = False) -> Columns:
         text = fill_gaps(text, dialect, columns)
     names = column_headings(lines[: dialect.first], dialect, columns)
     values = parse_numbers(path, text, dialect, [name for name, _ in names])
-    made = [Column(*heading, column) for heading, column in zip(names, values.T, strict=True)]
+    first = dialect.fields(lines[dialect.first])
+    made = [
+        Column(*heading, column, first[i].strip() if i in dialect.texts else "")
+        for i, (heading, column) in enumerate(zip(names, values.T, strict=True))
+    ]
     return Columns(str(path), made, first_row=dialect.first + 1)
 
 
@@ -73,26 +83,45 @@ def decode_text(path: Path, data: bytes) -> str:
 
 
 def dialect_of(path: Path, lines: list[str]) -> Dialect:
-    """Detect separator, decimal sign and first row of numbers from a file's first lines."""
-    for number, line in enumerate(lines):
-        for separator in SEPARATORS:
-            for decimal, pattern in ((".", POINT), (",", COMMA)):
-                if separator == decimal:
-                    continue
+    """Detect how a file's first lines write numbers; raise naming what stands in their place."""
+    for has_texts in (False, True):
+        for number in range(len(lines)):
+            for separator, decimal in product(SEPARATORS, NUMBERS):
                 dialect = Dialect(separator, decimal, number)
-                if are_numbers(dialect.fields(line), pattern, separator):
-                    return settle_decimal_sign(dialect, lines[number : number + 50])
-    text = f"no line of numbers in the first {min(len(lines), MOST_HEADING)}"
+                texts = dialect_texts(dialect, lines[number:], has_texts)
+                if texts is not None:
+                    found = replace(dialect, texts=texts)
+                    return settle_decimal_sign(found, lines[number : number + 50])
+    named = (
+        f"row {number}: {describe_text(field.strip())}"
+        for number, line in enumerate(lines, 1)
+        for separator in SEPARATORS
+        for field in Dialect(separator, ".", 0).fields(line)
+        if any(re.fullmatch(pattern, field.strip()) for pattern in TEXTS.values())
+    )
+    text = next(named, f"no line of numbers in the first {min(len(lines), MOST_HEADING)}")
     raise InputError(f"{path}: {text}; expected columns of numbers")
 
 
-def are_numbers(fields: list[str], pattern: re.Pattern[str], separator: str) -> bool:
-    """Return whether the fields of a line are numbers: two or more, or one if blanks separate."""
-    texts = [field.strip() for field in fields]
-    full = [text for text in texts if text]
-    several = len(texts) > 1 or separator == " "
-    fits = all(pattern.fullmatch(text) for text in full)
-    return bool(full) and several and fits and len(full) >= 0.5 * len(texts)
+def dialect_texts(dialect: Dialect, lines: list[str], has_texts: bool) -> frozenset[int] | None:
+    """Return which columns of the row in a table are texts; None if the first line is no row.
+
+    Numbers alone are a row; texts have to be in the same columns of the lines after it, too.
+    """
+    if dialect.separator == dialect.decimal and '"' not in lines[0]:
+        return None
+    more = [line for line in lines[1:] if line.strip()][: TEXT_LINES if has_texts else 0]
+    rows = [[one.strip() for one in dialect.fields(line)] for line in (lines[0], *more)]
+    number, row = NUMBERS[dialect.decimal], rows[0]
+    texts = [{i for i, one in enumerate(r) if one and not number.fullmatch(one)} for r in rows]
+    full, others = sum(map(bool, row)) - len(texts[0]), len(row) - len(texts[0])
+    is_row = (len(row) > 1 or dialect.separator == " ") and full >= max(0.5 * others, 1)
+    if texts[0]:
+        same = all(
+            len(r) == len(row) and one == texts[0] for r, one in zip(rows, texts, strict=True)
+        )
+        is_row = is_row and has_texts and same and all(TEXT.fullmatch(row[i]) for i in texts[0])
+    return frozenset(texts[0]) if is_row else None
 
 
 def settle_decimal_sign(dialect: Dialect, lines: list[str]) -> Dialect:
@@ -100,7 +129,7 @@ def settle_decimal_sign(dialect: Dialect, lines: list[str]) -> Dialect:
     if dialect.separator == "," or dialect.decimal == ",":
         return dialect
     comma = any("," in line for line in lines) and not any("." in line for line in lines)
-    return Dialect(dialect.separator, ",", dialect.first) if comma else dialect
+    return replace(dialect, decimal=",") if comma else dialect
 
 
 def column_headings(lines: list[str], dialect: Dialect, count: int) -> list[tuple[str, str]]:
@@ -111,7 +140,7 @@ def column_headings(lines: list[str], dialect: Dialect, count: int) -> list[tupl
         return [(f"column {number}", "") for number in range(count)]
     units = [text.strip("[]() ") for text in fitting[-1]]
     filled = [unit for unit in units if unit]
-    if len(fitting) > 1 and filled and all(map(is_unit, filled)):
+    if len(fitting) > 1 and filled and 2 * sum(map(is_unit, filled)) >= len(filled):
         names = [split_heading(text)[0] for text in fitting[-2]]
         return list(zip(names, units, strict=True))
     return [split_heading(text) for text in fitting[-1]]
@@ -126,40 +155,51 @@ def fill_gaps(text: str, dialect: Dialect, columns: int) -> str:
         fields = dialect.fields(line)
         if any(field.strip() for field in fields):
             full = [field.strip() or "nan" for field in fields]
+            full = [f'"{field}"' if dialect.separator in field else field for field in full]
             full += ["nan"] * (columns - len(full))
             lines[number] = dialect.separator.join(full)
     return "\n".join(lines)
 
 
 def parse_numbers(path: Path, text: str, dialect: Dialect, names: list[str]) -> NDArray[np.float64]:
-    """Parse the numbers, shape (rows, columns)."""
+    """Parse the numbers, shape (rows, columns); raise naming line and column of another field."""
     body = text.split("\n", dialect.first)[dialect.first]
     numbers = body.replace(",", ".") if dialect.decimal == "," else body
+    if dialect.separator == dialect.decimal:
+        numbers = re.sub(r'"([^"]*)"', lambda quoted: quoted[1].replace(",", "."), body)
+    columns = [i for i in range(len(names)) if i not in dialect.texts]
     separator = None if dialect.separator == " " else dialect.separator
     if separator is not None and body.partition("\n")[0].rstrip(" ").endswith(separator):
         numbers = re.sub(f"{re.escape(separator)} *$", "", numbers, flags=re.MULTILINE)
     try:
         found = np.loadtxt(
-            StringIO(numbers), delimiter=separator, comments=None, quotechar='"', ndmin=2
+            StringIO(numbers),
+            delimiter=separator,
+            comments=None,
+            quotechar='"',
+            ndmin=2,
+            usecols=columns if dialect.texts else None,
         )
     except ValueError:
         found = np.empty((0, 0))
-    if found.shape[1] != len(names):
+    if found.shape[1] != len(columns):
         refuse_first_bad_field(path, body, dialect, names)
-    return found
+    values = np.full((len(found), len(names)), np.nan)
+    values[:, columns] = found
+    return values
 
 
 def refuse_first_bad_field(path: Path, body: str, dialect: Dialect, names: list[str]) -> None:
     """Raise an error that names the first field that is not a number."""
-    pattern = COMMA if dialect.decimal == "," else POINT
+    pattern = NUMBERS[dialect.decimal]
     for number, line in enumerate(body.split("\n"), dialect.first + 1):
         fields = [field.strip() for field in dialect.fields(line)]
         if fields and len(fields) != len(names):
             text = f"{len(fields)} columns; expected {len(names)}"
             raise InputError(f"{path}, row {number}: {text}")
-        for name, field in zip(names, fields, strict=False):
-            if not pattern.fullmatch(field):
-                text = f"{field[:40]!r}" if field else "nothing"
+        for i, (name, field) in enumerate(zip(names, fields, strict=False)):
+            if i not in dialect.texts and not pattern.fullmatch(field):
+                text = describe_text(field) if field else "nothing"
                 text += "; expected a number"
                 raise InputError(f'{path}, column "{name}", row {number}: {text}')
     raise InputError(f"{path}: cannot be read; expected columns of numbers")

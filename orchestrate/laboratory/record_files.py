@@ -57,7 +57,7 @@ def read_record(
         Of the accelerations: ``"m/s2"``, ``"g"``, ``"mg"``, ``"mm/s2"`` and others; by default
         what stands in the file, which must be there.
     sample_rate : float, optional
-        Hz; where there is no column of times.
+        Hz; where there is no column of times, or its times are rounded.
     scale : float, optional
         m/s2 at the full scale of a WAV file, which must be given there.
 

@@ -17,6 +17,11 @@ from .columns import Column, Columns, Floats
 Dataset = dict[str, Any]  # as pyuff gives it
 log = logging.getLogger(__name__)
 TIME_RESPONSE, TIME, ACCELERATION = 1, 17, 12  # of dataset 58
+FUNCTIONS = {  # of dataset 58, by their number
+    **{1: "time response", 2: "auto spectrum", 3: "cross spectrum", 4: "frequency response"},
+    **{5: "transmissibility", 6: "coherence", 7: "auto correlation", 8: "cross correlation"},
+    **{9: "power spectral density", 10: "energy spectral density", 12: "spectrum"},
+}
 NO_LABELS = ("", "none")
 NOTE = "sample_rate = {!r}, start = {!r}"  # a heading has six digits of both
 NOTED = re.compile(r"sample_rate = (\S+), start = (\S+)")
@@ -58,9 +63,15 @@ def columns_over_time(
             log.info("%s: dataset %d, number %d of the file, is skipped", path, kind, i)
     used = [(i, one) for i, one in functions if is_over_time(path, i, one)]
     if not used:
-        kinds_there = ", ".join(map(str, kinds[:8])) or "none"
-        text = "expected a dataset 58 of time response"
-        raise InputError(f"{path}: datasets {kinds_there}; {text}")
+        types = {i: int(one.get("func_type", 0)) for i, one in functions}
+        named = [
+            f"{kind} ({FUNCTIONS.get(types[i], f'function {types[i]}')})"
+            if i in types
+            else f"{kind}"
+            for i, kind in enumerate(kinds)
+        ]
+        there = ", ".join(dict.fromkeys(named)) or "none"
+        raise InputError(f"{path}: datasets {there}; expected a dataset 58 of time response")
     number, first = used[0]
     for i, one in used:
         check_whole(path, i, one)

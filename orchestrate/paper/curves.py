@@ -1,184 +1,85 @@
-"""Jobs of the curves in Figures 5, 7, 8, 9 and 12: sweep responses traced in time."""
+"""The paper's curves: a motion's samples with both sides of each impact, as phase planes show."""
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import Any, NamedTuple
 
 import numpy as np
+import xarray as xr
 
-from ..access import OSCILLATOR, Instance
-from ..dynamics.clusters import AttractorSettings, run_until_settled
-from ..response.curves import KINDS, simulate_curve
+import orchestrate
+
 from ..response.labels import flags, variable
-from ..response.questions import Point
-from ..response.relative_resonance import follow_to_peak
-from ..running.job import Inputs, Job, Table
-from ..structures import Excitation, Structure
-from .sweep_windows import relative_peak, window
+from ..structures import Structure
 
-if TYPE_CHECKING:
-    import xarray as xr
-
+FLIGHT, SEQUENCE, CONTACT = 0, 1, 2  # the three states of Figure 5
+KINDS = {FLIGHT: "separate motion", SEQUENCE: "sequence of impacts", CONTACT: "permanent contact"}
 COORDINATES = ("xi_1", "xi_2", "xi_1'", "xi_2'")
-NUMBERS = ("e", "D", "eta", "multiplicity")  # of a panel
 
 
-@dataclass(frozen=True)
-class Panel:
-    """One response to trace: structure, frequency ratio, start state and multiplicity."""
+class Panel(NamedTuple):
+    """A response to trace: structure, frequency ratio, state at phase 0, multiplicity."""
 
     structure: Structure
     eta: float
-    start: tuple[float, ...]  # state at phase 0 that the motion starts from
-    multiplicity: int  # 0 where irregular
-
-    @property
-    def point(self) -> Point:
-        """Structure and excitation of the panel, as a ``Point``."""
-        excitation = Excitation.nondimensional(self.eta, self.structure)
-        return Point(self.structure, excitation)
-
-    def numbers(self) -> list[float]:
-        """Return e, D, eta and multiplicity as a list."""
-        return [self.structure.e, self.structure.get("D"), self.eta, self.multiplicity]
+    start: np.ndarray
+    multiplicity: int
 
 
-def panel_at(sweep: xr.Dataset, structure: Structure, eta: float) -> Panel:
-    """Return the panel of a sweep's response nearest to a frequency ratio."""
-    row = sweep.sel(eta=eta, method="nearest")
-    start = tuple(map(float, row.end_state.values))
-    return Panel(structure, float(row.eta), start, int(row.multiplicity))
+def trace(panel: Panel, periods: int, points: int, running: Mapping[str, Any]) -> dict[str, Any]:
+    """Return times tau, states and kinds of a motion: samples, and two points at each impact."""
+    structure, eta, start, _ = panel
+    common: dict[str, Any] = {"eta": eta, "start": start, "periods": periods, **running}
+    motion = orchestrate.simulate(structure, points=points, **common)
+    section = orchestrate.poincare(structure, at="impacts", transient=0, **common)
+    names, mu = ("x1", "x2", "v1", "v2"), structure.mu
+    samples, after = (np.column_stack([data[x] for x in names]) for data in (motion, section))
+    closing = section.impact_velocity.values / (1.0 + mu)
+    mean = (after[:, 2] + mu * after[:, 3]) / (1.0 + mu)
+    before = np.column_stack([after[:, :2], mean + mu * closing, mean - closing])  # (15) backwards
+    pieces = (samples, motion.time.values), (before, section.time.values), (after, section.time)
+    state, time = (np.concatenate(column) for column in zip(*pieces, strict=True))
+    sticks = section.sticks.values.astype(bool)
+    contact = np.concatenate([motion.in_contact.values, np.zeros(len(closing)), sticks])
+    order = np.lexsort((np.repeat([0, 1, 2], [len(rows) for rows, _ in pieces]), time))
+    kind = np.where(chatters(time, section.time.values, sticks), SEQUENCE, FLIGHT)
+    kind[contact.astype(bool)] = CONTACT
+    return {"tau": time[order] * structure.omega, "state": state[order], "kind": kind[order]}
 
 
-@dataclass(frozen=True, kw_only=True)
-class CurvesJob(Job):
-    """Base of jobs that trace the curves of a figure, one panel each."""
-
-    sweeps: tuple[str, ...]  # names of the upward sweeps whose responses they start from
-    structures: tuple[Structure, ...]  # of these sweeps
-    # periods dropped and kept
-    skip: int
-    keep: int
-    points: int  # states a period, beside both sides of each impact
-    item: ClassVar[str] = "curve"
-
-    def needs(self) -> tuple[str, ...]:
-        """Return the names of the sweep jobs whose results it needs."""
-        return self.sweeps
-
-    @abstractmethod
-    def panels(self, sweeps: Sequence[xr.Dataset]) -> list[Panel]:
-        """Return the panels to trace, chosen from the sweeps' results."""
-
-    def settle_panel(self, fmu: Path, panel: Panel) -> Panel:
-        """Run a panel's response until it is settled; return the panel with its multiplicity."""
-        settling = AttractorSettings(transient=self.skip, settle=0.0)
-        with Instance(fmu) as instance:
-            response, _ = run_until_settled(instance, panel.point, panel.start, settling)
-        return replace(panel, multiplicity=response.multiplicity)
-
-    def items(self, inputs: Inputs) -> list[tuple[int, Panel]]:
-        """Return the panels with their numbers."""
-        return list(enumerate(self.panels([inputs[name] for name in self.sweeps])))
-
-    def work(
-        self, fmus: Mapping[str, Path], items: Sequence[tuple[int, Panel]], previous: Table | None
-    ) -> Table:
-        """Settle and trace one panel's response; return its times, states and kinds of state."""
-        ((index, panel),) = items
-        panel = self.settle_panel(fmus[OSCILLATOR], panel)
-        settings = self.skip, self.keep, self.points
-        curve = simulate_curve(fmus[OSCILLATOR], panel.point, panel.start, *settings)
-        return {
-            "tau": curve.tau,
-            "state": curve.state.astype(np.float32),
-            "kind": curve.kind,
-            "panel": np.full(len(curve.tau), index, dtype=np.int16),
-            "about": np.array([panel.numbers()]),
-        }
-
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        """Return a dataset of all curves' points, one after the other, with their panel numbers."""
-        import xarray as xr
-
-        time = "non-dimensional time from the first period shown"
-        state = ("point", "coordinate"), table["state"], "1", "non-dimensional state"
-        e, D, eta, multiplicity = table["about"].T
-        text = "excitation periods after which the settled response repeats; 0: irregular"
-        variables = {
-            "tau": variable("point", table["tau"], "1", time),
-            "state": variable(*state),
-            "kind": flags("point", table["kind"], "state of the motion (1)", KINDS),
-            "panel_of": variable("point", table["panel"], "1", "panel of the point"),
-            "e": variable("panel", e, "1", "coefficient of restitution"),
-            "D": variable("panel", D, "1", "damping ratio of both masses (8)"),
-            "eta": variable("panel", eta, "1", "frequency ratio Omega/omega"),
-            "multiplicity": variable("panel", multiplicity.astype("i4"), "1", text),
-        }
-        names = variable("coordinate", np.array(COORDINATES), "1", "co-ordinate of the state")
-        return xr.Dataset(variables, {"coordinate": names}, {"title": self.name})
+def chatters(time: np.ndarray, impacts: np.ndarray, sticks: np.ndarray) -> np.ndarray:
+    """Return whether times lie in flights, each shorter than the one before, that end sticking."""
+    within, flights = np.zeros(len(time), dtype=bool), np.diff(impacts)
+    for stick in np.flatnonzero(sticks).tolist():
+        first = stick
+        while first > 1 and flights[first - 1] < flights[first - 2] and not sticks[first - 1]:
+            first -= 1
+        within |= (time >= impacts[max(first - 1, 0)]) & (time <= impacts[stick])
+    return within
 
 
-@dataclass(frozen=True, kw_only=True)
-class CurvesAtFrequencies(CurvesJob):
-    """Job of Figures 5, 8 and 9: the first sweep's responses at chosen frequencies."""
-
-    etas: tuple[float, ...]
-
-    def count(self) -> int:
-        """Return the number of frequencies."""
-        return len(self.etas)
-
-    def panels(self, sweeps: Sequence[xr.Dataset]) -> list[Panel]:
-        """Return the sweep's responses nearest to the frequencies."""
-        return [panel_at(sweeps[0], self.structures[0], eta) for eta in self.etas]
-
-
-@dataclass(frozen=True, kw_only=True)
-class CurvesAtPeaks(CurvesJob):
-    """Job of Figure 12: each sweep's response at its largest gap."""
-
-    def count(self) -> int:
-        """Return the number of sweeps."""
-        return len(self.sweeps)
-
-    def panels(self, sweeps: Sequence[xr.Dataset]) -> list[Panel]:
-        """Return each sweep's response at its largest gap."""
-        return [
-            panel_at(sweep, structure, float(sweep.xi_rel_max.idxmax()))
-            for sweep, structure in zip(sweeps, self.structures, strict=True)
-        ]
-
-
-@dataclass(frozen=True, kw_only=True)
-class CurvesInWindows(CurvesJob):
-    """Job of Figure 7: relative peaks of the windows T, 2T, ... with one impact."""
-
-    windows: int = 4
-
-    def count(self) -> int:
-        """Return the number of windows."""
-        return self.windows
-
-    def panels(self, sweeps: Sequence[xr.Dataset]) -> list[Panel]:
-        """Return each window's peak; without one, its last response with multiplicity -n."""
-        sweep, structure, panels = sweeps[0], self.structures[0], []
-        for n in range(1, self.windows + 1):
-            peak = relative_peak(sweep, n)
-            last = (window(sweep, n) or (0.0, float(sweep.eta.max())))[1]
-            panel = panel_at(sweep, structure, last if peak is None else peak)
-            panels.append(panel if peak is not None else replace(panel, multiplicity=-n))
-        return panels
-
-    def settle_panel(self, fmu: Path, panel: Panel) -> Panel:
-        """Follow a panel without a peak upwards beyond the sweep to its peak."""
-        n = -panel.multiplicity
-        if n <= 0:
-            return super().settle_panel(fmu, panel)
-        with Instance(fmu) as instance:
-            peak = follow_to_peak(instance, panel.structure, panel.eta, panel.start, n)
-        return replace(panel, eta=peak.eta, start=peak.state, multiplicity=n)
+def curves_dataset(panels: Sequence[Panel], curves: Sequence[Mapping[str, Any]]) -> xr.Dataset:
+    """Return all curves' points, one curve after the other, with the numbers of their panels."""
+    joined = {name: np.concatenate([curve[name] for curve in curves]) for name in curves[0]}
+    of = np.repeat(np.arange(len(curves)), [len(curve["tau"]) for curve in curves])
+    time = "non-dimensional time from the first period shown"
+    settled = "excitation periods after which the settled response repeats; 0: irregular"
+    damping = [panel.structure.get("D") for panel in panels]
+    columns = {
+        "e": ([panel.structure.e for panel in panels], "1", "coefficient of restitution"),
+        "D": (damping, "1", "damping ratio of both masses (8)"),
+        "eta": ([panel.eta for panel in panels], "1", "frequency ratio Omega/omega"),
+        "multiplicity": ([panel.multiplicity for panel in panels], "1", settled),
+    }
+    state = joined["state"].astype(np.float32)
+    return xr.Dataset(
+        {
+            "tau": variable("point", joined["tau"], "1", time),
+            "state": variable(("point", "coordinate"), state, "1", "non-dimensional state"),
+            "kind": flags("point", joined["kind"], "state of the motion (1)", KINDS),
+            "panel_of": variable("point", of, "1", "panel of the point"),
+            **{name: variable("panel", *column) for name, column in columns.items()},
+        },
+        {"coordinate": variable("coordinate", np.array(COORDINATES), "1", "co-ordinate")},
+    )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,9 +14,9 @@ from ..figures.files import png_size
 from ..files import write_whole
 from ..running.store import now
 from ..version import __version__
-from .captions import CAPTIONS
-from .claims.claim import NO, PARTLY, WORDS
-from .plan import Part
+from .claims import NO, PARTLY, WORDS
+from .pictures import PARTS
+from .resolution import Resolution
 from .typeset import typeset
 
 PAPER = {
@@ -46,53 +46,46 @@ COLUMNS = {  # of both tables, with their headings
 
 
 def write_report(
-    output: Path, pictures: Mapping[str, Path], parts: Mapping[str, Part], content: dict[str, Any]
+    output: Path,
+    pictures: Mapping[str, Path],
+    content: Mapping[str, Any],
+    size: Resolution,
+    fmu: Any,
 ) -> Path:
-    """Write ``report.html`` with claims, answers and pictures; return its path."""
+    """Write ``report.html`` with claims, regions, answers and pictures; return its path."""
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("orchestrate.paper"),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
     )
     environment.filters["typeset"] = typeset
-    resolution = content["resolution"]
-    first = resolution.transient
-    shown = {
-        **summarize_verdicts(content["claims"]),
-        "figures": [picture_entry(parts[name], picture) for name, picture in pictures.items()],
-        "columns": COLUMNS,
-        "words": WORDS,
-        "paper": PAPER,
-        "css": Markup(environment.get_template("report.css").render()),
-        "version": __version__,
-        "date": now().replace("T", " ").removesuffix(":00Z").removesuffix("Z"),
-        "count": len(resolution.etas()),
-        "sampled": f"$n = {first}(1){first + resolution.samples}$",
-    }
-    page = environment.get_template("report.html.j2").render(**shown, **content)
+    claims, first = content["claims"], size.transient
+    numbered = [{**row, "number": number} for number, row in enumerate(claims, 1)]
+    page = environment.get_template("report.html.j2").render(
+        **content,
+        counts={verdict: sum(row["verdict"] == verdict for row in claims) for verdict in WORDS},
+        differing=[row for row in numbered if row["verdict"] in (NO, PARTLY)],
+        figures=[picture_entry(name, picture) for name, picture in pictures.items()],
+        columns=COLUMNS,
+        words=WORDS,
+        paper=PAPER,
+        css=Markup(environment.get_template("report.css").render()),
+        version=__version__,
+        date=now().replace("T", " ").removesuffix(":00Z").removesuffix("Z"),
+        count=len(size.etas()),
+        sampled=f"$n = {first}(1){first + size.samples}$",
+        resolution=size,
+        fmu=fmu,
+    )
     return write_whole(output / "report.html", lambda path: path.write_bytes(page.encode()))
 
 
-def summarize_verdicts(claims: Sequence[Mapping[str, str]]) -> dict[str, Any]:
-    """Return counts of claims by verdict, and the claims that differ from the paper."""
-    numbered = [{**row, "number": number} for number, row in enumerate(claims, 1)]
+def picture_entry(name: str, picture: Path) -> dict[str, Any]:
+    """Return texts, picture and data files of a part, for the page's template."""
+    part, content = PARTS[name], picture.read_bytes()
     return {
-        "counts": {verdict: sum(row["verdict"] == verdict for row in claims) for verdict in WORDS},
-        "differing": [row for row in numbered if row["verdict"] in (NO, PARTLY)],
-    }
-
-
-def picture_entry(part: Part, picture: Path) -> dict[str, Any]:
-    """Return caption, picture and data files of a part, for the page's template."""
-    caption = CAPTIONS[part.name]
-    content = picture.read_bytes()
-    return {
-        "anchor": picture.stem,
         "file": picture.stem,
-        "title": caption.title,
-        "caption": caption.text,
-        "method": caption.method,
+        "part": part,
         "picture": base64.b64encode(content).decode(),
-        "data": [f"{name}.nc" for name in part.jobs],
         **png_size(content),
     }

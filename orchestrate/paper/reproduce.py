@@ -9,21 +9,23 @@ from pathlib import Path
 from typing import Any
 
 from ..access import OSCILLATOR, finder
-from ..files import write_whole
-from ..running.options import RunOptions
-from ..running.runner import answer_all
-from ..running.store import load
-from . import claims, plan, report
-from .claims import answers
-from .pictures import draw_all
+from ..errors import InputError
+from ..figures.files import save
+from ..files import open_folder, write_whole
+from .answers import answer_sentences, region_rows
+from .claims import read_table
+from .datasets import Datasets
+from .measures import check_claims
+from .pictures import PARTS, picture_name
+from .report import write_report
 from .resolution import Resolution
 
-NOTHING: Mapping[str, Any] = {"claims": [], "regions": [], "answers": []}
+CLAIMS = "claims"  # the part that is no picture
 
 
 @dataclass(frozen=True)
 class Reproduction:
-    """Claims with verdicts, paths of the pictures and of the report."""
+    """Claims with verdicts, regions and answers; paths of the pictures and of the report."""
 
     # `claims` and `regions`, lists of texts by name, and `answers`, sentences; empty where they
     # were not asked for
@@ -36,31 +38,45 @@ def reproduce(
     output: Path,
     resolution: Resolution,
     figures: Sequence[str] | None,
-    running: Mapping[str, object],
+    running: Mapping[str, Any],
 ) -> Reproduction:
-    """Compute the paper, or some figures; reuse stored results; write pictures and report."""
-    whole = plan.make_plan(resolution)
-    parts = whole.choose(figures)
-    options, find = RunOptions.from_keywords(running), finder(running)
-    answer_all(whole.jobs_for(parts), output, options, find)
-    drawn = [part for part in parts if part.picture]
-    pictures = draw_all(drawn, output, options.processes)
-    asked = [part for part in parts if not part.picture]
-    checked = check_claims(output, asked[0].jobs, resolution.decides) if asked else NOTHING
-    content = {"resolution": resolution, "fmu": find(OSCILLATOR), **checked}
-    return Reproduction(
-        checked, pictures, report.write_report(output, pictures, whole.parts, content)
-    )
+    """Compute the paper, or some parts; take stored results; write pictures, claims and report."""
+    parts = choose_parts(figures)
+    fmu = finder(running)(OSCILLATOR)
+    open_folder(output)
+    data = Datasets(output, resolution, running)
+    found = write_claims(data) if CLAIMS in parts else {"claims": [], "regions": [], "answers": []}
+    shown = {name: PARTS[name].results(data) for name in parts if name != CLAIMS}
+    pictures = draw_all(shown, output)
+    return Reproduction(found, pictures, write_report(output, pictures, found, resolution, fmu))
 
 
-def check_claims(output: Path, names: Sequence[str], full: bool) -> dict[str, Any]:
-    """Check the claims against stored results; write them as JSON and return them."""
-    data = {name: load(output / f"{name}.nc") for name in names}
+def choose_parts(names: Sequence[str] | None) -> list[str]:
+    """Return the names of the parts asked for, in the report's order; raise for unknown ones."""
+    known = [CLAIMS, *PARTS]
+    asked = known if names is None else [name.strip() for name in names]
+    for name in asked:
+        if name not in known:
+            raise InputError(f"unknown figure {name!r}; choose from {', '.join(known)}")
+    return [name for name in known if name in asked]
+
+
+def write_claims(data: Datasets) -> dict[str, Any]:
+    """Check the claims; write them with regions and answers as JSON, and return them."""
     checked = {
-        "claims": claims.check_all_claims(data, full),
-        "regions": answers.region_rows(data),
-        "answers": answers.answer_sentences(data),
+        "claims": check_claims(read_table(), data),
+        "regions": region_rows(data),
+        "answers": answer_sentences(data),
     }
     text = json.dumps(checked, indent=1, ensure_ascii=False) + "\n"
-    write_whole(output / "claims.json", lambda path: path.write_text(text, encoding="utf-8"))
+    write_whole(data.folder / "claims.json", lambda path: path.write_text(text, encoding="utf-8"))
     return checked
+
+
+def draw_all(results: Mapping[str, Sequence[Any]], output: Path) -> dict[str, Path]:
+    """Draw parts from their results; return the paths of the PNG files."""
+    paths = {}
+    for name, data in results.items():
+        figure = PARTS[name].draw(*data)
+        paths[name] = save(figure, output / picture_name(name), ("png", "pdf"))[0]
+    return paths

@@ -12,39 +12,30 @@ class Resolution:
     """Numbers of frequencies, periods, starts and grid points of all computations."""
 
     name: str = "full"
-    # number of the first sample at each eta of a sweep, and of periods sampled after it
-    transient: int = 500
-    samples: int = 200
+    transient: int = 500  # number n of the first sample at each eta of a sweep
+    samples: int = 200  # periods sampled after it
     steady: int = 100  # periods after the sweep followed impact by impact
-    # periods dropped and kept for phase curves (section 3.2)
-    skip: int = 2000
-    keep: int = 500
-    long_run: int = 2500  # periods of the long runs that decide between regular and chaotic
-    longest: int = 100_000  # periods up to which a response is run on that does not repeat
-    part: int = 10_000  # periods of each part of the runs that give the largest exponents
-    # number n of the first sample at which the sweep's responses are looked at again: at all
-    # frequencies, and at a few
-    later: int = 5000
-    latest: int = 50_000
+    skip: int = 2000  # periods dropped for phase curves (section 3.2)
+    keep: int = 500  # and kept
+    long_run: int = 2500  # periods that decide between regular and chaotic
+    stages: tuple[int, ...] = (0, 400, 3000, 15_000, 81_000)  # run on for while nothing repeats
+    part: int = 10_000  # periods; five times that for the largest exponents
+    later: int = 5000  # n of the first sample at which all the sweep's responses are seen again
+    latest: int = 50_000  # and a few
     ramp_rate: float = 2e-5  # of the motor's no-load speed over omega, in a time 1/omega
-    # of eta, where coexisting attractors are looked for; the fine one where sweeps up and down
-    # differ
-    attractor_step: float = 0.005
-    fine_step: float = 0.002
+    attractor_step: float = 0.005  # of eta, where coexisting attractors are searched
+    fine_step: float = 0.002  # and where sweeps up and down differ
     starts: int = 60  # random starts at each
     basin: int = 160  # starts along each side of the basin picture
-    # periods before a response from a random start counts as settled; up to which it is run on
-    settle: int = 400
-    settle_most: int = 8000
-    # values along the sides of a parameter map
-    map_etas: int = 181
+    settle: int = 400  # periods before a response from a random start counts as settled
+    settle_most: int = 8000  # up to which it is run on
+    map_etas: int = 181  # values along the sides of a parameter map
     map_rows: int = 51
-    # periods dropped and kept at each of its points
-    map_settle: int = 300
+    map_settle: int = 300  # periods dropped and kept at each of its points
     map_keep: int = 60
 
     def etas(self) -> tuple[float, ...]:
-        """Return the frequency ratios of the sweeps: 0.1 to 8.0, by 0.001 in full."""
+        """Return the frequency ratios of the sweeps: 0.1 to 8.0 by 0.001."""
         return tuple(float(eta) for eta in np.arange(100, 8001) / 1000.0)
 
     def attractor_etas(self) -> tuple[float, ...]:
@@ -56,7 +47,7 @@ class Resolution:
 
     @property
     def decides(self) -> bool:
-        """Return whether transients have the paper's 500 periods, which claims need."""
+        """Whether transients have the paper's 500 periods, which claims need."""
         return self.transient >= 500
 
 
@@ -69,7 +60,7 @@ QUICK = Resolution(
     skip=300,
     keep=100,
     long_run=400,
-    longest=2000,
+    stages=(0, 400, 4000),
     part=500,
     later=500,
     latest=2000,

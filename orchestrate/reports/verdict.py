@@ -264,7 +264,7 @@ def deciding_hypotheses(answer: xr.Dataset, names: Sequence[str]) -> list[int]:
 
 
 def parameter_section(answer: xr.Dataset) -> Section | None:
-    """Return a section with the best structures' parameters and errors; None without any."""
+    """Return a section with the parameters and errors that are stated; None without any."""
     if "value" not in answer or "parameter" not in answer.dims:
         return None
     shown = sort_by_misfit(answer)
@@ -278,6 +278,8 @@ def parameter_section(answer: xr.Dataset) -> Section | None:
         )
         for name in answer.parameter.values
     ]
+    if all(entry == MISSING for row in rows for entry in row[1:]):
+        return None
     columns = [0] + [
         column for column in range(1, 1 + len(shown)) if any(row[column] != MISSING for row in rows)
     ][:BEST]
@@ -291,8 +293,6 @@ def parameter_section(answer: xr.Dataset) -> Section | None:
         "Errors are standard errors from blocks of the record and from what the structure misses. "
         f"What a structure does not have, or the record does not hold, has a dash ({MISSING})."
     )
-    if str(answer.verdict.values) in ("not described", "undecided"):
-        text += " This record confirms none of these structures: do not rely on their numbers."
     return Section("Parameters", [text], tables=[Table(heads, known)])
 
 

@@ -15,9 +15,7 @@ module                      idea
 :mod:`.resonance`           resonance curves, bonded against delaminated, with peaks and jumps
 :mod:`.resonance_levels`    the same at several levels of the shaking
 :mod:`.threshold`           the level at which a pressed structure opens, or an open one touches
-:mod:`.relative_resonance`  continuation of a response until its largest gap has a maximum
 :mod:`.turns_and_jumps`     significant maxima and jumps of a curve
-:mod:`.curves`              phase curves with both sides of each impact
 :mod:`.spectra`             amplitude spectra of the masses' accelerations
 ==========================  ==================================================================
 """

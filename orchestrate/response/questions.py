@@ -12,7 +12,7 @@ from abc import ABC
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,6 +25,10 @@ from ..structures import PARAMETERS, Excitation, Structure
 from ..structures.ranges import EXCITATION, LEVEL, RATIO_QUANTITIES, expected_one_of
 from .labels import Variable, parameter_variable, variable
 
+if TYPE_CHECKING:
+    import xarray as xr
+
+State = tuple[float, ...]
 Numbers = float | tuple[float, ...]
 EXCITATION_PARAMETERS = {
     "eta": RATIO_QUANTITIES["eta"],
@@ -304,6 +308,35 @@ def checked_state(name: str, value: ArrayLike | None, structure: Structure) -> t
     if len(rows) != 1:
         raise InputError(f"{name}: {len(rows)} states; expected one")
     return tuple(rows[0].tolist())
+
+
+def end_states(swept: xr.Dataset, series: Series) -> NDArray[np.float64]:
+    """Return a sweep's end states at the series' values (nearest), in m and m/s, (n, 4)."""
+    rows = swept.end_state.sel({series.name: list(series.values)}, method="nearest")
+    states: NDArray[np.float64] = rows.values * series.scales()
+    return states
+
+
+def start_states(start: ArrayLike | xr.Dataset | None, question: SeriesQuestion) -> State:
+    """Return the start states given by the user: one for all, one per value, or of a sweep."""
+    series = question.series
+    if hasattr(start, "end_state"):
+        swept: xr.Dataset = start  # type: ignore[assignment]
+        there = swept.end_state.dims
+        known: ArrayLike = swept[series.name].values if series.name in there else []
+        if there != (series.name, "coordinate") or not np.isin(series.values, known).all():
+            raise InputError(
+                f"start: a dataset over {', '.join(map(str, there))}; expected a sweep in one "
+                f"direction over the same values of {series.name}"
+            )
+        return tuple(end_states(swept, series).ravel().tolist())
+    rows = checked_states("start", start, question.structure)
+    if len(rows) not in (1, len(series.values)):
+        raise InputError(
+            f"start: {len(rows)} states; expected one, or one for each of {len(series.values)} "
+            f"values of {series.name}"
+        )
+    return tuple(rows.ravel().tolist())
 
 
 # -- jobs -----------------------------------------------------------------------------------------

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import Instance, begin, four_numbers, gap_between
+from ..access import Instance, four_numbers, gap_between
 from ..structures import Excitation, Structure
 from .multiplicity import (
     REPEATED,
@@ -144,27 +144,3 @@ def count_impacts_until(instance: Instance, before: int, time: float, target: fl
         instance.step(time, target)
     count: int = instance.get("impact_count")[0]
     return count - before
-
-
-def count_impacts(instance: Instance, point: Point, start: ArrayLike, periods: int) -> int:
-    """Run the FMU some periods from a state at phase 0; return the number of impacts."""
-    begin(instance, *point, start)
-    (before,) = instance.get("impact_count")
-    return count_impacts_until(instance, before, 0.0, periods * point.excitation.period)
-
-
-def follow_responses(
-    instance: Instance,
-    points: Iterable[Point],
-    start: ArrayLike,
-    transient: int,
-    samples: int,
-    tolerance: float,
-) -> Iterator[Response]:
-    """Yield the response at each point, started from the end state of the one before."""
-    settings = LoopSettings(transient=transient, samples=samples, is_chain=True)
-    for point in points:
-        results = response_loop(instance).respond([point], [start], settings)
-        yield next(responses_from(results, [point], tolerance))
-        start = results.ends[0]
-        settings = replace(settings, chain_gap=point.structure.gap_offset)

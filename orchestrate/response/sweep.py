@@ -19,7 +19,7 @@ from ..structures import Structure
 from .labels import Dims, Variable, flags, nondimensional_state_coordinate, variable, yes_or_no
 from .multiplicity import DECIDED, REPEATED, Decision
 from .peaks import PEAKS, POINTS, peaks
-from .questions import Point, SeriesQuestion, checked_positive, checked_state, series_arguments
+from .questions import Point, SeriesQuestion, checked_positive, series_arguments, start_states
 from .respond import Response, responses_from
 from .response_loop import LoopSettings, periods_to_sample, response_loop
 
@@ -62,6 +62,7 @@ class SweepJob(SeriesQuestion):
     peak_periods: int = 8
     asked: ClassVar[str] = "sweep"
     chunk_size: ClassVar[int] = 100
+    in_threads: ClassVar[bool] = True
     sequential: ClassVar[bool] = True
     warmup_items: ClassVar[int] = 16  # most responses forget where they came from within as many
 
@@ -103,24 +104,29 @@ class SweepJob(SeriesQuestion):
         start, offset = self.start, self.structure.gap_offset
         if previous is not None:
             start, offset = previous["end"][-1], float(previous["gap_offset"][-1])
+        return self.table(fmus, items, [start], is_chain=True, chain_gap=offset)
+
+    def table(
+        self, fmus: Mapping[str, Path], points: Sequence[Point], starts: ArrayLike, **chain: Any
+    ) -> Table:
+        """Return a chunk's table: responses one from the other, or each from its own start."""
         settings = LoopSettings(
             transient=self.transient,
             samples=self.samples,
             tolerance=self.tolerance,
-            is_chain=True,
-            chain_gap=offset,
             peak_periods=self.peak_periods,
             peak_points=POINTS,
+            **chain,
         )
         with Instance(fmus[OSCILLATOR]) as instance:
-            results = response_loop(instance).respond(items, [start], settings)
-        responses = responses_from(results, items, self.tolerance)
+            results = response_loop(instance).respond(points, starts, settings)
+        responses = responses_from(results, points, self.tolerance)
         found = zip(responses, *(results.counts[name].tolist() for name in DECISION), strict=True)
         rows = [self.row(response, Decision(n, how), later) for response, n, how, later in found]
         table = {name: np.array([row[name] for row in rows]) for name in rows[0]}
         table["end"] = results.ends
         spans = [periods_to_sample(n, self.peak_periods) for n in results.counts["multiplicity"]]
-        return {**table, **peaks(items, spans, results.orbits)}
+        return {**table, **peaks(points, spans, results.orbits)}
 
     def row(self, response: Response, decision: Decision, later: int) -> dict[str, Any]:
         """Return one response's numbers by column name; ``later``: impacts after its periods."""
@@ -205,6 +211,25 @@ class SweepJob(SeriesQuestion):
         return f"Responses along {self.series.name}, {self.direction}: {self.structure.label()}"
 
 
+@dataclass(frozen=True, kw_only=True)
+class RunOnJob(SweepJob):
+    """Job of :func:`orchestrate.sweep` from another sweep: each value has a start of its own."""
+
+    chunk_size: ClassVar[int] = 20
+    sequential: ClassVar[bool] = False
+    warmup_items: ClassVar[int] = 0
+
+    def items(self, inputs: Inputs) -> Sequence[Any]:
+        """Return operating point and start state of each response."""
+        points = self.series.points
+        states = np.broadcast_to(np.reshape(self.start, (-1, 4)), (len(points), 4))
+        return list(zip(points, map(tuple, states.tolist()), strict=True))
+
+    def work(self, fmus: Mapping[str, Path], items: Sequence[Any], previous: Table | None) -> Table:
+        """Compute a chunk of responses, each from its own start."""
+        return self.table(fmus, [point for point, _ in items], [start for _, start in items])
+
+
 def multiplicity_variables(along: Dims, table: Table) -> dict[str, Variable]:
     """Return dataset variables of the multiplicity and of how it was decided."""
     return {
@@ -225,7 +250,7 @@ def sweep(
     transient: int = 500,
     samples: int = 200,
     tolerance: float = 1e-2,
-    start: ArrayLike | None = None,
+    start: ArrayLike | xr.Dataset | None = None,
     peak_periods: int = 8,
     **running: Unpack[Running],
 ) -> xr.Dataset:
@@ -252,9 +277,10 @@ def sweep(
         Periods kept after them, a stroboscopic sample each.
     tolerance : float
         Part of the motion's size within which a state counts as repeated.
-    start : array_like of 4 floats, optional
+    start : array_like or xarray.Dataset, optional
         State that the first value starts from, at phase 0: x1, x2 in m, v1, v2 in m/s; at rest
-        by default.
+        by default. Or one state for each value, or a sweep over the same values in one direction,
+        whose responses are run on: then no value depends on another, whatever the ``direction``.
     peak_periods : int
         Amplitudes and accelerations are looked for over the periods after which the response
         repeats, at most so many; over half as many where it does not repeat.
@@ -314,14 +340,19 @@ def sweep(
     >>> found.impacts_per_period.values
     array([10., 30.])
     """
-    job = SweepJob(
-        **series_arguments(structure, eta, frequency, amplitude, over, values),
-        name=f"sweep_{structure.label()}_{direction}",
+    question = series_arguments(structure, eta, frequency, amplitude, over, values)
+    name, kind = f"sweep_{structure.label()}_{direction}", SweepJob
+    states = start_states(start, SweepJob(name=name, direction=direction, **question))
+    if len(states) > 4:
+        kind, direction = RunOnJob, "given"
+    job = kind(
+        **question,
+        name=name,
         direction=direction,
         transient=checked_integer("transient", transient, 0),
         samples=checked_integer("samples", samples, 1),
         tolerance=checked_positive("tolerance", tolerance),
-        start=checked_state("start", start, structure),
+        start=states,
         peak_periods=checked_integer("peak_periods", peak_periods, 1),
     )
     return answer(job, running, finder(running))

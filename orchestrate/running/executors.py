@@ -1,7 +1,7 @@
-"""Executors: this process, worker processes of this machine, or others (:mod:`.cluster`).
+"""Executors: this process, its threads, processes of this machine, or others (:mod:`.cluster`).
 
 Processes are loky's: they start without running the caller's script again, so a script needs no
-``__main__`` guard and a notebook works. A chunk is the same call for all three.
+``__main__`` guard and a notebook works. A chunk is the same call for all.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import Executor, Future
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from multiprocessing import resource_tracker
@@ -137,6 +137,24 @@ class Processes:
         """Kill the worker processes if ``in_haste``; else keep them for the next computation."""
         if in_haste:
             self.executor.shutdown(wait=True, cancel_futures=True)
+
+
+class Threads:
+    """Workers that are threads of this process, for work that is done past Python."""
+
+    remote = False
+    losses: ClassVar[Mapping[type[BaseException], str]] = {}
+
+    def __init__(self, count: int) -> None:
+        self.count, self.executor = count, ThreadPoolExecutor(count)
+
+    def max_in_flight(self) -> int:
+        """Return how many chunks to submit at once: one more than there are threads."""
+        return self.count + 1
+
+    def close(self, in_haste: bool) -> None:
+        """End the threads after their present chunks."""
+        self.executor.shutdown(wait=True, cancel_futures=True)
 
 
 class SigintMaskedExecutor(Executor):

@@ -18,6 +18,7 @@ from .job import Job
 
 PACKAGE = Path(__file__).resolve().parents[1]
 ROOT = PACKAGE.name
+KERNELS = ["fmu_src", "kernels"]  # of Python that runs beside the FMUs
 PACKAGES_WITHOUT_NUMBERS = ("running", "cli", "figures")  # packages that do not affect any number
 DIGITS = 16  # hexadecimal, of a digest: short to read, and equal by chance in 2^-64
 
@@ -124,11 +125,11 @@ def code_digests(module: str) -> dict[str, str]:
 
 
 def source_file(module: str) -> Path | None:
-    """Return the source file of a module's dotted name; None outside this package."""
+    """Return the source file of a module of this package, or of a kernel; None of others."""
     parts = module.split(".")
-    if parts[0] != ROOT or len(parts) == 1:
+    if len(parts) == 1 or (parts[0] != ROOT and parts[:2] != KERNELS):
         return None
-    path = PACKAGE.joinpath(*parts[1:])
+    path = PACKAGE.parent.joinpath(*parts)
     for file in (path.with_suffix(".py"), path / "__init__.py"):
         if file.is_file():
             return file

@@ -51,6 +51,7 @@ class Job(ABC):
     warmup_items: ClassVar[int] = (
         0  # items after which a sequential job has forgotten its beginning
     )
+    in_threads: ClassVar[bool] = False  # whether its work is in the FMU, past Python
     item: ClassVar[str] = "item"  # what the progress bar counts
 
     def needs(self) -> tuple[str, ...]:

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..files import open_folder
-from .executors import InlineExecutor, Processes, Workers, compute, running_workers
+from .executors import InlineExecutor, Processes, Threads, Workers, compute, running_workers
 from .identity import Fmu, Identity, identity_of
 from .job import Job, Table
 from .options import RunOptions
@@ -106,12 +106,13 @@ class Runner:
                     self.work(workers, fmus, bar, lambda: True)
 
     def start_workers(self) -> Workers:
-        """Return new workers: those of a Dask cluster if one is given, else local processes."""
+        """Return new workers: of a Dask cluster if one is given, else threads or processes."""
         if self.options.cluster:
             from .cluster import Cluster  # brings asyncio, which worker processes do without
 
             return Cluster(self.options.cluster)
-        return Processes(self.options.processes)
+        in_threads = all(job.in_threads for job in self.jobs)
+        return (Threads if in_threads else Processes)(self.options.processes)
 
     def done(self) -> int:
         """Return the number of computed items of all jobs together."""

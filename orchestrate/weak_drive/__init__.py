@@ -20,6 +20,8 @@ module                  idea
 :mod:`.jump_verdicts`   jump, none or undecided in each direction, and why
 :mod:`.ramp_record`     where a ramp's record passes the resonance, and suspected jumps
 :mod:`.losses`          all losses of stability on one ramp: the jump and further ones
+:mod:`.connection`      any drive's variables by our names, checked; the box's motion from them
+:mod:`.cosimulate`      the oscillator and any drive that is an FMU
 :mod:`.couple`          a run of both FMUs under a varying voltage, and its jumps
 :mod:`.couple_all`      many coupled runs at once
 :mod:`.jump_voltages`   jump voltages extrapolated to rate 0, with an error

@@ -6,13 +6,15 @@ set to 0 where nothing is connected to it; a Boolean only where it is true, sinc
 other for true as well.
 
 What a tool makes of it depends on its master. Most hold inputs constant over a fixed step (Jacobi,
-see :mod:`.master`): negative damping, and the step has to be very short.
+see :mod:`.master`): negative damping, and the step has to be very short. OMSimulator reads the step
+from an annotation of its own, without which its C interface cannot load a package.
 """
 
 from __future__ import annotations
 
 import zipfile
 from collections.abc import Mapping, Sequence
+from decimal import Decimal
 from os import PathLike
 from pathlib import Path
 from xml.etree import ElementTree as ET
@@ -29,6 +31,7 @@ NAMESPACES = {
     "ssd": "http://ssp-standard.org/SSP1/SystemStructureDescription",
     "ssv": "http://ssp-standard.org/SSP1/SystemStructureParameterValues",
     "ssc": "http://ssp-standard.org/SSP1/SystemStructureCommon",
+    "oms": "https://raw.githubusercontent.com/OpenModelica/OMSimulator/master/schema/oms.xsd",
 }
 MODELS = {"oscillator": OSCILLATOR, "shaker": SHAKER}
 INPUTS = {"oscillator": ("box_acceleration", "box_jerk"), "shaker": ("box_force",)}
@@ -102,8 +105,31 @@ def add_component(elements: ET.Element, name: str, units: Sequence[str]) -> None
     )
 
 
+def add_master(system: ET.Element, step: float) -> None:
+    """Add OMSimulator's annotation with the fixed step of its master.
+
+    Its C interface reads ``oms:FixedStepMaster``, its Python interface the attributes of
+    ``oms:SimulationInformation``, by the name of the solver that it gives to co-simulation FMUs.
+    """
+    length = format(Decimal(repr(step)), "f")  # its schema takes no exponent
+    annotations = ET.SubElement(system, qualified_tag("ssd", "Annotations"))
+    annotation = ET.SubElement(
+        annotations, qualified_tag("ssc", "Annotation"), type="org.openmodelica"
+    )
+    information = ET.SubElement(
+        ET.SubElement(annotation, qualified_tag("oms", "Annotations")),
+        qualified_tag("oms", "SimulationInformation"),
+        {"name": "oms_ma_default", "method": "oms_ma", "fixedStepSize": length},
+    )
+    ET.SubElement(
+        information,
+        qualified_tag("oms", "FixedStepMaster"),
+        {"description": "oms-ma", "stepSize": length, "relativeTolerance": "0.0001"},
+    )
+
+
 def system_description(
-    description: str, stop_time: float, fmus: Mapping[str, Description]
+    description: str, stop_time: float, step: float, fmus: Mapping[str, Description]
 ) -> bytes:
     """Build the XML file that describes both FMUs and their connections."""
     root = ET.Element(
@@ -124,6 +150,7 @@ def system_description(
             "endConnector": port,
         }
         ET.SubElement(links, qualified_tag("ssd", "Connection"), places)
+    add_master(system, step)
     add_units(root, fmus)
     ET.SubElement(
         root, qualified_tag("ssd", "DefaultExperiment"), startTime="0.0", stopTime=repr(stop_time)
@@ -161,6 +188,7 @@ def write_ssp(
     voltage: float,
     speed_start: float | None = None,
     stop_time: float | None = None,
+    step: float | None = None,
     fmus: Sequence[str | PathLike[str]] | None = None,
 ) -> Path:
     """Write the coupled system of a structure and a drive as an SSP package.
@@ -178,6 +206,9 @@ def write_ssp(
         Of the motor, rad/s; by default its no-load speed.
     stop_time : float, optional
         Of the default experiment, s; 100/omega by default.
+    step : float, optional
+        Communication step that OMSimulator takes, s; 0.001/omega by default. Other tools have no
+        place for one in a package.
     fmus : sequence of path-like, optional
         Of structure and shaker; by default those of FMI 2.0, which most tools read.
 
@@ -211,6 +242,8 @@ def write_ssp(
     check("speed_start", speed, "rad/s")
     stop = 100.0 / structure.omega if stop_time is None else stop_time
     check("stop_time", stop, "s", low=0.0)
+    length = 1e-3 / structure.omega if step is None else step
+    check("step", length, "s", low=0.0, exclusive=True)
     state = "bonded (undamaged)" if structure.bonded else "delaminated"
     starts: dict[str, Values] = {
         "oscillator": oscillator_start(structure),
@@ -219,7 +252,8 @@ def write_ssp(
     text = f"Motor and box with a {state} structure, at {voltage:g} V"
     paths = [Path(fmu) for fmu in fmus or (find(model, "fmi2").path for model in MODELS.values())]
     known = {name: describe(fmu) for name, fmu in zip(MODELS, paths, strict=True)}
-    files = {"SystemStructure.ssd": system_description(text, float(stop), known)}
+    system = system_description(text, float(stop), float(length), known)
+    files = {"SystemStructure.ssd": system}
     files |= {
         parameter_file_path(name): parameter_values(values) for name, values in starts.items()
     }

@@ -22,6 +22,7 @@ SAID = {  # something of what each prints
     "event_mode": "impact at 9.584866 s, closing at 1.198201 m/s",
     "fmpy_sweep": "eta = 1.045: largest gap 20.5801",
     "lyapunov_sweep": "chaotic at",
+    "own_drive": "acceleration of the box -1.28",
     "own_motor": "delaminated: the speed jumps at 6.3",
     "parameter_map": "of the map repeats after one period",
     "resonance_curve": "bonded, up       : 3.18 mm at 12.7 Hz",

@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import atexit
+import functools
+import shutil
+import tempfile
+
 import pytest
 
 from orchestrate import cli
 
+from ..orchestrate.weak_drive.drives import table
 from .written import PAGES, commands, files, python_blocks
 
 LONG = {
@@ -38,6 +44,16 @@ def write_files(folder):
             (folder / name).write_text(text, encoding="utf-8")
 
 
+@functools.cache
+def own_drive():
+    """The FMU of somebody else that the page on drives speaks of."""
+    from pythonfmu import FmuBuilder
+
+    folder = tempfile.mkdtemp()
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return FmuBuilder.build_FMU(table.__file__, dest=folder)
+
+
 @pytest.mark.parametrize(
     "page",
     [
@@ -66,4 +82,6 @@ def test_commands_run(words, folder, small, capsys):
             assert ended.code == 0 or not words, capsys.readouterr().err
         return
     write_files(folder)
+    if "shaker.fmu" in words:
+        shutil.copy(own_drive(), folder / "shaker.fmu")
     assert cli.main(list(words)) == 0, capsys.readouterr().err

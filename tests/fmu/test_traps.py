@@ -118,13 +118,22 @@ def test_discarded_step_is_noticed(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "categories", [["logStatusError"], ["logAll"], ["logStatusError", "logAll"]]
+    "categories", [["logStatusError"], ["logAll"], ["logStatusWarning", "logStatusError"]]
 )
-def test_log_categories_that_the_description_offers(fmu, tmp_path, categories):
+def test_log_categories(fmu, tmp_path, categories):
     """An exception is logged without a category; who asks for a category hears of it too."""
     messages, done = run_with_output("traps.log_category", fmu, categories, cwd=tmp_path)
     assert ["m1 = -1.0 kg" in message for message in messages] == [True] * 300
     assert "SystemError" not in done.stderr
+
+
+def test_a_step_too_short_to_advance_is_reported_once(fmu, tmp_path):
+    """The one message of a good run, so "all messages" is no category on offer."""
+    names, messages = run("traps.short_steps", fmu, cwd=tmp_path)
+    assert names == ["logStatusWarning", "logStatusError"]
+    (message,) = messages
+    for part in ("communicationStepSize = 1e-09 s", "1000000000.0 s", "expected a longer one"):
+        assert part in message
 
 
 def test_own_access_leaves_other_importers_their_messages(tmp_path):

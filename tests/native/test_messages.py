@@ -93,6 +93,19 @@ def test_integers_and_booleans_are_printed_as_such(fmus, version):
 
 
 @pytest.mark.parametrize("version", VERSIONS)
+def test_a_wrong_type_is_named_with_its_variable(fmus, version):
+    real, whole = ("Float64", "Int32") if version == "fmi3" else ("Real", "Integer")
+    with slave(fmus[version]) as fmu:
+        fmu.start()
+        reference = fmu.variables["in_contact"].valueReference
+        said = fmu.refused(f"get{real}", [reference])
+        assert f"valueReference = {reference}: in_contact is one of the Boolean variables" in said
+        assert f"expected one of the {real} variables in modelDescription.xml" in said
+        said = fmu.refused(f"get{whole}", [99999])
+        assert f"valueReference = 99999: expected one of the {whole} variables" in said
+
+
+@pytest.mark.parametrize("version", VERSIONS)
 def test_counts_in_messages_are_whole_numbers(fmus, version):
     """Of a step that cannot finish: chattering without an end."""
     with slave(fmus[version]) as fmu:

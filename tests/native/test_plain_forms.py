@@ -22,13 +22,40 @@ def plain_fmus(tmp_path_factory, fmus):
 @pytest.mark.parametrize("version", VERSIONS)
 def test_a_plain_form_has_scalars_alone(plain_fmus, version):
     found = fmpy.read_model_description(str(plain_fmus[version]))
-    kinds = {variable.type for variable in found.modelVariables}
-    assert kinds == {"Real", "Integer", "Boolean"} or kinds == {"Float64", "Int32", "Boolean"}
+    (kind,) = {v.type for v in found.modelVariables if v.causality == "output"}
+    assert kind == {"fmi2": "Real", "fmi3": "Float64"}[version]
     assert not any(v.dimensions or "[" in v.name for v in found.modelVariables)
     assert 40 < len(found.modelVariables) < 50
     assert not getattr(found.coSimulation, "hasEventMode", False)
     assert validate_fmu(str(plain_fmus[version])) == []
     assert found.guid == forms.guid("TwoMassImpactOscillator", f"{version}-plain")
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_an_importer_that_knows_real_alone_runs_a_plain_form(plain_fmus, fmus, version):
+    """It writes 0 to all inputs, which stops no harmonic excitation, and reads all outputs as
+    Real: the numbers of the full form. That form's own types can still be read.
+    """
+    with slave(plain_fmus[version]) as fmu, slave(fmus[version]) as full:
+        inputs = [v.name for v in fmu.variables.values() if v.causality == "input"]
+        assert inputs == ["box_acceleration", "box_jerk", "box_snap", "box_crackle"]
+        for name in ("box_amplitude", "box_frequency"):
+            kind = fmu.variables[name]
+            assert (kind.causality, kind.variability) == ("parameter", "tunable")
+        fmu.start(**harmonic(1.13))
+        full.start(**harmonic(1.13))
+        outputs = [name for name, v in fmu.variables.items() if v.causality == "output"]
+        assert {"in_contact", "impact_count", "contact_count", "evaluations"} < set(outputs)
+        for time in (100.0, 200.0):
+            fmu.set(**dict.fromkeys(inputs, 0.0))
+            fmu.set(box_frequency=1.13)  # tunable
+            fmu.step(time)
+            full.step(time)
+            assert fmu.get(*outputs) == full.get(*outputs)
+        assert fmu.one("impact_count") > 10.0
+        reference = [fmu.variables["impact_count"].valueReference]
+        whole = fmu.fmu.getInt32 if fmu.third else fmu.fmu.getInteger
+        assert whole(reference) == [full.one("impact_count")]
 
 
 @pytest.mark.parametrize("version", VERSIONS)

@@ -19,7 +19,7 @@ ROOT = Path(__file__).resolve().parents[2]
 FUNCTIONS = (
     *("simulate", "resonance", "sweep", "map", "lyapunov", "attractors", "basin", "spectra"),
     *("impact_statistics", "poincare", "basin_entropy", "orbit", "branch", "border", "couple"),
-    "manifold",
+    *("cosimulate", "manifold"),
     *("shake", "measure", "record", "read_record", "write_record"),
     *("resonance_curve", "read_curve"),
 )
@@ -69,6 +69,9 @@ def questions() -> dict[str, xr.Dataset]:
         "orbit": orchestrate.orbit(UNIT, eta=2.0),
         "manifold": orchestrate.manifold(UNIT, eta=3.0, length=0.3),
         "branch": orchestrate.branch(UNIT, eta=2.0, limits=(1.95, 2.05)),
+        "cosimulate": orchestrate.cosimulate(
+            OWN, motor(), inputs={"voltage": volts}, duration=0.2, step=0.01, record=["speed"]
+        ),
         "couple": orchestrate.couple(
             OWN, motor(), voltage=(1.2 * volts, 1.25 * volts), rate=1e-3 * volts * OWN.omega
         ),

@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from orchestrate.paper.claims import CLAIMS
+from orchestrate.paper.claims import read_table
 from tools import paper_page
 from tools.marked import MARK
 
@@ -28,6 +28,6 @@ def test_all_that_was_computed_is_on_a_page():
 
 def test_the_claims_beside_it_are_those_of_the_code():
     rows = json.loads(paper_page.CLAIMS.read_text("utf-8"))["claims"]
-    own = [(claim.section, claim.text, claim.printed) for claim in CLAIMS]
+    own = [(claim.section, claim.text, claim.printed) for claim in read_table()]
     assert [(row["section"], row["text"], row["printed"]) for row in rows] == own
     assert all(row["verdict"] != "undecided" for row in rows)

@@ -95,6 +95,18 @@ class Halves:
             frictions=dry if friction else None,
         )
 
+    def bonded_with_torsion(self, torsion: Torsion) -> ModalSystem:
+        """Return a ``ModalSystem`` of the bonded beam that twists too, seen by its two sensors."""
+        whole = self.bonded_beam()
+        root = math.sqrt(whole.mass)
+        faces = np.array([[1.0, torsion.offset], [1.0, -torsion.offset]])
+        return ModalSystem(
+            frequency=TURN * np.array([whole.f, torsion.ratio * whole.f]),
+            damping_ratio=np.full(2, whole.zeta),
+            participation=root * np.array([1.0, torsion.participation]),
+            output_rows=faces / root,
+        )
+
     def bonded_beam(self) -> BondedBeam:
         """Return mass, frequency and damping of the bonded beam of both halves."""
         masses, turns = np.array([self.m1, self.m2]), TURN * np.array([self.f1, self.f2])
@@ -132,6 +144,16 @@ class BondedBeam:
     mass: float
     f: float
     zeta: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Torsion:
+    """A torsion mode of a sound beam, with two sensors that are not exactly opposite."""
+
+    ratio: float  # its natural frequency over that of bending
+    participation: float  # its excitation by the base, over that of bending
+    # what the sensors read of it, over what they read of bending: one plus, one minus
+    offset: float
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -15,7 +15,15 @@ from .beam import DelaminatedBeam
 from .bench import Bench
 from .excitation import Excitation, Random, Stepped, Swept
 from .integrator import UnboundedMotionError
-from .lumped import TURN, Clamp, Faces, Halves, cubic_stiffness, frequency_change
+from .lumped import (
+    TURN,
+    Clamp,
+    Faces,
+    Halves,
+    Torsion,
+    cubic_stiffness,
+    frequency_change,
+)
 from .sensors import Sensor
 from .system import ModalSystem, Motion
 
@@ -101,6 +109,8 @@ class Conditions:
     # length of the delamination of a beam of finite elements
     size: tuple[float, float] = (0.1, 0.9)
     off: float = 0.1  # how far guesses may be off
+    # of the sensor on face 1, over its largest signal: below 1 it saturates
+    range: float = math.inf
 
 
 def draw_log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
@@ -216,6 +226,18 @@ def draw_in_clamp(rng: np.random.Generator, level: float, conditions: Conditions
     return bonded_specimen(own, own.in_rattling_clamp(held))
 
 
+def draw_with_torsion(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
+    """Draw a bonded, linear beam with a torsion mode 3 to 13 % above (or below) bending."""
+    own = draw_halves(rng)
+    ratio = rng.uniform(1.03, 1.13)
+    torsion = Torsion(
+        ratio=ratio if rng.random() < 0.7 else 1.0 / ratio,
+        participation=rng.uniform(0.3, 0.6),
+        offset=rng.uniform(0.1, 0.3),
+    )
+    return bonded_specimen(own, own.bonded_with_torsion(torsion))
+
+
 def draw_finite_elements(
     rng: np.random.Generator, level: float, conditions: Conditions
 ) -> Specimen:
@@ -249,6 +271,7 @@ KINDS: Mapping[str, Maker] = {
     "sagging": draw_sagging,
     "friction": draw_with_friction,
     "clamp": draw_in_clamp,
+    "torsion": draw_with_torsion,
     "delaminated": draw_delaminated,
     "gap": draw_with_gap,
     "preloaded": draw_preloaded,
@@ -316,7 +339,7 @@ def draw(
     bench = Bench(
         excitation=shaker,
         box=replace(box, noise=min(noise, 0.02)),
-        face1=face1,
+        face1=replace(face1, range=conditions.range),
         face2=face2 if count == 2 else None,
         rate=rate,
         steps=30.0 if "elements" in kind else 60.0,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +17,7 @@ TAPS = 46  # of it, for each sample left out: 80 dB from 0.95 of half the sampli
 
 @dataclass(frozen=True, kw_only=True)
 class Sensor:
-    """One accelerometer: bandwidth, gain, delay and noise.
+    """One accelerometer: bandwidth, gain, delay, noise and range.
 
     Attributes
     ----------
@@ -30,6 +31,8 @@ class Sensor:
         s, beside that of the filter.
     noise : float
         Standard deviation over the root mean square of the signal.
+    range : float
+        Largest reading over the largest value of the signal: below 1 the sensor saturates.
     """
 
     bandwidth: float = 2000.0
@@ -37,6 +40,7 @@ class Sensor:
     gain: float = 1.0
     delay: float = 0.0
     noise: float = 0.01
+    range: float = math.inf
 
     def read(self, signal: Floats, rate: float, factor: int, rng: np.random.Generator) -> Floats:
         """Return the samples that the sensor gives of a signal: filtered, delayed, with noise.
@@ -55,7 +59,11 @@ class Sensor:
         taps = self.gain * delay_filter(antialiasing_filter(factor), self.delay * rate)
         sampled = resample_poly(sosfilt(sections, signal), 1, factor, window=taps)
         rms = float(np.sqrt(np.mean(sampled**2)))
-        return np.asarray(sampled + self.noise * rms * rng.normal(size=sampled.shape))
+        noisy = np.asarray(sampled + self.noise * rms * rng.normal(size=sampled.shape))
+        if math.isinf(self.range):
+            return noisy
+        largest = self.range * float(np.abs(sampled).max())
+        return np.clip(noisy, -largest, largest)
 
 
 def delay_filter(taps: Floats, steps: float) -> Floats:

@@ -25,7 +25,7 @@ typedef fmi2Status Status;
 typedef fmi2Integer Integer;
 typedef fmi2Boolean Boolean;
 typedef fmi2FMUstate State;
-static const Status FMI_OK = fmi2OK, FMI_ERROR = fmi2Error, FMI_DISCARD = fmi2Discard;
+static const Status FMI_OK = fmi2OK, FMI_WARNING = fmi2Warning, FMI_ERROR = fmi2Error, FMI_DISCARD = fmi2Discard;
 
 static inline Status get_reals(Instance c, const unsigned *r, size_t count, double *x) { return fmi.GetReal(c, r, count, x); }
 static inline Status set_reals(Instance c, const unsigned *r, size_t count, const double *x) { return fmi.SetReal(c, r, count, x); }

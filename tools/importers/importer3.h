@@ -29,7 +29,7 @@ typedef fmi3Status Status;
 typedef fmi3Int32 Integer;
 typedef fmi3Boolean Boolean;
 typedef fmi3FMUState State;
-static const Status FMI_OK = fmi3OK, FMI_ERROR = fmi3Error, FMI_DISCARD = fmi3Discard;
+static const Status FMI_OK = fmi3OK, FMI_WARNING = fmi3Warning, FMI_ERROR = fmi3Error, FMI_DISCARD = fmi3Discard;
 
 void take_message(fmi3InstanceEnvironment environment, fmi3Status status, fmi3String category, fmi3String text);
 Instance open_with(const char *name, bool event_mode, bool early_return);

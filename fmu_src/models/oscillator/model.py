@@ -50,9 +50,18 @@ MODEL = Model(
         Terminal(
             "box",
             "The structure's fastening to the box: its force, and the box's acceleration",
-            {"force": "box_force", "acceleration": "box_acceleration", "jerk": "box_jerk"},
+            {
+                "force": "box_force",
+                "impulse": "box_impulse",
+                "impulse_moment": "box_impulse_moment",
+                "acceleration": "box_acceleration",
+                "jerk": "box_jerk",
+                "snap": "box_snap",
+                "crackle": "box_crackle",
+            },
         ),
     ),
     series_count="sample_count",
+    excitation=("box_amplitude", "box_frequency"),
     clock=Clock("impact", "Ticks at each impact", "impact_count"),
 )

@@ -137,6 +137,7 @@ void instance_reset(Instance *instance) {
     state->phase = INSTANTIATED;
     state->stale = true;
     instance->stop_time = INFINITY;
+    instance->warned = false;
 }
 
 /* A kernel's message with its slots filled in: {12}, {12:0} as a whole number, or {12:one|two}. */
@@ -251,6 +252,17 @@ static Status refuse_step(Instance *instance, const char *call, double current, 
     return refuse(instance, call, text);
 }
 
+/* Report once that a step is so short that the time stays the same; it is done all the same. */
+static Status warn_short_step(Instance *instance, const char *call, double current, double size) {
+    char text[TEXT] = "communicationStepSize = ";
+    append_number(text, size);
+    append(text, " s: too short to change the time, ");
+    append_number(text, current);
+    append(text, " s, expected a longer one; reported once");
+    instance->warned = true;
+    return complain(instance, WARNING, call, text);
+}
+
 /* Advance with a copy of the state to go back to: a step that reaches its limit of evaluations is discarded, and a shorter one may follow. */
 static Status advance(Instance *instance, const char *call, double target) {
     double *memory = instance->state.memory, reached = memory[TIME_SLOT];
@@ -278,10 +290,13 @@ Status step(Instance *instance, const char *call, double current, double size) {
     if (!(size >= 0 && size < INFINITY && fabs(current - reached) <= rounding) || target - instance->stop_time > rounding)
         return refuse_step(instance, call, current, size);
     if (target < reached) target = reached;  /* the importer's clock may be a rounding behind */
+    bool short_step = size > 0 && current + size == current && !instance->warned;
+    Status warning = short_step ? warn_short_step(instance, call, current, size) : OK;
 #if COAST
-    if (!kernel_coast(memory, target)) return OK;
+    if (!kernel_coast(memory, target)) return warning;
 #endif
-    return advance(instance, call, target);
+    Status status = advance(instance, call, target);
+    return status == OK ? warning : status;
 }
 
 Status may_get(Instance *instance, const char *call, const Variable *variable) {
@@ -307,9 +322,20 @@ void differentiate(const Instance *instance, double memory[MEMORY_SIZE]) {
 }
 
 const Variable *find(Instance *instance, const char *call, unsigned reference, Type type) {
-    if (reference < VARIABLE_COUNT && VARIABLES[reference].type == type) return &VARIABLES[reference];
+    const Variable *variable = reference < VARIABLE_COUNT ? &VARIABLES[reference] : NULL;
+    bool real = variable && REAL_OUTPUTS && variable->calculated;  /* so described; by its own type it can be read all the same */
+    if (variable && (variable->type == type || (real && type == REAL))) return variable;
     char text[TEXT];
-    snprintf(text, sizeof text, "valueReference = %u: expected one of this type in modelDescription.xml", reference);
+    snprintf(text, sizeof text, "valueReference = %u: ", reference);
+    if (variable) {
+        append(text, variable->name);
+        append(text, " is one of the ");
+        append(text, TYPE_NAMES[real ? REAL : variable->type]);
+        append(text, " variables, ");
+    }
+    append(text, "expected one of the ");
+    append(text, TYPE_NAMES[type]);
+    append(text, " variables in modelDescription.xml");
     refuse(instance, call, text);
     return NULL;
 }

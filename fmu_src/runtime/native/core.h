@@ -33,6 +33,7 @@ typedef enum { INSTANTIATED = 1, INITIALIZING = 2, STEPPING = 4, EVENT = 8, STOP
 
 typedef struct Instance Instance;
 typedef void (*Report)(Instance *, Status, const char *text);
+#define CATEGORY(status) ((status) == WARNING ? "logStatusWarning" : "logStatusError")
 
 typedef struct {  /* what saving an instance has to keep */
     double zero;  /* always 0.0: importers exist that free a state by a pointer to it, not to its handle (fmusim 0.0.39); then NULL is what is freed */
@@ -50,6 +51,7 @@ struct Instance {
     void *environment;
     void *logger;
     bool event_mode, early_return;
+    bool warned;  /* of a step too short to advance the time */
     char *name;
 };
 
@@ -71,6 +73,8 @@ Status set_experiment(Instance *, const char *call, double start_time, double st
 Status enter_initialization(Instance *, const char *call);
 Status exit_initialization(Instance *, const char *call);
 Status step(Instance *, const char *call, double current, double size);
+
+extern const char *const TYPE_NAMES[];  /* of FMI's version, in the order of Type */
 
 /* Find the variable of a reference, of a type; NULL after a refusal. */
 const Variable *find(Instance *, const char *call, unsigned reference, Type type);

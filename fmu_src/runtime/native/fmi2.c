@@ -9,6 +9,8 @@
 #define SETTABLE (INSTANTIATED | INITIALIZING | STEPPING)
 #define READABLE (INITIALIZING | STEPPING | STOPPED | TERMINATED)
 
+const char *const TYPE_NAMES[] = {"Real", "Integer", "Boolean"};
+
 static void report(Instance *instance, Status status, const char *text) {
     const fmi2CallbackFunctions *callbacks = instance->logger;
     if (!callbacks || !callbacks->logger) return;
@@ -20,7 +22,7 @@ static void report(Instance *instance, Status status, const char *text) {
     }
     *to = 0;
     /* errors are told whether debug logging is on or not */
-    callbacks->logger(instance->environment, instance->name, (fmi2Status)status, "logStatusError", format);
+    callbacks->logger(instance->environment, instance->name, (fmi2Status)status, CATEGORY(status), format);
 }
 
 static fmi2Status refuse2(Instance *instance, const char *call, const char *text) {

@@ -10,8 +10,10 @@
 #define CALCULATED (INITIALIZING | STEPPING | EVENT | STOPPED | TERMINATED)
 #define READABLE (INSTANTIATED | CALCULATED)  /* start values, before anything is calculated */
 
+const char *const TYPE_NAMES[] = {"Float64", "Int32", "Boolean"};
+
 static void report(Instance *instance, Status status, const char *text) {
-    if (instance->logger) ((fmi3LogMessageCallback)(size_t)instance->logger)(instance->environment, (fmi3Status)status, "logStatusError", text);
+    if (instance->logger) ((fmi3LogMessageCallback)(size_t)instance->logger)(instance->environment, (fmi3Status)status, CATEGORY(status), text);
 }
 
 static fmi3Status refuse3(Instance *instance, const char *call, const char *text) {
@@ -280,8 +282,8 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 current, fmi3Float64 size, fmi
     Status status = step(instance, "fmi3DoStep", current, size);
     *event_needed = *terminate = *early = fmi3False;
     *last = instance->state.memory[TIME_SLOT];
-    if (status != OK) return (fmi3Status)status;
+    if (status != OK && status != WARNING) return (fmi3Status)status;
     *early = *last < current + size;
     *event_needed = instance->state.clock = instance->event_mode && impacts(instance) > before;
-    return fmi3OK;
+    return (fmi3Status)status;
 }

@@ -38,6 +38,7 @@
 #define exit_initialization OWN(exit_initialization)
 #define step OWN(step)
 #define find OWN(find)
+#define TYPE_NAMES OWN(TYPE_NAMES)
 #define may_set OWN(may_set)
 #define set OWN(set)
 #define refresh OWN(refresh)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ...errors import InputError
 from ...response.labels import variable
@@ -31,6 +31,7 @@ MOST_ORDERS = 50
 EDGE = 2.0  # periods at both ends where the Hilbert transform is not trusted
 NYQUIST = 0.45  # of the sampling rate: orders above are not resolved
 NO_SINE = 0.5  # rms of what the box does beside its sine, over the rms of the sine
+LEAST_LEVEL = 1e-6  # of the largest amplitude of the box: below, it is at rest
 
 
 @dataclass(frozen=True)
@@ -90,7 +91,8 @@ def track_orders(
     In each window a constant and, for each order n, ``A sin(n phase + theta)`` are fitted by least
     squares with Hann weights; A cos(theta) and A sin(theta) may change at a constant rate. The
     measured phase is that of the analytic signal, smoothed in each window by a polynomial of third
-    degree, less the phase that the box's own order 1 then has.
+    degree, less the phase that the box's own order 1 then has. Windows in which the box does not
+    move as a sine, as in silence between two sweeps, are left out.
 
     Examples
     --------
@@ -154,7 +156,12 @@ def fit_windows(
     amplitudes = np.stack([fitted[0] for fitted in fits], axis=-1)
     residual = np.stack([fitted[1] for fitted in fits], axis=-1)
     if measured:
-        amplitudes = against_box(channels, amplitudes, residual, orders)
+        sine = moves_as_sine(channels, windows, amplitudes, residual, orders)
+        windows = [window for window, kept in zip(windows, sine, strict=True) if kept]
+        amplitudes, residual = (
+            against_box(channels, amplitudes[..., sine], orders),
+            residual[:, sine],
+        )
     return windows, amplitudes, residual
 
 
@@ -209,20 +216,32 @@ def measured_phase(channels: Channels) -> Floats:
     return np.asarray(angle)
 
 
-def against_box(
-    channels: Channels, amplitudes: Floats, residual: Floats, orders: tuple[float, ...]
-) -> Floats:
+def against_box(channels: Channels, amplitudes: Floats, orders: tuple[float, ...]) -> Floats:
     """Refer complex amplitudes to the phase of the box's own order 1."""
+    shift = np.angle(amplitudes[channels.names.index(BOX), orders.index(1.0)])
+    return np.asarray(amplitudes * np.exp(-1j * np.array(orders)[:, None] * shift))
+
+
+def moves_as_sine(
+    channels: Channels,
+    windows: Sequence[Window],
+    amplitudes: Floats,
+    residual: Floats,
+    orders: tuple[float, ...],
+) -> NDArray[np.bool_]:
+    """Return a mask of the windows in which the box is a sine; raise if less than half the time."""
     row, first = channels.names.index(BOX), orders.index(1.0)
-    box = amplitudes[row, first]
-    beside = float(np.median(residual[row] / np.maximum(np.abs(box) * 0.5**0.5, 1e-300)))
-    if not beside <= NO_SINE:
+    rms = np.abs(amplitudes[row, first]) * 0.5**0.5
+    beside = residual[row] / np.maximum(rms, 1e-300)
+    forward = np.array([window.frequency > 0.0 for window in windows])
+    sine = forward & (beside <= NO_SINE) & (rms > LEAST_LEVEL * rms.max())
+    length = np.array([len(window.phase) for window in windows])
+    if length[sine].sum() < 0.5 * length.sum():
         raise InputError(
-            f"{channels.box_label}: {beside:.2g} of its sine's rms is no sine; "
+            f"{channels.box_label}: {np.median(beside):.2g} of its sine's rms is no sine; "
             "expected a swept sine, or phase="
         )
-    shift = np.angle(box)
-    return np.asarray(amplitudes * np.exp(-1j * np.array(orders)[:, None] * shift))
+    return np.asarray(sine)
 
 
 # -- windows --------------------------------------------------------------------------------------

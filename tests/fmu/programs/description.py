@@ -1,60 +1,55 @@
 """What depends on which start value."""
 
-from driver import Refused, open_fmu
+from driver import Refused, describe, open_fmu
+
+TOUCHING = {"x1_start": 0.25, "x2_start": 0.25, "phase_start": 0.5}
+STARTS = (  # at rest, in flight, at impacts, on the boundary, where what is driven first decides
+    {},
+    {"x2_start": 0.5, "v1_start": 0.25},
+    {**TOUCHING, "v1_start": 1.0, "e": 0.05, "gamma": 0.9},
+    {**TOUCHING, "v1_start": 1.0, "e": 0.05, "e_slope": 2.0, "gamma": 0.9, "d2": 0.02},
+    {**TOUCHING, "v1_start": 0.5, "v2_start": 0.5, "d2": 0.03},
+    {"v1_start": 1.0, "clearance": -0.5, "d2": 0.03},
+    {"clearance": 0.5},
+    {"clearance": -0.5},
+    {"d2": 0.03, "phase_start": -0.5},
+    {"d2": 0.03, "box_amplitude": 0.0},
+)
 
 
-def initial_dependencies_are_true(path):
-    changes = {
-        "m1": 1.5,
-        "m2": 1.7,
-        "k1": 1.3,
-        "k2": 1.6,
-        "d1": 0.3,
-        "d2": 0.2,
-        "e": 0.4,
-        "gamma": 0.9,
-        "x1_start": -0.125,
-        "x2_start": 0.375,
-        "v1_start": 0.3,
-        "v2_start": -0.2,
-        "phase_start": 2.0,
-        "box_amplitude": 2.0,
-        "box_frequency": 0.9,
-        "box_acceleration": -3.0,
-        "box_jerk": 2.0,
-        "box_snap": 2.0,
-        "box_crackle": 2.0,
-        "bonded": True,
-        "x_rel_max_on": False,
-    }
-    bases = [
-        {},
-        {"x2_start": 0.5, "v1_start": 0.25},
-        {"x1_start": 0.25, "x2_start": 0.25, "v1_start": 1.0, "phase_start": 0.5},
-        {"x1_start": 0.25, "x2_start": 0.25, "v1_start": 0.5, "v2_start": 0.5, "phase_start": 0.5},
-    ]
-    found = {}
+def initial_dependencies(path):
+    """The outputs that each start value moves at the start, by more than rounding."""
+    settable = [v for v in describe(path).modelVariables if v.causality in ("parameter", "input")]
+    moved = {v.name: set() for v in settable}
 
     def at_start(values):
         f = open_fmu(path)
-        f.set(**values)
-        f.enter()
         try:
+            f.set(**values)
+            f.enter(3.0)
             return f.outputs()
         except Refused:
-            return None
+            return {}
         finally:
             f.free()
 
-    for base in bases:
-        plain = at_start(base)
-        for name, value in changes.items():
-            other = at_start({**base, name: value})
-            if other:
-                found.setdefault(name, set()).update(
-                    key for key in plain if plain[key] != other[key]
-                )
-    return {name: sorted(keys) for name, keys in found.items()}
+    def differs(one, other):
+        return abs(one - other) > 1e-12 * (abs(one) + abs(other))
+
+    for start in STARTS:
+        outputs = at_start(start)
+        for v in settable:
+            if v.type == "Boolean":
+                values = [v.start != "true"]
+            elif v.type in ("Real", "Float64"):
+                value = start.get(v.name, float(v.start))
+                values = [0.0, value - 0.3, value + 0.3, value - 2.0, value + 2.0]
+            else:
+                values = [int(v.start) // 2, 3]
+            for value in values:
+                other = at_start({**start, v.name: value})
+                moved[v.name] |= {key for key in other if differs(outputs[key], other[key])}
+    return {name: sorted(keys) for name, keys in moved.items()}
 
 
 def outputs_wait_for_the_next_step(path, values):

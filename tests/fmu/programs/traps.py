@@ -11,7 +11,7 @@ from pathlib import Path
 
 import fmpy
 import numpy as np
-from driver import OK, Fmu2, Refused, describe, harmonic, open_fmu
+from driver import OK, Fmu2, Refused, describe, harmonic, messages, open_fmu
 
 
 def two_versions_in_one_process_do_not_share_code(mine, other, first):
@@ -151,6 +151,17 @@ def working_folder_and_paths(path, folder):
         os.chdir("/")
         folder = fmpy.extract(path, folder)
     return open_fmu(path, folder=folder).start().step(50.0).outputs()
+
+
+def short_steps(path):
+    """The log categories on offer, and what is logged of a thousand steps that lead nowhere."""
+    f, texts = open_fmu(path).start(1e9, **harmonic(1.13)), []
+    before = f.outputs()
+    for _ in range(1000):
+        f.call("doStep", 1e9, 1e-9)
+        texts += messages
+    assert f.outputs() == before != f.step(1e9 + 1.0).outputs()
+    return [[category.name for category in describe(path).logCategories], texts + messages]
 
 
 def log_category(path, categories):

@@ -20,6 +20,7 @@ COMMANDS = (
         "build",
         "simulate",
         "shake",
+        "cosimulate",
         "analyse",
         "diagnose",
         "resonance",

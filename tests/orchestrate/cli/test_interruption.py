@@ -128,7 +128,8 @@ def test_an_interrupted_command_without_a_store_says_so(tmp_path, capsys, monkey
 
 @pytest.mark.parametrize("number", ordinary([signal.SIGKILL, signal.SIGTERM]))
 def test_no_worker_outlives_the_main_process(commands, number):
-    process = commands.start(*RUNS["sweep"], "--jobs", "2", "--transient", "20000")
+    ranges = "--eta", "1.1:1.4:0.005", "--over", "e", "--values", "0.3:0.9:0.005"
+    process = commands.start("map", *ranges, "--jobs", "2", "--transient", "20000")
     wait_for(lambda: len(list(below(process.pid))) >= 3, process, "workers were there")
     workers = list(below(process.pid))
     os.kill(process.pid, number)

@@ -1,6 +1,7 @@
 """Impacts are heard at high frequencies, and dry friction is not taken for them."""
 
 import numpy as np
+import pytest
 
 import orchestrate
 from orchestrate.diagnosis.bursts import burst_excess
@@ -21,7 +22,7 @@ def knocks(time, twice):
     return inside * sign * np.exp(-after / 1e-3) * np.sin(2.0 * np.pi * RINGING * after)
 
 
-def knocked(size, twice=False, rate=2000.0):
+def knocked(size, twice=False, rate=2000.0, noise=NOISE):
     """A bonded beam's record with noise, and with knocks while it moves most."""
     history = orchestrate.shake(BEAM.as_bonded(), SWEEP, sample_rate=rate, progress=False)
     sensor = orchestrate.Sensor(bandwidth=0.4 * rate, sample_rate=rate)
@@ -29,7 +30,7 @@ def knocked(size, twice=False, rate=2000.0):
     time, rng, channels = felt.time.values, np.random.default_rng(3), {}
     for name in ("box_acceleration", "acceleration1"):
         values = felt[name].values
-        channels[name] = values + NOISE * values.std() * rng.standard_normal(len(values))
+        channels[name] = values + noise * values.std() * rng.standard_normal(len(values))
     rms = channels["acceleration1"].std()
     channels["acceleration1"] = channels["acceleration1"] + size * rms * knocks(time, twice)
     return orchestrate.record(time=time, **channels)
@@ -43,6 +44,17 @@ def test_knocks_once_a_period_are_heard_and_those_at_both_ends_of_the_stroke_are
     assert 0.5 < excess(knocked(0.0)) < 0.9
     assert excess(knocked(0.3)) > 2.0
     assert excess(knocked(0.3, twice=True)) < 0.9
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_lost_samples_are_no_bursts_once_a_period(seed):
+    """Each makes one burst, in all channels, where the record is quiet."""
+    record = knocked(0.0, noise=0.002)
+    rng, kept = np.random.default_rng(seed), np.ones(record.sizes["time"], bool)
+    kept[rng.choice(len(kept), 3, replace=False)] = False
+    channels = {name: record[name].values[kept] for name in record.data_vars}
+    lost = orchestrate.record(**channels, sample_rate=record.attrs["sample_rate"])
+    assert excess(lost) < 0.9
 
 
 def test_a_record_that_is_sampled_too_slowly_tells_nothing_about_impacts():

@@ -1,5 +1,7 @@
 """Orders in short windows, against signals whose orders are known."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -57,12 +59,33 @@ def test_samples_that_are_taken_later_have_the_same_orders():
 
 
 def test_an_order_above_the_sampling_is_missing_and_not_wrong():
-    sweep = orchestrate.SweptSine(first=120.0, last=240.0, duration=12.0, acceleration=2.0)
+    sweep = orchestrate.SweptSine(first=120.0, last=220.0, duration=12.0, acceleration=2.0)
     found = record_orders(made(sweep))
     above = 3.0 * found.windows.frequency > 0.45 * RATE
     assert 0 < above.sum() < len(above)
     assert (np.isnan(found.order(3.0, "acceleration1")) == above).all()
     assert np.isfinite(found.floor).all()
+
+
+def resonant(rate):
+    """A swept sine from 20 to 70 Hz, and a mass that moves most at 46 Hz."""
+    sweep = orchestrate.SweptSine(first=20.0, last=70.0, duration=20.0, acceleration=2.0)
+    time = np.arange(0.0, sweep.duration, 1.0 / rate)
+    box = 2.0 * np.sin(sweep.phase(time))
+    mass = box * (1.0 + 9.0 * np.exp(-(((sweep.frequency(time) - 46.0) / 5.0) ** 2)))
+    return orchestrate.record(time=time, box_acceleration=box, acceleration1=mass)
+
+
+def test_a_record_whose_sampling_does_not_read_order_2_is_refused_in_one_line():
+    """Of faster ones the windows are left out in which order 2 is not read."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(orchestrate.InputError, match="143 samples a second are 3.1") as caught:
+            record_orders(resonant(143.0))
+        found = record_orders(resonant(250.0))
+    assert "expected 4.44 or more, to read order 2" in str(caught.value)
+    assert 54.0 < found.windows.frequency.max() < 57.0
+    assert np.isfinite(found.order(2.0, "acceleration1")).all() and np.isfinite(found.noise).all()
 
 
 def test_a_channel_that_does_not_move_is_refused():

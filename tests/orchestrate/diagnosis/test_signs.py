@@ -90,7 +90,7 @@ def linear(base, f, zeta):
         [[-(w**2), -2.0 * zeta * w]],
         [[0.0]],
     )
-    return lsim(system, base[BOX].values, TIME)[1]
+    return lsim(system, base[BOX].values, base.time.values)[1]
 
 
 def test_a_delaminated_beam_stands_out(exported):
@@ -211,3 +211,20 @@ def test_mistakes_are_one_line(wrong, text):
 def test_a_record_without_a_response_is_refused():
     with pytest.raises(InputError, match="no acceleration1"):
         orchestrate.signs(record({1: 6.0}).drop_vars("acceleration1"))
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("rate", [1000.0, 120.0])
+def test_two_sweeps_with_silence_between_have_signs_at_any_sampling_rate(rate):
+    """Silence has no frequency, and at a low rate no window may resolve an order between orders."""
+    time, rng = np.arange(int(8.0 * rate)) / rate, np.random.default_rng(4)
+    sweep = 2.0 * np.sin(2.0 * np.pi * (26.0 * time + 1.5 * time**2))
+    box = np.concatenate([sweep, np.zeros(int(2.0 * rate)), sweep])
+    data = {"box_acceleration": box, "acceleration1": np.zeros_like(box)}
+    base = xr.Dataset(
+        {name: ("time", values) for name, values in data.items()},
+        {"time": np.arange(len(box)) / rate},
+    )
+    response = linear(base, 42.0, 0.02) + 0.01 * rng.normal(size=len(box))
+    made = base.assign(acceleration1=("time", response))
+    assert float(signs(made).sound_f) == pytest.approx(42.0, rel=0.02)

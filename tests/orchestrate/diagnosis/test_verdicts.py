@@ -28,7 +28,13 @@ OPENED = Findings(
     first=20.0,
     last=90.0,
     smallest=1e-6,
+    hidden=0.01,
+    clipped=0.0,
+    end_response=0.2,
+    resonance=46.0,
+    guessed=(42.0, 52.0),
 )
+QUIET = replace(OPENED, excess=0.3, sound_misfit=0.3, bursts=0.8)
 CASES = {
     "opens, and the halves explain it": ({}, "delaminated"),
     "no order 2, one mass explains it": (
@@ -58,7 +64,26 @@ CASES = {
         "not described",
     ),
     "better, but not in most parts of the record": ({"share": 0.6}, "undecided"),
-    "no order 2, but the faces move apart": ({"excess": 0.2, "apart": 4.0}, "delaminated"),
+    "no order 2, but the faces move apart and impacts are heard": (
+        {"excess": 0.2, "apart": 4.0},
+        "delaminated",
+    ),
+    "the faces differ, as by a torsion mode of a sound beam": (
+        {"excess": 0.25, "bursts": 0.8, "apart": 40.0, "sound_misfit": 1.4},
+        "undecided",
+    ),
+    "the same, and nothing hears impacts": (
+        {"excess": 0.25, "bursts": float("nan"), "apart": 40.0, "sound_misfit": 1.4},
+        "undecided",
+    ),
+    "the faces differ alone, and the halves explain it far better": (
+        {"excess": 0.25, "bursts": 0.8, "apart": 40.0, "sound_misfit": 9.0},
+        "delaminated",
+    ),
+    "the odds speak against it": ({"simulated_odds": 0.68}, "undecided"),
+    "a channel is saturated": ({"clipped": 0.01}, "undecided"),
+    "the sweep does not pass the resonance": ({"end_response": 0.98}, "undecided"),
+    "the times are in ms": ({"resonance": 0.046}, "undecided"),
     "the halves explain it hardly better": ({"sound_misfit": 1.1}, "undecided"),
     "the same, and the faces move apart": ({"sound_misfit": 0.9, "apart": 4.0}, "delaminated"),
     "they move apart, and one mass explains it as well": (
@@ -74,6 +99,39 @@ CASES = {
         "not described",
     ),
 }
+
+
+STOPS = {  # and what is named
+    "saturated": ({"clipped": 0.012}, "1.2 % of a channel's samples", "larger range"),
+    "a short sweep": ({"end_response": 0.98}, "does not pass the resonance", "passes the reson"),
+    "times in ms": ({"resonance": 0.046}, "a factor of 913 from the guess's", "in s"),
+    "noise": ({"hidden": 0.19}, "hides an order 2 of up to 19 %", "less noise"),
+    "misfit": ({"sound_misfit": 1.3}, "1.3, where at most 1.2 describes", ""),
+}
+
+
+@pytest.mark.parametrize("name", STOPS)
+def test_what_keeps_a_quiet_record_from_its_verdict_is_named(name):
+    changes, reason, advice = STOPS[name]
+    assert QUIET.verdict() == "no opening seen" and not QUIET.stops
+    stopped = replace(QUIET, **changes)
+    assert stopped.verdict() == "undecided"
+    assert reason in stopped.reason() and advice in stopped.next_measurement()
+
+
+def test_what_keeps_a_record_from_being_called_delaminated_is_named():
+    partly = replace(OPENED, sound_misfit=1.216, share=0.7)
+    assert "1.52 times as large" in partly.reason()
+    assert "exceeds 1.5 in 0.7 of the records" in partly.reason() and "0.9" in partly.reason()
+    unlikely = replace(OPENED, simulated_odds=0.65)
+    assert "odds of delaminated against sound are 0.65 to 1" in unlikely.reason()
+    missed = replace(OPENED, apart=4.0, sound_misfit=4.77, delaminated_misfit=4.5)
+    assert missed.verdict() == "not described"
+    assert "misfit is 4.5, where at most 4 describes" in missed.reason()
+    torsion = replace(OPENED, excess=0.25, bursts=0.8, apart=40.0, sound_misfit=1.4)
+    assert "two modes of a sound beam" in torsion.reason()
+    assert "opposite" in torsion.next_measurement()
+    assert OPENED.stops == []
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -104,7 +162,7 @@ def test_a_verdict_by_a_model_that_describes_the_record_only_so_well_says_so():
 
 
 def test_what_strikes_is_named_and_what_was_not_listened_for_too():
-    quiet = replace(OPENED, excess=0.3, sound_misfit=0.3, bursts=0.8)
+    quiet = QUIET
     assert "strikes" not in quiet.reason() and "too slowly" not in quiet.seen_up_to()
     assert "strikes once a period" in replace(quiet, bursts=3.0).reason()
     assert "sampled too slowly" in replace(quiet, bursts=float("nan")).seen_up_to()
@@ -125,8 +183,15 @@ def test_numbers_at_their_bounds_are_reported_with_slopes():
 def test_a_ratio_that_one_part_of_the_record_makes_is_not_certain():
     rng = np.random.default_rng(1)
     one = rng.standard_normal((1, 4, 200))
-    assert resampled_share(3.0 * one, one) == 1.0
-    assert resampled_share(one, one) == 0.0
+    assert resampled_share(3.0 * one, one, 1.5) == 1.0
+    assert resampled_share(one, one, 1.5) == 0.0
     burst = one.copy()
     burst[..., 50:60] *= 12.0
-    assert 0.02 < resampled_share(burst, one) < 0.98
+    assert 0.02 < resampled_share(burst, one, 1.5) < 0.98
+
+
+def test_a_number_beyond_its_limit_is_not_written_as_the_limit():
+    """It read: a misfit of 1.2, where at most 1.2 describes a record."""
+    beyond = replace(QUIET, sound_misfit=1.203, delaminated_misfit=1.203)
+    assert "misfit is 1.203, where at most 1.2 describes" in replace(beyond).reason()
+    assert "1.004 times the size" in replace(OPENED, excess=1.0041).reason()

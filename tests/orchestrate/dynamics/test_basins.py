@@ -170,21 +170,6 @@ def test_what_is_refused(asked, text):
         basin(PAPER.as_bonded(), eta=ETA)
 
 
-def test_a_job_may_find_its_plane_in_what_it_starts_from():
-    class Chosen(BasinJob):
-        def plane(self, inputs):
-            return Plane(POINT, self.x, self.y, AT)
-
-    job = Chosen(
-        name="b",
-        structure=PAPER,
-        excitation=POINT.excitation,
-        x=PlaneAxis("x2", 0.0, 1.0, 2),
-        y=PlaneAxis("v2", 0.0, 1.0, 2),
-    )
-    assert [item.state[0] for item in job.items({})[:-1]] == [-1.0] * 4
-
-
 @pytest.mark.usefixtures("exported")
 @pytest.mark.parametrize("structure", [PAPER, Structure(m1=1.5, m2=1.5, k1=8437.5, k2=10125.0)])
 def test_the_default_plane_holds_the_attractors_and_shows_both_basins(structure, monkeypatch):

@@ -14,7 +14,8 @@ from orchestrate import cli
 from orchestrate.access import OSCILLATOR, Instance, find
 from orchestrate.explorer.page import explore
 from orchestrate.response.questions import Point
-from orchestrate.response.respond import follow_responses
+from orchestrate.response.respond import responses_from
+from orchestrate.response.response_loop import LoopSettings, response_loop
 from orchestrate.structures import Excitation, Structure
 
 from ...sparing import ordinary
@@ -53,7 +54,9 @@ def test_every_response_has_the_samples_of_the_file_to_the_last_bit(browser, swe
         Point(PAPER, Excitation.nondimensional(float(eta), PAPER)) for eta in swept.eta.values
     ]
     with Instance(find(OSCILLATOR).path) as instance:
-        responses = list(follow_responses(instance, points, (0.0,) * 4, 500, 200, 1e-2))
+        settings = LoopSettings(transient=500, samples=200, is_chain=True)
+        results = response_loop(instance).respond(points, [(0.0,) * 4], settings)
+        responses = list(responses_from(results, points, 1e-2))
     for mine, theirs in (("impacts", "impacts_per_period"), ("multiplicity", "multiplicity")):
         numbers = browser.numbers(f"{found}.map((one) => one.{mine})")
         assert np.array_equal(numbers, [getattr(one, theirs) for one in responses])

@@ -13,6 +13,7 @@ from scipy.io import wavfile
 
 from orchestrate import InputError, Sampled, read_record, record, write_record
 from orchestrate.laboratory import record_files, record_mat
+from orchestrate.laboratory.record_checks import clipped_share
 
 from ...sparing import ordinary
 
@@ -49,6 +50,26 @@ def test_times_with_few_digits_are_even():
     assert data.attrs["sample_rate"] == 25_600.0
     alone = record(time=time, acceleration1=np.sin(time))
     assert alone.attrs["sample_rate"] == pytest.approx(25_600.0, rel=1e-5)
+
+
+def five_digits(count=12_000, rate=1024.0):
+    time = np.arange(count) / rate
+    return np.array([float(f"{one:.5g}") for one in time]), np.sin(300.0 * time)
+
+
+def test_rounded_times_say_so_and_a_sampling_rate_corrects_them():
+    time, values = five_digits()
+    with pytest.raises(InputError, match=r"rounded to 0.001 s, give sample_rate="):
+        record(time=time, acceleration1=values)
+    data = record(time=time, acceleration1=values, sample_rate=1024.0)
+    assert (data.time.values == np.arange(len(time)) / 1024.0).all()
+    with pytest.raises(
+        InputError, match=r"sample_rate = 1000.0 Hz: expected 102\d.*, as the times"
+    ):
+        record(time=time, acceleration1=values, sample_rate=1000.0)
+    kept = np.delete(np.arange(len(time)), [5000, 7000, 9000])
+    with pytest.raises(InputError, match="time, row"):
+        record(time=time[kept], acceleration1=values[kept], sample_rate=1024.0)
 
 
 def changed(column, row, value):
@@ -105,6 +126,30 @@ def test_a_missing_sample_is_noticed():
 def test_implausible_units_warn(values, words):
     with pytest.warns(UserWarning, match=words):
         record(acceleration1=values, sample_rate=100.0)
+
+
+SWEPT = 4.0 * np.sin(2.0 * np.pi * (30.0 + 2.0 * np.arange(4000) / 1000.0) * np.arange(4000) / 1e3)
+
+
+@pytest.mark.parametrize(
+    ("face", "words"),
+    [
+        (3.0 * SWEPT[::-1].clip(-2.0, 2.0), "saturated: 67 % of its samples repeat"),
+        (np.where(np.arange(4000) < 3000, SWEPT[::-1], 0.0), "keeps the value 0 from 3 to 3.999 s"),
+        (SWEPT.copy(), "the same values as box_acceleration"),
+    ],
+)
+def test_a_saturated_dead_or_doubled_channel_warns(face, words):
+    with pytest.warns(UserWarning, match=words) as caught:
+        record(box_acceleration=SWEPT, acceleration1=face, sample_rate=1000.0)
+    assert len(caught) == 1 and "acceleration1" in str(caught[0].message)
+
+
+def test_silence_of_a_whole_record_does_not_warn(recwarn):
+    swept = np.concatenate([SWEPT, np.zeros(2000), SWEPT])
+    record(box_acceleration=swept, acceleration1=np.roll(swept, 7), sample_rate=1000.0)
+    record(box_acceleration=SWEPT, acceleration1=SWEPT, sample_rate=1000.0, source="simulated")
+    assert not recwarn
 
 
 def test_plausible_units_do_not_warn(recwarn):
@@ -168,6 +213,10 @@ def test_other_datasets_of_universal_files_are_skipped_with_a_line(tmp_path, cap
         orddenom_spec_data_type=0, **common,
     )  # fmt: skip
     pyuff.UFF(str(path)).write_sets([units, frf, base], mode="add")
+    alone = tmp_path / "frf.uff"
+    pyuff.UFF(str(alone)).write_sets([units, frf], mode="add")
+    with pytest.raises(InputError, match=r"datasets 164, 58 \(frequency response\); expected a"):
+        read_record(alone)
     with caplog.at_level(logging.INFO):
         back = read_record(path)
     assert (back.box_acceleration.values == G * data.acceleration1.values).all()
@@ -197,6 +246,18 @@ TEXTS = {
 }
 
 
+TEXTS |= {
+    "quoted decimal commas": 'Zeit [ms],Base [g],Mass 1 [g]\n"0,0","0,1","-0,1"\n"0,5","0,2",2\n'
+    '1,"-0,3","3,5"\n"1,5",0,4\n',
+    "units after a slash": "Zeit / ms;Acc Tisch / g;Acc 1 / g\n0,0;0,1;-0,1\n0,5;0,2;2\n"
+    "1,0;-0,3;3,5\n1,5;0;4\n",
+    "a column of texts": "Nr;Uhrzeit;Zeit [ms];Shaker acc [g];Mass 1 z [g];Alarm\n1;12:00:00;0,0;"
+    "0,1;-0,1;none\n2;12:00:00;0,5;0,2;2;none\n3;12:00:00;1,0;-0,3;3,5;high\n4;12:00:00;1,5;0;4;none\n",
+    "units of other columns": "t,table,a1,temp\ns,g,g,\u00b0C\n0,0.1,-0.1,20\n5e-4,0.2,2,20\n"
+    "1e-3,-0.3,3.5,21\n1.5e-3,0,4,20\n",
+}
+
+
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "cp1252", "utf-16"])
 @pytest.mark.parametrize("name", TEXTS)
 def test_text_as_analysers_write_it(tmp_path, name, encoding):
@@ -207,7 +268,7 @@ def test_text_as_analysers_write_it(tmp_path, name, encoding):
     assert np.allclose(data.box_acceleration, G * np.array([0.1, 0.2, -0.3, 0.0]), rtol=1e-15)
     assert np.allclose(data.acceleration1, G * np.array([-0.1, 2.0, 3.5, 4.0]), rtol=1e-15)
     assert data.attrs["sample_rate"] == 2000.0 and data.attrs["source"] == "test.csv"
-    if "[g]" in TEXTS[name] or "(g)" in TEXTS[name]:
+    if any(unit in TEXTS[name] for unit in ("[g]", "(g)", "/ g", ",g,")):
         same(read_record(path), data)
 
 
@@ -262,6 +323,20 @@ def test_columns_are_named_or_numbered(tmp_path):
     assert without.attrs["sample_rate"] == 10.0 and set(without.data_vars) == {"acceleration1"}
 
 
+def counted(*lost):
+    rows = [f"{i},{i / 100},{i % 7}" for i in range(40) if i + 1 not in lost]
+    return "n,time [s],base [m/s2]\n" + "\n".join(rows)
+
+
+def clocks(name):
+    return f"{name},base [g]\n" + "".join(f"12:00:0{i},{i % 3}\n" for i in range(6))
+
+
+def wide(count):
+    head = ",".join(f"c{i}" for i in range(count))
+    return "\n".join([head, *(",".join(str(i * j % 7) for i in range(count)) for j in range(5))])
+
+
 def lines(**changes):
     rows = [f"{i / 1000.0},{i % 7},{i % 5}" for i in range(40)]
     for row, text in changes.items():
@@ -296,6 +371,25 @@ def test_a_record_says_which_unit_was_taken_in_place_of_the_file_s(tmp_path):
         ("t,base\n0,1\n1,2\n2,3\n3,1\n", 'column "base": no unit; expected one such as m/s2, g'),
         ("t [s],base [g]\n0,1\n1,2\n", "base_acceleration"),
         ("\0\1\2", "no text; expected columns of numbers"),
+        (counted(9, 17), 'column "n", row 10: 9 after 7; expected equal steps: samples are lost'),
+        (clocks("Zeit"), "column \"Zeit\", row 2: '12:00:00', a clock time; expected numbers in s"),
+        (
+            clocks("left").replace("base", "top"),
+            "column \"left\", row 2: '12:00:00', a clock time; expected numbers in s",
+        ),
+        ("t;base [g]\n1;1.234,5\n2;1.0,2\n", "row 2: '1.234,5', a number with thousands sep"),
+        ("t;base\n2026-01-01;1.234,5\n", "row 2: '2026-01-01', a date; expected columns of num"),
+        ("frequency,H1,phase\n1,2,3\n2,3,4\n3,4,5\n", "an FRF, a spectrum or a resonance curve"),
+        ("f [Hz],base [g\u00b2/Hz]\n1,2\n2,3\n3,4\n", "a spectral density over the frequency in"),
+        (
+            "time,acc_x,acc_y,acc_z\n0,1,2,3\n1,2,3,4\n",
+            "directions of one sensor among the columns",
+        ),
+        ("time,base x,base y\n0,1,2\n1,2,3\n", 'columns "base x", "base y" may each be base; ex'),
+        (
+            wide(14),
+            "14 columns c0, c1, c2, c3, c4, c5, c6, c7, c8, c9, c10, c11 and 2 more; expected",
+        ),
     ],
 )
 def test_damaged_text_is_refused_in_one_line(tmp_path, text, words):
@@ -306,6 +400,47 @@ def test_damaged_text_is_refused_in_one_line(tmp_path, text, words):
     expected = "box_acceleration: 2 values" if words == "base_acceleration" else words
     assert expected in str(error.value) and str(path) in str(error.value)
     assert "\n" not in str(error.value)
+
+
+def test_a_sampling_rate_stands_for_clock_times_and_finds_a_counter(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text(clocks("Zeit"))
+    assert read_record(path, sample_rate=10.0).box_acceleration.values.tolist() == [
+        G * (i % 3) for i in range(6)
+    ]
+    path.write_text(counted(9).replace("time [s]", "left [g]").replace("base", "top"))
+    with pytest.raises(InputError, match='"n", row 10: 9 after 7; expected equal steps'):
+        read_record(path, sample_rate=10.0, columns={"box_acceleration": "top"})
+    path.write_text(counted().replace("n,time [s],base", "a,b,c"))
+    data = read_record(path, sample_rate=100.0)
+    assert data.attrs["columns"] == 'base "c", by their order: no name is known'
+
+
+def test_columns_that_may_be_accelerations_are_not_dropped_silently(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text(
+        "t,base,v1,temp\ns,g,,\u00b0C\n" + "".join(f"{i},{i % 3},{i % 2},20\n" for i in range(9))
+    )
+    with pytest.warns(UserWarning, match='not read: "v1"; columns= says which'):
+        read_record(path)
+
+
+@pytest.mark.parametrize(
+    "heading",
+    [
+        "Acc shaker",
+        "Tisch",
+        "Beschleunigung Tisch",
+        "Aufnehmer Tisch",
+        "table_acc",
+        "a_base",
+        "Base Z",
+    ],
+)
+def test_names_of_a_base_in_several_languages(tmp_path, heading):
+    path = tmp_path / "a.csv"
+    path.write_text(f"Zeit [s];Mass 1 [g];{heading} / g\n0;1;2\n1;3;4\n2;5;6\n3;7;8\n")
+    assert f'base "{heading}"' in read_record(path).attrs["columns"]
 
 
 @pytest.mark.parametrize("ending", [".uff", ".mat", ".nc", ".wav"])
@@ -430,3 +565,22 @@ def test_edited_files_are_read_or_refused_in_one_line(tmp_path, ending):
             refused += 1
             assert "\n" not in str(error) and str(path) in str(error)
     assert refused > 50
+
+
+def test_repeated_extreme_values_are_those_of_a_saturated_channel():
+    """Digits, tones of few samples a period, pulses from rest and noise are no saturation."""
+    time, rng = np.arange(20_000) / 1000.0, np.random.default_rng(2)
+    sweep = 4.0 * np.sin(2.0 * np.pi * (30.0 * time + 0.2 * time**2))
+    passed = sweep * (0.1 + np.exp(-(((time - 9.0) / 1.5) ** 2)))
+    pulse = np.where(time < 0.011, np.sin(np.pi * time / 0.011), 0.0)
+    tones = [np.sin(2.0 * np.pi * hertz * time) for hertz in (50.0, 5.0)]
+    sound = [rng.normal(size=20_000), pulse, *tones, *(np.round(sweep, n) for n in (0, 1, 2, 3))]
+    assert [clipped_share(values) for values in sound] == [0.0] * len(sound)
+    for noise in (0.0, 0.05):
+        values = passed + rng.normal(0.0, noise, len(passed))
+        peak = np.abs(values).max()
+        limited = [np.clip(values, -share * peak, share * peak) for share in (0.8, 0.5)]
+        assert clipped_share(values) == 0.0 and clipped_share(limited[0]) > 0.01
+        assert clipped_share(limited[1]) == pytest.approx(
+            np.mean(np.abs(limited[1]) == 0.5 * peak), rel=0.02
+        )

@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from orchestrate.paper.captions import CAPTIONS
+from orchestrate.paper.pictures import PARTS
 from orchestrate.paper.typeset import FORMULA, match_to_latex, typeset
 
 FORMULAS = {
@@ -49,7 +49,7 @@ def test_signs_and_what_a_program_says():
 
 
 def test_no_caption_is_left_in_plain_letters():
-    for caption in CAPTIONS.values():
+    for caption in PARTS.values():
         for text in (caption.title, caption.text, caption.method):
             left = re.findall(r"\b(?:eta|kappa|omega|tau|\w+_\w+|<=)\b", shown(text))
             assert left == [], caption.title

@@ -7,6 +7,7 @@ from unittest.mock import patch
 
 import numpy as np
 import pytest
+import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -53,6 +54,19 @@ def test_each_value_starts_from_the_end_of_the_last():
     first = found.isel(eta=0).end_state.values
     alone = sweep(PAPER, eta=1.13, start=first, **SHORT)
     same(found.isel(eta=1), alone.isel(eta=0))
+
+
+def test_responses_of_a_sweep_are_run_on_each_from_its_own_state(exported):
+    """T/1 at D = 0.05 is unstable from 1.1154 on, which 500 periods from 1.115 do not see."""
+    structure = Structure.nondimensional(D=0.05)
+    up = sweep(structure, eta=[1.09, 1.115, 1.116], transient=500, samples=40, progress=False)
+    settings = {"transient": 3000, "samples": 48, "tolerance": 1e-6, "progress": False}
+    later = sweep(structure, eta=[1.116, 1.09], start=up, **settings)
+    assert up.multiplicity.values.tolist() == [1, 1, 1]
+    assert later.multiplicity.values.tolist() == [2, 1]
+    for n, eta in enumerate((1.116, 1.09)):
+        alone = sweep(structure, eta=[eta], start=up.sel(eta=[eta]), **settings)
+        xr.testing.assert_equal(later.isel(eta=[n]), alone)
 
 
 def test_a_response_is_what_the_fmu_says_step_by_step():

@@ -103,3 +103,7 @@ def test_structures_are_told_by_their_fields():
 
 def test_the_name_of_a_result_decides_nothing():
     assert Squares("a").parameters() == Squares("b").parameters()
+
+
+def test_a_rule_among_the_kernels_is_part_of_the_code():
+    assert "fmu_src.kernels.repetition" in code_digests("orchestrate.response.sweep")

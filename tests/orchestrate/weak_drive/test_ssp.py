@@ -5,6 +5,7 @@ import subprocess
 import sys
 import zipfile
 from pathlib import Path
+from xml.dom import minidom
 
 import fmpy
 import pytest
@@ -124,7 +125,33 @@ def test_connectors_have_the_units_of_the_variables(case):
     assert declared["N"] == {"kg": "1", "m": "1", "s": "-2"}
 
 
+def test_omsimulator_finds_its_step(tmp_path):
+    """Its C reader goes by the prefixes as they are written; its Python reader takes the solver by
+    the name that it gives to co-simulation FMUs.
+    """
+    path = write_ssp(tmp_path / "drive.ssp", *QUICK, voltage=VOLTAGE, step=4e-5)
+    node = minidom.parseString(zipfile.ZipFile(path).read("SystemStructure.ssd"))
+    for name in (
+        "ssd:SystemStructureDescription",
+        "ssd:System",
+        "ssd:Annotations",
+        "ssc:Annotation",
+        "oms:Annotations",
+        "oms:SimulationInformation",
+        "oms:FixedStepMaster",
+    ):
+        (node,) = (child for child in node.childNodes if child.nodeName == name)
+        if name == "ssc:Annotation":
+            assert node.getAttribute("type") == "org.openmodelica"
+    assert float(node.getAttribute("stepSize")) == 4e-5
+    assert node.getAttribute("description") == "oms-ma"
+    solver = dict(node.parentNode.attributes.items())
+    assert solver == {"name": "oms_ma_default", "method": "oms_ma", "fixedStepSize": "0.00004"}
+
+
 def test_mistakes(tmp_path):
+    with pytest.raises(InputError, match="step = 0.0 s: expected 0 < step"):
+        write_ssp(tmp_path / "x.ssp", *QUICK, voltage=1.0, step=0.0)
     with pytest.raises(InputError, match="voltage = nan V: expected a finite number"):
         write_ssp(tmp_path / "x.ssp", *QUICK, voltage=float("nan"))
     with pytest.raises(StoreError, match="nowhere"):

@@ -13,7 +13,15 @@ from tools.benches import restitution
 from tools.benches.bench import Bench
 from tools.benches.excitation import Swept
 from tools.benches.integrator import UnboundedMotionError, equilibrium, integrate
-from tools.benches.lumped import TURN, Clamp, Faces, Halves, cubic_stiffness, frequency_change
+from tools.benches.lumped import (
+    TURN,
+    Clamp,
+    Faces,
+    Halves,
+    Torsion,
+    cubic_stiffness,
+    frequency_change,
+)
 from tools.benches.recipe import OPENED
 
 HALVES = Halves(zeta1=0.03, zeta2=0.03)
@@ -36,6 +44,21 @@ def test_a_bonded_beam_has_the_closed_transfer_function():
         times = step * np.arange(moved.shape[1])
         closed = 5.0 * np.imag(ratio * np.exp(1j * TURN * frequency * times))
         assert np.abs(moved - closed)[:, -24_000:].max() < 2e-7 * 5.0 * abs(ratio)
+
+
+def test_a_beam_that_twists_has_the_closed_transfer_functions_of_both_sensors():
+    torsion = Torsion(ratio=1.1, participation=0.5, offset=0.2)
+    system, step = HALVES.bonded_with_torsion(torsion), 1.0 / 24_000.0
+    whole = HALVES.bonded_beam()
+    frequency = 1.05 * whole.f
+    moved = integrate(system, driven(frequency, 4.0, step), step).acceleration
+    ratios = [frequency / whole.f, frequency / (1.1 * whole.f)]
+    bending, twist = (r * r / (1.0 - r * r + 2j * whole.zeta * r) for r in ratios)
+    times = step * np.arange(moved.shape[1])
+    for row, side in zip(moved, (1.0, -1.0), strict=True):
+        read = 1.0 + bending + side * 0.2 * 0.5 * twist
+        closed = 5.0 * np.imag(read * np.exp(1j * TURN * frequency * times))
+        assert np.abs(row - closed)[-24_000:].max() < 2e-7 * 5.0 * abs(read)
 
 
 def test_a_linear_motion_converges_with_the_fourth_power_of_the_step():

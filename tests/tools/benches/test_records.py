@@ -84,6 +84,16 @@ def test_noise_is_a_part_of_what_is_read():
     assert (noisy - clean).std() == pytest.approx(0.05 / math.sqrt(2.0), rel=0.03)
 
 
+def test_a_sensor_of_half_the_range_stops_at_half_of_the_peak():
+    signal = np.sin(TURN * 50.0 * np.arange(400_000) / 40_000.0)
+    read = Sensor(noise=0.02, range=0.5).read(signal, 40_000.0, 20, np.random.default_rng(3))
+    inside = Sensor(noise=0.02).read(signal, 40_000.0, 20, np.random.default_rng(3))
+    top = read.max()
+    assert top == pytest.approx(0.5, abs=1e-2) == -read.min()
+    assert np.array_equal(read, np.clip(inside, -top, top))
+    assert np.mean(np.abs(read) == top) == pytest.approx(2.0 / 3.0, abs=0.02)
+
+
 def test_a_record_has_the_channels_that_are_measured():
     bench = Bench(excitation=Swept(40.0, 50.0, 1.0, 5.0), rate=1000.0)
     record, motion = bench.measure(Halves().bonded(), seed=1)

@@ -115,7 +115,7 @@ def test_phases_count_from_the_box():
     channels = Channels.from_record(make(100.0, np.ones(100), np.ones(100)))
     amplitudes = np.array([[2.0, 0.0], [3.0, 4.0]], dtype=complex)[:, :, None]
     amplitudes = amplitudes * np.exp(1j * np.array([0.3, 1.0]))[None, :, None]
-    turned = against_box(channels, amplitudes, np.zeros((2, 1)), (1.0, 2.0))
+    turned = against_box(channels, amplitudes, (1.0, 2.0))
     assert np.allclose(np.angle(turned[1, :, 0]), [0.0, 0.4])
     assert np.allclose(np.abs(turned[1, :, 0]), [3.0, 4.0])
 
@@ -204,6 +204,19 @@ def test_random_vibration_has_no_orders():
     still = make(100.0, np.zeros(1000), np.zeros(1000))
     with pytest.raises(InputError, match="does not move"):
         track_orders(still)
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.05])
+def test_silence_between_two_sweeps_has_no_orders(noise):
+    """Its phase is that of noise, whose frequency may be below zero."""
+    sweep, rng = SWEEPS["up"], np.random.default_rng(4)
+    time = np.arange(int(sweep.duration * RATE)) / RATE
+    box = np.concatenate([sweep(time), np.zeros(int(4.0 * RATE)), sweep(time)])
+    answer = track_orders(make(RATE, box + noise * rng.normal(size=len(box)), 3.0 * box))
+    moving = (answer.time < 6.1) | (answer.time > 9.9)
+    assert moving.all() and len(answer.time) > 40
+    expected = sweep.frequency(np.where(answer.time < 8.0, answer.time, answer.time - 10.0))
+    assert np.abs(answer.frequency - expected).max() < 2.0  # of a window that is partly silent
 
 
 def test_messages_name_the_column_that_the_user_gave(tmp_path):

@@ -1,0 +1,121 @@
+"""Checks of a record's channels: what makes one doubtful, and what to do about it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+PLAUSIBLE = (0.05, 2e5)  # largest absolute values that accelerometers read in tests, m/s2
+CLIPPED = 1e-4  # share of samples at repeated extremes from which a channel is saturated
+CONSTANT = 0.02  # share of the samples, in a row, from which one value is no reading
+FEWEST_CONSTANT = 20  # samples
+MOVING = 0.1  # rms over the usual one from which another channel moves there
+SAME = 1e-9  # of the peak: two sensors never differ so little
+COUNTING = 0.9  # share of equal steps in a counter
+BAND = 1e-3  # of the peak-to-peak value: readings so close to an extreme are at it
+PLATEAU = 3  # samples in a row at an extreme that no sine has
+
+
+def doubtful_channels(time: Floats, channels: Mapping[str, Floats]) -> list[tuple[str, str, str]]:
+    """Return what makes channels, the base first, doubtful: (channel, what it is, what to do)."""
+    doubts = []
+    for name, values in channels.items():
+        other = next((one for key, one in channels.items() if key != name), values)
+        wrong_unit, share = implausible_unit(values), clipped_share(values)
+        constant = constant_part(values, other)
+        if wrong_unit:
+            doubts.append((name, wrong_unit, "expected m/s2"))
+        if share > CLIPPED:
+            text = f"saturated: {100.0 * share:.2g} % of its samples repeat its extreme values"
+            doubts.append((name, text, "record it again with a wider range"))
+        if constant is not None:
+            first, last = time[constant.start], time[constant.stop - 1]
+            text = f"keeps the value {values[constant.start]:.4g} from {first:.4g} to {last:.4g} s"
+            doubts.append((name, text, "expected a reading: look for a loose cable"))
+    for first, second in combinations(channels, 2):
+        values, off = channels[first], np.abs(channels[first] - channels[second])
+        if np.ptp(values) > 0.0 and off.max() <= SAME * np.abs(values).max():
+            doubts.append((second, f"the same values as {first}", "expected a channel each"))
+    return doubts
+
+
+def implausible_unit(values: Floats) -> str:
+    """Return a question on the unit of numbers that are hardly in m/s2; empty if they may be."""
+    peak, low, high = float(np.abs(values).max()), *PLAUSIBLE
+    mean, spread = abs(float(values.mean())), float(values.std())
+    if 0.0 < peak < low:
+        return f"no more than {peak:.3g} m/s2: are these numbers in g, or in V?"
+    if peak > high:
+        return f"up to {peak:.3g} m/s2: are these numbers in mV, or counts?"
+    if abs(mean - 1.0) < 0.03 and spread < 0.5 * mean:
+        return f"a mean of {mean:.3g} m/s2, as gravity has in g: are these numbers in g?"
+    return ""
+
+
+def constant_part(values: Floats, other: Floats) -> slice | None:
+    """Return the longest part with one value in which another channel moves; None without one."""
+    changes = np.flatnonzero(np.diff(values)) + 1
+    ends = np.concatenate([[0], changes, [len(values)]])
+    longest = int(np.argmax(np.diff(ends)))
+    part = slice(int(ends[longest]), int(ends[longest + 1]))
+    if part.stop - part.start < max(CONSTANT * len(values), FEWEST_CONSTANT):
+        return None
+    return part if other[part].std() > MOVING * other.std() else None
+
+
+def ascends(values: Floats) -> bool:
+    """Return whether values ascend from first to last, as times and counters do."""
+    steps = np.diff(values)
+    return bool((steps >= 0.0).all() and (steps > 0.0).any())
+
+
+def first_hole(values: Floats) -> int | None:
+    """Return the row after which a counter goes on that misses some; None if it is none, or whole.
+
+    A counter has equal steps up in nine of ten rows or more; where it falls it begins again.
+    """
+    steps = np.diff(values)
+    usual = float(np.median(steps)) if len(steps) else 0.0
+    equal = np.abs(steps - usual) <= 0.5 * usual
+    if not usual > 0.0 or equal.mean() < COUNTING:
+        return None
+    holes = np.flatnonzero(steps > 1.5 * usual)
+    return int(holes[0]) + 1 if len(holes) else None
+
+
+def clipped_share(values: Floats) -> float:
+    """Return the share of samples at repeated extreme values, as a saturated channel has them.
+
+    - A sample is at an extreme within 0.1 % of the peak-to-peak value, or one step of the digits.
+    - It counts in a row of three or more such samples.
+    - An extreme counts where these outnumber the samples in the ten times wider band next to it: of
+      a sine, coarsely digitized or not, there are fewer than half as many.
+    - It counts where it is a quarter of the peak-to-peak value or more from the median: a signal at
+      rest is not saturated.
+
+    Examples
+    --------
+    >>> sine = np.sin(np.linspace(0.0, 300.0, 9000))
+    >>> clipped_share(sine), round(clipped_share(np.clip(sine, -0.5, 0.5)), 2)
+    (0.0, 0.67)
+    """
+    ordered = np.sort(values)
+    spread = float(ordered[-1] - ordered[0])
+    steps = np.diff(ordered)
+    if not spread > 0.0:
+        return 0.0
+    band = max(BAND * spread, 0.999 * float(steps[steps > 1e-9 * spread].min()))
+    median, share = float(ordered[len(ordered) // 2]), 0.0
+    for extreme in (ordered[0], ordered[-1]):
+        distance = np.abs(values - extreme)
+        at = distance < band
+        row = np.convolve(at, np.ones(PLATEAU), "valid") > PLATEAU - 0.5
+        repeated = int(np.convolve(row, np.ones(PLATEAU)).astype(bool).sum())
+        near = int(((distance >= band) & (distance < 11.0 * band)).sum())
+        if repeated > near and abs(extreme - median) >= 0.25 * spread:
+            share += repeated / len(values)
+    return share

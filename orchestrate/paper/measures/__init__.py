@@ -1,0 +1,39 @@
+"""The measures of the paper's claims, by section, and the loop from the table to verdicts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from ..claims import NO, PARTLY, Claim, judge
+from ..datasets import Datasets
+from ..readable import plain
+from . import equations, influence, limits, peaks, setup, windows
+
+Measure = Callable[..., Any]  # from the datasets and the claim to a ``Measured``
+MODULES = (setup, equations, limits, windows, influence, peaks)
+
+
+def find_measure(name: str) -> Measure:
+    """Return the measure of a name; raise KeyError where there is none."""
+    found = {key: value for module in MODULES for key, value in vars(module).items()}
+    measure: Measure = found[name]
+    return measure
+
+
+def check_claims(claims: Iterable[Claim], data: Datasets) -> list[dict[str, str]]:
+    """Measure and judge each claim; return a row of texts for each."""
+    rows = []
+    for claim in claims:
+        measured = find_measure(claim.measure)(data, claim, **claim.keywords())
+        verdict = judge(measured.parts, data.size.decides or not claim.full)
+        names = ("section", "text", "printed", "how", "tolerance")
+        rows.append(
+            {
+                **{name: getattr(claim, name) for name in names},
+                "found": plain(measured.found),
+                "verdict": verdict,
+                "why": claim.why if verdict in (NO, PARTLY) else "",
+            }
+        )
+    return rows

@@ -1,0 +1,159 @@
+"""Section 2: printed equations that mislead, and the right ones, put to a test."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import xarray as xr
+
+from ..claims import Claim, Measured
+from ..curves import CONTACT, FLIGHT
+from ..datasets import Datasets
+
+ETA, D, STIFFNESS, BEGAN = 1.3, 0.02, 1.2, 0.7  # of an oscillator (6), and its separation time
+START = (0.4, -0.3)
+TAUS = np.linspace(0.1, 9.0, 40)
+ROUNDING = 1e-6
+RATIO = 1e-6  # of successive times between impacts, against e
+
+
+def compare(what: str, printed: float, right: float, form: str) -> Measured:
+    """Return what the printed and the right form leave; the printed one holds if it is nothing."""
+    text = f"{what}: {printed:.2g} as printed, {right:.2g} with {form}"
+    return Measured(text, [printed < ROUNDING] if right < ROUNDING else [])
+
+
+def residual(motion: Callable[[np.ndarray], np.ndarray]) -> float:
+    """Return the largest residual of equation (6) for a motion, by finite differences."""
+    step = 1e-4
+    here, after, before = motion(TAUS), motion(TAUS + step), motion(TAUS - step)
+    rate, curvature = (after - before) / (2.0 * step), (after - 2.0 * here + before) / step**2
+    left = curvature + 2.0 * D * rate + STIFFNESS * here - np.sin(ETA * (TAUS + BEGAN))
+    return float(np.abs(left).max())
+
+
+def solution(frequency: float, damping: float) -> Callable[[np.ndarray], np.ndarray]:
+    """Return a motion by (10) and (11), with this frequency and damping of its free part."""
+    detuning, loss = STIFFNESS - ETA**2, 2.0 * D * ETA
+    a, b = -loss / (detuning**2 + loss**2), detuning / (detuning**2 + loss**2)
+    nu, phase = math.sqrt(STIFFNESS - D * D), ETA * BEGAN
+    alpha = START[0] - (a * math.cos(phase) + b * math.sin(phase))
+    rate = START[1] + D * alpha - ETA * (b * math.cos(phase) - a * math.sin(phase))
+
+    def motion(tau: np.ndarray) -> np.ndarray:
+        """Return the displacement at non-dimensional times."""
+        angle = ETA * (tau + BEGAN)
+        free = alpha * np.cos(frequency * tau) + rate / nu * np.sin(frequency * tau)
+        return a * np.cos(angle) + b * np.sin(angle) + np.exp(-damping * tau) * free
+
+    return motion
+
+
+def scale(data: Datasets, claim: Claim) -> Measured:
+    """Compare x/a eta^2 and x/(a eta^2) of (3), by the steady amplitude."""
+    steady = 1.0 / math.hypot(1.0 - ETA**2, 2.0 * D * ETA)  # amplitude of (6), unit forcing
+    x_over_a = ETA**2 * steady  # of m x'' + d x' + k x = m a Omega^2 sin(Omega t)
+    printed, right = abs(x_over_a * ETA**2 - steady), abs(x_over_a / ETA**2 - steady)
+    return compare("steady amplitude less that of (6)", printed, right, "x/(a eta^2)")
+
+
+def free_part(data: Datasets, claim: Claim) -> Measured:
+    """Put (10) with kappa_i, and with nu_i of (11), into (6)."""
+    nu = math.sqrt(STIFFNESS - D * D)
+    printed, right = residual(solution(STIFFNESS, D)), residual(solution(nu, D))
+    return compare("left of (6)", printed, right, "nu_i for kappa_i (and D_i for D)")
+
+
+def one_sided(data: Datasets, claim: Claim) -> Measured:
+    """Measure the gap in flight: (12) as printed allows negative ones."""
+    figure = data.figure("5")
+    flying = figure.kind.values == FLIGHT
+    gap = (figure.state.values[:, 1] - figure.state.values[:, 0])[flying]
+    inside = gap[np.abs(gap) > 1e-6 * np.abs(gap).max()]
+    text = f"gap in flight at eta = 0.4: {inside.min():.2g} to {inside.max():.2g}"
+    return Measured(text, [bool((inside < 0.0).any())])
+
+
+def momentum(data: Datasets, claim: Claim) -> Measured:
+    """Measure the momentum that (15) gains with the factor of its second line."""
+    e, mu, v1, v2 = 0.7, 0.5, 0.8, -0.4
+    part = (1.0 + e) / (1.0 + mu) * (v1 - v2)
+    printed, right = (
+        abs((v1 - mu * part) + mu * (v2 + factor * part) - (v1 + mu * v2)) for factor in (mu, 1.0)
+    )
+    form = "(1 + e)/(1 + mu) in the second line"
+    return compare("momentum gained at m_2/m_1 = 0.5", printed, right, form)
+
+
+def chattering(data: Datasets, claim: Claim) -> Measured:
+    """Find of which e impacts come in a geometric sequence of times, down to any gamma (16)."""
+    rows = data.chattering()
+    every = rows.e.values.tolist()
+    holding = [e for e in every if is_endless(rows.sel(e=e), e)]
+    failing = [e for e in every if e not in holding]
+    gammas = sorted(rows.gamma.values.tolist(), reverse=True)
+    away = rows.ratio_error.sel(gamma=gammas[-1], e=holding).max().item() if holding else math.nan
+    counts = [
+        f"{rows.impacts.sel(e=e, gamma=gammas).values.astype(int).tolist()} at e = {e:g}"
+        for e in (holding[:1] + holding[-1:])
+    ]
+    text = (
+        f"after one kick times between impacts shrink by e each, to {away:.0e}, for "
+        f"{len(holding)} of {len(every)} values of e: {', '.join(f'{e:g}' for e in holding)}; "
+        f"impacts before the masses stick, gamma = {', '.join(f'{g:g}' for g in gammas)}: "
+        f"{' and '.join(counts)}"
+    )
+    if failing:
+        text += f"; not for e = {', '.join(f'{e:g}' for e in failing)}"
+    return Measured(text, [bool(holding), not failing])
+
+
+def is_endless(rows: xr.Dataset, e: float) -> bool:
+    """Return whether impacts come at times in a geometric sequence, down to each gamma."""
+    rows = rows.sortby("gamma", ascending=False)
+    with np.errstate(divide="ignore"):  # at e = 1 more impacts than any number
+        expected = np.diff(np.log(rows.gamma.values)) / np.log(e)
+    grows = np.abs(np.diff(rows.impacts.values) - expected) <= 1.0 + 1e-9
+    near = float(rows.ratio_error[-1]) < RATIO
+    return bool(grows.all() and near and rows.sticks.values.all())
+
+
+def pulling(data: Datasets, claim: Claim) -> Measured:
+    """Count slow impacts that would stick by (17) although the contact force pulls."""
+    rows = data.slow_impacts()
+    slow, pulled, sticking = (int(rows[name].sum()) for name in ("slow", "pulled", "sticking"))
+    text = (
+        f"of {slow} impacts slower than gamma at {rows.sizes['motion']} frequencies and structures "
+        f"{pulled} would stick although the contact force would pull; the FMU lets {sticking} stick"
+    )
+    return Measured(text, [pulled == 0] if slow else [])
+
+
+def next_state(data: Datasets, claim: Claim) -> Measured:
+    """Measure the gap velocity with which the states after contact begin (20)."""
+    figure = data.figure("5")
+    kind, state = figure.kind.values, figure.state.values
+    ends = np.flatnonzero((kind[:-1] == CONTACT) & (kind[1:] != CONTACT))
+    if not len(ends):
+        return Measured("no contact ends", [])
+    rate, after = state[:, 3] - state[:, 2], int(ends[0]) + 1
+    jumps = np.flatnonzero(np.diff(figure.tau.values)[after:] == 0.0)
+    later = float(rate[after + jumps[0] + 1]) if len(jumps) else math.nan
+    first, later = abs(float(rate[after])), abs(later)
+    largest = float(np.abs(rate).max())
+    text = (
+        f"gap velocity after contact at eta = 0.4, over the largest: {first / largest:.1e} in the "
+        f"(k+1)th state, {later / largest:.2g} at the beginning of the (k+2)th"
+    )
+    return Measured(text, [] if math.isnan(later) else [later < first])
+
+
+def period(data: Datasets, claim: Claim) -> Measured:
+    """Compare eta/2 pi and 2 pi/eta as periods of sin(eta tau)."""
+    printed, right = (
+        float(np.abs(np.sin(ETA * (TAUS + span)) - np.sin(ETA * TAUS)).max())
+        for span in (ETA / (2.0 * np.pi), 2.0 * np.pi / ETA)
+    )
+    return compare("change of sin(eta tau) after T", printed, right, "2 pi/eta")

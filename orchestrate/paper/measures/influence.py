@@ -1,0 +1,199 @@
+"""Section 3.2: irregular regions, chaos, coexisting responses, what fades with the frequency."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...dynamics.lyapunov import CHAOTIC
+from ..answers import largest_text
+from ..cases import CASES
+from ..claims import Claim, Measured
+from ..datasets import Datasets
+from ..reading import (
+    between,
+    decreases,
+    impact_runs,
+    impacts_in_response,
+    impacts_in_turn,
+    relative_peak,
+    runs,
+)
+
+DECADE, RESEMBLES = 10.0, 0.1
+
+
+def impacts_decrease(data: Datasets, claim: Claim) -> Measured:
+    """Count the impacts of T-periodic responses from 0.43 to 0.9."""
+    steps = impacts_in_turn(between(data.up("elastic"), 0.43, 0.9)) or [0]
+    text = f"T-periodic with {', '.join(map(str, steps))} impacts in turn"
+    return Measured(text, [steps[0] > steps[-1], decreases(steps)])
+
+
+def interchange(data: Datasets, claim: Claim) -> Measured:
+    """Find T-periodic responses from 0.43 to 0.89, and what is between them."""
+    settled = between(data.settled("elastic"), 0.43, 0.89)
+    windows = runs(settled.multiplicity.values == 1)
+    chaotic, neutral = data.shares("elastic", 0.43, 0.89)
+    text = (
+        "T-periodic with so many impacts: "
+        f"{', '.join(run.text() for run in impact_runs(settled))}; {100 * chaotic:.0f} % of all "
+        f"frequencies chaotic, {100 * neutral:.0f} % neutral"
+    )
+    return Measured(text, [len(windows) > 2, neutral > chaotic])
+
+
+def no_influence(data: Datasets, claim: Claim) -> Measured:
+    """Look for extrema of the largest gap near the halves' natural frequencies."""
+    gaps, texts, parts = data.up("elastic").xi_rel_max, [], []
+    for eta in (1.0, 1.095):
+        change = np.diff(np.log(gaps.sel(eta=slice(eta - 0.0105, eta + 0.0105)).values))
+        parts.append(bool((change > 0).all() or (change < 0).all()))
+        texts.append(
+            f"around {eta:g} it changes by {100 * change.min():.1f} to {100 * change.max():.1f} % "
+            f"a step, without an extremum: {parts[-1]}"
+        )
+    return Measured("; ".join(texts), parts)
+
+
+def nearly_2t(data: Datasets, claim: Claim) -> Measured:
+    """Measure at how many frequencies samples differ less than half as much after 2T as after T."""
+    samples = between(data.up("elastic"), 1.07, 1.367).xi_rel.values
+    one, two = (np.square(samples[:, n:] - samples[:, :-n]).mean(axis=1) for n in (1, 2))
+    share = float(np.mean(np.sqrt(two) < 0.5 * np.sqrt(one)))
+    text = (
+        f"at {100 * share:.0f} % of the frequencies samples differ less than half as much after 2T "
+        "as after T"
+    )
+    return Measured(text, [share > 0.95, share > 0.5])
+
+
+def coexisting(data: Datasets, claim: Claim) -> Measured:
+    """Count frequencies from 1.07 to 1.37 with several attractors, and where sweeps differ."""
+    found = between(data.attractors(), 1.07, 1.37)
+    up, down = (between(one, 1.0701, 1.3699) for one in (data.up("elastic"), data.down("elastic")))
+    several = found.eta.values[found.number.values > 1]
+    periodic = int(((found.multiplicity.values > 0).sum(axis=1) > 1).sum())
+    differ = int((impacts_in_response(up) != impacts_in_response(down)).sum())
+    text = (
+        f"two or more attractors at {len(several)} of {found.sizes['eta']} frequencies, two "
+        f"periodic at {periodic}; up and down differ at {differ}"
+    )
+    low, high = data.window("elastic", "T/1", 2.0).low, data.window("elastic", "2T/3", 1.36).high
+    text += f"; by exact limits T and 2T with three impacts coexist from {low:.5f} to {high:.5f}"
+    if len(several):
+        groups = np.split(several, np.flatnonzero(np.diff(several) > 0.006) + 1)
+        text += f"; starts find two at {', '.join(f'{g[0]:.3f} to {g[-1]:.3f}' for g in groups)}"
+    return Measured(text, [periodic > 0, differ > 0])
+
+
+def irregular_impacts(data: Datasets, claim: Claim) -> Measured:
+    """Measure how many responses from 1.07 to 1.37 do not repeat."""
+    n = between(data.settled("elastic"), 1.07, 1.367).multiplicity.values
+    text = (
+        f"at {100 * np.mean(n == 0):.0f} % of the frequencies impacts do not repeat; at "
+        f"{100 * np.mean(n == 2):.0f} % they repeat after 2T, at {100 * np.mean(n > 2):.0f} % "
+        "after more"
+    )
+    return Measured(text, [bool((n == 0).any()), bool((n == 0).all())])
+
+
+def one_impact_beside(data: Datasets, claim: Claim) -> Measured:
+    """Measure the share of responses with one impact in the windows beside the second region."""
+    text, parts = [], []
+    for n, low, high in ((1, 1.37, 2.61), (2, 3.77, 4.74)):
+        part = between(data.settled("elastic"), low, high)
+        one = (part.multiplicity.values == n) & (impacts_in_response(part) == 1)
+        text.append(f"{low} to {high}: {100 * one.mean():.1f} % of {len(one)} frequencies")
+        parts.append(bool(one.all()))
+    return Measured("; ".join(text), parts)
+
+
+def chaos(data: Datasets, claim: Claim) -> Measured:
+    """Measure how much of each irregular region is chaotic, and its largest exponent."""
+    text, parts = [], []
+    for region in data.regions("elastic"):
+        if not region.is_window:
+            chaotic, neutral = data.shares("elastic", region.low, region.high)
+            text.append(
+                f"{region.low:.3f}-{region.high:.3f}: {100 * chaotic:.0f} % chaotic, "
+                f"{100 * neutral:.0f} % neutral, largest {largest_text(data, 'elastic', region)}"
+            )
+            parts.append(chaotic < 0.02)
+    return Measured("; ".join(text), parts)
+
+
+def irregularities(data: Datasets, claim: Claim) -> Measured:
+    """Count responses that do not repeat, between windows nT and (n+1)T and elsewhere."""
+    settled, exponents = data.settled("elastic"), data.exponent("elastic")
+    text, inside, outside = [], 0, 0
+    for low, high, name in (region for region in data.regions("elastic") if not region.is_window):
+        irregular = between(settled, low, high).multiplicity.values == 0
+        chaotic = between(exponents, low, high).verdict.values == CHAOTIC
+        count, sure = int(irregular.sum()), int((irregular & chaotic).sum())
+        if name.split(" to ")[0].endswith("T/1"):
+            inside += count
+        else:
+            outside += count
+            text.append(f"{count} from {low:.3f} to {high:.3f} ({name}; {sure} of them chaotic)")
+    found = (
+        f"of {inside + outside} settled responses that do not repeat {inside} lie between windows "
+        f"nT and (n+1)T of one impact; {'; '.join(text)}"
+    )
+    return Measured(found, [outside == 0, inside > 0])
+
+
+def hidden_impacts(data: Datasets, claim: Claim) -> Measured:
+    """Count the numbers of impacts that T-periodic responses have."""
+    kinds = np.unique([run.impacts for run in impact_runs(data.up("elastic"))] or [0])
+    text = (
+        f"T-periodic responses, one line each in Figure 6, have {kinds.min()} to {kinds.max()} "
+        f"impacts in T, {len(kinds)} different numbers"
+    )
+    return Measured(text, [len(kinds) > 1])
+
+
+def impulse_peak(data: Datasets, claim: Claim) -> Measured:
+    """Find the frequency of the largest closing velocity."""
+    speed = data.impacts("elastic").closing_max
+    eta = float(speed.idxmax())
+    text = f"largest closing velocity {float(speed.max()):.2f} at {eta:.3f}"
+    return Measured(text, [abs(eta - float(claim.printed)) <= 0.01])
+
+
+def decay(data: Datasets, claim: Claim) -> Measured:
+    """Measure by which factors gap and closing velocity fall from peak to peak."""
+    up, speed = data.up("elastic"), data.impacts("elastic").closing_max
+    etas = [float(up.xi_rel_max.idxmax()), *(relative_peak(up, n) for n in (1, 2, 3))]
+    if None in etas:
+        return Measured("a window without a relative peak", [])
+    sizes = up.xi_rel_max, speed
+    rows = [[float(one.sel(eta=eta, method="nearest")) for one in sizes] for eta in etas]
+    listed = zip(etas, rows, strict=True)
+    text = "; ".join(f"{eta:.3f}: {gap:.3g}, {velocity:.3g}" for eta, (gap, velocity) in listed)
+    factors = np.divide(rows[:-1], rows[1:])
+    by = "; ".join(f"{a:.3g}, {b:.3g}" for a, b in factors)
+    return Measured(
+        f"eta: largest gap, closing velocity: {text}; they fall by {by}",
+        (factors >= DECADE).ravel().tolist(),
+    )
+
+
+def single_oscillator(data: Datasets, claim: Claim) -> Measured:
+    """Compare amplitudes at the peaks and at 8.0 with those of both masses as one oscillator."""
+    up, case = data.up("elastic"), CASES["elastic"]
+    stiffness = (1.0 + case.kappa) / (1.0 + case.mu)
+    text, away = [], []
+    for eta in (1.047, 2.07, 4.166, 6.268, 8.0):
+        row = up.sel(eta=eta, method="nearest")
+        alone = 1.0 / np.hypot(stiffness - eta**2, 2.0 * case.get("D") * eta)
+        ratios = [float(row[f"xi{mass}_max"]) / alone for mass in (1, 2)]
+        away.append(max(abs(ratio - 1.0) for ratio in ratios))
+        gap = float(row.xi_rel_max / row.xi1_max)
+        text.append(f"{eta:g}: {ratios[0]:.3f}, {ratios[1]:.3f}, gap {gap:.2f}")
+    near = [part < RESEMBLES for part in away[1:]]  # beyond the main peak
+    falls = all(a > b for a, b in zip(away[1:], away[2:], strict=False))
+    return Measured(
+        "amplitudes of both masses over that of both as one (6), and gap over amplitude: "
+        f"{'; '.join(text)}",
+        [*near, falls],
+    )

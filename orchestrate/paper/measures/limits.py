@@ -1,0 +1,82 @@
+"""Limits and peaks that the paper prints: where its sweeps pass them, and where they are."""
+
+from __future__ import annotations
+
+import xarray as xr
+
+from ..claims import Claim, Measured
+from ..datasets import Datasets
+from ..reading import Edges, edges_around, is_orbit, longest_edges
+
+AGREES = {
+    (True, True): "both",
+    (True, False): "the paper's protocol, not the exact limit",
+    (False, True): "the exact limit, not the paper's protocol",
+    (False, False): "neither",
+}
+
+
+def limit(
+    data: Datasets,
+    claim: Claim,
+    case: str,
+    orbit: str,
+    edge: str,
+    inside: float,
+    exact: str = "",
+    near: float = 0.0,
+    slack: float = 0.0,
+) -> Measured:
+    """Find a limit in the sweep, the middle of two frequencies, and the exact one of a branch.
+
+    ``orbit``: ``contact``, ``T`` of any impacts, or mT/k; around ``inside``, or the longest run
+    where that is 0. ``exact``: the orbit, around ``near``, that decides where it is another one;
+    ``upper:`` before it asks for its other end. ``slack``: within which the printed number agrees,
+    by default half a unit of its last digit.
+    """
+    swept, back = (run_edges(one, orbit, inside) for one in (data.up(case), data.down(case)))
+    which, printed, slack = int(edge == "upper"), float(claim.printed), slack or claim.slack
+    end, _, decides = exact.rpartition(":")
+    decides = decides or ("T, contact" if orbit == "contact" else orbit)
+    window = data.window(case, decides, near or inside or 3.0)
+    upper = (end or edge) == "upper"
+    value, kind = (window.high, window.above) if upper else (window.low, window.below)
+    parts = abs(0.5 * sum(swept[which]) - printed) <= slack, abs(value - printed) <= slack
+    digits = 6 if "contact" in kind else 8  # a loss of contact depends on gamma
+    text = (
+        f"sweep: between {swept[which][0]:.3f} and {swept[which][1]:.3f}; exact: "
+        f"{value:.{digits}f} ({kind} of {decides}); the paper's number agrees with "
+        f"{AGREES[parts]}; on the way down between {back[which][0]:.3f} and {back[which][1]:.3f}"
+    )
+    if orbit == "contact":
+        last = data.last_contact(case)
+        text += f"; for gamma from 1e-5 to 5e-2 {last.min():.3f} to {last.max():.3f}"
+    return Measured(text, parts)
+
+
+def run_edges(sweep: xr.Dataset, orbit: str, inside: float) -> tuple[Edges, Edges]:
+    """Return the edges of the run of an orbit's responses, around a frequency or the longest."""
+    if orbit == "contact":
+        flags = sweep.permanent_contact.values == 1
+    else:
+        flags = sweep.multiplicity.values == 1 if orbit == "T" else is_orbit(sweep, orbit)
+    return edges_around(sweep, flags, inside) if inside else longest_edges(sweep, flags)
+
+
+def peak_height(data: Datasets, claim: Claim, case: str, digits: float) -> Measured:
+    """Find the largest gap of an up-sweep."""
+    largest = float(data.up(case).xi_rel_max.max())
+    return Measured(f"{largest:.{int(digits)}f}", [claim.rounds(largest)])
+
+
+def peak_frequency(data: Datasets, claim: Claim, case: str) -> Measured:
+    """Find the frequency of the largest gap of an up-sweep, and the gap at the printed one."""
+    gaps = data.up(case).xi_rel_max
+    place, there = float(gaps.idxmax()), gaps.sel(eta=float(claim.printed), method="nearest")
+    text, rounds = f"{place:.3f}", claim.rounds(place)
+    if not rounds:
+        text += f", down {float(data.down(case).xi_rel_max.idxmax()):.3f}"
+        text += (
+            f"; at {claim.printed} the gap is {100 * (1 - float(there / gaps.max())):.4f} % less"
+        )
+    return Measured(text, [rounds])

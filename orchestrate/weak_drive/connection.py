@@ -1,0 +1,194 @@
+"""Connect the oscillator to a drive's FMU of any names: what is exchanged, with which sign.
+
+The drive gives the motion of the box (an acceleration, or a velocity or position whose derivatives
+are taken), and takes the force on it. Names are checked against the FMU before anything is
+computed: each has to exist, to be a real input or output, and to have the unit of its partner.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ..access.description import Description
+from ..access.instance import INTEGER_TYPES, REAL_TYPES
+from ..errors import InputError
+from .exchange import Cubic
+
+MOTION = ("box_acceleration", "box_velocity", "box_position")  # outputs of a drive
+FORCE = ("box_force", "box_force_1", "box_force_2", "box_force_3")  # inputs: with its derivatives
+UNITS = {  # exponents of SI units
+    "box_acceleration": {"m": 1, "s": -2},
+    "box_velocity": {"m": 1, "s": -1},
+    "box_position": {"m": 1},
+    **{name: {"kg": 1, "m": 1, "s": -2 - order} for order, name in enumerate(FORCE)},
+}
+OURS = dict(zip((*MOTION, *FORCE), (*MOTION, *FORCE), strict=True))  # of the package's own drives
+EXPECTED = f"expected some of {', '.join(MOTION)}, and box_force"
+
+
+@dataclass(frozen=True)
+class Link:
+    """One connection: the drive's variable, and by what it is multiplied to be ours, in SI."""
+
+    theirs: str
+    scale: float
+
+
+def checked_links(connect: Mapping[str, str], drive: Description) -> dict[str, Link]:
+    """Return the connections by our names; raise ``InputError`` where one cannot be made."""
+    if not isinstance(connect, Mapping) or not all(isinstance(v, str) for v in connect.values()):
+        raise InputError(f"connect = {connect!r}: expected names of theirs by names of ours")
+    for name in connect:
+        if name not in UNITS:
+            raise InputError(f"connect: {name} is none of our names{near(name, UNITS)}; {EXPECTED}")
+    if "box_force" not in connect or not set(connect) & set(MOTION):
+        raise InputError(f"connect: {', '.join(connect) or 'nothing'} alone; {EXPECTED}")
+    links = {}
+    for ours, theirs in connect.items():
+        sign, name = (-1.0, theirs[1:]) if theirs.startswith("-") else (1.0, theirs)
+        causality = "input" if ours in FORCE else "output"
+        checked_variable(drive, name, causality)
+        links[ours] = Link(name, sign * factor_to_si(drive, ours, name))
+    return links
+
+
+def checked_variable(drive: Description, name: str, causality: str, any_type: bool = False) -> Any:
+    """Return a variable of the drive of a causality; raise ``InputError`` if it is none."""
+    if name not in drive.variables:
+        raise InputError(
+            f"the FMU {drive.name} has no variable {name!r}{near(name, drive.variables)}; "
+            f"expected an {causality or 'variable'} of its own, see its modelDescription.xml"
+        )
+    variable = drive.variable(name)
+    numbers = (*REAL_TYPES, *INTEGER_TYPES, "Boolean")
+    if any_type and variable.type not in numbers:
+        raise InputError(f"{name} of the FMU {drive.name} is {variable.type}; expected a number")
+    if not any_type and variable.type not in REAL_TYPES:
+        raise InputError(
+            f"{name} of the FMU {drive.name} is {variable.type}; expected a real number of double "
+            "precision (Real, Float64)"
+        )
+    if causality and variable.causality != causality:
+        raise InputError(
+            f"{name} of the FMU {drive.name} is of causality {variable.causality}; "
+            f"expected {causality}"
+        )
+    return variable
+
+
+def factor_to_si(drive: Description, ours: str, theirs: str) -> float:
+    """Return what one of the drive's unit is in SI; raise ``InputError`` where it is no such unit.
+
+    A variable without a unit counts as in SI.
+    """
+    unit = drive.variable(theirs).unit or ""
+    if unit not in drive.units:
+        return 1.0
+    if drive.units[unit] != UNITS[ours]:
+        text = " ".join(f"{name}^{power}" for name, power in UNITS[ours].items())
+        raise InputError(
+            f"{theirs} of the FMU {drive.name} is in {unit}; {ours} expects a unit of {text}"
+        )
+    return drive.factors.get(unit, 1.0)
+
+
+def near(name: str, known: Iterable[str]) -> str:
+    """Return a hint on names that are nearly this one, or nothing."""
+    close = difflib.get_close_matches(name, list(known), 3)
+    return f" (did you mean {' or '.join(close)}?)" if close else ""
+
+
+def proposals(drive: Description) -> dict[str, list[str]]:
+    """Return by our names which of the drive's variables could be meant, the likeliest first.
+
+    These are real inputs or outputs with a unit for it, or with none; those of a unit come first,
+    then those whose name is like ours.
+    """
+    found: dict[str, list[str]] = {}
+    for ours, powers in UNITS.items():
+        ranks = {}
+        for name, variable in drive.variables.items():
+            powers_of_theirs = drive.units.get(variable.unit or "")
+            fits = powers_of_theirs in (None, powers) and variable.type in REAL_TYPES
+            if fits and variable.causality == ("input" if ours in FORCE else "output"):
+                ranks[name] = (powers_of_theirs is None, -similarity(ours.partition("_")[2], name))
+        found[ours] = sorted(ranks, key=lambda name: ranks[name])
+    return found
+
+
+def similarity(word: str, name: str) -> float:
+    """Return how much a name looks like a word: 1 where a part of it abbreviates the word."""
+    parts = [part for part in re.split(r"[^a-z]+", name.lower()) if len(part) > 2]
+    if any(word.startswith(part) or part.startswith(word) for part in parts):
+        return 1.0
+    return difflib.SequenceMatcher(None, word, name.lower()).ratio()
+
+
+# -- the motion of the box over a step ------------------------------------------------------------
+
+
+@dataclass
+class BoxMotion:
+    """What is known of the box at communication points: times, and the drive's outputs there."""
+
+    times: list[float]
+    values: dict[str, list[float]]  # by our names
+
+    def add(self, time: float, outputs: Mapping[str, float]) -> None:
+        """Append a communication point; keep the last four."""
+        self.times = [*self.times, time][-4:]
+        for name, value in outputs.items():
+            self.values[name] = [*self.values.get(name, []), value][-4:]
+
+    def over_step(self, ahead: float, outputs: Mapping[str, float]) -> Cubic:
+        """Return the box acceleration from the last point to one ahead: value and derivatives.
+
+        From accelerations it is a line, with velocities a parabola that has their mean. From
+        velocities or positions alone it is the derivative of the polynomial through the points.
+        """
+        h = ahead - self.times[-1]
+        if "box_acceleration" in outputs:
+            first, last = self.values["box_acceleration"][-1], outputs["box_acceleration"]
+            mean = 0.5 * (first + last)
+            if "box_velocity" in outputs:
+                mean = (outputs["box_velocity"] - self.values["box_velocity"][-1]) / h
+            bend = 3.0 * (first + last) - 6.0 * mean
+            return first, (last - first - bend) / h, 2.0 * bend / (h * h), 0.0
+        times = [time - self.times[-1] for time in (*self.times, ahead)]
+        name, count = ("box_velocity", 3) if "box_velocity" in outputs else ("box_position", 4)
+        known = [*self.values[name], outputs[name]]
+        order = 1 if name == "box_velocity" else 2
+        return (*derivatives(times[-count:], known[-count:], order), 0.0, 0.0)
+
+    def ahead(self) -> Cubic:
+        """Return the box acceleration extrapolated over the coming step, as a line."""
+        if "box_acceleration" in self.values:
+            known = self.values["box_acceleration"]
+            if len(known) < 2:
+                return known[-1], 0.0, 0.0, 0.0
+            slope = (known[-1] - known[-2]) / (self.times[-1] - self.times[-2])
+            return known[-1], slope, 0.0, 0.0
+        times = [time - self.times[-1] for time in self.times]
+        name = "box_velocity" if "box_velocity" in self.values else "box_position"
+        order = 1 if name == "box_velocity" else 2
+        return (*derivatives(times, self.values[name], order), 0.0, 0.0)
+
+
+def derivatives(times: Sequence[float], values: Sequence[float], order: int) -> tuple[float, float]:
+    """Return two derivatives at time 0, from an order on, of the polynomial through points."""
+    table = list(values)  # of divided differences
+    for level in range(1, len(times)):
+        for i in range(len(times) - 1, level - 1, -1):
+            table[i] = (table[i] - table[i - 1]) / (times[i] - times[i - level])
+    polynomial = [0.0] * (len(times) + 3)  # coefficients, by Horner's scheme in Newton's form
+    for i in range(len(times) - 1, -1, -1):
+        for k in range(len(times) + 2, 0, -1):
+            polynomial[k] = polynomial[k - 1] - times[i] * polynomial[k]
+        polynomial[0] = table[i] - times[i] * polynomial[0]
+    first, second = (math.factorial(k) * polynomial[k] for k in (order, order + 1))
+    return first, second

@@ -1,0 +1,368 @@
+"""The table of claims, the rule of its verdicts, and that numbers which change turn them over."""
+
+from __future__ import annotations
+
+import inspect
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from orchestrate.dynamics.lyapunov import CHAOTIC, PERIODIC
+from orchestrate.paper.cases import CASES
+from orchestrate.paper.claims import (
+    NO,
+    PARTLY,
+    UNDECIDED,
+    YES,
+    Claim,
+    judge,
+    read_table,
+)
+from orchestrate.paper.curves import CONTACT, FLIGHT
+from orchestrate.paper.measures import check_claims, equations, find_measure, limits, setup
+from orchestrate.paper.reading import impacts_in_turn
+from orchestrate.paper.resolution import QUICK
+
+from .known import along_eta, known, measured, responses, verdict
+
+PRINTED = (
+    "0.43 1.37 0.89 21.56 1.045 1.07 2.61 3.77 0.48 0.85 1.08 2.63 1.056 1.1 1.11 1.33 0.97 1.02 "
+    "1.23 16.41 1.048"
+)
+ETAS = np.round(np.arange(0.1, 8.0, 0.01), 6)
+
+
+# -- the table and the rule ------------------------------------------------------------------------
+
+
+def test_claims_are_of_all_sections_with_the_numbers_that_the_paper_prints():
+    table = read_table()
+    assert {claim.section for claim in table} == {"1", "2", "3", "3.1", "3.2", "4.1", "4.2", "5"}
+    printed = " ".join(claim.printed for claim in table).split()
+    assert [number for number in PRINTED.split() if number not in printed] == []
+
+
+@pytest.mark.parametrize("claim", read_table(), ids=lambda claim: claim.measure)
+def test_each_row_has_a_measure_that_takes_its_arguments(claim):
+    inspect.signature(find_measure(claim.measure)).bind(None, claim, **claim.keywords())
+    assert all((claim.text, claim.printed, claim.how, claim.tolerance))
+
+
+@pytest.mark.parametrize(
+    ("parts", "expected"),
+    [([True], YES), ([True, False], PARTLY), ([False, False], NO), ([], UNDECIDED)],
+)
+def test_the_rule(parts, expected):
+    assert judge(parts) == expected
+    assert judge(parts, decides=False) == UNDECIDED
+
+
+def test_what_takes_the_full_resolution_is_not_decided_at_another():
+    numbers = {
+        "section": "3",
+        "text": "",
+        "printed": "1.095",
+        "how": "",
+        "tolerance": "",
+        "why": "so",
+    }
+    claims = [
+        Claim(measure="detuning", arguments="", full=full, **numbers) for full in ("", "full")
+    ]
+    data = known()
+    data.size = QUICK
+    rows = check_claims(claims, data)
+    assert [row["verdict"] for row in rows] == [YES, UNDECIDED]
+    assert rows[0]["found"] == rows[1]["found"] == "1.0954, 9.5 % apart"
+
+
+@pytest.mark.parametrize(
+    ("edges", "exact", "printed", "expected", "agrees"),
+    [
+        ((0.891, 0.892), 0.89135, "0.89", YES, "with both"),
+        ((1.226, 1.227), 1.22421, "1.23", PARTLY, "protocol, not"),
+        ((1.224, 1.225), 1.22421, "1.23", NO, "neither"),  # touches what rounds to 1.23, no more
+        ((1.117, 1.118), 1.10659, "1.11", PARTLY, "exact limit, not"),
+        ((0.417, 0.418), 0.41739, "0.43", NO, "neither"),
+    ],
+)
+def test_a_limit_is_read_twice(edges, exact, printed, expected, agrees):
+    low, high = edges
+    etas = np.array([low - 0.001, low, high, high + 0.001])
+    data = known({"T/2": (0.5, exact)}, sweep=responses(etas, [1, 1, 0, 0], 2))
+    claim = next(c for c in read_table() if c.measure == "limit" and "edge=upper" in c.arguments)
+    claim = Claim(**{**vars(claim), "printed": printed})
+    found, parts = limits.limit(data, claim, "elastic", "T/2", "upper", low)
+    assert judge(parts) == expected and agrees in found
+    assert f"exact: {exact:.8f} (fold of T/2)" in found
+
+
+def test_one_printed_digit_does_not_make_a_limit_vacuous():
+    """1.1 is the end of a window from 1.08 on; the next one begins at 1.11."""
+    (row,) = (number for number, claim in enumerate(read_table()) if claim.printed == "1.1")
+    etas = np.round(np.arange(1.05, 1.15, 0.001), 3)
+    for end, expected in ((1.1004, YES), (1.1174, NO), (1.0884, NO)):
+        swept = responses(etas, np.where((etas > 1.079) & (etas < end), 1, 2), 1)
+        assert verdict(row, known({"T/1": (1.079, end)}, sweep=swept)) == expected
+
+
+# -- no check that cannot fail ---------------------------------------------------------------------
+
+
+def one_kind(n, impacts):
+    """A world in which all responses of all cases repeat after nT with so many impacts."""
+    rising, ones = np.linspace(1.0, 2.0, len(ETAS)), np.ones(len(ETAS))
+    more = {
+        "permanent_contact": np.full(len(ETAS), n == 1),
+        "verdict": np.full(len(ETAS), PERIODIC if n else CHAOTIC),
+        **dict.fromkeys(("xi1_max", "xi2_max"), rising[::-1]),
+        **dict.fromkeys(("exponent", "standard_error", "contacts"), 0.0 * ones),
+        **dict.fromkeys(("closing_max", "closing_min", "closing_sum"), rising**n),
+        **dict.fromkeys(("distance_min", "distance_max"), 0.3 * ones),
+    }
+    more["xi_rel_max"] = rising if n else 1.0 + 0.5 * np.sin(300.0 * ETAS)
+    same = responses(ETAS, n, impacts, **more).assign(impacts=("eta", impacts * ones))
+    curves = loops(3).isel(point=slice(0, -2))
+    of = {"panel_of": ("point", np.arange(curves.sizes["point"]) % 3), "eta": ("panel", [1.0, 2.0])}
+    same.xi_rel[:] = np.linspace(1.0, 2.0, 201)
+    answers = dict.fromkeys(("sweep", "settled", "exponent", "largest"), same)
+    answers["impacts"] = lambda case: same.assign(
+        {
+            name: same[name] / (1.0 + 9.0 * (case == "plastic"))
+            for name in ("closing_max", "closing_sum")
+        }
+    )
+    answers["later"] = responses(ETAS, 1 - n, impacts)
+    alone = along_eta(ETAS, number=np.ones(len(ETAS)))
+    answers["attractors"] = alone.assign(multiplicity=alone.number.expand_dims("attractor", 1))
+    moved = dict.fromkeys(("T/2", "T/1", "2T/1", "3T/1", "4T/1"), (0.2, 0.3))
+    return known(moved, last_contact=np.array([0.4, np.nan]), figure=curves.assign(of), **answers)
+
+
+OF_SWEEPS = [
+    number
+    for number, claim in enumerate(read_table())
+    if "sweep" in claim.how or "settled" in claim.how or "branch" in claim.how
+]
+
+
+@pytest.mark.parametrize("row", OF_SWEEPS, ids=lambda row: read_table()[row].measure)
+def test_not_everything_is_borne_out_where_all_responses_are_of_one_kind(row):
+    """Nothing is as in the paper there: of each claim on sweeps one of two worlds differs."""
+    assert {verdict(row, world) for world in (one_kind(1, 5), one_kind(0, 3))} != {YES}
+
+
+# -- section 1 -------------------------------------------------------------------------------------
+
+
+def ramp(damping, bump=0.0):
+    """A run whose amplitude is a linear oscillator's, but for a bump half way up."""
+    speed = np.linspace(0.6, 1.099, 400)
+    amplitude = 1e-3 * setup.linear_curve(np.array([0.06, 1.1, damping]), speed)
+    amplitude *= 1.0 + bump * np.exp(-(((speed - 0.9) / 0.02) ** 2))
+    columns = {"amplitude": amplitude, "voltage": np.linspace(4.0, 7.0, 400), "Omega": speed}
+    rows = {name: ("revolution", values) for name, values in columns.items()}
+    return xr.Dataset({**rows, "jumps": ("jump", [np.nan])}, {"jump": ["up"]})
+
+
+def test_an_amplitude_curve_is_like_a_linear_one_or_not():
+    plain = measured("linear_amplitudes", known(ramp=lambda kind: ramp(0.008)))
+    assert judge(plain.parts) == YES and "D = 0.0080 at 1.1000 omega" in plain.found
+    bumped = known(ramp=lambda kind: ramp(0.008, 0.3 * (kind == "delaminated")))
+    assert verdict("linear_amplitudes", bumped) == NO
+    broken = ramp(0.005).assign(jumps=("jump", [6.0]))
+    assert setup.ascending_branch(broken)[0].max() < broken.Omega.values[270]
+
+
+# -- section 2 -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["scale", "free_part", "momentum", "period"])
+def test_an_equation_holds_as_corrected_only(name):
+    assert verdict(name, known()) == NO  # undecided where the corrected form does not hold either
+
+
+def test_both_misprints_of_the_solution_matter():
+    nu = np.sqrt(equations.STIFFNESS - equations.D**2)
+    assert equations.residual(equations.solution(nu, equations.D)) < 1e-6
+    assert equations.residual(equations.solution(nu, 1.0)) > 0.1
+
+
+@pytest.mark.parametrize(
+    ("restitutions", "change", "expected"),
+    [
+        ((0.1, 0.9), {}, YES),
+        ((0.1, 0.9, 1.0), {}, PARTLY),
+        ((0.1, 0.9), {"ratio_error": 1e-3}, PARTLY),  # times that do not shrink by e
+        ((0.1, 0.9), {"impacts": 9.0}, PARTLY),  # a count that has an end
+        ((0.1, 0.9), {"sticks": 0.0}, PARTLY),
+        ((0.1,), {"ratio_error": 1e-3}, NO),
+    ],
+)
+def test_chattering_is_endless_or_not(restitutions, change, expected):
+    gammas, e = np.array([1e-3, 1e-5, 1e-7, 1e-9]), np.array(restitutions)[:, np.newaxis]
+    counts = np.round(5 + np.log(gammas / gammas[0]) / np.log(np.minimum(e, 0.999)))
+    rows = {"impacts": counts, "sticks": 1.0 * (e < 1.0) + 0.0 * counts}
+    rows["ratio_error"] = np.full(counts.shape, 1e-9)
+    for name, value in change.items():
+        rows[name][0, -1] = value
+    variables = {name: (("e", "gamma"), values) for name, values in rows.items()}
+    data = xr.Dataset(variables, {"e": list(restitutions), "gamma": gammas})
+    assert verdict("chattering", known(chattering=data)) == expected
+
+
+# -- section 3 -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("impacts", "expected"),
+    [((0, 0, 9), PARTLY), ((0, 9, 9), YES), ((9, 0, 9), PARTLY), ((9, 0, 0), NO)],
+)
+def test_masses_that_never_influence_each_other_are_no_exception(impacts, expected):
+    rows = {"mu": [1.0, 2.0, 2.0], "kappa": [1.0, 2.0, 2.2], "impacts": list(impacts)}
+    data = xr.Dataset({name: ("motion", np.array(row)) for name, row in rows.items()})
+    assert verdict("only_equal", known(slow_impacts=data)) == expected
+
+
+@pytest.mark.parametrize(("own", "expected"), [(5.0, NO), (1.0, YES)])
+def test_the_most_unfavourable_detuning(own, expected):
+    impulses = (("kappa", "eta"), [[1.0, 0.5], [own, 0.5], [7.0, 0.5]])
+    data = xr.Dataset({"impulse_max": impulses}, {"kappa": [1.0, 1.2, 1.4], "eta": [1.0, 2.0]})
+    assert verdict("most_unfavourable", known(map=data)) == expected
+
+
+def loops(count, last=0.0):
+    """Flights and impacts in turn; the last impact parts with ``last``, contact follows."""
+    rows = []
+    for number in range(count):
+        rate = 0.7 if number < count - 1 else last
+        rows += [
+            (number + 0.5, 1, 0, FLIGHT),
+            (number + 1, 0, -1, FLIGHT),
+            (number + 1, 0, rate, FLIGHT),
+        ]
+    rows[-1] = (count, 0, last, CONTACT)
+    rows += [(count + 1, 0, 0, CONTACT), (count + 2, 0.5, 0.5, FLIGHT)]
+    tau, gap, rate, kind = np.array(rows, dtype=float).T
+    state = np.column_stack([0 * gap, gap, 0 * gap, rate])
+    points = {"tau": ("point", tau), "kind": ("point", kind.astype(int))}
+    return xr.Dataset({**points, "state": (("point", "coordinate"), state)})
+
+
+def test_loops_of_the_relative_motion():
+    found = measured("many_loops", known(figure=loops(15)))
+    assert judge(found.parts) == PARTLY
+    assert "15 loops in T" in found.found and "14 begin at one, 1 at the end" in found.found
+
+
+def test_a_contact_that_is_not_there_is_no_agreement():
+    for last, limit, expected in (
+        (0.0, 0.417, YES),
+        (0.01, 0.417, PARTLY),  # no impact slower than the paper's gamma
+        (0.01, np.nan, NO),  # a gamma with which there is no contact
+    ):
+        data = known(figure=loops(15, last), last_contact=np.array([0.417, limit]))
+        assert verdict("gamma_scale", data) == expected
+
+
+@pytest.mark.parametrize(
+    ("below", "beyond", "expected"), [(1, 1, YES), (1, 20, PARTLY), (20, 1, PARTLY), (20, 20, NO)]
+)
+def test_whether_500_periods_suffice(below, beyond, expected):
+    """A hundred frequencies up to the end of the window T, at 2.65, and a hundred beyond it."""
+    etas = np.concatenate([np.linspace(1.0, 2.6, 100), np.linspace(2.7, 8.0, 100)])
+    irregular = np.repeat([0, 1, 0, 1], [below, 100 - below, beyond, 100 - beyond])
+    same, late = responses(etas, 1, 1), responses(etas, irregular, 1)
+    data = known(sweep=same, later=lambda first, count=None: same if count else late)
+    found = measured("enough_periods", data)
+    assert judge(found.parts) == expected
+    assert f"{below} of 100 frequencies from 1.000 to 2.650 ({below} periodic, later" in found.found
+
+
+# -- sections 3.2 to 5 -----------------------------------------------------------------------------
+
+TO_AND_FRO = [5, 5, 4, 5, 0, 7, 8, 7, 3, 2]
+
+
+def one_period(impacts):
+    """T-periodic responses from 0.5 to 0.6 with these numbers of impacts, 0: irregular."""
+    counts = np.array(impacts)
+    verdicts = np.full(len(counts), PERIODIC)
+    return responses(np.linspace(0.5, 0.6, len(counts)), counts > 0, counts, verdict=verdicts)
+
+
+@pytest.mark.parametrize(
+    ("impacts", "expected"),
+    [(TO_AND_FRO, PARTLY), ([5, 0, 5, 3], YES), ([3, 4, 5], NO), ([5, 5, 5], NO)],
+)
+def test_impacts_that_rise_in_between_do_not_decrease(impacts, expected):
+    """A number that had been there before was dropped before the numbers were compared."""
+    assert verdict("impacts_decrease", known(sweep=one_period(impacts))) == expected
+
+
+def test_numbers_of_impacts_in_turn():
+    assert impacts_in_turn(one_period(TO_AND_FRO)) == [5, 4, 5, 7, 8, 7, 3, 2]
+    assert verdict("seven_to_two", known(sweep=one_period([7, 7, 5, 3, 2]))) == YES
+    assert verdict("seven_to_two", known(sweep=one_period([7, 5, 6, 3, 2]))) == PARTLY
+
+
+def test_each_number_of_impacts_has_its_own_frequencies():
+    """A window of several numbers had been called by its first one."""
+    data = one_period(TO_AND_FRO)
+    text = measured("interchange", known(settled=data, exponent=data)).found
+    assert "5 (0.500 to 0.511), 4 (0.522 to 0.522), 5 (0.533 to 0.533), 7 (0.556" in text
+
+
+@pytest.mark.parametrize(
+    ("irregular", "expected"),
+    [([(2.7, 3.5), (4.8, 5.6)], YES), ([(2.7, 3.5), (0.5, 0.8)], PARTLY), ([(0.5, 0.8)], NO)],
+)
+def test_where_irregularities_occur(irregular, expected):
+    chaotic = np.array([any(low < eta < high for low, high in irregular) for eta in ETAS])
+    data = responses(ETAS, ~chaotic, 1, verdict=np.where(chaotic, CHAOTIC, PERIODIC))
+    assert verdict("irregularities", known(settled=data, exponent=data)) == expected
+
+
+@pytest.mark.parametrize(
+    ("sizes", "expected"),
+    [
+        ((20.0, 0.2, 0.01, 0.0005), YES),
+        ((20.0, 0.2, 0.016, 0.005), PARTLY),  # as it is: the last step is a factor of 3
+        ((4.0, 3.0, 2.0, 1.0), NO),
+        ((20.0,), UNDECIDED),  # without windows
+    ],
+)
+def test_powers_of_ten_from_peak_to_peak(sizes, expected):
+    n = np.repeat(np.arange(len(sizes)), 3)
+    gaps = np.concatenate([[0.5 * size, size, 0.4 * size] for size in sizes])
+    data = responses(
+        n + np.tile([1.0, 1.2, 1.4], len(sizes)), n, 1, xi_rel_max=gaps, closing_max=gaps
+    )
+    assert verdict("decay", known(sweep=data, impacts=data)) == expected
+
+
+@pytest.mark.parametrize(
+    ("ratios", "expected"),
+    [
+        ((0.8, 1.08, 1.05, 1.03, 1.02), YES),
+        ((0.8, 1.25, 1.12, 1.08, 1.02), PARTLY),  # as it is: near one oscillator's at the end only
+        ((0.8, 1.2, 1.3, 1.4, 1.5), NO),
+    ],
+)
+def test_amplitudes_like_those_of_one_oscillator(ratios, expected):
+    etas, case = np.array([1.047, 2.07, 4.166, 6.268, 8.0]), CASES["elastic"]
+    alone = 1.0 / np.hypot((1.0 + case.kappa) / (1.0 + case.mu) - etas**2, 0.01 * etas)
+    sizes = dict.fromkeys(("xi1_max", "xi2_max"), np.array(ratios) * alone)
+    data = along_eta(etas, xi_rel_max=0.1 * alone, **sizes)
+    assert verdict("single_oscillator", known(sweep=data)) == expected
+
+
+@pytest.mark.parametrize(
+    ("amplitude", "impulse", "expected"), [(2, 2, YES), (1, 2, PARTLY), (1, 3, NO)]
+)
+def test_amplitudes_and_impulses_are_largest_at_the_main_peak_or_not(amplitude, impulse, expected):
+    columns = {"xi_rel_max": 2, "xi1_max": amplitude, "xi2_max": amplitude, "closing_max": impulse}
+    peaks = {name: 1.0 + (np.arange(1, 5) == place) for name, place in columns.items()}
+    data = along_eta(np.array([1.0, 1.05, 1.1, 1.2]), **peaks)
+    assert verdict("both_at_peak", known(sweep=data, impacts=data)) == expected
