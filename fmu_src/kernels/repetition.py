@@ -9,7 +9,7 @@ co-ordinate, and room for deviations.
 COUNT, FREQUENCY, GAP, TOLERANCE, MULTIPLICITY, DECIDED, DEVIATION, LATER, AWAY, HEAD = range(10)
 STATE, COLUMNS = 4, 6  # numbers of a state, and of a scaled one: the gap and its rate come last
 IRREGULAR, REPEATED, UNDECIDED = 0, 1, 2
-MIN_RELATIVE_GAP = 1.0 / 1048576.0  # of the motion's size: smaller gaps are not compared with their own
+MIN_RELATIVE_GAP = 1.0 / 1048576.0  # of the motion's size: smaller gaps are as large
 ROUNDING = 1e-9  # of the motion's size: what is left of deviations that have died, with room
 BLOCKS = 5  # parts of the later half from each of which to the next a dying deviation shrinks
 CHANCE = 1.0512710963760241  # exp(0.05): ratio of deviations that chance makes
