@@ -1,0 +1,272 @@
+"""Decide by a hysteresis loop of held voltages where the motor's speed jumps.
+
+A jump is a loss of stability of the slow motion: two motions exist at one voltage, and the ramp
+loses the first. A steep but continuous branch is not a jump. The rule, for a stretch of the voltage
+in which the ramp's record suggests a jump:
+
+- Voltages are held on a grid of steps `grid`, from the ramp's own state before the stretch to the
+  stretch's end, each until the speed has settled (:mod:`.settled`).
+- Every step in which the speed changes by `smallest` more than the voltage is halved, to `width`.
+- Then the voltage goes back over that step. The motion is *lost* there where the speed comes back
+  more than `clear` away, and both motions last when they are held `again` times. Where it comes
+  back, the step is halved further.
+- There is *no* jump where no such step is left and the speed comes back at each voltage of the grid.
+- All else is *undecided*: a speed that does not settle, two motions nearer than `clear`, a step
+  that is still large at `finest`, another motion on the way back, or a speed that moves against the
+  voltage and what comes after it.
+
+Non-dimensional: voltages over K omega, speeds over omega, times in 1/omega, in the mirror image in
+which the motor turns forward.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from ..running.job import Table
+from .run import Run
+from .schedule import Constant, Schedule
+from .settled import SettledSettings, settled_speed
+
+NONE, LOST, UNDECIDED = range(3)
+SAVED = (
+    *("oscillator_state", "shaker_state", "master_memory"),
+    *("revolution_memory", "control_memory"),
+)
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Set the steps and thresholds of the hysteresis loop; defaults serve all drives tried."""
+
+    shown: float = 4e-3  # fall of the slip in a ramp's record that suggests a jump
+    grid: float = 4e-3  # longest first step of the voltage
+    width: float = 1e-4  # widest bracket of a jump
+    finest: float = 1e-6  # shortest step of the voltage
+    # change of the speed over a step, beyond that of the voltage, up to which it may be one branch;
+    # below 0.866 of `distinct`, so that no steps find a jump that others rule out
+    smallest: float = 4e-3
+    same: float = 2e-3  # largest difference of two settled speeds of one motion
+    clear: float = 5e-3  # smallest difference of two motions' speeds at one voltage at a jump
+    again: int = 3  # times that the motions beside a jump are held again
+    lead: float = 3.0  # how much earlier than the record a course begins, in rotor times 1/b
+    past: float = 8e-3  # how far past the stretch a course goes
+    max_holds: int = 150  # of a course
+    settled: SettledSettings = field(default_factory=SettledSettings)
+
+
+class HeldPoint(NamedTuple):
+    """Store the speed that settled at a held voltage, and the state reached."""
+
+    voltage: float
+    speed: float  # NaN where it did not settle in time
+    error: float  # of the speed of an irregular motion; 0 where it converged
+    state: Table
+
+
+class Jump(NamedTuple):
+    """Store where a motion is lost, or may be: between two voltages, in the ramp's order."""
+
+    outcome: int  # `LOST` or `UNDECIDED`
+    low: float
+    high: float
+
+
+class VoltageHolder:
+    """Restore states of a past ramp and hold voltages from there until speeds settle."""
+
+    def __init__(
+        self,
+        begin: Callable[[Schedule], Run],
+        schedule: Schedule,
+        step: float,
+        omega: float,
+        volts: float,
+        longest: float,
+        settings: Settings | None = None,
+    ) -> None:
+        """Store how runs begin, the ramp's schedule, the units (s, rad/s, V) and the settings.
+
+        `volts` is negative where the motor turns backward, `longest` the longest hold in s.
+        """
+        self.begin, self.schedule, self.step = begin, schedule, step
+        self.omega, self.volts, self.longest = omega, volts, longest
+        self.settings = settings or Settings()
+        self.checkpoints: dict[int, Table] = {}
+
+    def add_checkpoints(self, table: Table, every: int, steps: int) -> None:
+        """Store the ramp's saved states by their communication step."""
+        for i in range(len(table["master_memory"])):
+            state = {name: table[name][[i]] for name in SAVED}
+            self.checkpoints[min((i + 1) * every, steps)] = state
+
+    def state_before(self, step: int) -> Table | None:
+        """Return the ramp's state before a step, from a checkpoint; None at the start."""
+        if step not in self.checkpoints and step:
+            last = max((known for known in self.checkpoints if known < step), default=0)
+            run = self.begin(self.schedule)
+            try:
+                if last:
+                    run.set_state(self.checkpoints[last])
+                run.revolve(range(last, step))
+                self.checkpoints[step] = run.get_state()
+            finally:
+                run.master.close()
+        return self.checkpoints.get(step)
+
+    def hold_step(self, step: int) -> HeldPoint:
+        """Hold the voltage that the ramp has at a step, from its state there."""
+        voltage = self.schedule.voltage((step + 0.5) * self.step) / self.volts
+        return self.hold(self.state_before(step), voltage)
+
+    def hold_from(self, point: HeldPoint, voltage: float) -> HeldPoint:
+        """Change the voltage in one step from a held point, and hold it there."""
+        return self.hold(point.state, voltage)
+
+    def hold(self, state: Table | None, voltage: float) -> HeldPoint:
+        """Simulate a constant voltage from a state until the speed settles."""
+        settings = self.settings.settled
+        count = math.ceil(self.longest / self.step)
+        piece = max(1, round(settings.piece / self.omega / self.step))
+        run = self.begin(Constant(self.volts * voltage, count * self.step))
+        speeds, speed, error = np.zeros(0), math.nan, 0.0
+        try:
+            if state is not None:
+                run.set_state(state)
+            for first in range(0, count, piece):
+                rows = run.revolve(range(first, min(first + piece, count)))
+                speeds = np.append(speeds, np.abs(rows["speed"]) / self.omega)
+                speed, error = settled_speed(speeds, settings)
+                if math.isfinite(speed):
+                    break
+            return HeldPoint(voltage, speed, error, run.get_state())
+        finally:
+            run.master.close()
+
+
+class HysteresisLoop(VoltageHolder):
+    """Decide where a course of held voltages loses its motion."""
+
+    def jumps(self, first: HeldPoint, last: float) -> list[Jump]:
+        """Return the jumps between a held point and a voltage; an empty list where there is none."""
+        points = self.hold_grid(first, last)
+        sign = math.copysign(1.0, last - first.voltage)
+        jumps: dict[tuple[float, float], Jump] = {}
+        for _ in range(self.settings.max_holds):
+            i = self.largest_step(points, jumps)
+            if i is None:
+                break
+            low, high = points[i : i + 2]
+            outcome = self.outcome_of_step(low, high, sign)
+            middle = self.hold_between(low, high) if outcome is None else None
+            if middle is not None:
+                points.insert(i + 1, middle)
+            else:
+                step = low.voltage, high.voltage
+                jumps[step] = Jump(self.way_back(low, high) if outcome is None else outcome, *step)
+        else:
+            return [Jump(UNDECIDED, first.voltage, last)]
+        return self.in_order(points, jumps, sign)
+
+    def in_order(
+        self, points: list[HeldPoint], jumps: dict[tuple[float, float], Jump], sign: float
+    ) -> list[Jump]:
+        """Return the jumps in the ramp's order, those after a fall against it undecided."""
+        ordered, fell = [], False
+        steps = {(low.voltage, high.voltage): high.speed - low.speed for low, high in pairwise(points)}
+        for step, jump in sorted(jumps.items(), key=lambda item: sign * item[0][0]):
+            fell |= sign * steps[step] < 0.0
+            ordered.append(jump._replace(outcome=UNDECIDED if fell else jump.outcome))
+        if not ordered and not self.comes_back(points):
+            return [Jump(UNDECIDED, points[0].voltage, points[-1].voltage)]
+        return ordered
+
+    def hold_grid(self, first: HeldPoint, last: float) -> list[HeldPoint]:
+        """Step the voltage over the grid; return the points at which the speed settled."""
+        count = max(1, math.ceil(abs(last - first.voltage) / self.settings.grid - 1e-9))
+        points = [first]
+        for voltage in np.linspace(first.voltage, last, count + 1)[1:].tolist():
+            point = self.hold_from(points[-1], voltage)
+            if math.isfinite(point.speed):
+                points.append(point)
+        return points
+
+    def largest_step(
+        self, points: list[HeldPoint], decided: dict[tuple[float, float], Jump]
+    ) -> int | None:
+        """Return the index of the largest undecided step of the speed; None if all are small."""
+        excess = [
+            -math.inf if (low.voltage, high.voltage) in decided else self.excess(low, high)
+            for low, high in pairwise(points)
+        ]
+        i = int(np.argmax(excess)) if excess else 0
+        return i if excess and excess[i] > 0.0 else None
+
+    def excess(self, low: HeldPoint, high: HeldPoint) -> float:
+        """Return by how much the speed changes more than one branch may."""
+        branch = self.settings.smallest + abs(high.voltage - low.voltage)
+        return abs(high.speed - low.speed) - branch - difference_error(low, high)
+
+    def outcome_of_step(self, low: HeldPoint, high: HeldPoint, sign: float) -> int | None:
+        """Return whether the motion is lost in a short step; None where it has to be halved."""
+        length = abs(high.voltage - low.voltage)
+        if length > self.settings.width:
+            return None
+        outcome = self.way_back(low, high)
+        if outcome == NONE:
+            return UNDECIDED if length <= self.settings.finest else None
+        return outcome
+
+    def way_back(self, low: HeldPoint, high: HeldPoint) -> int:
+        """Return whether two motions exist at the lower voltage of a step, and the first is lost."""
+        again, back = self.hold_from(low, high.voltage), self.hold_from(high, low.voltage)
+        distance = abs(back.speed - low.speed) - difference_error(back, low)
+        if distance <= self.settings.same:
+            return NONE
+        stays = abs(again.speed - low.speed) < abs(high.speed - again.speed)
+        if math.isnan(back.speed) or distance < self.settings.clear or stays:
+            return UNDECIDED
+        return LOST if self.lasts(low) and self.lasts(back) else UNDECIDED
+
+    def lasts(self, point: HeldPoint) -> bool:
+        """Return whether a motion is the same when its voltage is held again and again."""
+        later = point
+        for _ in range(self.settings.again):
+            later = self.hold_from(later, point.voltage)
+            if not self.is_same(later, point):
+                return False
+        return True
+
+    def hold_between(self, low: HeldPoint, high: HeldPoint) -> HeldPoint | None:
+        """Hold voltages between two points until one settles, the middle first; None if none."""
+        for part in (0.5, 0.25, 0.75):
+            point = self.hold_from(low, low.voltage + part * (high.voltage - low.voltage))
+            if math.isfinite(point.speed):
+                return point
+        return None
+
+    def comes_back(self, points: list[HeldPoint]) -> bool:
+        """Return whether the same speeds settle on the way back over all voltages."""
+        last = points[-1]
+        for point in reversed(points[:-1]):
+            back = self.hold_from(last, point.voltage)
+            if not self.is_same(back, point):
+                return False
+            last = back
+        return True
+
+    def is_same(self, point: HeldPoint, other: HeldPoint) -> bool:
+        """Return whether two points have settled at the same speed."""
+        distance = abs(point.speed - other.speed) - difference_error(point, other)
+        return distance <= self.settings.same
+
+
+def difference_error(point: HeldPoint, other: HeldPoint) -> float:
+    """Return three standard errors of the difference between two settled speeds."""
+    return 3.0 * math.hypot(point.error, other.error)
