@@ -30,6 +30,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..running.job import Table
+from .ramp_record_new import RampRecord, Suspect
 from .run import Run
 from .schedule import Constant, Schedule
 from .settled import SettledSettings, settled_speed
@@ -55,8 +56,8 @@ class Settings:
     same: float = 2e-3  # largest difference of two settled speeds of one motion
     clear: float = 5e-3  # smallest difference of two motions' speeds at one voltage at a jump
     again: int = 3  # times that the motions beside a jump are held again
-    lead: float = 3.0  # how much earlier than the record a course begins, in rotor times 1/b
-    past: float = 8e-3  # how far past the stretch a course goes
+    lead: float = 6.0  # how much earlier than the record a course begins, in rotor times 1/b
+    past: float = 8e-3  # how far past the stretch a course goes at most
     max_holds: int = 150  # of a course
     settled: SettledSettings = field(default_factory=SettledSettings)
 
@@ -125,12 +126,20 @@ class VoltageHolder:
         voltage = self.schedule.voltage((step + 0.5) * self.step) / self.volts
         return self.hold(self.state_before(step), voltage)
 
-    def hold_from(self, point: HeldPoint, voltage: float) -> HeldPoint:
+    def hold_from(
+        self, point: HeldPoint, voltage: float, limit: float | None = None
+    ) -> HeldPoint:
         """Change the voltage in one step from a held point, and hold it there."""
-        return self.hold(point.state, voltage)
+        return self.hold(point.state, voltage, None if limit is None else (point.speed, limit))
 
-    def hold(self, state: Table | None, voltage: float) -> HeldPoint:
-        """Simulate a constant voltage from a state until the speed settles."""
+    def hold(
+        self, state: Table | None, voltage: float, ends: tuple[float, float] | None = None
+    ) -> HeldPoint:
+        """Simulate a constant voltage from a state until the speed settles.
+
+        With `ends` also until the speed has come from the first of two nearly to the second one,
+        which is returned as its speed then.
+        """
         settings = self.settings.settled
         count = math.ceil(self.longest / self.step)
         piece = max(1, round(settings.piece / self.omega / self.step))
@@ -145,6 +154,9 @@ class VoltageHolder:
                 speed, error = settled_speed(speeds, settings)
                 if math.isfinite(speed):
                     break
+                if ends and has_left(speeds[-settings.block :], *ends):
+                    speed = ends[1]
+                    break
             return HeldPoint(voltage, speed, error, run.get_state())
         finally:
             run.master.close()
@@ -153,23 +165,49 @@ class VoltageHolder:
 class HysteresisLoop(VoltageHolder):
     """Decide where a course of held voltages loses its motion."""
 
-    def jumps(self, first: HeldPoint, last: float) -> list[Jump]:
-        """Return the jumps between a held point and a voltage; an empty list where there is none."""
-        points = self.hold_grid(first, last)
+    def decide(self, record: RampRecord, suspect: Suspect) -> list[Jump]:
+        """Return the jumps of a stretch of a ramp in which its record suggests one."""
+        before, after = suspect.before, suspect.after
+        half = 0.5 * record.sign * (record.speed(after) - record.speed(before))
+        row, back = record.row_earlier(before, self.settings.lead), before - suspect.first
+        point = self.hold_step(record.step(row))
+        while not -2.0 * self.settings.same < record.sign * (point.speed - record.speed(row)) < half:
+            if row == suspect.first:
+                left = math.isfinite(point.speed)
+                return [] if left else [Jump(UNDECIDED, record.eta0(row), record.eta0(after))]
+            row, back = max(suspect.first, row - back), 2 * back
+            point = self.hold_step(record.step(row))
+        last = record.within_ramp(record.eta0(after) + record.sign * self.settings.past, after)
+        return self.jumps(point, last, record.slip(after))
+
+    def jumps(self, first: HeldPoint, last: float, slip: float = -math.inf) -> list[Jump]:
+        """Return the jumps between a held point and a voltage; an empty list where there is none.
+
+        The course ends sooner one step after its slip has fallen below that given.
+        """
         sign = math.copysign(1.0, last - first.voltage)
+        points = self.hold_grid(first, last, slip, sign)
         jumps: dict[tuple[float, float], Jump] = {}
         for _ in range(self.settings.max_holds):
             i = self.largest_step(points, jumps)
             if i is None:
                 break
             low, high = points[i : i + 2]
-            outcome = self.outcome_of_step(low, high, sign)
-            middle = self.hold_between(low, high) if outcome is None else None
-            if middle is not None:
+            length, middle = abs(high.voltage - low.voltage), None
+            if length > self.settings.width and (middle := self.hold_between(low, high)):
                 points.insert(i + 1, middle)
-            else:
-                step = low.voltage, high.voltage
-                jumps[step] = Jump(self.way_back(low, high) if outcome is None else outcome, *step)
+                continue
+            landed = self.hold_from(low, high.voltage)
+            outcome = self.way_back(low, landed)
+            points[i + 1] = high = landed if math.isfinite(landed.speed) else high
+            if outcome == NONE and length > self.settings.finest:
+                if self.excess(low, high) <= 0.0:
+                    continue
+                if middle := self.hold_between(low, high):
+                    points.insert(i + 1, middle)
+                    continue
+            step = low.voltage, high.voltage
+            jumps[step] = Jump(outcome or UNDECIDED, *step)
         else:
             return [Jump(UNDECIDED, first.voltage, last)]
         return self.in_order(points, jumps, sign)
@@ -187,14 +225,19 @@ class HysteresisLoop(VoltageHolder):
             return [Jump(UNDECIDED, points[0].voltage, points[-1].voltage)]
         return ordered
 
-    def hold_grid(self, first: HeldPoint, last: float) -> list[HeldPoint]:
+    def hold_grid(
+        self, first: HeldPoint, last: float, slip: float, sign: float
+    ) -> list[HeldPoint]:
         """Step the voltage over the grid; return the points at which the speed settled."""
         count = max(1, math.ceil(abs(last - first.voltage) / self.settings.grid - 1e-9))
         points = [first]
         for voltage in np.linspace(first.voltage, last, count + 1)[1:].tolist():
+            is_past = sign * (points[-1].voltage - points[-1].speed) < slip
             point = self.hold_from(points[-1], voltage)
             if math.isfinite(point.speed):
                 points.append(point)
+            if is_past:
+                break
         return points
 
     def largest_step(
@@ -213,24 +256,13 @@ class HysteresisLoop(VoltageHolder):
         branch = self.settings.smallest + abs(high.voltage - low.voltage)
         return abs(high.speed - low.speed) - branch - difference_error(low, high)
 
-    def outcome_of_step(self, low: HeldPoint, high: HeldPoint, sign: float) -> int | None:
-        """Return whether the motion is lost in a short step; None where it has to be halved."""
-        length = abs(high.voltage - low.voltage)
-        if length > self.settings.width:
-            return None
-        outcome = self.way_back(low, high)
-        if outcome == NONE:
-            return UNDECIDED if length <= self.settings.finest else None
-        return outcome
-
-    def way_back(self, low: HeldPoint, high: HeldPoint) -> int:
+    def way_back(self, low: HeldPoint, landed: HeldPoint) -> int:
         """Return whether two motions exist at the lower voltage of a step, and the first is lost."""
-        again, back = self.hold_from(low, high.voltage), self.hold_from(high, low.voltage)
+        back = self.hold_from(landed, low.voltage)
         distance = abs(back.speed - low.speed) - difference_error(back, low)
         if distance <= self.settings.same:
             return NONE
-        stays = abs(again.speed - low.speed) < abs(high.speed - again.speed)
-        if math.isnan(back.speed) or distance < self.settings.clear or stays:
+        if math.isnan(back.speed) or distance < self.settings.clear:
             return UNDECIDED
         return LOST if self.lasts(low) and self.lasts(back) else UNDECIDED
 
@@ -246,7 +278,8 @@ class HysteresisLoop(VoltageHolder):
     def hold_between(self, low: HeldPoint, high: HeldPoint) -> HeldPoint | None:
         """Hold voltages between two points until one settles, the middle first; None if none."""
         for part in (0.5, 0.25, 0.75):
-            point = self.hold_from(low, low.voltage + part * (high.voltage - low.voltage))
+            voltage = low.voltage + part * (high.voltage - low.voltage)
+            point = self.hold_from(low, voltage, high.speed)
             if math.isfinite(point.speed):
                 return point
         return None
@@ -265,6 +298,11 @@ class HysteresisLoop(VoltageHolder):
         """Return whether two points have settled at the same speed."""
         distance = abs(point.speed - other.speed) - difference_error(point, other)
         return distance <= self.settings.same
+
+
+def has_left(speeds: np.ndarray, first: float, second: float) -> bool:
+    """Return whether the last speeds have come nine tenths of the way between two speeds."""
+    return speeds.size > 0 and abs(float(speeds.mean()) - second) < 0.1 * abs(first - second)
 
 
 def difference_error(point: HeldPoint, other: HeldPoint) -> float:
