@@ -169,7 +169,8 @@ class HysteresisLoop(VoltageHolder):
         """Return the jumps of a stretch of a ramp in which its record suggests one."""
         before, after = suspect.before, suspect.after
         half = 0.5 * record.sign * (record.speed(after) - record.speed(before))
-        row, back = record.row_earlier(before, self.settings.lead), before - suspect.first
+        row = record.row_earlier(before, self.settings.lead)
+        back = max(1, before - row)
         point = self.hold_step(record.step(row))
         while not -2.0 * self.settings.same < record.sign * (point.speed - record.speed(row)) < half:
             if row == suspect.first:
@@ -206,8 +207,10 @@ class HysteresisLoop(VoltageHolder):
                 if middle := self.hold_between(low, high):
                     points.insert(i + 1, middle)
                     continue
-            step = low.voltage, high.voltage
-            jumps[step] = Jump(outcome or UNDECIDED, *step)
+            step, before = (low.voltage, high.voltage), low.voltage
+            if outcome == LOST:
+                outcome, before = self.confirm(points[: i + 1], sign)
+            jumps[step] = Jump(outcome or UNDECIDED, before, high.voltage)
         else:
             return [Jump(UNDECIDED, first.voltage, last)]
         return self.in_order(points, jumps, sign)
@@ -264,16 +267,31 @@ class HysteresisLoop(VoltageHolder):
             return NONE
         if math.isnan(back.speed) or distance < self.settings.clear:
             return UNDECIDED
-        return LOST if self.lasts(low) and self.lasts(back) else UNDECIDED
+        return LOST if self.hold_again(back) is back else UNDECIDED
 
-    def lasts(self, point: HeldPoint) -> bool:
-        """Return whether a motion is the same when its voltage is held again and again."""
+    def confirm(self, points: list[HeldPoint], sign: float) -> tuple[int, float]:
+        """Hold the motion before a loss again; return the outcome and the voltage where it stays.
+
+        Close to its end a motion seems to settle before it leaves: then one `width` earlier counts.
+        """
+        low, voltage = points[-1], points[-1].voltage - sign * self.settings.width
+        later = self.hold_again(low)
+        if later is low:
+            return LOST, low.voltage
+        earlier = [point for point in points if sign * (voltage - point.voltage) >= 0.0]
+        stays = self.hold_from(earlier[-1], voltage) if earlier else later
+        if stays is later or self.hold_again(stays) is not stays:
+            return UNDECIDED, low.voltage
+        return self.way_back(stays, later), voltage
+
+    def hold_again(self, point: HeldPoint) -> HeldPoint:
+        """Hold a motion again and again; return its new point if it has left, else the point."""
         later = point
         for _ in range(self.settings.again):
             later = self.hold_from(later, point.voltage)
             if not self.is_same(later, point):
-                return False
-        return True
+                return later
+        return point
 
     def hold_between(self, low: HeldPoint, high: HeldPoint) -> HeldPoint | None:
         """Hold voltages between two points until one settles, the middle first; None if none."""
