@@ -30,12 +30,13 @@ from typing import NamedTuple
 import numpy as np
 
 from ..running.job import Table
-from .ramp_record_new import RampRecord, Suspect
+from .ramp_record import NOT_SHOWN, RampRecord, Suspect
 from .run import Run
 from .schedule import Constant, Schedule
 from .settled import SettledSettings, settled_speed
 
 NONE, LOST, UNDECIDED = range(3)
+LAG = 2.0  # rotor times 1/b by which a speed follows a ramp late, without a jump
 SAVED = (
     *("oscillator_state", "shaker_state", "master_memory"),
     *("revolution_memory", "control_memory"),
@@ -77,6 +78,7 @@ class Jump(NamedTuple):
     outcome: int  # `LOST` or `UNDECIDED`
     low: float
     high: float
+    shown: Suspect = NOT_SHOWN  # where the run's record shows it
 
 
 class VoltageHolder:
@@ -126,9 +128,7 @@ class VoltageHolder:
         voltage = self.schedule.voltage((step + 0.5) * self.step) / self.volts
         return self.hold(self.state_before(step), voltage)
 
-    def hold_from(
-        self, point: HeldPoint, voltage: float, limit: float | None = None
-    ) -> HeldPoint:
+    def hold_from(self, point: HeldPoint, voltage: float, limit: float | None = None) -> HeldPoint:
         """Change the voltage in one step from a held point, and hold it there."""
         return self.hold(point.state, voltage, None if limit is None else (point.speed, limit))
 
@@ -165,27 +165,74 @@ class VoltageHolder:
 class HysteresisLoop(VoltageHolder):
     """Decide where a course of held voltages loses its motion."""
 
-    def decide(self, record: RampRecord, suspect: Suspect) -> list[Jump]:
-        """Return the jumps of a stretch of a ramp in which its record suggests one."""
+    def decide(self, record: RampRecord) -> list[Jump]:
+        """Return all jumps of a run in one direction, by their voltages."""
+        jumps = []
+        for leg in record.legs():
+            suspects = record.suspects(leg, self.settings.shown)
+            if not self.longest:
+                ends = ((record.eta0(at.before), record.eta0(at.after), at) for at in suspects)
+                jumps += [Jump(UNDECIDED, *end) for end in ends]
+                continue
+            for suspect in suspects:
+                jumps += self.decide_stretch(record, leg, suspect)
+            if not suspects or suspects[-1].after < leg[-1]:
+                jumps += self.decide_end(record, leg)
+        return sorted(jumps, key=lambda jump: record.sign * jump.low)
+
+    def decide_stretch(self, record: RampRecord, leg: np.ndarray, suspect: Suspect) -> list[Jump]:
+        """Return the jumps of a stretch in which the record of a ramp suggests one."""
         before, after = suspect.before, suspect.after
-        half = 0.5 * record.sign * (record.speed(after) - record.speed(before))
-        row = record.row_earlier(before, self.settings.lead)
+        change = record.speed(after) - record.speed(before)
+        point = self.first_point(record, leg, before, change)
+        if point is None:
+            return []
+        past = record.eta0(after) + record.sign * self.settings.past
+        last = min(past, record.eta0(leg[-1]), key=lambda eta0: record.sign * eta0)
+        slip = 0.2 * record.slip(before) + 0.8 * record.slip(after)
+        jumps = self.jumps(point, last, slip)
+        earlier = [jump._replace(shown=record.suspect_at(jump.high, leg)) for jump in jumps[:-1]]
+        return earlier + [jump._replace(shown=suspect) for jump in jumps[-1:]]
+
+    def decide_end(self, record: RampRecord, leg: np.ndarray) -> list[Jump]:
+        """Return the jumps shortly before the end of a ramp, which show after it only."""
+        last = int(leg[-1])
+        end = self.hold_step(record.step(last))
+        change = end.speed - record.speed(last)
+        lag = abs(record.eta0(last) - record.eta0(record.row_earlier(last, LAG, leg)))
+        if abs(change) - 3.0 * end.error - lag <= self.settings.shown:
+            return []
+        point = self.first_point(record, leg, last, change)
+        jumps = self.jumps(point, record.eta0(last)) if point else []
+        return [jump._replace(shown=Suspect(last, last, last)) for jump in jumps]
+
+    def first_point(
+        self, record: RampRecord, leg: np.ndarray, before: int, change: float
+    ) -> HeldPoint | None:
+        """Hold a voltage before a row, from the ramp's state; None where it left before the ramp.
+
+        The speed there has to be the ramp's: it has neither done half of the change that follows
+        nor moved against the voltage.
+        """
+        half = 0.5 * record.sign * change if math.isfinite(change) else math.inf
+        row = record.row_earlier(before, self.settings.lead, leg)
         back = max(1, before - row)
-        point = self.hold_step(record.step(row))
-        while not -2.0 * self.settings.same < record.sign * (point.speed - record.speed(row)) < half:
-            if row == suspect.first:
-                left = math.isfinite(point.speed)
-                return [] if left else [Jump(UNDECIDED, record.eta0(row), record.eta0(after))]
-            row, back = max(suspect.first, row - back), 2 * back
+        while True:
             point = self.hold_step(record.step(row))
-        last = record.within_ramp(record.eta0(after) + record.sign * self.settings.past, after)
-        return self.jumps(point, last, record.slip(after))
+            gained = record.sign * (point.speed - record.speed(row))
+            if -2.0 * self.settings.same - 3.0 * point.error < gained < half:
+                return point
+            if row == leg[0]:
+                return point if math.isnan(point.speed) else None
+            row, back = max(int(leg[0]), row - back), 2 * back
 
     def jumps(self, first: HeldPoint, last: float, slip: float = -math.inf) -> list[Jump]:
         """Return the jumps between a held point and a voltage; an empty list where there is none.
 
         The course ends sooner one step after its slip has fallen below that given.
         """
+        if math.isnan(first.speed):
+            return [Jump(UNDECIDED, first.voltage, last)]
         sign = math.copysign(1.0, last - first.voltage)
         points = self.hold_grid(first, last, slip, sign)
         jumps: dict[tuple[float, float], Jump] = {}
@@ -220,7 +267,9 @@ class HysteresisLoop(VoltageHolder):
     ) -> list[Jump]:
         """Return the jumps in the ramp's order, those after a fall against it undecided."""
         ordered, fell = [], False
-        steps = {(low.voltage, high.voltage): high.speed - low.speed for low, high in pairwise(points)}
+        steps = {
+            (low.voltage, high.voltage): high.speed - low.speed for low, high in pairwise(points)
+        }
         for step, jump in sorted(jumps.items(), key=lambda item: sign * item[0][0]):
             fell |= sign * steps[step] < 0.0
             ordered.append(jump._replace(outcome=UNDECIDED if fell else jump.outcome))
@@ -228,9 +277,7 @@ class HysteresisLoop(VoltageHolder):
             return [Jump(UNDECIDED, points[0].voltage, points[-1].voltage)]
         return ordered
 
-    def hold_grid(
-        self, first: HeldPoint, last: float, slip: float, sign: float
-    ) -> list[HeldPoint]:
+    def hold_grid(self, first: HeldPoint, last: float, slip: float, sign: float) -> list[HeldPoint]:
         """Step the voltage over the grid; return the points at which the speed settled."""
         count = max(1, math.ceil(abs(last - first.voltage) / self.settings.grid - 1e-9))
         points = [first]
@@ -303,13 +350,14 @@ class HysteresisLoop(VoltageHolder):
         return None
 
     def comes_back(self, points: list[HeldPoint]) -> bool:
-        """Return whether the same speeds settle on the way back over all voltages."""
+        """Return whether the speed comes back, less than `clear` away, wherever it settles."""
         last = points[-1]
         for point in reversed(points[:-1]):
             back = self.hold_from(last, point.voltage)
-            if not self.is_same(back, point):
+            distance = abs(back.speed - point.speed) - difference_error(back, point)
+            if distance >= self.settings.clear:
                 return False
-            last = back
+            last = back if math.isfinite(back.speed) else last
         return True
 
     def is_same(self, point: HeldPoint, other: HeldPoint) -> bool:

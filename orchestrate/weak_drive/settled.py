@@ -6,8 +6,8 @@
   is slower than any exponential, and they do not.
 - So where the last four changes are below a hundredth of `tolerance`, or the last five means go to
   and fro within 0.3 of it.
-- An irregular motion has settled where three means over eight blocks each differ by less than the
-  blocks scatter; its speed has an error then.
+- An irregular motion has settled where three long means over a third of `blocks` each differ by less than
+  half of what the blocks scatter; its speed has an error then.
 - All else has not settled.
 """
 
@@ -23,7 +23,8 @@ import numpy as np
 class SettledSettings:
     """Set block, tolerance and pace of the test for a settled speed."""
 
-    block: int = 24  # revolutions of a mean; a multiple of the periods of most motions
+    block: int = 12  # revolutions of a mean; a multiple of the periods of most motions
+    blocks: int = 48  # of the three long means of an irregular motion, together
     tolerance: float = 1e-4  # of the settled speed, over omega
     piece: float = 150.0  # simulated between two tests, in 1/omega
 
@@ -47,11 +48,11 @@ def settled_speed(speeds: np.ndarray, settings: SettledSettings) -> tuple[float,
             limits = means[-3:] + last[1:] * ratios / (1.0 - ratios)
             if np.ptp(limits) < 0.5 * settings.tolerance:
                 return float(limits[-1]), 0.0
-    if len(means) < 24:
+    if len(means) < settings.blocks:
         return math.nan, 0.0
-    thirds = means[-24:].reshape(3, 8).mean(axis=1)
-    scatter = float(np.std(np.diff(means[-24:])))
-    if np.ptp(thirds) < max(settings.tolerance, 0.7 * scatter):
-        error = max(float(np.ptp(thirds)), 0.5 * float(np.std(means[-24:])))
+    late = means[-settings.blocks :]
+    thirds = late.reshape(3, -1).mean(axis=1)
+    if np.ptp(thirds) < max(settings.tolerance, 0.5 * float(np.std(np.diff(late)))):
+        error = max(float(np.ptp(thirds)), 0.35 * float(np.std(late)))
         return float(thirds.mean()), error
     return math.nan, 0.0
