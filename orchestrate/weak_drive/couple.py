@@ -213,8 +213,8 @@ class CoupleJob(CoupledRun):
         if jump is not None and jump.outcome == UNDECIDED:
             low, high = (record.sense * self.drive.volts(self.structure) * end for end in jump[1:3])
             return "undecided", (
-                f"undecided between {low:.5g} and {high:.5g} V: voltages held for {self.hold:.4g} s "
-                "at most do not tell; a longer hold may"
+                f"undecided between {low:.5g} and {high:.5g} V: voltages held for at most "
+                f"{self.hold:.4g} s do not tell; a longer hold may"
             )
         if jump is not None:
             return "by held voltages", ""

@@ -10,7 +10,8 @@ in which the ramp's record suggests a jump:
 - Then the voltage goes back over that step. The motion is *lost* there where the speed comes back
   more than `clear` away, and both motions last when they are held `again` times. Where it comes
   back, the step is halved further.
-- There is *no* jump where no such step is left and the speed comes back at each voltage of the grid.
+- There is *no* jump where no such step is left, and on the way back the speed is nowhere `clear`
+  away.
 - All else is *undecided*: a speed that does not settle, two motions nearer than `clear`, a step
   that is still large at `finest`, another motion on the way back, or a speed that moves against the
   voltage and what comes after it.
@@ -176,9 +177,9 @@ class HysteresisLoop(VoltageHolder):
                 continue
             for suspect in suspects:
                 jumps += self.decide_stretch(record, leg, suspect)
-            if not suspects or suspects[-1].after < leg[-1]:
-                jumps += self.decide_end(record, leg)
-        return sorted(jumps, key=lambda jump: record.sign * jump.low)
+            rest = leg[leg > suspects[-1].after] if suspects else leg
+            jumps += self.decide_end(record, rest) if rest.size else []
+        return merge_overlapping(jumps, record.sign)
 
     def decide_stretch(self, record: RampRecord, leg: np.ndarray, suspect: Suspect) -> list[Jump]:
         """Return the jumps of a stretch in which the record of a ramp suggests one."""
@@ -307,7 +308,7 @@ class HysteresisLoop(VoltageHolder):
         return abs(high.speed - low.speed) - branch - difference_error(low, high)
 
     def way_back(self, low: HeldPoint, landed: HeldPoint) -> int:
-        """Return whether two motions exist at the lower voltage of a step, and the first is lost."""
+        """Return whether two motions exist at a step's lower voltage, the first of which is lost."""
         back = self.hold_from(landed, low.voltage)
         distance = abs(back.speed - low.speed) - difference_error(back, low)
         if distance <= self.settings.same:
@@ -369,6 +370,19 @@ class HysteresisLoop(VoltageHolder):
 def has_left(speeds: np.ndarray, first: float, second: float) -> bool:
     """Return whether the last speeds have come nine tenths of the way between two speeds."""
     return speeds.size > 0 and abs(float(speeds.mean()) - second) < 0.1 * abs(first - second)
+
+
+def merge_overlapping(jumps: list[Jump], sign: float) -> list[Jump]:
+    """Return jumps by their voltages, those of one outcome whose brackets overlap as one."""
+    merged: list[Jump] = []
+    for jump in sorted(jumps, key=lambda jump: sign * jump.low):
+        last = merged[-1] if merged else jump
+        if merged and jump.outcome == last.outcome and sign * (jump.low - last.high) <= 0.0:
+            high = max(last.high, jump.high, key=lambda eta0: sign * eta0)
+            merged[-1] = last._replace(high=high)
+        else:
+            merged.append(jump)
+    return merged
 
 
 def difference_error(point: HeldPoint, other: HeldPoint) -> float:
