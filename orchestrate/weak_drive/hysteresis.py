@@ -308,7 +308,7 @@ class HysteresisLoop(VoltageHolder):
         return abs(high.speed - low.speed) - branch - difference_error(low, high)
 
     def way_back(self, low: HeldPoint, landed: HeldPoint) -> int:
-        """Return whether two motions exist at a step's lower voltage, the first of which is lost."""
+        """Return whether two motions exist at a step's lower voltage and the first is lost."""
         back = self.hold_from(landed, low.voltage)
         distance = abs(back.speed - low.speed) - difference_error(back, low)
         if distance <= self.settings.same:

@@ -6,7 +6,7 @@
   is slower than any exponential, and they do not.
 - So where the last four changes are below a hundredth of `tolerance`, or the last five means go to
   and fro within 0.3 of it.
-- An irregular motion has settled where three long means over a third of `blocks` each differ by less
+- An irregular motion has settled where three long means, each a third of `blocks`, differ by less
   than half of what the blocks scatter; its speed has an error then.
 - All else has not settled.
 """
