@@ -146,7 +146,7 @@ def couple_all(
         for run in gather(jobs, running, finder(running))
     ]
     texts_of_jumps = {name: "" for name, values in datasets[0].items() if values.dtype.kind == "U"}
-    missing = {name: np.nan for name in datasets[0].data_vars} | texts_of_jumps
+    missing = dict.fromkeys(datasets[0].data_vars, np.nan) | texts_of_jumps
     result = xr.concat(
         datasets,
         "run",
