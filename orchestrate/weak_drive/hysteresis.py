@@ -59,7 +59,6 @@ class Settings:
     clear: float = 5e-3  # smallest difference of two motions' speeds at one voltage at a jump
     again: int = 3  # times that the motions beside a jump are held again
     lead: float = 6.0  # how much earlier than the record a course begins, in rotor times 1/b
-    past: float = 8e-3  # how far past the stretch a course goes at most
     max_holds: int = 150  # of a course
     settled: SettledSettings = field(default_factory=SettledSettings)
 
@@ -183,15 +182,8 @@ class HysteresisLoop(VoltageHolder):
 
     def decide_stretch(self, record: RampRecord, leg: np.ndarray, suspect: Suspect) -> list[Jump]:
         """Return the jumps of a stretch in which the record of a ramp suggests one."""
-        before, after = suspect.before, suspect.after
-        change = record.speed(after) - record.speed(before)
-        point = self.first_point(record, leg, before, change)
-        if point is None:
-            return []
-        past = record.eta0(after) + record.sign * self.settings.past
-        last = min(past, record.eta0(leg[-1]), key=lambda eta0: record.sign * eta0)
-        slip = 0.2 * record.slip(before) + 0.8 * record.slip(after)
-        jumps = self.jumps(point, last, slip)
+        point = self.first_point(record, leg, suspect.before)
+        jumps = self.jumps(point, record.eta0(suspect.after))
         earlier = [jump._replace(shown=record.suspect_at(jump.high, leg)) for jump in jumps[:-1]]
         return earlier + [jump._replace(shown=suspect) for jump in jumps[-1:]]
 
@@ -200,42 +192,38 @@ class HysteresisLoop(VoltageHolder):
         last = int(leg[-1])
         end = self.hold_step(record.step(last))
         change = end.speed - record.speed(last)
-        lag = abs(record.eta0(last) - record.eta0(record.row_earlier(last, LAG, leg)))
-        if abs(change) - 3.0 * end.error - lag <= self.settings.shown:
+        if abs(change) - 3.0 * end.error - self.lag(record, leg, last) <= self.settings.shown:
             return []
-        point = self.first_point(record, leg, last, change)
-        jumps = self.jumps(point, record.eta0(last)) if point else []
+        jumps = self.jumps(self.first_point(record, leg, last), record.eta0(last))
         return [jump._replace(shown=Suspect(last, last, last)) for jump in jumps]
 
-    def first_point(
-        self, record: RampRecord, leg: np.ndarray, before: int, change: float
-    ) -> HeldPoint | None:
-        """Hold a voltage before a row, from the ramp's state; None where it left before the ramp.
+    def first_point(self, record: RampRecord, leg: np.ndarray, before: int) -> HeldPoint:
+        """Hold a voltage before a row, from the ramp's state, where the ramp's motion lasts.
 
-        The speed there has to be the ramp's: it has neither done half of the change that follows
-        nor moved against the voltage.
+        The speed there is the ramp's, less its lag. At the latest that is the ramp's beginning.
         """
-        half = 0.5 * record.sign * change if math.isfinite(change) else math.inf
         row = record.row_earlier(before, self.settings.lead, leg)
         back = max(1, before - row)
         while True:
             point = self.hold_step(record.step(row))
             gained = record.sign * (point.speed - record.speed(row))
-            if -2.0 * self.settings.same - 3.0 * point.error < gained < half:
+            margin = 2.0 * self.settings.same
+            lasts = -margin - 3.0 * point.error < gained < margin + self.lag(record, leg, row)
+            if lasts or row == leg[0]:
                 return point
-            if row == leg[0]:
-                return point if math.isnan(point.speed) else None
             row, back = max(int(leg[0]), row - back), 2 * back
 
-    def jumps(self, first: HeldPoint, last: float, slip: float = -math.inf) -> list[Jump]:
-        """Return the jumps between a held point and a voltage; an empty list where there is none.
+    def lag(self, record: RampRecord, leg: np.ndarray, row: int) -> float:
+        """Return by how much a speed may follow a ramp late, without a jump."""
+        earlier = record.row_earlier(row, LAG, leg)
+        return float(abs(record.eta0(row) - record.eta0(earlier)))
 
-        The course ends sooner one step after its slip has fallen below that given.
-        """
+    def jumps(self, first: HeldPoint, last: float) -> list[Jump]:
+        """Return the jumps between a held point and a voltage: an empty list for none."""
         if math.isnan(first.speed):
             return [Jump(UNDECIDED, first.voltage, last)]
         sign = math.copysign(1.0, last - first.voltage)
-        points = self.hold_grid(first, last, slip, sign)
+        points = self.hold_grid(first, last)
         jumps: dict[tuple[float, float], Jump] = {}
         for _ in range(self.settings.max_holds):
             i = self.largest_step(points, jumps)
@@ -278,17 +266,14 @@ class HysteresisLoop(VoltageHolder):
             return [Jump(UNDECIDED, points[0].voltage, points[-1].voltage)]
         return ordered
 
-    def hold_grid(self, first: HeldPoint, last: float, slip: float, sign: float) -> list[HeldPoint]:
+    def hold_grid(self, first: HeldPoint, last: float) -> list[HeldPoint]:
         """Step the voltage over the grid; return the points at which the speed settled."""
         count = max(1, math.ceil(abs(last - first.voltage) / self.settings.grid - 1e-9))
         points = [first]
         for voltage in np.linspace(first.voltage, last, count + 1)[1:].tolist():
-            is_past = sign * (points[-1].voltage - points[-1].speed) < slip
             point = self.hold_from(points[-1], voltage)
             if math.isfinite(point.speed):
                 points.append(point)
-            if is_past:
-                break
         return points
 
     def largest_step(
@@ -305,7 +290,8 @@ class HysteresisLoop(VoltageHolder):
     def excess(self, low: HeldPoint, high: HeldPoint) -> float:
         """Return by how much the speed changes more than one branch may."""
         branch = self.settings.smallest + abs(high.voltage - low.voltage)
-        return abs(high.speed - low.speed) - branch - difference_error(low, high)
+        scatter = min(difference_error(low, high), self.settings.smallest)
+        return abs(high.speed - low.speed) - branch - scatter
 
     def way_back(self, low: HeldPoint, landed: HeldPoint) -> int:
         """Return whether two motions exist at a step's lower voltage and the first is lost."""
@@ -351,14 +337,21 @@ class HysteresisLoop(VoltageHolder):
         return None
 
     def comes_back(self, points: list[HeldPoint]) -> bool:
-        """Return whether the speed comes back, less than `clear` away, wherever it settles."""
-        last = points[-1]
+        """Return whether the speed comes back, less than `clear` away, over all voltages.
+
+        It need not settle at a single one between others.
+        """
+        last, settled = points[-1], True
         for point in reversed(points[:-1]):
             back = self.hold_from(last, point.voltage)
-            distance = abs(back.speed - point.speed) - difference_error(back, point)
-            if distance >= self.settings.clear:
+            if abs(back.speed - point.speed) >= self.settings.clear:
                 return False
-            last = back if math.isfinite(back.speed) else last
+            if math.isfinite(back.speed):
+                last, settled = back, True
+            elif settled and point is not points[0]:
+                settled = False
+            else:
+                return False
         return True
 
     def is_same(self, point: HeldPoint, other: HeldPoint) -> bool:

@@ -15,7 +15,7 @@ def test_a_run_that_began_beyond_the_resonance():
     found = run(QUICK.as_bonded(), (1.45, 1.65), 4e-4, back=False, spin_up=0.0)
     assert np.isnan(found.jumps).all() and np.isnan(found.jump_speed_before).all()
     assert found.no_jump.values.tolist() == [
-        "no jump: the speed follows the voltage",
+        "no jump: held voltages lead back to the same speeds",
         "the voltage does not fall",
     ]
 
