@@ -15,5 +15,5 @@ motor = Drive(
 )
 for name, structure in {"bonded": beam.as_bonded(), "delaminated": beam}.items():
     run = couple(structure, motor, voltage=(5.8, 6.6), rate=0.05, settle=1.0)  # V, V/s, s
-    up, down = run.jumps.values
+    up, down = run.jumps.sel(jump=["up", "down"]).values
     print(f"{name:11}: the speed jumps at {up:.2f} V on the way up, {down:.2f} V on the way down")

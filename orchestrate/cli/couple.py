@@ -59,7 +59,7 @@ EXAMPLES = """\
   {program} couple --course voltage.csv          any course of the voltage
   {program} couple --ssp weak_drive.ssp          the coupled system as a package for other tools
 {eta0}
-A ramp's jumps come late: jump-voltages finds them at rate 0.
+A ramp shows its jumps late: voltages are those of rate 0, at which the motion is lost.
 Interrupted, the same command goes on where it was. A finished result is left as it is."""
 
 
@@ -269,13 +269,11 @@ def folds_crossed(branches: xr.Dataset | None, structure: Structure, drive: Driv
 
 def print_results(results: dict[str, xr.Dataset], volts: float, folds: Folds | None = None) -> None:
     """Print a line per structure: revolutions, speeds, jumps and lags; then the run's accuracy."""
-    bonded = results.get("bonded")
     for name, data in results.items():
-        texts = []
-        for jump in map(str, data.jump.values):
-            at, bonded_at = data.sel(jump=jump), None if bonded is None else bonded.sel(jump=jump)
-            texts.append(format_jump(at, volts, bonded_at, (folds or {}).get((name, jump))))
-            texts += format_further_jumps(at)
+        texts = [
+            format_jump(data.sel(jump=jump), volts, (folds or {}).get((name, str(jump))))
+            for jump in data.jump.values
+        ]
         passed = float(data.passage_time)
         if not any("V" in text for text in texts) and math.isfinite(passed):
             texts.append(f"beyond the resonance from {passed:.4g} s on")
@@ -290,75 +288,18 @@ def format_revolutions(data: xr.Dataset) -> str:
     return f"{data.sizes['revolution']} revolutions at {speeds}"
 
 
-def format_jump(
-    at: xr.Dataset, volts: float, bonded: xr.Dataset | None, fold: float | None = None
-) -> str:
-    """Format a direction's jump with its voltage and lag, or why there is none."""
+def format_jump(at: xr.Dataset, volts: float, fold: float | None = None) -> str:
+    """Format a jump with its voltage and lag, or why there is none."""
     voltage, jump = float(at.jumps), at.jump.item()
     if at.decided.item() == "undecided":
         why = str(at.no_jump.item()).replace("a longer hold", "a longer --hold")
         return f"jump {jump} {why}"
     if not math.isfinite(voltage):
         return f"jump {jump} none ({at.no_jump.item()})"
-    text = f"jump {jump} at {voltage:.4f} V (eta0 = {voltage / volts:.4f})"
-    held = float(at.held_jumps)
-    if math.isfinite(held):
-        error = float(at.held_error)
-        return (
-            f"{text}, by the held-voltage test: the motion is lost at {held:.4f} +- {error:.4f} V"
-        )
-    return f"{text}, {format_lag(at, volts, bonded, fold)}"
-
-
-def format_further_jumps(at: xr.Dataset) -> list[str]:
-    """Return a list of texts on a direction's further jumps, decided and undecided ones."""
-    texts = []
-    for order in at.order.values if "further_decided" in at else ():
-        jump_at = at.sel(order=order)
-        decided, jump = str(jump_at.further_decided.item()), at.jump.item()
-        held, error = float(jump_at.further_held), float(jump_at.further_error)
-        if decided == "undecided":
-            ends = f"between {held - error:.5g} and {held + error:.5g} V"
-            texts.append(f"a further jump {jump} undecided {ends}: a longer --hold may tell")
-        elif decided:
-            text = f"a further jump {jump} at {float(jump_at.further_jumps):.4f} V"
-            lost = f": the motion is lost at {held:.4f} +- {error:.4f} V"
-            texts.append(f"{text}, {decided}{lost if math.isfinite(held) else ''}")
-    return texts
-
-
-def format_lag(at: xr.Dataset, volts: float, bonded: xr.Dataset | None, fold: float | None) -> str:
-    """Format by how many volts a jump comes late on the ramp, and its voltage at rate 0."""
-    voltage, unknown = float(at.jumps), "late by what jump-voltages tells"
-    if fold is not None:
-        late = f"{abs(voltage - fold):.4f} V late at this rate"
-        return f"{late}, {fold:.4f} V at rate 0 by its branch"
-    lag = math.nan if bonded is None else float(bonded.jump_lag)
-    if bonded is None or not math.isfinite(lag):
-        return unknown
-    if "averaged_jumps" in at:
-        kind = str(at.averaged_kind.item())
-        by = f" ({kind})" if kind not in ("", "fold") else ""
-        return f"{abs(lag):.4f} V late at this rate, about {voltage - lag:.4f} V at rate 0{by}"
-    error = lag_error(voltage, volts, bonded)
-    if error > 0.5 * abs(lag):
-        return f"{unknown}: far from the bonded one's, its lag is another"
-    late = f"{abs(lag):.4f} V late at this rate if as the bonded one"
-    return f"{late}, about {voltage - lag:.4f} +- {error:.4f} V at rate 0"
-
-
-def lag_error(voltage: float, volts: float, bonded: xr.Dataset) -> float:
-    """Return the estimated error, V, of a delaminated structure's lag taken from the bonded one's.
-
-    It depends on the branch by the fold, which differs as the vibration's torque there does. The
-    slip tells that torque: a jump that is moved by a tenth of it is taken to be late by as much as
-    a tenth more or less, and by a fiftieth in any case.
-    """
-    speed = float(bonded.jump_speed_before) * volts
-    omega = float(bonded.speed[0] / bonded.Omega[0])
-    slip = abs(float(bonded.averaged_jumps) - speed / omega)
-    moved = abs(voltage - float(bonded.jumps)) / slip if slip else math.inf
-    return abs(float(bonded.jump_lag)) * max(moved, 0.02)
+    error = 0.5 * abs(float(at.jump_high) - float(at.jump_low))
+    text = f"jump {jump} at {voltage:.4f} +- {error:.4f} V (eta0 = {voltage / volts:.4f})"
+    text += f", shown at {float(at.ramp_voltage):.4f} V by the ramp"
+    return text if fold is None else f"{text}; its branch has a fold at {fold:.4f} V"
 
 
 def print_accuracy(data: xr.Dataset) -> None:

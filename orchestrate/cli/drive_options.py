@@ -94,7 +94,7 @@ def add_step_option(group: Any) -> None:
 def add_hold_option(group: Any) -> None:
     """Add ``--hold``: the longest time for which a test holds a voltage, in 1/omega."""
     text = (
-        "longest time for which a voltage is held where the ramp's record does not tell a jump, in "
+        "longest time for which a voltage is held where the record suggests a jump, 0 for none, in "
         "1/omega (default: 4000 and 200 times the rotor's own)"
     )
     group.add_argument("--hold", type=plain_float, metavar="TIME", help=text)

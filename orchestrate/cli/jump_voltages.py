@@ -1,4 +1,4 @@
-"""Command ``jump-voltages``: extrapolate the voltages of the speed's jumps to ramp rate 0."""
+"""Command ``jump-voltages``: the voltages of the speed's jumps at rate 0, and on ramps."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ EXAMPLES = """\
   {program} jump-voltages --rate 1e-4,3e-5,1e-5 --one-way
   {program} jump-voltages --drive beam --eta0 1.33:1.57 --rate 4e-5,2e-5,1e-5 --one-way
 {eta0}
-Three rates or more give a standard error. Interrupted, the same command goes on where it was."""
+Interrupted, the same command goes on where it was."""
 
 
 def add_parser(commands: Commands) -> None:
     """Add the parser of the command ``jump-voltages`` with its options."""
-    text = "voltages at which the speed jumps, at rate 0 from ramps of several rates"
+    text = "voltages at which the speed jumps, at rate 0 and on ramps of several rates"
     parser = commands.add_drive_command("jump-voltages", run, text, EXAMPLES)
     group = parser.add_argument_group("ramps")
     add_voltage_options(group)
@@ -47,7 +47,7 @@ def add_parser(commands: Commands) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Run ``jump-voltages``: extrapolate ramps' jump voltages to rate 0; print, store, draw."""
+    """Run ``jump-voltages``: find jump voltages at rate 0; print, store, draw."""
     structure, drive = read_drive_options(arguments)
     unit = drive.volts(structure) * structure.omega
     ends = parse_ramp_ends(arguments, structure, drive)
@@ -76,18 +76,17 @@ def print_result(data: xr.Dataset, directions: tuple[str, ...]) -> None:
     print(f"{'jump':6}{'bonded':>24}{'delaminated':>24}{'change':>12}   in V, at rate 0")
     for jump in directions:
         at = data.sel(jump=jump)
-        pairs = zip(at.jumps.values, at.standard_error.values, strict=True)
-        texts = [format_voltage(value, error) for value, error in pairs]
+        columns = zip(at.jumps.values, at.standard_error.values, at.decided.values, strict=True)
+        texts = [format_voltage(*column) for column in columns]
         change = float(at.jumps[1] - at.jumps[0])
         last = "" if math.isnan(change) else f"{change:.4f}"
         print(f"{jump:6}{texts[0]:>24}{texts[1]:>24}{last:>12}".rstrip())
-    if bool(data.jumps.sel(jump=list(directions)).isnull().any()):
-        print("none: fewer than two of these ramps jump. Slower ones may (--rate, smaller), or ask")
-        print("      drive-branch: its folds are the jumps at rate 0")
+    if bool((data.decided.sel(jump=list(directions)) == "undecided").any()):
+        print("undecided: held voltages do not tell. Ask drive-branch: its folds are the jumps")
 
 
-def format_voltage(value: float, error: float) -> str:
-    """Format a voltage with its standard error; "none" for NaN, no error if that is NaN."""
+def format_voltage(value: float, error: float, decided: str) -> str:
+    """Format a voltage with its error; "none" or "undecided" for NaN."""
     if math.isnan(value):
-        return "none"
-    return f"{value:.4f}" if math.isnan(error) else f"{value:.4f} +- {error:.4f}"
+        return "undecided" if decided == "undecided" else "none"
+    return f"{value:.4f} +- {error:.4f}"

@@ -138,30 +138,11 @@ def jump_texts(data: xr.Dataset) -> list[str]:
     """Return a text for each jump of a run, and for each undecided direction."""
     jumps = [
         f"{direction} at {float(data.jumps.sel(jump=direction)):.4f} V"
-        for direction in ("up", "down")
+        for direction in map(str, data.jump.values)
         if has_jump(data, direction)
     ]
     undecided = [f"{direction} undecided" for direction in undecided_directions(data)]
-    further = [
-        f"{direction} at {value:.4f} V too" if sure else f"{direction} at {value:.4f} V undecided"
-        for direction, value, sure in further_jumps(data)
-    ]
-    return jumps + undecided + further
-
-
-def further_jumps(data: xr.Dataset) -> list[tuple[str, float, bool]]:
-    """Return direction and voltage of each further jump, and whether it is certain."""
-    if "further_decided" not in data:
-        return []
-    jumps = []
-    for direction in data.jump.values:
-        for order in data.order.values:
-            at = data.sel(jump=direction, order=order)
-            if decision := at.further_decided.item():
-                sure = decision != "undecided"
-                voltage = float(at.further_jumps if sure else at.further_held)
-                jumps.append((str(direction), voltage, sure))
-    return jumps
+    return jumps + undecided
 
 
 def format_jumps(name: str, data: xr.Dataset) -> str:
@@ -178,7 +159,7 @@ def format_passage(data: xr.Dataset) -> str:
 
 
 def undecided_directions(data: xr.Dataset) -> list[str]:
-    """Return the directions for which the held-voltage test is undecided about a jump."""
+    """Return the labels of the jumps that are undecided."""
     decided = zip(data.jump.values, data.decided.values, strict=True)
     return [str(direction) for direction, decision in decided if decision == "undecided"]
 
@@ -259,12 +240,9 @@ def mark_jumps(axes: Axes, data: xr.Dataset, name: str) -> None:
     for value in data.jumps.values:
         if np.isfinite(value):
             axes.axvline(value, color=COLOURS[name], linewidth=0.6, alpha=0.6)
-    for _, value, sure in further_jumps(data):
-        style = "--" if sure else ":"
-        axes.axvline(value, color=COLOURS[name], linestyle=style, linewidth=0.6, alpha=0.6)
     for direction in undecided_directions(data):
         at = data.sel(jump=direction)
-        ends = [float(at.held_jumps) + sign * float(at.held_error) for sign in (-1.0, 1.0)]
+        ends = float(at.jump_low), float(at.jump_high)
         if np.isfinite(ends).all():
             label = f"{name}, jump {direction} undecided"
             axes.axvspan(*ends, color=COLOURS[name], linewidth=0.0, alpha=0.15, label=label)

@@ -13,19 +13,15 @@ module                  idea
 :mod:`.controllers`     the voltage from the measured speed
 :mod:`.revolutions`     a run as one row per revolution of the motor
 :mod:`.run`             both FMU instances of a run, stepped together
-:mod:`.jumps`           where a ramp's record shows a jump of the speed
-:mod:`.further_jumps`   where a ramp's record suggests further jumps
-:mod:`.voltage_hold`    a voltage held until the speed has settled
-:mod:`.held`            where a jump is bracketed, by holding voltages
-:mod:`.jump_verdicts`   jump, none or undecided in each direction, and why
-:mod:`.ramp_record`     where a ramp's record passes the resonance, and suspected jumps
-:mod:`.losses`          all losses of stability on one ramp: the jump and further ones
+:mod:`.ramp_record`     where a ramp's record suggests a jump of the speed, and what it shows
+:mod:`.settled`         whether the speed at a held voltage has settled
+:mod:`.hysteresis`      the rule that decides about jumps: voltages held there and back
 :mod:`.connection`      any drive's variables by our names, checked; the box's motion from them
 :mod:`.cosimulate`      the oscillator and any drive that is an FMU
 :mod:`.couple`          a run of both FMUs under a varying voltage, and its jumps
 :mod:`.couple_all`      many coupled runs at once
-:mod:`.jump_voltages`   jump voltages extrapolated to rate 0, with an error
-:mod:`.settling`        whether the speed at a constant voltage has settled
+:mod:`.jump_voltages`   jump voltages at rate 0, and on ramps of several rates
+:mod:`.settling`        whether a motor switched on has settled, below or beyond the resonance
 :mod:`.capture`         whether a motor switched on from rest passes the resonance
 :mod:`.passage`         a run at full resolution, and spectra over its revolutions
 :mod:`.averaged`        the averaged theory of the bonded structure

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -17,49 +17,16 @@ import numpy as np
 from ..access.instance import Instance
 from ..access.models import OSCILLATOR, SHAKER
 from ..errors import InputError
-from ..response.labels import Variable, flags
+from ..response.labels import Variable, variable
 from ..running.job import Chunk, Inputs, Table
 from ..running.options import Running
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged, own_resonance
 from .controllers import Controller
-from .held import (
-    FOLLOWS,
-    MEANINGS,
-    NOT_ASKED,
-    UNDECIDED,
-    HeldCourse,
-    HeldVoltageTest,
-    Verdict,
-    with_final_chunk,
-)
-from .jump_verdicts import (
-    averaged_predictions,
-    check_against_theory,
-    check_further,
-    describe_decision,
-    explain_no_jump,
-)
-from .jumps import JUMP, Passing, time_beyond_threshold
-from .losses import (
-    AT_END,
-    MOST,
-    SLOTS,
-    THROUGH,
-    Loss,
-    drop_known_losses,
-    empty_verdict_rows,
-    further_jump_variables,
-    gather_losses,
-    is_crossed,
-    loss_verdicts,
-    pick_jump,
-    verdicts_from_rows,
-    verdicts_to_rows,
-)
+from .hysteresis import LOST, UNDECIDED, HysteresisLoop, Jump, Settings
 from .master import Scheme
-from .ramp_record import UPWARD, RampRecord
+from .ramp_record import NOT_SHOWN, RampRecord, Suspect, jump_labels, time_beyond, variables_shown
 from .revolutions import COLUMNS
 from .run import CoupledRun, Run, begin_run
 from .schedule import Constant, Ramp, Schedule, check
@@ -71,16 +38,20 @@ if TYPE_CHECKING:
 MAX_STEPS = 1e9  # more is a typing error: it would run for weeks
 TOLERANCE = 1e-8  # of the step control: errors of the displacements are about ten times as large
 LONGEST, FIXED = 0.4, 0.1  # steps with the control and without, in 1/omega
+DIRECTIONS = ("up", "down")
+SLOTS = 12  # jumps of a direction that are stored, by their voltages
 MIRRORED = {  # where the motor turns backward
-    *("jumps", "jump_speed", "jump_speed_before", "jump_speed_after", "jump_rate", "jump_lag"),
-    *("averaged_jumps", "held_jumps", "further_jumps", "further_held"),
+    *("jumps", "jump_low", "jump_high", "ramp_voltage", "jump_lag", "averaged_jumps"),
+    *("jump_speed", "jump_speed_before", "jump_speed_after", "jump_rate"),
 }
 HOLD, HOLD_OF_ROTOR = 4000.0, 200.0  # usual longest hold: in 1/omega, and in the rotor's time 1/b
 
 
 @dataclass(frozen=True)
 class CoupleJob(CoupledRun):
-    """Run the coupled FMUs in chunks of steps; test doubtful jumps by holding voltages."""
+    """Run the coupled FMUs in chunks of steps; then decide about jumps by a hysteresis loop."""
+
+    hysteresis: Settings = field(default_factory=Settings)
 
     chunk_size: ClassVar[int] = 4_000
     sequential: ClassVar[bool] = True
@@ -88,15 +59,15 @@ class CoupleJob(CoupledRun):
     item: ClassVar[str] = "step"
 
     def count(self) -> int:
-        """Return the number of items: all communication steps and one held-voltage test."""
+        """Return the number of items: all communication steps and one hysteresis loop."""
         return self.steps() + 1
 
     def items(self, inputs: Inputs) -> Sequence[int]:
-        """Return the item indices: all communication steps, then the held-voltage test."""
+        """Return the item indices: all communication steps, then the hysteresis loop."""
         return range(self.count())
 
     def chunks(self) -> list[Chunk]:
-        """Split the items into chunks; the held-voltage test is its own last chunk."""
+        """Split the items into chunks; the hysteresis loop is its own last chunk."""
         return with_final_chunk(super().chunks())
 
     def run_here(self, fmus: Mapping[str, Path]) -> Table:
@@ -110,7 +81,7 @@ class CoupleJob(CoupledRun):
         return concatenate_tables(chunks)
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
-        """Compute one chunk of communication steps, or the held-voltage test at the end."""
+        """Compute one chunk of communication steps, or the hysteresis loop at the end."""
         return self.work_on(fmus, items, previous, self.chunk_size, lambda run: run.revolve(items))
 
     def work_on(
@@ -125,28 +96,21 @@ class CoupleJob(CoupledRun):
         if items[0] == self.steps():
             assert previous is not None
             nothing = {name: values[:0] for name, values in previous.items()}
-            return {**nothing, **self.run_held_voltage_tests(fmus, previous, every)}
+            return {**nothing, **self.decide_jumps(fmus, previous, every)}
         with begin_run(self, fmus) as run:
             if previous is not None:
                 run.set_state(previous)
-            return {**revolve(run), **run.get_state(), **empty_verdicts()}
+            return {**revolve(run), **run.get_state(), **no_jumps()}
 
     def progress_note(self, first: int) -> str:
-        """Return the progress bar's note for the chunk of the held-voltage test."""
-        return "voltages held where a jump is in doubt" if first == self.steps() else ""
+        """Return the progress bar's note for the chunk of the hysteresis loop."""
+        return "voltages held where the speed may jump" if first == self.steps() else ""
 
-    def run_held_voltage_tests(self, fmus: Mapping[str, Path], table: Table, every: int) -> Table:
-        """Hold voltages where the ramp's record leaves a jump in doubt; return verdicts."""
-        record = RampRecord(self, table)
-        doubts = [record.doubtful_passing(up) for up in UPWARD]
-        places = [record.find_further_passings(up) for up in UPWARD]
-        ends = [record.last_stretch(up, places[i]) for i, up in enumerate(UPWARD)]
-        verdicts, further = [Verdict(NOT_ASKED)] * len(doubts), [empty_verdict_rows()] * len(doubts)
-        if not any(doubts) and not any(places) and not any(ends):
-            return pack_verdicts(verdicts, further)
-        structure, drive = self.structure, self.drive
-        threshold = own_resonance.dividing_speed(structure, drive)
-        resonance = own_resonance.dividing_speeds(structure, drive)
+    def decide_jumps(self, fmus: Mapping[str, Path], table: Table, every: int) -> Table:
+        """Hold voltages where the ramp's record suggests jumps; return those, in rows."""
+        rows = np.full((1, len(DIRECTIONS), SLOTS, len(Jump._fields) + 2), math.nan)
+        if self.control is not None:
+            return {"jump_rows": rows}
         with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
 
             def start_run(schedule: Schedule) -> Run:
@@ -155,55 +119,15 @@ class CoupleJob(CoupledRun):
                     instance.reset()
                 return Run(replace(self, schedule=schedule), oscillator, shaker)
 
-            units = (self.scheme.h, structure.omega, drive.volts(structure))
-            test = HeldVoltageTest(start_run, self.schedule, *units, self.hold, sense=record.sense)
-            test.add_checkpoints(table, every, self.steps())
-            for i, doubt in enumerate(doubts):
-                course = HeldCourse(Verdict(NOT_ASKED))
-                if doubt is not None:
-                    course = test.classify(*doubt, threshold, UPWARD[i], resonance)
-                verdicts[i] = course.verdict
-                results = self.run_further_tests(test, table, course, places[i], UPWARD[i])
-                if stretch := ends[i]:
-                    known = [*loss_verdicts(course), *(verdict for _, verdict in results)]
-                    losses = test.losses_before_the_end(stretch, UPWARD[i])
-                    losses = drop_known_losses(losses, known, drive.volts(structure))
-                    results += [(AT_END, verdict) for verdict in losses]
-                further[i] = verdicts_to_rows(results)
-        return pack_verdicts(verdicts, further)
-
-    def run_further_tests(
-        self,
-        test: HeldVoltageTest,
-        table: Table,
-        course: HeldCourse,
-        places: Sequence[Passing],
-        up: bool,
-    ) -> list[tuple[int, Verdict]]:
-        """Hold voltages where the record suggests further jumps; return places and verdicts."""
-        record = RampRecord(self, table)
-        results = [(THROUGH, verdict) for verdict in course.further]
-        known, volts = loss_verdicts(course), self.drive.volts(self.structure)
-        sign = 1.0 if up else -1.0
-        crossed = sorted(known, key=lambda verdict: sign * verdict.low)
-        forward = record.forward()
-        Omega = np.abs(table["speed"]) / self.structure.omega
-        for place, passing in enumerate(places[:MOST]):
-            ends = [passing.before, passing.after]
-            if passing.look == JUMP and not self.structure.bonded:
-                continue
-            if is_crossed(crossed, forward["voltage"][ends], sign):
-                crossed = crossed[1:]
-                results.append((place, Verdict(NOT_ASKED)))  # the course has met what is seen here
-                continue
-            middle = float(Omega[ends].mean())
-            held = test.for_suspected_jumps(record.end_voltage(up)).classify(
-                *record.to_steps(record.begin_earlier(passing, up), up), middle, up
-            )
-            new_verdicts = drop_known_losses(loss_verdicts(held), known, volts)
-            known += new_verdicts
-            results += [(place, verdict) for verdict in new_verdicts or [Verdict(FOLLOWS)]]
-        return results
+            volts = RampRecord(self, table, True).sense * self.drive.volts(self.structure)
+            units = self.scheme.h, self.structure.omega, volts, self.hold
+            loop = HysteresisLoop(start_run, self.schedule, *units, self.hysteresis)
+            loop.add_checkpoints(table, every, self.steps())
+            for i, up in enumerate((True, False)):
+                jumps = loop.decide(RampRecord(self, table, up))
+                for j, jump in enumerate(jumps[:SLOTS]):
+                    rows[0, i, j] = (*jump[:-1], *jump.shown)
+        return {"jump_rows": rows}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Build the dataset of all revolutions, of the jumps and of their verdicts."""
@@ -232,92 +156,90 @@ class CoupleJob(CoupledRun):
         }
         threshold = own_resonance.dividing_speed(self.structure, self.drive)
         text = "time from which the mean speed stays beyond the resonance; NaN where it does not"
-        passed = time_beyond_threshold(table["time"], np.abs(Omega), threshold)
+        passed = time_beyond(table["time"], np.abs(Omega), threshold)
         variables["passage_time"] = ((), passed, {"units": "s", "long_name": text})
-        dataset = xr.Dataset(
-            {**variables, **self.all_jump_variables(table)}, coordinates, self.attributes(table)
-        )
-        names = {"long_name": "direction in which the speed jumps"}
-        places = {"units": "1", "long_name": "place of a further jump, in the ramp's order"}
-        return dataset.assign_coords(
-            jump=("jump", ["up", "down"], names),
-            order=("order", np.arange(1, SLOTS + 1), places),
-        )
+        labels, jump_columns = self.jump_variables(table)
+        names = {"long_name": "direction in which the speed jumps; further jumps are numbered"}
+        coordinates["jump"] = ("jump", np.array(labels), names)
+        return xr.Dataset({**variables, **jump_columns}, coordinates, self.attributes(table))
 
-    def all_jump_variables(self, table: Table) -> dict[str, Variable]:
-        """Build the variables of the jump in each direction, or the reason for none.
+    def jump_variables(self, table: Table) -> tuple[list[str], dict[str, Variable]]:
+        """Build the variables of all jumps and their labels: "up", "down", then further ones.
 
         What happens to a motor that turns backward is told in a mirror, and its signs at the end.
         """
-        record = RampRecord(self, table)
-        table = record.forward()
-        held = [Verdict(int(row[0]), *row[1:]) for row in table["verdicts"][-1]]
-        theory = averaged_predictions(self.structure, self.drive)
-        losses = [self.collect_losses(record, i, held[i]) for i in range(len(UPWARD))]
-        jump_and_further = [
-            pick_jump(*pair, 1.0 if up else -1.0) for pair, up in zip(losses, UPWARD, strict=True)
-        ]
-        jumps = [
-            first.passing if first and first.is_sure else None for first, _ in jump_and_further
-        ]
-        final = [
-            first.verdict if first else held[i] for i, (first, _) in enumerate(jump_and_further)
-        ]
-        columns = jump_variables(table, jumps)
-        columns |= self.theory_variables(np.array(columns["jumps"][1], dtype=float))
-        reasons = []
-        for i, (first, _) in enumerate(jump_and_further):
-            if first is None:
-                reasons.append(record.explain_no_passing(UPWARD[i]))
-            elif jumps[i] is None:
-                ends = record.explain_short_sweep(UPWARD[i]) if held[i].outcome == UNDECIDED else ""
-                said = held[i].mirrored(record.sense)
-                reasons.append(ends or explain_no_jump(said, final[i], theory[i], self.hold))
-            else:
-                reasons.append("")
-        decided = [
-            describe_decision(first and first.passing, final[i])
-            for i, (first, _) in enumerate(jump_and_further)
-        ]
-        columns["no_jump"] = ("jump", reasons, {"long_name": "why there is no jump"})
-        columns["decided"] = ("jump", decided, {"long_name": "how jump or none was told"})
-        columns |= further_jump_variables(table, [further for _, further in jump_and_further])
-        columns |= held_voltage_variables(final)
-        for name in MIRRORED & columns.keys() if record.sense < 0.0 else ():
+        records = [RampRecord(self, table, up) for up in (True, False)]
+        first, further = [], []
+        for direction, record, rows in zip(
+            DIRECTIONS, records, table["jump_rows"][-1], strict=True
+        ):
+            jumps = [
+                Jump(int(row[0]), *row[1:3], Suspect(*row[3:]))
+                for row in rows[np.isfinite(rows[:, 0])].tolist()
+            ]
+            jumps.sort(key=lambda jump: jump.outcome != LOST)  # the first sure one stands for all
+            first.append((direction, jumps[0] if jumps else None, record))
+            further += [(direction, jump, record) for jump in jumps[1:]]
+        every = first + further
+        volts, forward = self.drive.volts(self.structure), records[0].forward()
+        columns = variables_shown(
+            forward, [jump.shown if jump else NOT_SHOWN for _, jump, _ in every]
+        )
+        lows, highs = (
+            np.array([volts * jump[end] if jump else math.nan for _, jump, _ in every])
+            for end in (1, 2)
+        )
+        lost = np.array([jump is not None and jump.outcome == LOST for _, jump, _ in every])
+        places = np.where(lost, 0.5 * (lows + highs), math.nan)
+        texts = {
+            "jumps": (places, "voltage at which the motion is lost, whatever the ramp's rate"),
+            "jump_low": (lows, "last held voltage at which the motion stays"),
+            "jump_high": (highs, "first held voltage at which it is lost, or may be"),
+            "jump_lag": (columns["ramp_voltage"][1] - places, "how late the ramp shows the jump"),
+        }
+        columns |= {name: variable("jump", *of, "V", text) for name, (*of, text) in texts.items()}
+        columns |= self.theory_variables(len(every))
+        for name in MIRRORED & columns.keys() if records[0].sense < 0.0 else ():
             dims, values, attributes = columns[name]
             columns[name] = (dims, np.negative(values), attributes)
-        return columns
+        how = [self.decision(jump, record) for _, jump, record in every]
+        decided, why = (np.array(parts) for parts in zip(*how, strict=True))
+        columns["decided"] = ("jump", decided, {"long_name": "how jump or none was decided"})
+        columns["no_jump"] = ("jump", why, {"long_name": "why there is no jump"})
+        return jump_labels([direction for direction, *_ in every]), columns
 
-    def collect_losses(
-        self, record: RampRecord, i: int, primary: Verdict
-    ) -> tuple[Loss | None, list[Loss]]:
-        """Collect all losses of stability in a direction; that at the resonance first."""
-        if self.control:
-            return None, []
-        up, volts, table = UPWARD[i], self.drive.volts(self.structure), record.forward()
-        further = verdicts_from_rows(table["further_verdicts"][-1, i])
-        if self.structure.bonded:
-            theory = averaged_predictions(self.structure, self.drive)[i]
-            primary = check_against_theory(primary, theory, volts)
-            further = [(place, check_further(verdict, theory, volts)) for place, verdict in further]
-        rows, places = record.sweep_leg(up)[1], record.find_further_passings(up)
-        return gather_losses(table, rows, record.resonance_passing(up), primary, places, further)
+    def decision(self, jump: Jump | None, record: RampRecord) -> tuple[str, str]:
+        """Return how a jump or its absence was decided, and why there is none."""
+        if jump is not None and jump.outcome == UNDECIDED:
+            low, high = (record.sense * self.drive.volts(self.structure) * end for end in jump[1:3])
+            return "undecided", (
+                f"undecided between {low:.5g} and {high:.5g} V: voltages held for at most "
+                f"{self.hold:.4g} s do not tell; a longer hold may"
+            )
+        if jump is not None:
+            return "by held voltages", ""
+        if self.control is not None:
+            return "", "a controller sets the voltage"
+        direction = "rise" if record.up else "fall"
+        if not record.rows().size:
+            return "", f"the voltage does not {direction}"
+        if any(record.suspects(leg, self.hysteresis.shown) for leg in record.legs()):
+            return "by held voltages", "no jump: held voltages lead back to the same speeds"
+        return "by the record", "no jump: the speed follows the voltage"
 
-    def theory_variables(self, jumps: np.ndarray) -> dict[str, Variable]:
-        """Build the variables that compare bonded jumps with the averaged theory."""
-        structure, volts = self.structure, self.drive.volts(self.structure)
-        text = "how late the jump comes on the ramp, by the averaged theory (bonded only)"
-        late = {"units": "V", "long_name": text}
-        if not structure.bonded:
-            return {"jump_lag": ("jump", [math.nan, math.nan], late)}
-        points = averaged.stability_limits(structure, self.drive)
+    def theory_variables(self, count: int) -> dict[str, Variable]:
+        """Build the variables of where averaged theory loses the bonded structure's motion."""
+        if not self.structure.bonded:
+            return {}
+        points = averaged.stability_limits(self.structure, self.drive)
+        volts = self.drive.volts(self.structure)
         ends = [volts * point.eta0 if point else math.nan for point in points]
         kinds = [point.kind if point else "" for point in points]
+        more = count - len(points)
         text = "voltage at which the motion is lost, by the averaged theory"
         return {
-            "averaged_jumps": ("jump", ends, {"units": "V", "long_name": text}),
-            "averaged_kind": ("jump", kinds, {"long_name": "by what it is lost there"}),
-            "jump_lag": ("jump", (jumps - ends).tolist(), late),
+            "averaged_jumps": variable("jump", ends + [math.nan] * more, "V", text),
+            "averaged_kind": ("jump", kinds + [""] * more, {"long_name": "how it is lost there"}),
         }
 
     def attributes(self, table: Table) -> dict[str, str | float]:
@@ -334,22 +256,9 @@ class CoupleJob(CoupledRun):
         }
 
 
-def empty_verdicts() -> Table:
-    """Return empty verdict arrays, for chunks that consist of communication steps."""
-    return {
-        name: values[:0]
-        for name, values in pack_verdicts(
-            [Verdict(NOT_ASKED)] * len(UPWARD), [empty_verdict_rows()] * len(UPWARD)
-        ).items()
-    }
-
-
-def pack_verdicts(verdicts: Sequence[Verdict], further: Sequence[np.ndarray]) -> Table:
-    """Pack the verdicts at the resonance and the further ones into arrays to store."""
-    return {
-        "verdicts": np.array(verdicts, dtype=float)[np.newaxis],
-        "further_verdicts": np.array(further)[np.newaxis],
-    }
+def no_jumps() -> Table:
+    """Return an empty array of jumps, for chunks that consist of communication steps."""
+    return {"jump_rows": np.empty((0, len(DIRECTIONS), SLOTS, len(Jump._fields) + 2))}
 
 
 def concatenate_tables(tables: Sequence[Table]) -> Table:
@@ -357,56 +266,13 @@ def concatenate_tables(tables: Sequence[Table]) -> Table:
     return {name: np.concatenate([part[name] for part in tables]) for name in tables[0]}
 
 
-def held_voltage_variables(verdicts: Sequence[Verdict]) -> dict[str, Variable]:
-    """Build the variables of the held-voltage verdicts and of the voltage brackets."""
-    codes = [int(verdict.outcome) for verdict in verdicts]
-    middles = [0.5 * (verdict.low + verdict.high) for verdict in verdicts]
-    errors = [0.5 * abs(verdict.high - verdict.low) for verdict in verdicts]
-    text = "voltage at which the motion is lost though it is held; where held voltages decide"
-    half = "half the bracket of that voltage, between staying and lost"
-    return {
-        "held_verdict": flags("jump", codes, "what held voltages say of the motion", MEANINGS),
-        "held_jumps": ("jump", middles, {"units": "V", "long_name": text}),
-        "held_error": ("jump", errors, {"units": "V", "long_name": half}),
-    }
-
-
-def jump_variables(table: Table, jumps: Sequence[Passing | None]) -> dict[str, Variable]:
-    """Build the variables of voltage, time, speed and amplitude at each jump."""
-
-    def interpolated(name: str, row_name: str) -> list[float]:
-        """Interpolate one column of the table at each jump; NaN without a jump."""
-        values = table[name]
-        return [
-            math.nan
-            if jump is None
-            else float(np.interp(getattr(jump, row_name), np.arange(len(values)), values))
-            for jump in jumps
-        ]
-
-    def rate(jump: Passing | None) -> float:
-        """Return the mean rate of the voltage across a jump, V/s."""
-        if jump is None:
-            return math.nan
-        ends = [jump.before, jump.after]
-        return float(np.diff(table["voltage"][ends])[0] / np.diff(table["time"][ends])[0])
-
-    wanted = {
-        "jumps": ("voltage", "half", "V", "voltage at which the speed jumps"),
-        "jump_time": ("time", "half", "s", "time of that voltage"),
-        "jump_speed": ("speed", "row", "rad/s", "mean speed of that revolution"),
-        "jump_speed_before": ("speed", "before", "rad/s", "mean speed where it leaves its branch"),
-        "jump_speed_after": ("speed", "after", "rad/s", "mean speed after the jump"),
-        "jump_amplitude_before": ("amplitude", "before", "m", "amplitude before the jump"),
-        "jump_amplitude_after": ("amplitude", "after", "m", "amplitude after the jump"),
-    }
-    columns: dict[str, Variable] = {
-        key: ("jump", interpolated(name, row_name), {"units": unit, "long_name": text})
-        for key, (name, row_name, unit, text) in wanted.items()
-    }
-    text = "change of the voltage per time during the jump"
-    rates = [rate(jump) for jump in jumps]
-    return {**columns, "jump_rate": ("jump", rates, {"units": "V/s", "long_name": text})}
+def with_final_chunk(chunks: list[Chunk]) -> list[Chunk]:
+    """Split the last item, the hysteresis loop, into a chunk of its own."""
+    last = chunks[-1]
+    if last.stop - last.start == 1:
+        return chunks
+    steps = Chunk(last.index, last.start, last.stop - 1, last.after)
+    return [*chunks[:-1], steps, Chunk(last.index + 1, last.stop - 1, last.stop, last.index)]
 
 
 def require_motor(drive: Drive) -> None:
@@ -484,6 +350,7 @@ def couple_job(
     speed_start: float | None = None,
     control: Controller | None = None,
     hold: float | None = None,
+    hysteresis: Settings | None = None,
 ) -> CoupleJob:
     """Check the arguments of a coupled run and build its job."""
     if control is not None and not isinstance(control, Controller):
@@ -496,9 +363,9 @@ def couple_job(
     start = float(speed_start)
     if hold is None:
         hold = (HOLD + HOLD_OF_ROTOR / drive.b(structure)) / structure.omega
-    check("hold", hold, "s", low=0.0, exclusive=True)
-    hold = float(hold)
-    job = CoupleJob(f"couple_{name}", structure, drive, schedule, scheme, start, hold, control)
+    check("hold", hold, "s", low=0.0)
+    run = (structure, drive, schedule, scheme, start, float(hold), control)
+    job = CoupleJob(f"couple_{name}", *run, hysteresis or Settings())
     steps = schedule.duration / scheme.h
     if steps <= MAX_STEPS and job.steps() < 1:
         raise InputError(
@@ -527,6 +394,7 @@ def couple(
     speed_start: float | None = None,
     control: Controller | None = None,
     hold: float | None = None,
+    hysteresis: Settings | None = None,
     step: float | None = None,
     algorithm: str = "rollback",
     tolerance: float | None = None,
@@ -567,9 +435,13 @@ def couple(
         ``voltage``, once a communication step, by the speed. There are no jumps to be found then;
         ``passage_time`` says whether the motor has passed the resonance.
     hold : float, optional
-        Longest time for which a voltage is held where the record of a ramp does not tell a jump
-        from a steep branch, s; (4000 + 200/b)/omega by default, 1/b being the time in which the
-        rotor settles. A direction that is undecided may need more.
+        Longest time for which a voltage is held where the ramp's record suggests a jump, s;
+        (4000 + 200/b)/omega by default, 1/b being the time in which the rotor settles. A jump that
+        is undecided may need more. With 0 no voltage is held, and all suspected jumps are
+        undecided.
+    hysteresis : Settings, optional
+        Steps and thresholds of the rule that decides about jumps, of
+        :mod:`orchestrate.weak_drive.hysteresis`.
     step : float, optional
         Communication step, s. By default its defect controls it, up to 0.4/omega; with a controller
         up to 0.1/omega, with an ``algorithm`` that cannot go back it is that.
@@ -588,21 +460,18 @@ def couple(
     xarray.Dataset
         Dimension ``revolution``: ``time`` (s), ``voltage`` (V), ``speed`` (rad/s), ``amplitude``
         and ``box_amplitude`` (m), ``box_acceleration`` (m/s2), ``impacts``, energies since the
-        start (J), and the numbers ``eta0`` = U/(K omega) and ``Omega`` = speed/omega. Dimension
-        ``jump``: ``jumps`` (V), ``jump_time`` (s), ``jump_speed`` (rad/s), speed and amplitude
-        before and after, ``jump_rate`` (V/s) at the jumps up and down, NaN where there is none,
-        and ``no_jump`` says why. ``decided`` says how it was told: by the record of the ramp, or
-        by held voltages, or that it is undecided. ``held_verdict`` says what held voltages say, as
-        a number with a meaning: 0 not asked, 1 lost, 2 follows, 3 left before, 4 undecided; with
-        ``held_jumps`` and ``held_error`` (V), the voltage and half of its bracket. Where the speed
-        jumps more than once in a direction, these are about the first sure jump; over ``jump`` and
-        ``order`` the others are told, in the ramp's order: ``further_jumps`` (V), ``further_time``
-        (s), ``further_held`` and ``further_error`` (V), and ``further_decided``, which is
-        "undecided" where there may be one, and empty where there is none. ``further_count`` says
-        how many there are. For a bonded structure
-        ``averaged_jumps`` (V), ``averaged_kind`` and ``jump_lag`` (V): where the averaged theory
-        loses the motion, by a fold or a Neimark-Sacker point. From
+        start (J), and the numbers ``eta0`` = U/(K omega) and ``Omega`` = speed/omega. From
         ``passage_time`` (s) on the speed stays beyond the resonance.
+
+        Dimension ``jump``: "up" and "down", the first sure jump in each direction, then further
+        ones as "up 2". ``jumps`` (V): the voltage at which the motion is lost, whatever the rate;
+        NaN where there is no jump or it is undecided. ``jump_low`` and ``jump_high`` (V): its
+        bracket, or that in which it is undecided. ``decided`` says how: "by held voltages", "by
+        the record" (which suggests none), or "undecided"; ``no_jump`` says why there is none.
+        ``ramp_voltage`` (V), ``jump_time`` (s), ``jump_speed`` (rad/s), speed and amplitude before
+        and after, and ``jump_rate`` (V/s) are what the ramp shows, ``jump_lag`` (V) by how much
+        later. For a bonded structure ``averaged_jumps`` (V) and ``averaged_kind``: where the
+        averaged theory loses the motion, by a fold or a Neimark-Sacker point.
 
     Raises
     ------
@@ -611,27 +480,9 @@ def couple(
 
     Notes
     -----
-    A ramp's jump comes late, about as rate^(2/3). What counts as a jump is told in
-    :mod:`orchestrate.weak_drive.jumps`. Where the ramp's record does not tell a jump from a steep
-    branch, a state of the run is restored and voltages are held: where a motion is lost, two speeds
-    last at one voltage, see :mod:`orchestrate.weak_drive.held`. Such a verdict does not depend on
-    the rate. Of a bonded structure none is given that the averaged theory contradicts by more than
-    its own error: it is undecided then.
-
-    A further jump beside the passing of the resonance is looked for where the held voltages cross
-    it, and where the torque that the vibration takes shows it in the record
-    (:mod:`orchestrate.weak_drive.further_jumps`); voltages are held there too. It is one where the
-    speeds of two motions at one voltage differ by more than 8e-3 omega; one of less than 1.6e-2
-    that the record alone suggests is undecided, since fast ramps show none of it. A change of that
-    torque by less than 4e-3, as a speed over omega, or by less than eight times its scatter, is
-    none.
-
-    Whatever the clearance, a passage of the resonance is one past the speed that divides the
-    motions of the bonded structure, by the averaged theory, moved with the resonance where that of
-    the delaminated structure lies clearly apart
-    (:mod:`orchestrate.weak_drive.own_resonance`). Voltages are held from before both resonances to
-    beyond both; where the voltage does not go that far, the direction is undecided. Halves that
-    hardly touch swing freely, with further resonances near these.
+    A ramp's jump comes late, about as rate^(2/3). The rule that decides about jumps is that of
+    :mod:`orchestrate.weak_drive.hysteresis`: where the ramp's record suggests one, a state of the
+    run is restored, and voltages are held there and back.
 
     Examples
     --------
@@ -653,5 +504,5 @@ def couple(
     settings = (duration, rate, settle, increment, back, spin_up)
     schedule = schedule_from_arguments(structure, drive, voltage, *settings)
     scheme = scheme_from_arguments(structure, step, algorithm, tolerance, control is not None)
-    job = couple_job(structure, drive, schedule, scheme, speed_start, control, hold)
+    job = couple_job(structure, drive, schedule, scheme, speed_start, control, hold, hysteresis)
     return answer(job, running, finder(running))

@@ -145,8 +145,15 @@ def couple_all(
         run.assign_coords(eta0=run.eta0.reset_coords(drop=True), Omega=run.Omega)
         for run in gather(jobs, running, finder(running))
     ]
+    texts_of_jumps = {name: "" for name, values in datasets[0].items() if values.dtype.kind == "U"}
+    missing = dict.fromkeys(datasets[0].data_vars, np.nan) | texts_of_jumps
     result = xr.concat(
-        datasets, "run", join="outer", combine_attrs="drop_conflicts", data_vars="all"
+        datasets,
+        "run",
+        join="outer",
+        combine_attrs="drop_conflicts",
+        data_vars="all",
+        fill_value=missing,
     )
     texts = ("name of the set", "structure", "change of the no-load speed over omega per 1/omega")
     units = (None, None, "1")

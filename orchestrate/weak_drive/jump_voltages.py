@@ -1,11 +1,7 @@
-"""Extrapolate the jump voltages of ramps at several rates to rate 0, with an error.
+"""Find the voltages at which the speed jumps at rate 0, and how late ramps of some rates show it.
 
-A ramp's jump comes late, about as rate^(2/3): so it is where a fold is passed at a finite rate. The
-time that the speed then takes on its way makes a term that grows as the rate itself. Both are
-fitted to the voltages; at rate 0 is the voltage of the fold. Of the bonded structure that is known,
-by the averaged theory: what its ramps miss, those of the delaminated one may miss as well. Where
-held voltages had to decide at every rate, as where folds are close, they know the voltage at rate 0
-themselves: it is taken from them.
+The voltages at rate 0 are those of the hysteresis loop (:mod:`.hysteresis`), on the slowest ramp. A
+ramp shows its jump late, about as rate^(2/3).
 """
 
 from __future__ import annotations
@@ -24,9 +20,7 @@ from ..running.job import Inputs, Job, Table
 from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
-from . import averaged
-from .couple import couple_job, require_motor, schedule_from_arguments, scheme_from_arguments
-from .held import LOST
+from .couple import SLOTS, couple_job, require_motor, schedule_from_arguments, scheme_from_arguments
 from .master import Scheme
 from .schedule import Ramp, Schedule
 
@@ -39,49 +33,9 @@ if TYPE_CHECKING:
 KINDS = ("bonded", "delaminated")
 DIRECTIONS = ("up", "down")
 USUAL_RATES = (1e-4, 5e-5, 2.5e-5)  # of eta0 in a time 1/omega
-EXPONENT = 2.0 / 3.0
-
-
-def extrapolate(rates: np.ndarray, voltages: np.ndarray) -> tuple[float, float]:
-    """Extrapolate jump voltages to rate 0; return the voltage and its standard error.
-
-    Examples
-    --------
-    >>> rates = np.array([1e-4, 3e-5, 1e-5])
-    >>> voltage, error = extrapolate(rates, 1.5 + 10.0 * rates ** (2 / 3))
-    >>> round(voltage, 9), error < 1e-9
-    (1.5, True)
-    """
-    known = np.isfinite(voltages)
-    count = int(known.sum())
-    if count < 2:
-        return float("nan"), float("nan")
-    line, _ = fit_rate_powers(rates[known], voltages[known], (EXPONENT,))
-    if count == 2:
-        return line, float("nan")
-    value, scatter = fit_rate_powers(rates[known], voltages[known], (EXPONENT, 1.0))
-    return value, float(np.hypot(scatter, 0.5 * (value - line)))
-
-
-def summarize_held(voltages: np.ndarray, errors: np.ndarray) -> np.ndarray:
-    """Return middle and error of the brackets that held voltages found at several rates."""
-    low, high = (voltages - errors).min(axis=0), (voltages + errors).max(axis=0)
-    return np.stack([0.5 * (low + high), 0.5 * (high - low)], axis=1)
-
-
-def fit_rate_powers(
-    rates: np.ndarray, voltages: np.ndarray, exponents: tuple[float, ...]
-) -> tuple[float, float]:
-    """Fit jump voltages by powers of the rate; return the value at rate 0 and its error."""
-    design = np.stack([np.ones(len(rates)), *(rates**power for power in exponents)], axis=1)
-    design /= design.max(axis=0)
-    solution = np.linalg.lstsq(design, voltages, rcond=None)[0]
-    free = len(rates) - design.shape[1]
-    if not free:
-        return float(solution[0]), 0.0
-    misfit = voltages - design @ solution
-    covariance = float(misfit @ misfit) / free * np.linalg.inv(design.T @ design)
-    return float(solution[0]), float(np.sqrt(covariance[0, 0]))
+COLUMNS = ("jumps", "jump_low", "jump_high")
+EARLY = 1e-3  # of the voltage at rate 0: a ramp shows its jump no earlier
+SHOWN = ("ramp_voltage", "jump_speed_before")
 
 
 @dataclass(frozen=True)
@@ -104,47 +58,44 @@ class JumpVoltagesJob(Job):
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[tuple[Structure, Ramp]], previous: Any
     ) -> Table:
-        """Run some ramps; return their jump voltages and the speeds before."""
-        rows = []
+        """Run some ramps; return their jumps, and of faster ones what their records show."""
+        rows, shown, decided = [], [], []
         for structure, schedule in items:
-            job = couple_job(structure, self.drive, schedule, self.scheme)
+            hold = None if schedule is self.schedules[0] else 0.0
+            job = couple_job(structure, self.drive, schedule, self.scheme, hold=hold)
             data = job.dataset(job.run_here(fmus), {})
-            held = data[["held_jumps", "held_error"]].where(data.held_verdict == LOST)
-            columns = (data.jumps, data.jump_speed_before, held.held_jumps, held.held_error)
-            rows.append([column.values for column in columns])
-        return {"jumps": np.array(rows).reshape(-1, 4, len(DIRECTIONS))}
+            first = data.sel(jump=list(DIRECTIONS))
+            rows.append([first[name].values for name in COLUMNS])
+            decided.append(first.decided.values.astype("U20"))
+            shown.append([shown_jumps(data, direction) for direction in DIRECTIONS])
+        return {"jumps": np.array(rows), "decided": np.array(decided), "shown": np.array(shown)}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Build the dataset of jump voltages over the rate and at rate 0."""
         import xarray as xr
 
         rates = np.array([schedule.rate for schedule in self.schedules])
-        shaped = table["jumps"].reshape(len(rates), len(KINDS), 4, len(DIRECTIONS))
-        at_rates, speeds, held, held_errors = (shaped[:, :, column] for column in range(4))
-        ends = np.array(
-            [
-                [
-                    extrapolate(rates, at_rates[:, kind, direction])
-                    for direction in range(len(DIRECTIONS))
-                ]
-                for kind in range(len(KINDS))
-            ]
-        )
-        ends[..., 1] = np.hypot(ends[..., 1], self.distance_from_folds(ends[0, :, 0]))
-        decided = np.isfinite(held).all(axis=0)
-        ends[decided] = summarize_held(held[:, decided], held_errors[:, decided])
+        shape = len(rates), len(KINDS), len(COLUMNS), len(DIRECTIONS)
+        jumps, low, high = np.moveaxis(table["jumps"].reshape(shape), 2, 0)
         every, each = ("rate", "structure", "jump"), ("structure", "jump")
+        shown = table["shown"].reshape(*jumps.shape, SLOTS, len(SHOWN))
+        voltages, speeds = np.moveaxis(first_past(jumps[0], shown), -1, 0)
         late = "voltage at which the speed jumps on the ramp"
         before = "mean speed where it leaves its branch"
+        error = "half of the bracket of that voltage, by held voltages"
         variables = {
-            "voltage": (every, at_rates, {"units": "V", "long_name": late}),
+            "voltage": (every, voltages, {"units": "V", "long_name": late}),
             "speed_before": (every, speeds, {"units": "rad/s", "long_name": before}),
-            "jumps": (each, ends[..., 0], {"units": "V", "long_name": "the same at rate 0"}),
-            "held": (each, decided, {"long_name": "whether that is where held voltages lose it"}),
+            "jumps": (each, jumps[0], {"units": "V", "long_name": "the same at rate 0"}),
             "standard_error": (
                 each,
-                ends[..., 1],
-                {"units": "V", "long_name": "standard error of the voltage at rate 0"},
+                np.where(np.isfinite(jumps[0]), 0.5 * np.abs(high[0] - low[0]), np.nan),
+                {"units": "V", "long_name": error},
+            ),
+            "decided": (
+                each,
+                table["decided"][: len(KINDS)],
+                {"long_name": "how jump or none was decided"},
             ),
         }
         coordinates = {
@@ -154,17 +105,24 @@ class JumpVoltagesJob(Job):
         }
         return xr.Dataset(variables, coordinates, {"title": "Jump voltages of the weak drive"})
 
-    def distance_from_folds(self, bonded: np.ndarray) -> np.ndarray:
-        """Return how far bonded jumps at rate 0 lie from the averaged folds, V.
 
-        0 where there is no jump, or the averaged theory has no folds.
-        """
-        folds = averaged.folds(self.structure.as_bonded(), self.drive)
-        if not folds:
-            return np.zeros(len(DIRECTIONS))
-        volts = self.drive.volts(self.structure)
-        known = [volts * fold.eta0 for fold in (folds[0], folds[-1])]
-        return np.nan_to_num(np.abs(np.abs(bonded) - known))
+def shown_jumps(data: xr.Dataset, direction: str) -> np.ndarray:
+    """Return voltage and speed before of all jumps that a ramp shows in a direction, with NaN."""
+    labels = [label for label in data.jump.values if str(label).split()[0] == direction]
+    rows = np.full((SLOTS, len(SHOWN)), np.nan)
+    rows[: len(labels)] = np.stack([data[name].sel(jump=labels).values for name in SHOWN], axis=1)
+    return rows
+
+
+def first_past(jumps: np.ndarray, shown: np.ndarray) -> np.ndarray:
+    """Return of the jumps that ramps show those that come next after the motion is lost."""
+    signs = np.array([1.0, -1.0]) * np.sign(jumps)
+    late = signs[..., np.newaxis] * (shown[..., 0] - jumps[..., np.newaxis])
+    late = np.where(late > -EARLY * np.abs(jumps[..., np.newaxis]), late, np.inf)
+    first = np.argmin(late, axis=-1)[..., np.newaxis]
+    chosen = np.take_along_axis(shown, first[..., np.newaxis], axis=-2)[..., 0, :]
+    is_late = np.isfinite(np.take_along_axis(late, first, axis=-1))
+    return np.where(is_late, chosen, np.nan)
 
 
 def jump_voltages(
@@ -188,7 +146,8 @@ def jump_voltages(
     voltage : (float, float)
         Ends of the ramps, V.
     rates : sequence of float, optional
-        V/s; three or more give a standard error. By default (1e-4, 5e-5, 2.5e-5) K omega^2.
+        Of the ramps, V/s, by default (1e-4, 5e-5, 2.5e-5) K omega^2. The slowest one begins the
+        hysteresis loop that decides.
     back : bool
         Whether the ramps come back: the jump down too.
     settle : float, optional
@@ -202,10 +161,10 @@ def jump_voltages(
     Returns
     -------
     xarray.Dataset
-        ``jumps`` and ``standard_error`` (V) over ``structure`` and ``jump``, and the ``voltage`` of
-        each ramp over ``rate`` (V/s) too; NaN where there is no jump. ``held`` says where held
-        voltages lost the motion at every rate: the middle of their brackets is told then, and half
-        of what these span as the error.
+        ``jumps`` (V) over ``structure`` and ``jump``: the first voltage at which the motion is
+        lost, with half of its bracket as ``standard_error``; NaN where there is no jump or it is
+        undecided, as ``decided`` says. Over ``rate`` (V/s) too the ``voltage`` at which each ramp
+        shows a jump.
 
     Raises
     ------
@@ -214,11 +173,9 @@ def jump_voltages(
 
     Notes
     -----
-    Voltages are fitted with a constant and terms in rate^(2/3) and in the rate. The error is made
-    of the scatter around the fit, half of what the last term changes, and how far the ramps of the
-    bonded structure end from the folds of the averaged theory: the delaminated one's lag nearly
-    as much. A slow loss of stability, which a ramp does not see, is not in it. With a clearance
-    the voltages of the delaminated structure depend on how large it is beside the amplitude.
+    The rule is that of :mod:`orchestrate.weak_drive.hysteresis`, as for :func:`couple`. A slow loss
+    of stability, which neither ramps nor holds see, is not in the error. With a clearance the
+    voltages of the delaminated structure depend on how large it is beside the amplitude.
 
     Examples
     --------
@@ -232,13 +189,13 @@ def jump_voltages(
     require_motor(drive)
     unit = drive.volts(structure) * structure.omega
     volt_rates = [rate * unit for rate in USUAL_RATES] if rates is None else list(rates)
-    if len(set(volt_rates)) < 2:
-        raise InputError(f"rates = {rates}: expected two different ones or more, in V/s")
+    if not volt_rates:
+        raise InputError(f"rates = {rates}: expected one or more, in V/s")
     schedules = tuple(
         require_ramp(
             schedule_from_arguments(structure, drive, voltage, None, rate, settle, 0.0, back)
         )
-        for rate in sorted(volt_rates)
+        for rate in sorted(set(volt_rates))
     )
     scheme = scheme_from_arguments(structure, step)
     job = JumpVoltagesJob("jump_voltages", structure, drive, schedules, scheme)

@@ -95,13 +95,6 @@ def dividing_speed(structure: Structure, drive: Drive) -> float:
     return averaged.dividing_speed(structure, drive) + resolved_resonance_shift(structure, drive)
 
 
-def dividing_speeds(structure: Structure, drive: Drive) -> tuple[float, float]:
-    """Return the lowest and the highest speed over omega that may divide motions."""
-    bonded = averaged.dividing_speed(structure, drive)
-    low, high = sorted((bonded, bonded + resonance_shift(structure, drive)))
-    return low, high
-
-
 def resonance_shift(structure: Structure, drive: Drive) -> float:
     """Return the structure's resonance speed minus the bonded one, over omega."""
     if structure.bonded:

@@ -32,8 +32,8 @@ from .couple import (
     require_motor,
     schedule_from_arguments,
     scheme_from_arguments,
+    with_final_chunk,
 )
-from .held import with_final_chunk
 from .master import STATE_INDEX, Master, split_state
 from .revolutions import COLUMNS
 from .run import Run
@@ -80,15 +80,15 @@ class PassageJob(Job):
     item: ClassVar[str] = "step"
 
     def items(self, inputs: Inputs) -> Sequence[int]:
-        """Return the item indices: all communication steps, then the held-voltage test."""
+        """Return the item indices: all communication steps, then the hysteresis loop."""
         return self.run.items(inputs)
 
     def chunks(self) -> list[Chunk]:
-        """Split the items into chunks; the held-voltage test is its own last chunk."""
+        """Split the items into chunks; the hysteresis loop is its own last chunk."""
         return with_final_chunk(super().chunks())
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
-        """Compute one chunk of steps with all samples, or the held-voltage test."""
+        """Compute one chunk of steps with all samples, or the hysteresis loop."""
 
         def revolve_with_samples(run: Run) -> Table:
             """Run the steps; return revolutions and the samples after every step."""
@@ -104,7 +104,7 @@ class PassageJob(Job):
         """Build the dataset of samples over time and of the jumps."""
         import xarray as xr
 
-        of_run = {name: table[name] for name in (*COLUMNS, "verdicts", "further_verdicts")}
+        of_run = {name: table[name] for name in (*COLUMNS, "jump_rows")}
         revolutions = self.run.dataset(of_run, inputs)
         samples = {name: table[KEPT + name] for name in SAMPLES}
         centres, what = self.sample_centres(revolutions)

@@ -1,31 +1,48 @@
-"""Find in the record of a ramp where the speed passes the resonance or may jump once more."""
+"""Find in the record of a ramp where it may have lost a motion: where the slip falls.
+
+The slip is the no-load speed less the speed, both over omega: the torque that the vibration takes.
+Where the speed gains on the voltage, on the way up, or loses against it, on the way down, by more
+than `shown`, the record suggests a jump. A resonance without a jump does so too: held voltages tell
+(:mod:`.hysteresis`).
+"""
 
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..response.labels import Variable, variable
 from ..running.job import Table
-from . import averaged, own_resonance
-from .further_jumps import LAST_STRETCH, find_further_jumps
-from .jump_verdicts import averaged_predictions, is_doubtful
-from .jumps import Passing, SweepLeg, explain_not_passed, find_passing
 from .run import CoupledRun
 
-UPWARD = (True, False)  # both directions: whether the voltage rises
-LAST_REVOLUTIONS = 20  # of a ramp: their mean speed is where it ends
-LATE = 3.0  # of the rotor's time 1/b: how much later a ramp may show what it loses
+APART = 12  # widths of the mean: falls of the slip that are closer are one
+COLUMNS_SHOWN = ("time", "voltage", "speed", "amplitude")
+SHARE = 0.1  # of a fall of the slip before and after its steep part
+
+
+class Suspect(NamedTuple):
+    """Store the rows of a run between which it may have lost a motion, and where most likely."""
+
+    before: int
+    row: float  # where half of the slip's fall is done, between two rows
+    after: int
+
+
+NOT_SHOWN = Suspect(math.nan, math.nan, math.nan)  # type: ignore[arg-type]
 
 
 @dataclass(frozen=True)
 class RampRecord:
-    """Search the revolutions of a run for passages of the resonance and suspected jumps."""
+    """Search the revolutions of a run for suspected jumps, in one direction of the voltage."""
 
     job: CoupledRun  # what was run
     table: Table  # its revolutions, a row each
+    up: bool
 
     @property
     def sense(self) -> float:
@@ -33,131 +50,129 @@ class RampRecord:
         voltage = self.table["voltage"]
         return -1.0 if -voltage.min(initial=0.0) > voltage.max(initial=0.0) else 1.0
 
+    @property
+    def sign(self) -> float:
+        """Return the direction of the voltage's size: 1 or -1."""
+        return 1.0 if self.up else -1.0
+
     def forward(self) -> Table:
         """Return the table of the mirror image of the run, in which the motor turns forward."""
         signed = ("voltage", "speed")
         return {**self.table, **{name: self.sense * self.table[name] for name in signed}}
 
-    def sweep_leg(self, up: bool) -> tuple[SweepLeg, np.ndarray]:
-        """Return the revolutions with rising (or falling) voltage and their row indices.
+    def rows(self) -> np.ndarray:
+        """Return the rows of the revolutions in which the size of the voltage rises (or falls)."""
+        voltage = self.sense * self.table["voltage"]
+        trend = self.sense * self.sign * self.job.schedule.trend(self.table["time"])
+        return np.flatnonzero((trend > 0.0) & (voltage > 0.0))
 
-        A motor that turns backward is looked at in a mirror: its voltage rises from 0 too.
-        """
-        eta0 = self.sense * self.table["voltage"] / self.job.drive.volts(self.job.structure)
-        Omega = np.abs(self.table["speed"]) / self.job.structure.omega
-        trend = self.sense * self.job.schedule.trend(self.table["time"])
-        rows = np.flatnonzero((trend > 0 if up else trend < 0) & (eta0 > 0.0))
-        return SweepLeg(
-            self.table["time"][rows] * self.job.structure.omega, eta0[rows], Omega[rows]
-        ), rows
+    def legs(self) -> list[np.ndarray]:
+        """Return the rows of each ramp in this direction."""
+        rows = self.rows()
+        return np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1) if rows.size else []
 
-    def resonance_passing(self, up: bool) -> Passing | None:
-        """Find how the speed passes the resonance in one direction; None if it does not."""
-        leg, rows = self.sweep_leg(up)
-        structure, drive = self.job.structure, self.job.drive
-        threshold = own_resonance.dividing_speed(structure, drive)
-        calm = averaged.calm_speed(structure, drive)
-        rows_in_leg = find_passing(leg, drive.b(structure), up, threshold, calm=calm)
-        if rows_in_leg is None:
-            return None
-        row, before, after = (int(rows[index]) for index in rows_in_leg[:3])
-        half = float(np.interp(rows_in_leg.half, np.arange(len(rows)), rows))
-        return Passing(row, before, after, rows_in_leg.look, half)
+    def eta0(self, rows: Any) -> Any:
+        """Return the voltage over K omega at the ends of revolutions."""
+        return self.sense * self.table["voltage"][rows] / self.job.drive.volts(self.job.structure)
 
-    def doubtful_passing(self, up: bool) -> tuple[Passing, tuple[int, int]] | None:
-        """Return a doubtful passage of the resonance in steps; None if the record is clear."""
-        passing = None if self.job.control else self.resonance_passing(up)
-        theory = averaged_predictions(self.job.structure, self.job.drive)[UPWARD.index(up)]
-        if passing is None or not is_doubtful(passing, self.job.structure.bonded, theory):
-            return None
-        return self.to_steps(passing, up)
+    def speed(self, rows: Any) -> Any:
+        """Return the mean speed over omega of revolutions."""
+        return np.abs(self.table["speed"][rows]) / self.job.structure.omega
 
-    def to_steps(self, passing: Passing, up: bool) -> tuple[Passing, tuple[int, int]]:
-        """Convert a passage from table rows to communication steps, with its sweep's ends."""
-        rows = self.sweep_leg(up)[1]
-        times = self.table["time"][[*passing[:3], rows[0], rows[-1]]]
-        row, before, after, first, last = (
-            min(math.ceil(time / self.job.scheme.h), self.job.steps() - 1) for time in times
-        )
-        return Passing(row, before, after, passing.look, float(row)), (first, last)
+    def slip(self, rows: Any) -> Any:
+        """Return by how much the no-load speed exceeds the speed, over omega, by its direction."""
+        return self.sign * (self.eta0(rows) - self.speed(rows))
 
-    def begin_earlier(self, passing: Passing, up: bool) -> Passing:
-        """Move the start of a suspected jump earlier, because a ramp shows losses late."""
-        time, rows = self.table["time"], self.sweep_leg(up)[1]
-        late = LATE / (self.job.drive.b(self.job.structure) * self.job.structure.omega)
-        before = max(int(np.searchsorted(time, time[passing.before] - late)) - 1, int(rows[0]))
-        return passing._replace(before=min(before, passing.before))
+    def step(self, row: int) -> int:
+        """Return the communication step at the end of a revolution."""
+        return min(math.ceil(self.table["time"][row] / self.job.scheme.h), self.job.steps() - 1)
 
-    def find_further_passings(self, up: bool) -> list[Passing]:
-        """Find suspected further jumps in one direction, as rows of the table."""
-        leg, rows = self.sweep_leg(up)
-        if self.job.control or not rows.size:
+    def row_earlier(self, row: int, rotor_times: float, leg: np.ndarray) -> int:
+        """Return the row that is earlier by some of the rotor's times 1/b, within its ramp."""
+        structure, time = self.job.structure, self.table["time"]
+        earlier = time[row] - rotor_times / (self.job.drive.b(structure) * structure.omega)
+        return max(int(np.searchsorted(time, earlier)), int(leg[0]))
+
+    def suspect_at(self, eta0: float, leg: np.ndarray) -> Suspect:
+        """Return where a ramp reaches a voltage, as a suspected jump of no length."""
+        row = float(np.interp(self.sign * eta0, self.sign * self.eta0(leg), leg))
+        return Suspect(math.floor(row), row, math.ceil(row))
+
+    def suspects(self, leg: np.ndarray, shown: float) -> list[Suspect]:
+        """Return the stretches of one ramp over which the slip falls by at least `shown`."""
+        b, omega = self.job.drive.b(self.job.structure), self.job.structure.omega
+        turn = float(np.median(np.diff(self.table["time"][leg]))) if len(leg) > 1 else math.inf
+        width = max(4, math.ceil(0.5 / (b * omega * turn)))
+        if len(leg) < 2 * width:
             return []
-        threshold = own_resonance.dividing_speed(self.job.structure, self.job.drive)
-        main, b = self.resonance_passing(up), self.job.drive.b(self.job.structure)
-        places = []
-        for part in np.split(np.arange(len(rows)), np.flatnonzero(np.diff(rows) > 1) + 1):
-            first = int(rows[part[0]])
-            span = None if main is None else (main.before - first, main.after - first)
-            one_ramp = SweepLeg(*(values[part] for values in leg))
-            places += [
-                Passing(row + first, before + first, after + first, look, half + first)
-                for row, before, after, look, half in find_further_jumps(
-                    one_ramp, b, up, threshold, span
-                )
-            ]
-        return places
+        slip = np.convolve(self.slip(leg), np.full(width, 1.0 / width), "valid")
+        falls: list[tuple[int, int]] = []
+        for high, low in find_falls(slip, shown):
+            if falls and high - falls[-1][1] < APART * width:
+                falls[-1] = falls[-1][0], low
+            else:
+                falls.append((high, low))
+        return [self.suspect(leg, slip[high : low + 1], high, width) for high, low in falls]
 
-    def last_stretch(self, up: bool, places: Sequence[Passing]) -> tuple[int, int] | None:
-        """Return first and last step of a stretch that may hide a loss; None where nothing does.
+    def suspect(self, leg: np.ndarray, slip: np.ndarray, high: int, width: int) -> Suspect:
+        """Return the rows of a ramp between which the mean slip does most of its fall."""
+        done = (slip.max() - slip) / np.ptp(slip)
+        rows = [int(np.argmax(done >= part)) + high for part in (SHARE, 0.5, 1.0 - SHARE)]
+        before, half, after = (int(leg[0]) + row for row in rows)
+        return Suspect(before, half + 0.5 * (width - 1), after + width - 1)
 
-        The jump comes late, the more so the faster the ramp: near its last voltage it may come
-        after the end. None where the record shows a passing or a suspected jump there. Of a bonded
-        structure the averaged theory knows whether and where.
-        """
-        (_, eta0, Omega), rows = self.sweep_leg(up)
-        if self.job.control or not rows.size:
-            return None
-        sign, end, main = 1.0 if up else -1.0, eta0[-1], self.resonance_passing(up)
-        if self.job.structure.bonded:
-            theory = averaged_predictions(self.job.structure, self.job.drive)[UPWARD.index(up)]
-            losses = [at for at in theory.losses if eta0.min() <= at <= eta0.max()]
-            divide = averaged.dividing_speed(self.job.structure, self.job.drive)
-            began_beyond = bool((sign * (Omega - divide) > 0.0).all())
-            if not losses or began_beyond or main:
-                return None
-            end = min(losses, key=lambda at: sign * at)
-        far = np.flatnonzero(sign * (end - eta0) > LAST_STRETCH)
-        first = int(rows[far[-1]]) if far.size else int(rows[0])
-        if any(seen.after >= first for seen in (*places, *([main] if main else []))):
-            return None
-        times = self.table["time"][[first, rows[-1]]]
-        begin, end = (min(math.ceil(at / self.job.scheme.h), self.job.steps() - 1) for at in times)
-        return begin, end
 
-    def end_voltage(self, up: bool) -> float:
-        """Return the voltage at which the ramp in a direction ends, V; NaN without one."""
-        eta0 = self.sweep_leg(up)[0].eta0
-        return float(eta0[-1]) * self.job.drive.volts(self.job.structure) if eta0.size else math.nan
+def find_falls(values: np.ndarray, least: float) -> list[tuple[int, int]]:
+    """Find the spans from a maximum to the next minimum that fall by at least `least`."""
+    spans, high, low, falling = [], 0, 0, False
+    for i, value in enumerate(values.tolist()):
+        if falling:
+            low = i if value < values[low] else low
+            if value >= values[low] + least:
+                spans.append((high, low))
+                high, falling = i, False
+        elif value > values[high]:
+            high = i
+        elif value <= values[high] - least:
+            low, falling = i, True
+    return [*spans, (high, low)] if falling else spans
 
-    def explain_no_passing(self, up: bool) -> str:
-        """Explain why the speed does not pass the resonance in a direction."""
-        if self.job.control:
-            return "a controller sets the voltage"
-        resonance = own_resonance.resonance(self.job.structure, self.job.drive)
-        return explain_not_passed(self.sweep_leg(up)[0], up, resonance)
 
-    def explain_short_sweep(self, up: bool) -> str:
-        """Explain that the sweep ends before a resonance; empty text if it does not."""
-        leg, rows = self.sweep_leg(up)
-        low, high = own_resonance.dividing_speeds(self.job.structure, self.job.drive)
-        end = float(leg.Omega[-LAST_REVOLUTIONS:].mean())
-        if low == high or (end > high if up else end < low):
-            return ""
-        volts, beyond = float(self.table["voltage"][rows[-1]]), high if up else low
-        return (
-            f"undecided: the voltage goes to {volts:.5g} V only, which does not take the speed "
-            "past both resonances, the bonded structure's and the delaminated one's own; expected "
-            f"one that takes it {'above' if up else 'below'} "
-            f"{beyond * self.job.structure.omega:.5g} rad/s"
-        )
+def time_beyond(time: np.ndarray, Omega: np.ndarray, threshold: float) -> float:
+    """Return the time from which the speed stays above a threshold; NaN if it does not."""
+    below = np.flatnonzero(Omega <= threshold)
+    if not len(Omega) or Omega[-1] <= threshold:
+        return math.nan
+    return float(time[below[-1] + 1]) if below.size else float(time[0])
+
+
+def jump_labels(directions: Sequence[str]) -> list[str]:
+    """Return labels for jumps of some directions: "up", "down", and further ones "up 2"."""
+    counts: Counter[str] = Counter()
+    labels = []
+    for direction in directions:
+        counts[direction] += 1
+        labels.append(direction if counts[direction] == 1 else f"{direction} {counts[direction]}")
+    return labels
+
+
+def variables_shown(table: Table, shown: Sequence[Suspect]) -> dict[str, Variable]:
+    """Build the variables of what a record shows at jumps; NaN where a row is NaN."""
+    rows = np.array(shown, dtype=float).reshape(-1, 3).T
+    numbers = np.arange(len(table["time"]))
+    before, here, after = (
+        {name: np.interp(at, numbers, table[name]) for name in COLUMNS_SHOWN} for at in rows
+    )
+    with np.errstate(invalid="ignore", divide="ignore"):
+        rate = (after["voltage"] - before["voltage"]) / (after["time"] - before["time"])
+    texts = {
+        "ramp_voltage": (here["voltage"], "V", "voltage at which the speed jumps on the ramp"),
+        "jump_time": (here["time"], "s", "time of that voltage"),
+        "jump_speed": (here["speed"], "rad/s", "mean speed of that revolution"),
+        "jump_speed_before": (before["speed"], "rad/s", "mean speed before the jump"),
+        "jump_speed_after": (after["speed"], "rad/s", "mean speed after the jump"),
+        "jump_amplitude_before": (before["amplitude"], "m", "amplitude before the jump"),
+        "jump_amplitude_after": (after["amplitude"], "m", "amplitude after the jump"),
+        "jump_rate": (rate, "V/s", "change of the voltage per time during the jump"),
+    }
+    return {name: variable("jump", *parts) for name, parts in texts.items()}

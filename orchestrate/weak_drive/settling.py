@@ -19,7 +19,6 @@ import numpy as np
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged, own_resonance
-from .jumps import running_mean
 
 UNDECIDED, CONVERGED, BOUNDED, NO_LOAD, NEITHER = range(5)
 DECISIONS = {
@@ -76,7 +75,7 @@ class SettlingTest:
         """Decide from the speed's record: captured, passed or undecided."""
         if len(speed) < 2 * MEAN:
             return Outcome(UNDECIDED)
-        means = running_mean(np.abs(speed) / self.omega, MEAN)
+        means = np.convolve(np.abs(speed) / self.omega, np.full(MEAN, 1.0 / MEAN), "valid")
         turn = float(np.median(np.diff(time[-MEAN:])))
         settled = self.find_convergence(means, turn) or self.find_bounds(means, turn)
         if settled is None:

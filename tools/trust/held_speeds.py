@@ -68,7 +68,7 @@ def held_speeds(
     schedule = Course(
         tuple(time / omega for time in times), tuple(voltage * volts for voltage in course)
     )
-    run = couple(structure, drive, voltage=schedule, hold=1.0 / omega, progress=False)
+    run = couple(structure, drive, voltage=schedule, hold=0.0, progress=False)
     time, speed = run.time.values * omega, np.abs(run.Omega.values)
     return np.array([settled_speed(time, speed, end, hold) for end in ends])
 

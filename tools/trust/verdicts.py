@@ -13,7 +13,6 @@ import xarray as xr
 from orchestrate import Drive, Structure, couple, drive_branch
 from orchestrate.errors import VibroimpactError
 from orchestrate.weak_drive import averaged
-from orchestrate.weak_drive.held import FOLLOWS, LEFT_BEFORE, LOST, UNDECIDED
 
 from .campaign import BatchOutcome, Campaign
 from .held_speeds import RATE, System, held_speeds
@@ -22,6 +21,7 @@ RATES = (2e-4, 1e-4, 5e-5, 2e-5)  # of eta0 in a time 1/omega
 FEW_RATES = RATES[::3]  # for drives near the edge of folds
 KINDS = ("bonded", "delaminated")
 WAYS = ("up", "down")
+SAID = {"by held voltages": "lost", "undecided": "undecided"}
 FOLD, TORUS, NONE, UNKNOWN = "fold", "Neimark-Sacker", "none", "unknown"
 TOLERANCE = 2e-4  # of eta0: how far a bracket may lie from where the motion is lost
 EARLY = 2e-3  # of eta0: how far before it the jump of a ramp may be seen
@@ -111,44 +111,20 @@ def run_couple(system: System, rate: float) -> tuple[Answer, ...]:
     first, last = (end * volts for end in ramp_ends(system))
     rate *= volts * structure.omega
     run = couple(structure, drive, voltage=(first, last), rate=rate, progress=False)
-    return tuple(
-        read_answer(direction, volts)._replace(further=read_further_answers(direction, volts))
-        for direction in (run.sel(jump=way) for way in WAYS)
-    )
+    return tuple(read_answer(run, way, volts) for way in WAYS)
 
 
-def read_further_answers(at: xr.Dataset, volts: float) -> tuple[Answer, ...]:
-    """Read the answers on further jumps in one direction from a dataset."""
+def read_answer(run: xr.Dataset, way: str, volts: float) -> Answer:
+    """Read the answer on all jumps in one direction from a dataset."""
     answers = []
-    for place in at.order.values:
-        jump_data = at.sel(order=place)
-        how = str(jump_data.further_decided.item())
-        if how == "by the record":
-            jump = float(jump_data.further_jumps) / volts
-            answers.append(Answer("lost", jump, jump, False))
-        elif how:
-            middle, half = (
-                float(jump_data.further_held) / volts,
-                float(jump_data.further_error) / volts,
-            )
-            said = "undecided" if how == "undecided" else "lost"
-            answers.append(Answer(said, middle - half, middle + half, True))
-    return tuple(answers)
-
-
-def read_answer(at: xr.Dataset, volts: float) -> Answer:
-    """Read the answer on the jump in one direction from a dataset."""
-    code, held, error = (float(at[name]) for name in ("held_verdict", "held_jumps", "held_error"))
-    jump = float(at.jumps) / volts
-    if code == LOST:
-        return Answer("lost", (held - error) / volts, (held + error) / volts, True)
-    if code == UNDECIDED:
-        return Answer("undecided", np.nan, np.nan, True)
-    if code == LEFT_BEFORE or str(at.decided.item()) == "":
-        return Answer("not passed", np.nan, np.nan, False)
-    if np.isfinite(jump):
-        return Answer("lost", jump, jump, False)
-    return Answer("none", np.nan, np.nan, code == FOLLOWS)
+    for label in run.jump.values:
+        if str(label).split()[0] == way:
+            at = run.sel(jump=label)
+            low, high = sorted(float(at[name]) / volts for name in ("jump_low", "jump_high"))
+            said = SAID[str(at.decided.item())] if np.isfinite(low) else "none"
+            held = str(at.decided.item()) != "by the record"
+            answers.append(Answer(said, low, high, held))
+    return answers[0]._replace(further=tuple(answers[1:]))
 
 
 def trace_truths(system: System) -> dict[tuple[str, str], Truth]:

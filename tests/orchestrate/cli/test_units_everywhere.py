@@ -166,6 +166,7 @@ def test_the_weak_drive_prints_speeds_in_the_unit_asked_for(ask, monkeypatch, tm
     each = {"structure": ["bonded", "delaminated"], "jump": ["up", "down"]}
     jumps = {"jumps": variable([[1.5, 1.4]] * 2, "V", tuple(each))}
     jumps["standard_error"] = variable([[0.1, 0.1]] * 2, "V", tuple(each))
+    jumps["decided"] = (tuple(each), [["by held voltages"] * 2] * 2)
     answer_with(monkeypatch, "jump_voltages", xr.Dataset(jumps, each))
     asked = ("jump-voltages", "--plot", "none")
     note = "--units rpm: these have no such numbers, only V"

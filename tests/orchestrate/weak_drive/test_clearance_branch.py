@@ -1,8 +1,5 @@
 """Branches of the drive with a gap or a preload: what they follow, and against what holds."""
 
-import math
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -10,11 +7,7 @@ from orchestrate import couple
 from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.dynamics.bifurcations import FOLD
 from orchestrate.weak_drive import averaged
-from orchestrate.weak_drive.couple import Run, couple_job, scheme_from_arguments
 from orchestrate.weak_drive.drive_tracer import motion_near
-from orchestrate.weak_drive.held import LOST, HeldVoltageTest
-from orchestrate.weak_drive.jumps import Passing
-from orchestrate.weak_drive.ramp_record import RampRecord
 from orchestrate.weak_drive.schedule import Ramp
 from orchestrate.weak_drive.shooting import Shooter
 
@@ -32,27 +25,6 @@ def leg_of(system, range_, most=40):
     """The first leg's motions, its end, and the unit of length."""
     legs, length = branch_of(system, most, range_)
     return legs[0].points, legs[0].end, length
-
-
-def held_verdict(system, ramp):
-    """What held voltages say of a ramp up."""
-    job = couple_job(*system, ramp, scheme_from_arguments(system.structure, None), 0.0)
-    fmus = {model: find(model).path for model in (OSCILLATOR, SHAKER)}
-    table = job.work(fmus, range(job.steps()), None)
-    record = RampRecord(job, table)
-    passing, (_, rows) = record.resonance_passing(up=True), record.sweep_leg(up=True)
-    times = table["time"][[*passing[:3], rows[0], rows[-1]]]
-    row, before, after, *ends = (math.ceil(time / job.scheme.h) for time in times)
-    with Instance(fmus[OSCILLATOR]) as one, Instance(fmus[SHAKER]) as other:
-
-        def begin(schedule):
-            one.reset()
-            other.reset()
-            return Run(replace(job, schedule=schedule), one, other)
-
-        test = HeldVoltageTest(begin, ramp, job.scheme.h, 1.0, 1.0, 6000.0)
-        steps = Passing(row, before, after, passing.look, float(row))
-        return test.classify(steps, tuple(ends), averaged.dividing_speed(*system), up=True)
 
 
 def motion_of(system, speed):
@@ -146,10 +118,11 @@ def test_held_voltages_find_the_fold_of_the_branch():
     """Of a structure with a gap, from states of a ramp that are restored."""
     legs, _ = branch_of(OPEN, 30, (0.995, 1.002))
     (fold,) = legs[0].bifurcations
-    verdict = held_verdict(OPEN, Ramp(1.52, 1.62, 4e-4, settle=600.0, back=False)).verdict
-    assert fold.kind == FOLD and verdict.outcome == LOST
-    assert verdict.low - 2e-5 < fold.point.coordinates[0] < verdict.high + 2e-5
-    assert verdict.high - verdict.low < 2e-4
+    ramp = Ramp(1.52, 1.62, 4e-4, settle=600.0, back=False)
+    up = couple(*OPEN, voltage=ramp, speed_start=0.0, progress=False).sel(jump="up")
+    assert fold.kind == FOLD and up.decided == "by held voltages"
+    assert up.jump_low - 2e-5 < fold.point.coordinates[0] < up.jump_high + 2e-5
+    assert up.jump_high - up.jump_low < 2.1e-4
 
 
 def test_halves_that_never_touch_are_two_oscillators():

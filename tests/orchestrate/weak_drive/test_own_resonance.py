@@ -6,7 +6,6 @@ from scipy.linalg import expm
 
 from orchestrate import Structure
 from orchestrate.weak_drive import averaged, own_resonance
-from orchestrate.weak_drive.held import FOLLOWS, LOST
 from tools.trust.verdicts import draw_with_folds
 
 from .coupled import BEAM, QUICK, System
@@ -72,32 +71,15 @@ def test_halves_that_swing_alike_never_part():
 def decided(found, way):
     """That there is no false none; where the motion is lost, over K omega."""
     at = found.sel(jump=way)
-    assert at.held_verdict != FOLLOWS
-    assert at.decided != "by the record" or np.isfinite(at.jumps)  # clear without being held
-    if at.held_verdict == LOST:
-        place = float(at.held_jumps) / APART.drive.volts(APART.structure)
+    assert at.decided == "undecided" or np.isfinite(at.jumps)
+    if np.isfinite(at.jumps):
+        place = float(at.jumps) / APART.drive.volts(APART.structure)
         assert OWN_LOSSES[0] < place < OWN_LOSSES[1]
-        assert 1.42 < float(at.jump_speed) / APART.structure.omega < 1.47
 
 
 def test_a_jump_beyond_the_bonded_resonance():
     """It was said that the speed passes the resonance without a gap."""
     decided(run(APART, (1.37, 1.5), 2e-4, back=False, settle=100.0, step=None), "up")
-
-
-def test_a_ramp_that_ends_before_its_resonance():
-    """It was said that there is no jump."""
-    found = run(APART, (1.37, 1.43), 2e-4, back=False, settle=100.0, step=None)
-    assert "ends below the resonance" in str(found.no_jump.sel(jump="up").item())
-
-
-def test_a_ramp_that_ends_between_the_two_resonances():
-    """It has passed the one, and the jump is still ahead: the answer names the speed needed."""
-    found = run(APART, (1.48, 1.44), 2e-4, back=False, settle=100.0, step=None, hold=2000.0)
-    down = found.sel(jump="down")
-    assert down.decided == "undecided"
-    needed = averaged.dividing_speed(*APART) * APART.structure.omega
-    assert f"takes it below {needed:.5g} rad/s" in str(down.no_jump.item())
 
 
 @pytest.mark.slow

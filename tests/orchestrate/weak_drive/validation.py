@@ -16,7 +16,7 @@ from orchestrate.dynamics.bifurcations import FLIP, FOLD, TORUS
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple import scheme_from_arguments
 from orchestrate.weak_drive.drive_branch import DriveBranchJob
-from orchestrate.weak_drive.jumps import DOUBTFUL, JUMP, SweepLeg, find_passing
+from orchestrate.weak_drive.ramp_record import find_falls
 
 from .coupled import BEAM, QUICK, System, master, rest, state_of
 from .monolithic import Monolith
@@ -238,12 +238,11 @@ def jump_of(system, times, angles, eta0):
     turns = 2.0 * np.pi * np.arange(np.ceil(angles[0] / (2.0 * np.pi)), angles[-1] // (2.0 * np.pi))
     ends = CubicSpline(angles, times)(turns)
     speed = 2.0 * np.pi / np.diff(ends) / system.structure.omega
-    way = SweepLeg(ends[1:] * system.structure.omega, eta0(ends[1:]), speed)
-    divide = averaged.dividing_speed(*system.as_bonded())
-    found = find_passing(way, system.drive.b(system.structure), True, divide)
-    fast = found is not None and found.look in (JUMP, DOUBTFUL)
-    rows = np.arange(len(way.eta0))
-    return float(np.interp(found.half, rows, way.eta0)) if fast else float("nan")
+    voltage = eta0(ends[1:])
+    slip = np.convolve(voltage - speed, np.full(12, 1.0 / 12.0), "same")
+    high, low = max(find_falls(slip, 0.02), key=lambda fall: slip[fall[0]] - slip[fall[1]])
+    half = 0.5 * (slip[high] + slip[low])
+    return float(np.interp(-half, -slip[high : low + 1], voltage[high : low + 1]))
 
 
 def coupled_jump(system, state, voltages, rate):

@@ -1,0 +1,291 @@
+"""The hysteresis loop: a loss of stability, a steep branch, or undecided; at known folds."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from orchestrate.weak_drive import averaged
+from orchestrate.weak_drive.hysteresis import LOST, UNDECIDED, HeldPoint, HysteresisLoop, Settings
+from orchestrate.weak_drive.ramp_record import find_falls, jump_labels
+from orchestrate.weak_drive.schedule import Ramp
+from orchestrate.weak_drive.settled import SettledSettings, settled_speed
+from tools.trust.verdicts import draw_system, scale_to_slope
+
+from .coupled import QUICK, System
+from .test_couple import run
+
+H = 5.0
+STIFF = 20.0
+
+
+class Rotor:
+    """A speed that follows eta0 = 1.5 + slope x + stiff x^3, x = speed - 1.3."""
+
+    def __init__(self, schedule, slope, start, stiff=STIFF):
+        self.schedule, self.slope, self.speed = schedule, slope, start
+        self.stiff = stiff
+        self.master = SimpleNamespace(close=lambda: None)
+
+    def revolve(self, steps):
+        speeds = []
+        for i in steps:
+            x = self.speed - 1.3
+            needed = 1.5 + self.slope * x + self.stiff * x**3
+            self.speed += 0.02 * H * (self.schedule.voltage((i + 0.5) * H) - needed)
+            speeds.append(self.speed)
+        return {"speed": np.array(speeds)}
+
+    def get_state(self):
+        return {"speed": np.array([self.speed])}
+
+    def set_state(self, table):
+        self.speed = float(table["speed"][0])
+
+
+def decided(slope, up=True, start=1.1, ends=(1.4, 1.6), longest=2e4, stiff=STIFF, at=0.3):
+    """The jumps of a course that begins at a part of a ramp."""
+    first, last = ends if up else ends[::-1]
+    ramp = Ramp(first, last, 1e-4, back=False)
+    loop = HysteresisLoop(lambda it: Rotor(it, slope, start, stiff), ramp, H, 1.0, 1.0, longest)
+    return loop.jumps(loop.hold_step(round(at * ramp.duration / H)), last)
+
+
+def fold_of(slope, up=True, stiff=STIFF):
+    """Where the derivative is 0: 1.5 plus or minus 2/3 |slope| x there."""
+    x = (-slope / 3.0 / stiff) ** 0.5
+    return 1.5 - (1 if up else -1) * 2.0 / 3.0 * slope * x
+
+
+def assert_at(jump, fold):
+    """The bracket of a jump contains a fold, and is short."""
+    low, high = sorted((jump.low, jump.high))
+    assert jump.outcome == LOST
+    assert low - 5e-6 <= fold <= high + 5e-6 and high - low < 2.1e-4
+
+
+@pytest.mark.parametrize("at", [0.3, 0.42])
+@pytest.mark.parametrize(("up", "start"), [(True, 1.1), (False, 1.5)])
+@pytest.mark.parametrize("slope", [-0.2, -0.05, -0.02])
+def test_a_fold(slope, up, start, at):
+    """It is bracketed; -0.02: the other one is 5e-4 away."""
+    (jump,) = decided(slope, up=up, start=start, at=at)
+    assert_at(jump, fold_of(slope, up))
+
+
+NARROW = {"ends": (1.47, 1.53), "stiff": 2500.0}  # speeds change little between its folds
+
+
+@pytest.mark.parametrize("at", [0.1, 0.25, 0.35])
+@pytest.mark.parametrize(("up", "start"), [(True, 1.27), (False, 1.33)])
+def test_folds_that_are_close_in_speed_too(up, start, at):
+    """1.1e-4 apart; the speed jumps by 0.0066."""
+    (jump,) = decided(-0.0365, up=up, start=start, at=at, **NARROW)
+    assert_at(jump, fold_of(-0.0365, up, 2500.0))
+
+
+@pytest.mark.parametrize("slope", np.linspace(-0.05, 0.03, 9).round(4).tolist())
+def test_no_two_courses_contradict_each_other(slope):
+    """What lies between a jump and none is undecided."""
+    outcomes = {
+        tuple(jump.outcome for jump in decided(slope, start=1.27, at=at, **NARROW))
+        for at in (0.1, 0.2, 0.25, 0.3)
+    }
+    assert outcomes <= {(LOST,), (UNDECIDED,)} or outcomes <= {(), (UNDECIDED,)}
+    assert outcomes == {(LOST,)} or slope > -0.035
+    assert outcomes == {()} or slope < 0.005
+
+
+@pytest.mark.parametrize("slope", [0.005, 0.02, 0.1])
+def test_a_steep_branch(slope):
+    """Up to 200 times as steep as the voltage, but the speed comes back with it."""
+    assert decided(slope, longest=2e5) == []
+
+
+@pytest.mark.parametrize("slope", [-0.02, -0.005, 0.0, 0.005])
+@pytest.mark.parametrize("longest", [1500.0, 5000.0])
+def test_a_short_hold_is_never_wrong(slope, longest):
+    """Near the edge of a fold speeds settle slowly."""
+    outcomes = {jump.outcome for jump in decided(slope, longest=longest)}
+    lost = slope < 0.0 and fold_of(slope) - fold_of(slope, up=False) > 1e-4
+    assert outcomes <= {LOST, UNDECIDED} if lost else outcomes <= {UNDECIDED}
+    assert outcomes or not lost
+
+
+class Scripted(HysteresisLoop):
+    """A motion half as steep as the voltage, and others: by how much their speed is higher."""
+
+    def __init__(self, higher):
+        super().__init__(lambda _: None, Ramp(1.4, 1.6, 1e-3), H, 1.0, 1.0, 1.0)
+        self.higher = higher
+
+    def hold_from(self, point, voltage, limit=None):
+        motion = self.higher(point.state["motion"], point.voltage, voltage)
+        return self.at(voltage, motion)
+
+    def at(self, voltage, motion=0.0):
+        return HeldPoint(voltage, 1.3 + 0.5 * (voltage - 1.5) + motion, 0.0, {"motion": motion})
+
+    def course(self):
+        """The jumps between 1.5 and 1.56."""
+        return self.jumps(self.at(1.5), 1.56)
+
+
+def test_two_motions_in_turn_are_two_jumps():
+    """At 1.52 and 1.54; on the way back each lasts to 1.51."""
+
+    def higher(motion, before, voltage):
+        if voltage > 1.54 or (motion == 0.1 and voltage > 1.51):
+            return 0.1
+        return 0.03 if voltage > 1.52 or (motion and voltage > 1.51) else 0.0
+
+    jumps = Scripted(higher).course()
+    assert [jump.outcome for jump in jumps] == [LOST, LOST]
+    for jump, place in zip(jumps, (1.52, 1.54), strict=True):
+        assert jump.low - 1e-9 <= place <= jump.high + 1e-9
+
+
+def test_what_comes_after_a_speed_against_the_voltage_is_undecided():
+    """The motion ends at 1.52 for one 0.02 below; the jump of that at 1.54 is by chance."""
+
+    def higher(motion, before, voltage):
+        if voltage > 1.54 or (motion == 0.1 and voltage > 1.5):
+            return 0.1
+        return -0.02 if voltage > 1.52 or (motion and voltage > 1.51) else 0.0
+
+    jumps = Scripted(higher).course()
+    assert [jump.outcome for jump in jumps] == [UNDECIDED, UNDECIDED]
+    assert jumps[0].low - 1e-9 <= 1.52 <= jumps[0].high + 1e-9
+
+
+@pytest.mark.parametrize(("early", "outcome"), [(0.0, LOST), (1e-4, LOST), (2e-3, UNDECIDED)])
+def test_a_motion_that_leaves_while_it_is_held_again(early, outcome):
+    """It outlives one hold up to 1.52, more of them up to that less `early`."""
+
+    def higher(motion, before, voltage):
+        last = 1.52 - early * (voltage == before)
+        return 0.02 if motion and voltage > 1.51 or voltage > last else 0.0
+
+    (jump,) = Scripted(higher).course()
+    assert jump.outcome == outcome
+    assert outcome == UNDECIDED or jump.low <= 1.52 - early + 1e-9 <= jump.high + 1e-4
+
+
+def test_another_motion_on_the_way_back_is_undecided():
+    """No step of the way there is large."""
+    loop = Scripted(lambda motion, before, voltage: 0.02 * (voltage < before))
+    assert [jump.outcome for jump in loop.course()] == [UNDECIDED]
+
+
+def test_motions_of_nearly_one_speed_are_undecided():
+    def higher(motion, before, voltage):
+        return 0.0045 if voltage > 1.52 or (motion and voltage > 1.51) else 0.0
+
+    loop = Scripted(higher)
+    loop.settings = Settings(smallest=2e-3)
+    assert [jump.outcome for jump in loop.course()] == [UNDECIDED]
+
+
+def test_falls_of_a_slip():
+    """From each maximum to the next minimum, where it is deep enough."""
+    values = np.array([0.0, 3.0, 1.0, 2.0, 0.0, 0.5, 0.2, 4.0, 3.8])
+    assert find_falls(values, 0.9) == [(1, 2), (3, 4)]
+    assert find_falls(values, 1.5) == [(1, 4)]
+    assert find_falls(values, 4.5) == []
+    assert jump_labels(["up", "down", "up"]) == ["up", "down", "up 2"]
+
+
+SETTLED = SettledSettings()
+
+
+def record(means):
+    """A record of revolutions by the means of its blocks, after a first block."""
+    return np.repeat(np.concatenate([[0.0], means]), SETTLED.block)
+
+
+def test_an_exponential_has_settled_before_it_is_there():
+    means = 1.3 - 0.05 * 0.8 ** np.arange(6)
+    assert settled_speed(record(means), SETTLED) == pytest.approx((1.3, 0.0), abs=1e-6)
+
+
+def test_an_approach_to_a_fold_has_not_settled():
+    """Slower than any exponential, and then on through the bottleneck."""
+    slow = 1.3 - 0.3 / (10.0 + np.arange(30))
+    through = 1.3 + 0.005 * np.tan(np.linspace(-1.5, 1.4, 30))
+    for means in (slow, through):
+        assert all(np.isnan(settled_speed(record(means[:n]), SETTLED)[0]) for n in range(31))
+
+
+def test_an_irregular_motion_has_settled_but_not_one_that_drifts():
+    scatter = 1e-3 * np.random.default_rng(3).normal(size=96)
+    speed, error = settled_speed(record(1.3 + scatter), SETTLED)
+    assert speed == pytest.approx(1.3, abs=2.0 * error) and 2e-4 < error < 1e-3
+    drifts = 1.3 + scatter + 5e-4 * np.arange(96)
+    assert np.isnan(settled_speed(record(drifts), SETTLED)[0])
+
+
+RNG = np.random.default_rng(5)
+DRAWN = [System(*draw_system(RNG)) for _ in range(3)]
+CLOSE = DRAWN[2].as_bonded()  # its folds, by its branch, at 1.13468 and 1.13041
+DOWN = {"back": False, "settle": 100.0, "step": None}
+
+
+def bracket(found, system):
+    """The bracket of each jump, over K omega, ascending."""
+    volts = system.drive.volts(system.structure)
+    return np.sort([found.jump_low.values / volts, found.jump_high.values / volts], axis=0)
+
+
+def test_folds_that_are_close_through_both_fmus():
+    """A record of a ramp does not tell them from a steep branch."""
+    found = run(CLOSE, (1.2, 1.08), 2e-4, **DOWN).sel(jump="down")
+    low, high = bracket(found, CLOSE)
+    assert found.no_jump == "" and found.decided == "by held voltages"
+    assert low - 5e-5 < 1.13041 < high + 5e-5 and high - low < 2.1e-4
+
+
+def test_a_vertical_branch_through_both_fmus():
+    """Its least slope is 0.02, there is no fold."""
+    edge = System(*scale_to_slope(DRAWN[1], 0.02)).as_bonded()
+    assert not averaged.folds(*edge)
+    found = run(edge, (1.58, 1.45), 1e-4, **DOWN).sel(jump="down")
+    assert np.isnan(found.jumps) and found.decided == "by held voltages"
+    assert "same speeds" in str(found.no_jump.item())
+
+
+def test_what_has_not_settled_is_undecided():
+    """And the answer says what helps."""
+    omega = CLOSE.structure.omega
+    for hold in (0.0, 300.0 / omega):
+        found = run(CLOSE, (1.2, 1.08), 2e-4, hold=hold, **DOWN).sel(jump="down")
+        assert found.decided == "undecided" and np.isnan(found.jumps)
+        assert "longer hold" in str(found.no_jump.item())
+
+
+@pytest.mark.parametrize("last", [1.606, 1.59])
+def test_a_ramp_that_ends_during_the_jump_or_before_it_shows(last):
+    """Past the fold at 1.5831."""
+    quick = QUICK.as_bonded()
+    found = run(quick, (1.5, last), 1e-4, back=False, step=None).sel(jump="up")
+    low, high = bracket(found, quick)
+    assert found.decided == "by held voltages" and low - 5e-6 < 1.5831 < high + 5e-6
+
+
+def test_a_motor_that_turns_backward_has_the_mirrored_jumps():
+    quick = QUICK.as_bonded()
+    ends = ((way * 1.5, way * 1.65) for way in (1, -1))
+    forward, backward = (run(quick, pair, 2e-4, back=False, step=None) for pair in ends)
+    assert np.isfinite(forward.jumps[0])
+    for name in ("ramp_voltage", "jump_speed_before", "jump_rate", "averaged_jumps"):
+        mirrored = -backward[name].values
+        assert mirrored[0] == pytest.approx(forward[name].values[0], rel=1e-3, abs=1e-6), name
+    error = 3e-4 * quick.drive.volts(quick.structure)
+    assert -float(backward.jumps[0]) == pytest.approx(float(forward.jumps[0]), abs=error)
+
+
+def test_settings_reach_the_rule():
+    """A wide bracket takes fewer holds."""
+    quick = QUICK.as_bonded()
+    wide = run(quick, (1.5, 1.65), 2e-4, back=False, step=None, hysteresis=Settings(width=2e-3))
+    low, high = bracket(wide.sel(jump="up"), quick)
+    assert low < 1.5831 < high and 1e-3 < high - low < 4.1e-3
