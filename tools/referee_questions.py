@@ -14,6 +14,7 @@ import orchestrate as o
 
 from . import draws
 
+SLOW = ("border", "detect", "detect_all", "fit", "couple_all", "jump_voltages")  # 1 s or more
 NOT_COMPARED = ("plot", "report", "write_ssp")  # they draw and write: nothing is computed
 SHORT: dict[str, Any] = {"transient": 50, "samples": 8}
 FAST: dict[str, Any] = {"rate": 4e-4, "back": False, "settle": 50.0, "step": 0.2}
@@ -31,7 +32,7 @@ class Draw:
         self.rng, self.structure = rng, structure.replace(clearance=clearance)
         self.near = self.eta * np.array([0.97, 1.0, 1.03])
         self.frequency = self.near * structure.omega
-        self.system = draws.System(*(k.from_file("quick") for k in (o.Structure, o.Drive)))
+        self.system = draws.System(o.Structure.from_file("quick"), o.Drive.from_file("quick"))
         self.ends = (lambda low: (low, low + 0.03))(float(rng.uniform(1.2, 1.6)))
 
     def halves(self) -> o.Structure:
