@@ -20,15 +20,8 @@ from orchestrate.weak_drive.losses import (
 )
 from orchestrate.weak_drive.schedule import Ramp
 from orchestrate.weak_drive.voltage_hold import HoldSettings
-from tools.trust.verdicts import (
-    RATES,
-    SLOPES,
-    WAYS,
-    draw_with_folds,
-    ramp_ends,
-    run_couple,
-    scale_to_slope,
-)
+from tests.campaigns.jump_verdicts import SLOPES, WAYS, run_couple
+from tools.draws import RATES, draw_with_folds, ramp_ends, scale_to_slope
 
 from .test_held import H, Rotor, fold_of
 

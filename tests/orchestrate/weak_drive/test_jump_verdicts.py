@@ -29,7 +29,7 @@ from orchestrate.weak_drive.jumps import (
 )
 from orchestrate.weak_drive.master import Scheme
 from orchestrate.weak_drive.schedule import Ramp
-from tools.trust.verdicts import draw_system, scale_to_slope
+from tools.draws import draw_system, scale_to_slope
 
 from .coupled import BEAM, QUICK, System
 from .test_couple import run

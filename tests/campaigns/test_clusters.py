@@ -1,19 +1,26 @@
-"""Campaign on Dask clusters: schedulers and workers killed while a command computes."""
+"""Dask schedulers and workers killed while a command computes."""
 
 from __future__ import annotations
 
 import asyncio
 import functools
 import os
+import random
 import signal
+import sys
 import time
-from collections.abc import Callable, Coroutine, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Coroutine
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
-from .trials import DisturbanceCampaign, Trial, format_end, message_problem
+import pytest
+
+from .findings import expect_none
+from .trials import Trial, attack, format_end, message_problem
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes of Linux")
 
 START = 60.0  # s
 CONNECTING = 1.0  # s
@@ -150,34 +157,22 @@ def join_wrong_version(trial: ClusterTrial) -> str:
     return message_problem(ended) or trial.run_again()
 
 
-class ClusterCampaign(DisturbanceCampaign):
-    """Campaign: commands on a Dask cluster survive the loss of workers and scheduler."""
+FAULTS: dict[str, Callable[[ClusterTrial], str]] = {
+    "worker killed": kill_worker,
+    "scheduler killed": kill_scheduler,
+    "wrong version": join_wrong_version,
+}
 
-    name = "cluster"
-    title = "Dask"
-    commands = ("sweep", "resonance", "map", "basin")
-    asks = (
-        "A command computes on two workers of a Dask scheduler. A worker is killed with kill -9 "
-        "and another one comes; the scheduler is killed; a worker joins whose sources are others. "
-        "The command ends well, or gives up in one line and goes on where it was when it is asked "
-        "again; its results have the bytes of those that are computed without a cluster. "
-        f"Commands: {', '.join(commands)}."
-    )
-    target, batch = 100, 12
-    faults: ClassVar[Mapping[str, Callable[[Any], str]]] = {
-        "worker killed": kill_worker,
-        "scheduler killed": kill_scheduler,
-        "wrong version": join_wrong_version,
-    }
 
-    @contextmanager
-    def trials(self, holder: Path) -> Iterator[Callable[..., Trial]]:
-        """Start a cluster and yield a function that makes trials on it."""
-        import distributed
-
-        assert distributed.Scheduler and distributed.Worker  # imported once, for all that is forked
-        nodes = DaskNodes(holder / "nodes")
-        try:
-            yield functools.partial(ClusterTrial, nodes=nodes)
-        finally:
-            nodes.close()
+@pytest.mark.slow
+@pytest.mark.budget(3)  # faults
+def test_a_command_on_a_cluster_survives_its_loss(exported, seed, budget, tmp_path):
+    """A worker or the scheduler is killed, or a worker joins whose sources are others."""
+    commands = ("sweep", "resonance", "map", "basin") if budget > len(FAULTS) else ("sweep",)
+    nodes = DaskNodes(tmp_path / "nodes")
+    try:
+        make_trial = functools.partial(ClusterTrial, nodes=nodes)
+        parts = (FAULTS, commands, make_trial, random.Random(seed), tmp_path, budget)
+        expect_none(attack(*parts), {"faults": budget})
+    finally:
+        nodes.close()

@@ -1,19 +1,15 @@
-"""Trials of commands with one fault each, and the base of their campaigns."""
+"""Trials of commands with one fault each."""
 
 from __future__ import annotations
 
 import random
 import shutil
-import tempfile
 import time
-from abc import abstractmethod
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
-from .campaign import BatchOutcome, Campaign
 from .children import ChildCommand, FinishedCommand, import_all
 
 PLAIN = ("--plot", "none", "--jobs", "1")
@@ -156,38 +152,23 @@ def run_undisturbed(name: str, holder: Path) -> tuple[dict[str, bytes], float]:
     return expected, ended.seconds
 
 
-class DisturbanceCampaign(Campaign):
-    """Base of campaigns with one fault per command."""
-
-    # what happens, in turn; each gives what was wrong, an empty string where nothing was
-    faults: ClassVar[Mapping[str, Callable[[Any], str]]]
-    # to which it happens, drawn at random; who stands there twice is drawn twice as often
-    commands: ClassVar[Sequence[str]]
-    unit, package = "faults", True
-
-    @abstractmethod
-    def trials(self, holder: Path) -> AbstractContextManager[Callable[..., Trial]]:
-        """Return a context that provides a function that makes trials."""
-
-    def run(self, fmu: Path, seed: int, count: int) -> BatchOutcome:
-        """Run ``count`` faults one after the other; return the outcome."""
-        import_all()
-        chance, counts, notes = random.Random(seed), dict.fromkeys(self.faults, 0), []
-        known: dict[str, tuple[dict[str, bytes], float]] = {}
-        with tempfile.TemporaryDirectory(prefix="vibroimpact-trust-") as place:
-            holder = Path(place)
-            with self.trials(holder) as trial:
-                for number in range(count):
-                    name = chance.choice(self.commands)
-                    fault = list(self.faults)[number % len(self.faults)]
-                    if name not in known:
-                        known[name] = run_undisturbed(name, holder)
-                    folder = holder / "trial"
-                    folder.mkdir()
-                    wrong = self.faults[fault](trial(name, folder, *known[name], chance))
-                    counts[fault] += 1
-                    if wrong:
-                        notes.append(f"seed {seed}, fault {number} ({fault}, {name}): {wrong}")
-                    shutil.rmtree(folder, ignore_errors=True)
-        named = {f"{name}:": value for name, value in counts.items()}
-        return BatchOutcome(count, len(notes), counts=named, notes=tuple(notes))
+def attack(
+    faults: Mapping[str, Callable[[Any], str]],
+    commands: Sequence[str],
+    make_trial: Callable[..., Trial],
+    chance: random.Random,
+    holder: Path,
+    count: int,
+) -> Iterator[str]:
+    """Do faults in turn, each to a command drawn at random; yield what was wrong."""
+    import_all()
+    undisturbed: dict[str, tuple[dict[str, bytes], float]] = {}
+    for number in range(count):
+        name, fault = chance.choice(commands), list(faults)[number % len(faults)]
+        if name not in undisturbed:
+            undisturbed[name] = run_undisturbed(name, holder)
+        folder = holder / "trial"
+        folder.mkdir()
+        if wrong := faults[fault](make_trial(name, folder, *undisturbed[name], chance)):
+            yield f"fault {number} ({fault}, {name}): {wrong}"
+        shutil.rmtree(folder, ignore_errors=True)

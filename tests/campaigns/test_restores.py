@@ -1,22 +1,26 @@
-"""Campaign on restores: runs with states saved and restored keep their bits."""
+"""Runs with states saved and restored keep their bits."""
 
 from __future__ import annotations
 
 import functools
 import random
-from collections.abc import Sequence
+import sys
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import pytest
 
 from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.access.events import EventInstance
 from orchestrate.errors import FmuError, InputError
 
 from . import parameter_sets
-from .bits import STATE, STEP, Bits, to_hexadecimal
-from .campaign import BatchOutcome, Campaign
+from .findings import expect_none
+from .test_bits import STATE, STEP, Bits, to_hexadecimal
 
 STEPS = 40  # of a course
 LONGEST = 60.0  # rad of the slower mass that a course lasts at most
@@ -33,6 +37,8 @@ POINT = {  # outputs of a point of time, and of the step before it
 }
 OF_STEP = {OSCILLATOR: STEP, SHAKER: ()}
 Values = dict[str, float]
+Kinds = Sequence[tuple[type, str]]  # of instances among which states are moved
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes of Linux")
 
 
 @dataclass(frozen=True)
@@ -256,70 +262,75 @@ def run_disturbed(
     return restored, ""
 
 
-def instance_pools(
-    course: InputCourse, number: int, rows: Sequence[Bits]
-) -> list[list[tuple[type, str]]]:
+def instance_pools(course: InputCourse, number: int, rows: Sequence[Bits]) -> list[Kinds]:
     """Return the kinds of instances among which states may be moved."""
     native: list[tuple[type, str]] = [(Instance, "fmi3"), (Instance, "fmi2"), (Instance, "fmi3")]
     if course.model == OSCILLATOR:
         impacts = float.fromhex(rows[-1][STATE.index("impact_count")])
         native += [(EventInstance, "fmi3")] * (impacts < MANY)
-    forms = [native]
+    forms: list[Kinds] = [native]
     if number % PYTHON_EVERY == 1:
         forms.append([(Instance, "fmi2-python")] * 2)
     return forms
 
 
-class RestoreCampaign(Campaign):
-    """Campaign: saved states restore the run to the last bit."""
+def compare(
+    seed: int, number: int, course: InputCourse, rows: Sequence[Bits], kinds: Kinds
+) -> tuple[int, str]:
+    """Run a course with restores; return their number, and what is wrong ("")."""
+    rng = random.Random(f"{seed} {number} {kinds[0][1]}")
+    with ExitStack() as stack:
+        pool = [stack.enter_context(k(fmu_path(course.model, form))) for k, form in kinds]
+        try:
+            return run_disturbed(rng, course, rows, pool)
+        except (FmuError, InputError) as error:
+            return 1, f"refused: {error}"
 
-    name = "restores"
-    title = "Saved and restored states"
-    asks = (
-        "A run is recorded undisturbed: steps of any length, before some of which inputs are set, "
-        "of cubics too, and to the values that they have. Then it is done once more, with a state "
-        "saved before each step, at half of them after inputs were set; the instance goes astray, "
-        "is stepped, set or reset; and the state is restored, from memory or from bytes, in the "
-        "same instance or in another one, of FMI 2.0, of FMI 3.0 or in event mode with early "
-        "returns, and in event mode itself. After each restore all outputs at the end of the step "
-        "are compared with the undisturbed run's. Parameter sets are those of the campaign on "
-        "bits; each fifth course is MotorShaker's, each twelfth is done by the pythonfmu form "
-        "too. One differing bit, or a state that is refused, is a finding."
-    )
-    unit, target, batch = "restores", 1_000_000, 5_000
 
-    def run(self, fmu: Path, seed: int, count: int) -> BatchOutcome:
-        """Compute courses with and without restores and compare them; return the outcome."""
-        done, findings, number, notes = 0, 0, 0, []
-        counts = {"courses:": 0, "in the pythonfmu form:": 0, "of MotorShaker:": 0}
-        while done < count:
-            course = draw_course(seed, number)
-            rows = run_undisturbed(course, fmu_path(course.model, "fmi3"))
-            for kinds in instance_pools(course, number, rows) if rows else ():
-                restored, wrong = self.compare(seed, number, course, rows, kinds)
-                done += restored
-                counts["courses:"] += 1
-                counts["in the pythonfmu form:"] += restored * (kinds[0][1] == "fmi2-python")
-                counts["of MotorShaker:"] += restored * (course.model == SHAKER)
-                if wrong:
-                    findings += 1
-                    notes.append(f"seed {seed}, course {number}, {kinds[0][1]}: {wrong}")
-            number += 1
-        return BatchOutcome(done, findings, counts=counts, notes=tuple(notes))
+def attack(seed: int, budget: int, counts: Counter[str]) -> Iterator[str]:
+    """Yield what is wrong in courses with ``budget`` restores or more."""
+    number = 0
+    while counts["restores"] < budget:
+        course = draw_course(seed, number)
+        rows = run_undisturbed(course, fmu_path(course.model, "fmi3"))
+        for kinds in instance_pools(course, number, rows) if rows else ():
+            restored, wrong = compare(seed, number, course, rows, kinds)
+            counts += {"restores": restored, kinds[0][1]: restored, course.model: restored}
+            if wrong:
+                yield f"course {number}, {kinds[0][1]}: {wrong}"
+        number += 1
 
-    def compare(
-        self,
-        seed: int,
-        number: int,
-        course: InputCourse,
-        rows: Sequence[Bits],
-        kinds: Sequence[tuple[type, str]],
-    ) -> tuple[int, str]:
-        """Run a course with restores, compare bits; return the number of restores and a problem."""
-        rng = random.Random(f"{seed} {number} {kinds[0][1]}")
-        with ExitStack() as stack:
-            pool = [stack.enter_context(k(fmu_path(course.model, form))) for k, form in kinds]
-            try:
-                return run_disturbed(rng, course, rows, pool)
-            except (FmuError, InputError) as error:
-                return 1, f"refused: {error}"
+
+@pytest.mark.slow
+@pytest.mark.budget(20_000)  # restores
+def test_saved_states_restore_a_run_to_the_last_bit(exported, seed, budget):
+    """Before each step a state is saved, the instance led astray, and the state restored.
+
+    From memory or bytes, in the same instance or another, of FMI 2.0, of FMI 3.0 or in event mode;
+    at half of them after inputs were set. Each fifth course is MotorShaker's.
+    """
+    counts: Counter[str] = Counter()
+    findings = list(attack(seed, budget, counts))
+    assert {OSCILLATOR, SHAKER, "fmi3", "fmi2-python"} <= set(counts)
+    expect_none(findings, counts)
+
+
+RESTORE = Instance.restore_state
+
+
+def forget_all(instance, data):
+    """As if nothing had been restored."""
+
+
+def forget_when_inputs_were_set(instance, data):
+    """As if the time of setting were no part of the state: a cubic begins again."""
+    RESTORE(instance, data)
+    if "box_snap" in instance.description.variables:
+        instance.set(**dict(zip(CUBIC, instance.get(*CUBIC), strict=True)))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("fault", [forget_all, forget_when_inputs_were_set])
+def test_a_state_that_lacks_something_is_found(exported, monkeypatch, fault):
+    monkeypatch.setattr(Instance, "restore_state", fault)
+    assert list(attack(3, 100, Counter()))

@@ -1,4 +1,4 @@
-"""Campaign on faults: commands killed, starved, damaged; run again, they give the same bytes."""
+"""Commands killed, starved, damaged: run again, they give the bytes of one left in peace."""
 
 from __future__ import annotations
 
@@ -7,14 +7,18 @@ import os
 import random
 import resource
 import signal
+import sys
 import time
 from collections.abc import Callable
-from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 
-from .trials import COMMANDS, DisturbanceCampaign, Trial, format_end, message_problem
+import pytest
+import xarray as xr
 
-# -- faults ---------------------------------------------------------------------------------------
+from .findings import expect_none
+from .trials import COMMANDS, Trial, attack, format_end, message_problem
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes of Linux")
 
 
 def kill_often(trial: Trial) -> str:
@@ -129,8 +133,6 @@ def damage_result(trial: Trial) -> str:
 
 def has_same_numbers(trial: Trial) -> bool:
     """Return whether results on disk hold the expected numbers."""
-    import xarray as xr
-
     other = trial.folder / "expected.nc"
     for name, data in trial.expected.items():
         other.write_bytes(data)
@@ -168,24 +170,15 @@ FAULTS: dict[str, Callable[[Trial], str]] = {
 }
 
 
-class FaultCampaign(DisturbanceCampaign):
-    """Campaign: commands that are killed, starved or damaged end well when run again."""
+COMMANDS_DRAWN = (*(name for name in COMMANDS for _ in range(3) if name != "paper"), "paper")
 
-    name = "faults"
-    title = "Faults"
-    asks = (
-        "kill -9 (up to three times), SIGTERM, Ctrl-C at any moment, a disk that is full at any "
-        "byte, a folder that cannot be written, the same command twice at once, journals and "
-        "NetCDF files with bits flipped, cut off or overwritten; in turn for "
-        f"{', '.join(COMMANDS)}, each at random and paper, which takes longest, less often. The "
-        "command ends, gives up in one line, or says what to remove; and the same command then "
-        "ends well, with the bytes of one that nothing happened to, and leaves nothing else "
-        "behind. A damaged NetCDF file is named, or its numbers are the same."
-    )
-    target, batch = 1000, 72
-    faults = FAULTS
-    commands = (*(name for name in COMMANDS for _ in range(3) if name != "paper"), "paper")
 
-    def trials(self, holder: Path) -> AbstractContextManager[Callable[..., Trial]]:
-        """Yield a function that makes trials; nothing is needed around them."""
-        return nullcontext(Trial)
+@pytest.mark.slow
+@pytest.mark.budget(8)  # faults
+def test_a_command_that_is_disturbed_gives_the_same_bytes_when_it_is_run_again(
+    exported, seed, budget, tmp_path
+):
+    """It ends, gives up in one line, or says what to remove; nothing else is left behind."""
+    commands = COMMANDS_DRAWN if budget > len(FAULTS) else ("sweep",)
+    parts = (FAULTS, commands, Trial, random.Random(seed), tmp_path, budget)
+    expect_none(attack(*parts), {"faults": budget})

@@ -2,30 +2,24 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from orchestrate import Drive, Structure, couple, drive_branch
-from orchestrate.errors import VibroimpactError
+from orchestrate import couple, drive_branch
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.held import FOLLOWS, LEFT_BEFORE, LOST, UNDECIDED
+from tools.draws import NARROW, RATES, System, ramp_ends
 
-from .campaign import BatchOutcome, Campaign
-from .held_speeds import RATE, System, held_speeds
+from .held_speeds import RATE, held_speeds
 
-RATES = (2e-4, 1e-4, 5e-5, 2e-5)  # of eta0 in a time 1/omega
-FEW_RATES = RATES[::3]  # for drives near the edge of folds
 KINDS = ("bonded", "delaminated")
 WAYS = ("up", "down")
 FOLD, TORUS, NONE, UNKNOWN = "fold", "Neimark-Sacker", "none", "unknown"
 TOLERANCE = 2e-4  # of eta0: how far a bracket may lie from where the motion is lost
 EARLY = 2e-3  # of eta0: how far before it the jump of a ramp may be seen
-NARROW = 2e-4  # of eta0: folds so close are left out, a bracket is half as wide
 BESIDE = 6e-5  # of eta0: before and past a fold voltages are held, to see whether it is met
 CHANGE = 8e-3  # of omega: least change of the speed between them where a fold is a jump
 SAME = 4e-3  # of omega: speeds at one voltage that differ by more are of two motions
@@ -33,6 +27,8 @@ GRID = 4e-3  # of eta0: between voltages that are held there and back
 AROUND = (0.06, 0.04)  # of eta0: of them, below the lowest fold and above the highest
 SHORT = 0.25  # of a hold, on that grid
 SLOW_RATE = 0.1 * RATE  # between holds, where those at the usual rate speak against an answer
+
+
 SLOPES = (-0.6, 0.3)  # least slopes d eta0 / d Omega of drives that nearly have, or lack, folds
 
 
@@ -62,46 +58,6 @@ class Answer(NamedTuple):
     high: float
     held: bool  # whether held voltages decided
     further: tuple[Answer, ...] = ()  # on further jumps of the direction, sure and undecided ones
-
-
-def draw_system(rng: np.random.Generator) -> System:
-    """Draw a random structure with a random drive."""
-    damping = rng.uniform(0.006, 0.03)
-    b = float(np.exp(rng.uniform(np.log(0.01), np.log(0.5))))
-    mu, kappa = rng.uniform(0.5, 2.0), rng.uniform(1.05, 2.0)
-    second, restitution = damping * rng.uniform(0.5, 3.0), rng.uniform(0.3, 0.9)
-    beta, epsilon = rng.uniform(0.05, 0.4), rng.uniform(3e-4, 2e-3)
-    box, box_damping = rng.uniform(0.05, 0.3), rng.uniform(0.005, 0.05)
-    structure = Structure.nondimensional(mu=mu, kappa=kappa, D1=damping, D2=second, e=restitution)
-    numbers = {"beta": beta, "epsilon": epsilon, "b": b, "Omega_b": box, "D_b": box_damping}
-    return System(structure, Drive.nondimensional(**numbers, structure=structure))
-
-
-def draw_with_folds(rng: np.random.Generator) -> System:
-    """Draw random systems until one has clearly separated averaged folds."""
-    while True:
-        system = draw_system(rng)
-        folds = averaged.folds(*system)
-        if folds and folds[0].eta0 - folds[-1].eta0 > NARROW:
-            return system
-
-
-def scale_to_slope(system: System, slope: float) -> System:
-    """Scale the unbalance so that the branch has a given smallest slope."""
-    structure, drive = system
-    share = (1.0 - slope) / (1.0 - averaged.smallest_slope(*system))
-    numbers = {
-        name: getattr(drive, name)(structure) for name in ("beta", "b", "Omega_b", "D_b")
-    } | {"epsilon": drive.epsilon * share}
-    return System(structure, Drive.nondimensional(**numbers, structure=structure))
-
-
-def ramp_ends(system: System) -> tuple[float, float]:
-    """Return the two ends of the voltage ramp, over K omega, past both jumps."""
-    folds = averaged.folds(*system)
-    resonance = averaged.resonance(*system)
-    places = [fold.eta0 for fold in folds] or [float(averaged.no_load_speed(*system, resonance))]
-    return min(places) - 0.15, max(places) + 0.15
 
 
 def run_couple(system: System, rate: float) -> tuple[Answer, ...]:
@@ -426,54 +382,11 @@ def check_answers(
             yield "", f"{kind}, {way}: lost at some rates, none at others"
 
 
-class Verdicts(Campaign):
-    """Run the campaign that checks jump verdicts on random drives at four rates."""
-
-    name, title = "verdicts", "Jump, none, or undecided"
-    asks = (
-        "A random structure with a random drive that has folds, bonded and delaminated, on ramps "
-        "up and down at four rates, and the same at two rates with an unbalance for which folds "
-        "are close or just vanish. Where the branch of stationary motions, by Newton's method "
-        "through both FMUs, loses its motion in a fold or a Neimark-Sacker point, `couple` does "
-        "not say that there is no jump, and brackets the place within 2e-4 K omega where it holds "
-        "voltages; where the branch loses none, `couple` says that there is none; and it does not "
-        "say one thing at one rate and another at another. A delaminated fold counts where a "
-        "course of held voltages of its own meets it, and its speed changes there by more than "
-        "8e-3 omega: a change to another motion of nearly the same speed is no jump. Where the "
-        "branches do not say, such courses are held beside the bracket and back, or through the "
-        "resonance and back, and must not speak against the answer, nor do so when the voltage "
-        "goes to them ten times as slowly. Where the course leaves a fold for a motion less far "
-        "along, a ramp may come to the one beyond at once: an answer that tells that fold is "
-        "right, if courses beside it do not speak against it, and is counted. What is left "
-        "undecided is counted."
-    )
-    unit, target, batch, package = "drives", 40, 1, True
-
-    def run(self, fmu: Path, seed: int, count: int) -> BatchOutcome:
-        """Check the verdicts on `count` random drives; return the counts and errors."""
-        rng, counts, notes = np.random.default_rng(seed), Counter[str](), []
-        wrong = 0
-        for number in range(count):
-            folded = draw_with_folds(rng)
-            edge = scale_to_slope(folded, float(rng.uniform(*SLOPES)))
-            before = len(notes)
-            both = (("with folds", folded, RATES), ("near the edge", edge, FEW_RATES))
-            for name, system, rates in both:
-                try:
-                    for said, problem in self.judge(system, rates):
-                        counts[f"{said}:"] += bool(said)
-                        if problem:
-                            notes.append(f"seed {seed}, drive {number} {name}, {problem}")
-                except VibroimpactError as error:
-                    notes.append(f"seed {seed}, drive {number} {name}: {error}")
-            wrong += len(notes) > before
-        return BatchOutcome(count, wrong, counts=+counts, notes=tuple(notes))
-
-    def judge(self, system: System, rates: Sequence[float]) -> Iterator[tuple[str, str]]:
-        """Check both structures of one drive; yield each answer with any error."""
-        known = trace_truths(system)
-        for kind in KINDS:
-            of_kind = {way: known[kind, way] for way in WAYS}
-            for way in WAYS:
-                yield f"truth {of_kind[way].kind}", ""
-            yield from check_answers(system.of_kind(kind), kind, of_kind, rates)
+def judge(system: System, rates: Sequence[float]) -> Iterator[tuple[str, str]]:
+    """Check both structures of one drive; yield each answer with any error."""
+    known = trace_truths(system)
+    for kind in KINDS:
+        of_kind = {way: known[kind, way] for way in WAYS}
+        for way in WAYS:
+            yield f"truth {of_kind[way].kind}", ""
+        yield from check_answers(system.of_kind(kind), kind, of_kind, rates)

@@ -25,7 +25,7 @@ def compile_program(fmu: Path, name: str) -> Path:
 @functools.cache
 def temporary_folder() -> Path:
     """Return a temporary folder that is removed when the process ends."""
-    holder = tempfile.TemporaryDirectory(prefix="vibroimpact-trust-")
+    holder = tempfile.TemporaryDirectory(prefix="vibroimpact-campaign-")
     _kept.append(holder)
     return Path(holder.name)
 

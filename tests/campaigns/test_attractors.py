@@ -1,25 +1,26 @@
-"""Campaign on attractors: random structures, each attractor checked by independent code."""
+"""Attractors of random structures: each returns in the FMU and by Newton's method."""
 
 from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 import xarray as xr
 from numpy.typing import NDArray
 
 import orchestrate
 from orchestrate.access import EventInstance, Instance, begin
 from orchestrate.errors import InputError
+from orchestrate.flags import flag_words
 from orchestrate.structures import Excitation, Structure
+from tools.draws import draw_structure
 
-from ..benches.recipe import draw_log_uniform
-from .campaign import BatchOutcome, Campaign
+from .findings import expect_none
 
 STARTS = 16  # random ones at each of two neighbouring frequencies
 NEIGHBOUR = 1.003  # ratio of these
@@ -30,27 +31,6 @@ DIFFERS = 1e-5  # of the motion's size: another orbit's state
 EARLIER, TIMES = 1e-9, 100.0
 TURNS = 3  # times through an orbit, whose impacts are counted
 Floats = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class DrawnStructure:
-    """A random structure with two frequency ratios."""
-
-    structure: Structure
-    etas: tuple[float, float]
-
-    def __str__(self) -> str:
-        """Format the structure and its first frequency ratio."""
-        return f"{self.structure!r}, eta = {self.etas[0]!r}"
-
-
-def draw(rng: np.random.Generator) -> DrawnStructure:
-    """Draw a random structure and two frequency ratios, lightly damped as in the paper."""
-    mu, kappa = (draw_log_uniform(rng, 0.3, 4.0) for _ in range(2))
-    one, two = (draw_log_uniform(rng, 0.003, 0.06) for _ in range(2))
-    e, eta = float(rng.uniform(0.02, 0.95)), float(rng.uniform(0.3, 4.0))
-    structure = Structure.nondimensional(mu=mu, kappa=kappa, D1=one, D2=two, e=e)
-    return DrawnStructure(structure, (eta, NEIGHBOUR * eta))
 
 
 class ReportedMotion:
@@ -143,54 +123,80 @@ class ReportedMotion:
         return any(self.distance(row, other.state) < DIFFERS for row in self.states)
 
 
-class AttractorCampaign(Campaign):
-    """Campaign: attractors by random starts, and continued to a near frequency."""
-
-    name = "attractors"
-    title = "Attractors"
-    asks = (
-        "What `attractors` says of random structures (mu and kappa 0.3 to 4, dampings 0.003 to "
-        f"0.06, e 0.02 to 0.95, eta 0.3 to 4, and 1.003 times that; {STARTS} random starts at "
-        "each) is true: each periodic attractor returns after its periods in the FMU, and after no "
-        "fewer; its impacts, counted by the FMU over three times its periods, are the whole number "
-        "told; Newton's method from its state at phase 0 confirms it, its stability, its "
-        "multipliers and its impacts; and no attractor is there twice. Undecided ones are counted."
-    )
-    unit, target, batch, package = "structures", 2_000, 20, True
-
-    def run(self, fmu: Path, seed: int, count: int) -> BatchOutcome:
-        """Check the attractors of ``count`` random structures; return the outcome."""
-        rng, notes, counts, wrong = np.random.default_rng(seed), [], Counter[str](), 0
-        for number in range(count):
-            drawn = draw(rng)
-            lines = list(findings(fmu, drawn, int(rng.integers(2**31)), counts))
-            wrong += bool(lines)
-            notes += [f"seed {seed}, structure {number} ({drawn}): {line}" for line in lines]
-        return BatchOutcome(count, wrong, counts=dict(sorted(counts.items())), notes=tuple(notes))
-
-
-def findings(fmu: Path, drawn: DrawnStructure, seed: int, counts: Counter[str]) -> Iterator[str]:
-    """Yield texts on what is wrong with the attractors of one structure."""
+def problems(
+    fmu: Path, structure: Structure, etas: Sequence[float], seed: int, counts: Counter[str]
+) -> Iterator[str]:
+    """Yield what is wrong with the attractors of one structure."""
     quiet: Any = {"progress": False, "jobs": 1, "fmu": fmu}
-    answer = orchestrate.attractors(
-        drawn.structure, eta=list(drawn.etas), starts=STARTS, seed=seed, **quiet
-    )
-    words = answer.decided_by.attrs["flag_meanings"].split()
-    for place, eta in enumerate(drawn.etas):
+    answer = orchestrate.attractors(structure, eta=list(etas), starts=STARTS, seed=seed, **quiet)
+    words = flag_words(answer.decided_by.attrs)
+    for place, eta in enumerate(etas):
         motions: list[ReportedMotion] = []
         for attractor in range(answer.sizes["attractor"]):
             reported = answer.isel(eta=place, attractor=attractor)
             word = words[int(reported.decided_by)]
-            if word == "absent":
-                continue
-            counts[f"{word}:"] += 1
-            counts["found by carrying alone:"] += not float(reported.share) > 0.0
+            counts[word] += word != "absent"
             if word not in ("orbit", "repeated"):
                 continue
-            motion = ReportedMotion(fmu, drawn.structure, eta, reported)
-            yield from (
-                f"eta {eta:.6g}, attractor {attractor}: {line}" for line in motion.problems()
-            )
+            motion, where = ReportedMotion(fmu, structure, eta, reported), f"eta {eta:.6g}"
+            yield from (f"{where}, attractor {attractor}: {line}" for line in motion.problems())
             if any(motion.is_same(other) for other in motions):
-                yield f"eta {eta:.6g}, attractor {attractor}: is there twice"
+                yield f"{where}, attractor {attractor}: is there twice"
             motions.append(motion)
+
+
+@pytest.mark.slow
+@pytest.mark.budget(60)  # structures
+def test_attractors_are_true(fmu, seed, budget):
+    """Sixteen random starts at a frequency ratio and at 1.003 times that; undecided are counted."""
+    counts, findings = Counter[str](), []
+    for number in range(budget):
+        rng = np.random.default_rng([seed, number])
+        structure, eta = draw_structure(rng)
+        etas = (eta, NEIGHBOUR * eta)
+        lines = problems(fmu, structure, etas, int(rng.integers(2**31)), counts)
+        findings += [f"structure {number}, {structure!r}: {line}" for line in lines]
+    assert counts["orbit"] > budget
+    expect_none(findings, counts)
+
+
+PAPER = Structure.nondimensional()
+
+
+@pytest.fixture(scope="module")
+def two_attractors(fmu) -> dict[int, xr.Dataset]:
+    """T with one impact, and 2T with three."""
+    answer = orchestrate.attractors(PAPER, eta=1.315, starts=24, jobs=1, progress=False)
+    answer = answer.isel(eta=0)
+    return {int(answer.multiplicity[k]): answer.isel(attractor=k) for k in range(2)}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("n", "changes", "text"),
+    [
+        (1, {}, ""),
+        (2, {}, ""),
+        (2, {"multiplicity": 1.0}, "the FMU does not return after 1 T"),
+        (1, {"multiplicity": 2.0}, "the FMU returns after 1 T already, not 2 T"),
+        (2, {"impacts_per_period": 1.0}, "9 impacts in 3 times 2 T, not 3 x 2"),
+        (2, {"impacts_per_period": 1.3}, "2.6 impacts in 2 T are no whole number"),
+        (2, {"multiplier": 0.5}, "orbit: a multiplier of 0.94"),
+        (1, {"multiplicity": 2.0}, "orbit: period = 2: no orbit found"),
+    ],
+)
+def test_what_is_wrong_is_seen(fmu, two_attractors, n, changes, text):
+    motion = two_attractors[n]
+    changed = motion.assign({name: motion[name] * 0 + value for name, value in changes.items()})
+    lines = " / ".join(ReportedMotion(fmu, PAPER, 1.315, changed).problems())
+    assert text in lines if text else not lines
+
+
+@pytest.mark.slow
+def test_one_attractor_twice_is_seen(fmu, monkeypatch):
+    plain = orchestrate.attractors
+    monkeypatch.setattr(
+        orchestrate, "attractors", lambda *a, **k: plain(*a, **k).isel(attractor=[0, 0])
+    )
+    lines = list(problems(fmu, PAPER, (1.28, 1.285), 1, Counter()))
+    assert lines and all("is there twice" in line for line in lines)

@@ -16,7 +16,6 @@ from typing import Any
 
 import numpy as np
 
-from orchestrate.errors import InputError
 from tools.chromium import start_chromium
 
 CANARY = "window.canary = 1; document.title = 'canary'; alert(1)"
@@ -141,9 +140,11 @@ class BrowserWindow:
 def open_browser() -> Iterator[BrowserWindow]:
     """Start Chromium and the server for a ``with`` block."""
     program, driver = shutil.which("chromium"), shutil.which("chromedriver")
-    if program is None or driver is None:
-        raise InputError("pages are opened in Chromium: expected chromium and chromedriver")
-    with tempfile.TemporaryDirectory(prefix="vibroimpact-trust-") as folder, run_server() as asked:
+    assert program and driver
+    with (
+        tempfile.TemporaryDirectory(prefix="vibroimpact-campaign-") as folder,
+        run_server() as asked,
+    ):
         browser = start_chromium(program, driver, Path(folder))
         try:
             yield BrowserWindow(browser, *asked)

@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 import numpy as np
 import pytest
 import xarray as xr
 
+from orchestrate.errors import VibroimpactError
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple import schedule_from_arguments
-from tools.trust import held_speeds, verdicts
-from tools.trust.verdicts import (
+from tools import draws
+from tools.draws import RATES
+
+from . import held_speeds
+from . import jump_verdicts as verdicts
+from .findings import expect_none
+from .jump_verdicts import (
     FOLD,
     NONE,
     TORUS,
     UNKNOWN,
     Answer,
     Truth,
-    Verdicts,
     error_in_answer,
 )
 
@@ -29,9 +36,9 @@ OPEN = Answer("undecided", np.nan, np.nan, True)
 def test_drives_with_folds_and_near_their_edge():
     rng = np.random.default_rng(1)
     for _ in range(5):
-        system = verdicts.draw_with_folds(rng)
+        system = draws.draw_with_folds(rng)
         assert averaged.folds(*system) and averaged.smallest_slope(*system) < 0.0
-        edge = verdicts.scale_to_slope(system, 0.05)
+        edge = draws.scale_to_slope(system, 0.05)
         assert not averaged.folds(*edge)
         assert averaged.smallest_slope(*edge) == pytest.approx(0.05, abs=1e-6)
         assert edge.drive.b(edge.structure) == pytest.approx(system.drive.b(system.structure))
@@ -83,7 +90,7 @@ def test_answers_that_change_with_the_rate_are_findings(monkeypatch):
     said = iter([(LOST, NOTHING), (OPEN, NOTHING), (NOTHING, NOTHING), (LOST, NOTHING)])
     monkeypatch.setattr(verdicts, "run_couple", lambda *_: next(said))
     monkeypatch.setattr(verdicts, "contradiction", lambda *_: "")
-    system = verdicts.draw_with_folds(np.random.default_rng(1))
+    system = draws.draw_with_folds(np.random.default_rng(1))
     found = list(
         verdicts.check_answers(system, "delaminated", dict.fromkeys(verdicts.WAYS, Truth(UNKNOWN)))
     )
@@ -130,7 +137,7 @@ def test_where_a_branch_loses_its_motion():
     assert verdicts.first_loss_on_leg(other, "bonded", "up", (1.0, 1.0)).kind == UNKNOWN
 
 
-SYSTEM = verdicts.draw_with_folds(np.random.default_rng(1)).of_kind("delaminated")
+SYSTEM = draws.draw_with_folds(np.random.default_rng(1)).of_kind("delaminated")
 FIRST_FOLD, LAST_FOLD = 1.30, 1.28
 
 
@@ -304,7 +311,7 @@ def test_a_held_course_begins_as_a_ramp_does(first, second):
 
 @pytest.mark.parametrize("way", verdicts.WAYS)
 def test_none_is_refuted_by_two_motions_and_a_jump_of_the_record_by_their_lack(monkeypatch, way):
-    low, high = verdicts.ramp_ends(SYSTEM)
+    low, high = draws.ramp_ends(SYSTEM)
     middle = 0.5 * (low + high)
     Motions(monkeypatch, up=middle + 0.01, down=middle - 0.01)
     assert "two motions last" in verdicts.contradiction(SYSTEM, NOTHING, way)
@@ -321,7 +328,7 @@ def test_motions_that_exchange_against_the_voltage_are_no_jump_through_the_reson
     monkeypatch, way
 ):
     """On the way there the speed is ahead of the one on the way back: nothing is captured."""
-    low, high = verdicts.ramp_ends(SYSTEM)
+    low, high = draws.ramp_ends(SYSTEM)
     middle = 0.5 * (low + high)
     Motions(monkeypatch, gap=-0.05, up=middle + 0.01, down=middle - 0.01)
     assert not verdicts.contradiction(SYSTEM, NOTHING, way)
@@ -343,7 +350,23 @@ def test_a_voltage_is_held_after_another_and_the_speed_read_at_the_end(monkeypat
 
 
 @pytest.mark.slow
-def test_one_drive(exported):
-    found = Verdicts().run(None, 3, 1)
-    assert found.done == 1 and found.findings == 0, found.notes
-    assert found.counts["truth fold:"] >= 2
+@pytest.mark.budget(1)  # drives; one takes a minute or more, in processor time
+def test_jump_verdicts_of_random_drives(exported, seed, budget):
+    """With folds at four rates, and with so little unbalance that folds are close or just vanish.
+
+    A short run, of one drive, has one rate of each.
+    """
+    counts, findings = Counter[str](), []
+    rates = RATES if budget > 1 else RATES[:1]
+    for number in range(budget):
+        rng = np.random.default_rng([seed, number])
+        folded = draws.draw_with_folds(rng)
+        edge = draws.scale_to_slope(folded, float(rng.uniform(*verdicts.SLOPES)))
+        for name, system, some in (("folds", folded, rates), ("near the edge", edge, rates[::3])):
+            try:
+                for said, problem in verdicts.judge(system, some):
+                    counts[said] += 1
+                    findings += [f"drive {number}, {name}, {problem}"] if problem else []
+            except VibroimpactError as error:
+                findings.append(f"drive {number}, {name}: {error}")
+    expect_none(findings, counts)

@@ -7,30 +7,17 @@ and the speed is read at the end of each hold.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
-from orchestrate import Drive, Structure, couple
+from orchestrate import couple
 from orchestrate.weak_drive.couple import schedule_from_arguments
 from orchestrate.weak_drive.schedule import Course, Ramp
+from tools.draws import System
 
 RATE = 5e-5  # of eta0 in a time 1/omega, between holds
 LONG, LONG_OF_ROTOR = 4000.0, 200.0  # of a hold, in 1/omega and in the rotor's time 1/b
 SETTLED = 1e-3  # of omega: mean speeds of the last two quarters of a hold
-
-
-class System(NamedTuple):
-    """Store a structure and its drive."""
-
-    structure: Structure
-    drive: Drive
-
-    def of_kind(self, kind: str) -> System:
-        """Return the system with its structure bonded or delaminated."""
-        bonded = kind == "bonded"
-        structure = self.structure.as_bonded() if bonded else self.structure.as_delaminated()
-        return self._replace(structure=structure)
 
 
 def begin_course(system: System, first: float, second: float) -> tuple[list[float], list[float]]:
