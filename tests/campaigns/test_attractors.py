@@ -146,7 +146,7 @@ def problems(
 
 
 @pytest.mark.slow
-@pytest.mark.budget(60)  # structures
+@pytest.mark.budget(24)  # structures
 def test_attractors_are_true(fmu, seed, budget):
     """Sixteen random starts at a frequency ratio and at 1.003 times that; undecided are counted."""
     counts, findings = Counter[str](), []

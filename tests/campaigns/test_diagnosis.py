@@ -74,7 +74,7 @@ def verdict_problem(verdict: str, truth: Truth, message: str = "", smallest: flo
 
 
 @pytest.mark.slow
-@pytest.mark.budget(2)  # beams
+@pytest.mark.budget(1)  # beams
 def test_verdicts_on_random_beams(exported, seed, budget):
     """Beams that are none of the detector's models, with noise of 0.1 to 10 %, guesses 10 % off."""
     counts, findings = Counter[str](), []
