@@ -38,8 +38,8 @@ Answer = dict[str, Any]
 def decisions(name: str, variable: xr.Variable) -> list[str] | None:
     """Return the words of a variable that is a decision; None of one that is a number."""
     values = variable.values.ravel()
-    if "flag_meanings" in variable.attrs:
-        words = flag_words(variable.attrs)
+    words = flag_words(variable.attrs) if "flag_meanings" in variable.attrs else {}
+    if words and {*words.values()} != {"no", "yes"}:  # a state such as contact is a number
         return [words.get(int(value), str(value)) for value in values]
     if name == "multiplicity":
         return [f"{value:g}" if value else "undecided" for value in values]

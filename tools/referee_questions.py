@@ -16,7 +16,7 @@ from . import draws
 
 SLOW = ("border", "detect", "detect_all", "fit", "couple_all", "jump_voltages")  # 1 s or more
 NOT_COMPARED = ("plot", "report", "write_ssp")  # they draw and write: nothing is computed
-SHORT: dict[str, Any] = {"transient": 50, "samples": 8}
+SHORT: dict[str, Any] = {"transient": 50, "samples": 60}  # of fewer no repetition is decided
 FAST: dict[str, Any] = {"rate": 4e-4, "back": False, "settle": 50.0, "step": 0.2}
 PAPER = {"6": (0.7, 0.005), "10": (0.7, 0.05), "11": (0.3, 0.005)}  # e and D of its sweeps
 Ask = Callable[["Draw"], xr.Dataset]
@@ -119,7 +119,7 @@ def basin(q: Draw) -> xr.Dataset:
 
 
 QUESTIONS: dict[str, Ask] = {
-    "simulate": lambda q: o.simulate(q.structure, eta=q.eta, periods=9, points=20),
+    "simulate": lambda q: o.simulate(q.structure, eta=q.eta, periods=9, points=20, **QUIET),
     "sweep": lambda q: o.sweep(q.structure, eta=q.near, **SHORT, direction="both", **QUIET),
     "resonance": lambda q: o.resonance(
         q.structure, frequency=q.frequency, amplitude=0.5, **SHORT, **QUIET
@@ -142,7 +142,12 @@ QUESTIONS: dict[str, Ask] = {
         q.structure, eta=q.near, periods=4, points=128, transient=50, **QUIET
     ),
     "poincare": lambda q: o.poincare(
-        q.structure, eta=q.eta, transient=50, periods=50, at=q.rng.choice(["phase", "impacts"])
+        q.structure,
+        eta=q.eta,
+        transient=50,
+        periods=50,
+        at=str(q.rng.choice(["phase", "impacts"])),
+        **QUIET,
     ),
     "orbit": lambda q: o.orbit(q.structure, eta=q.eta, **QUIET),
     "manifold": lambda q: o.manifold(

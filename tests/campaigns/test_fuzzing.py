@@ -28,7 +28,7 @@ def compile_with_sanitizer(fmu: Path, version: str, model: str, options: tuple[s
 @pytest.mark.slow
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("version", ("fmi2", "fmi3"))
-@pytest.mark.budget(8_000)  # calls, of each version and model
+@pytest.mark.budget(2_000)  # calls, of each version and model
 def test_calls_in_any_order_make_no_memory_error(fmu, version, model, seed, budget):
     """Any function, variable, number and step on three instances at once, states saved and changed.
 

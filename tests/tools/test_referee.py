@@ -19,9 +19,14 @@ def test_every_public_function_is_asked():
     assert functions == {*referee_questions.QUESTIONS, *referee_questions.NOT_COMPARED}
 
 
-def answer(speed=1.0, word=1):
+def answer(speed=1.0, word=1, contact=0):
     flags = {"flag_values": [0, 1, 2], "flag_meanings": "undecided jump none"}
-    data = {"speed": ("time", [speed, np.nan]), "verdict": ("jump", [word], flags)}
+    state = {"flag_values": [0, 1], "flag_meanings": "no yes"}  # one that decides nothing
+    data = {
+        "speed": ("time", [speed, np.nan]),
+        "in_contact": ("time", [0, contact], state),
+        "verdict": ("jump", [word], flags),
+    }
     return referee.summarize(xr.Dataset(data))
 
 
@@ -30,6 +35,7 @@ def answer(speed=1.0, word=1):
     [
         (answer(), []),
         (answer(speed=np.nextafter(1.0, 2.0)), ["bits of speed in 1 answers, size by up to 2e-16"]),
+        (answer(contact=1), ["bits of in_contact in 1 answers, size by up to 1"]),
         (answer(speed=2.0, word=0), ["verdict: jump -> undecided: 1"]),
         (
             {"decisions": {"error": ["InputError: no"]}, "bits": {}},
