@@ -12,6 +12,12 @@ settings.register_profile("the same everywhere", deadline=None, derandomize=True
 settings.load_profile("the same everywhere")
 
 
+def pytest_addoption(parser):
+    """Declare what a campaign takes: ``pytest tests/campaigns -m slow --seed 95 --budget 2000``."""
+    parser.addoption("--seed", type=int, default=1, help="of all that a campaign draws")
+    parser.addoption("--budget", type=int, help="units that a campaign does; else its own few")
+
+
 @pytest.fixture(scope="session")
 def exported():
     """The build folder, with all FMUs that can be made here, of the present sources."""

@@ -66,11 +66,11 @@ PARTS: dict[str, set[str]] = {  # and of fmu_src
 DYNAMIC = {"orchestrate/__init__.py", "fmu_src/export/sources.py"}
 ONLY_IN = {  # packages of others, and the one place of ours that may know them
     "fmpy": "orchestrate/access/",
-    "matplotlib": ("orchestrate/figures/", "tools/pictures/", "tools/trust/"),
+    "matplotlib": ("orchestrate/figures/", "tools/pictures/"),
     "loky": "orchestrate/running/",
-    "distributed": ("orchestrate/running/", "tools/trust/"),
+    "distributed": "orchestrate/running/",
     "sqlite3": "orchestrate/running/",
-    "tqdm": ("orchestrate/running/", "tools/trust/"),
+    "tqdm": "orchestrate/running/",
     "argparse": ("orchestrate/cli/", "tools/"),
     "platformdirs": "orchestrate/access/",
     "pythonfmu": ("fmu_src/export/", "fmu_src/runtime/"),

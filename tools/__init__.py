@@ -1,1 +1,1 @@
-"""Developer tools that are not shipped: generated assets, benchmarks, campaigns, pictures."""
+"""Developer tools that are not shipped: generated assets, benchmarks, benches, pictures."""

@@ -17,7 +17,6 @@ MOST_WORDS = 1500
 GENERATED = {  # by a tool, of which each row may be looked up but none is read in turn
     "bifurcation_tables": "tools.bifurcation_table",
     "claims": "tools.paper_page",
-    "trust": "tools.trust",
     "variables": "tools.assets",
 }
 PAGES = sorted(DOCS.glob("*.md"))

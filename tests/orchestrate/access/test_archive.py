@@ -9,7 +9,7 @@ import pytest
 from orchestrate.access import OSCILLATOR, describe, find
 from orchestrate.access.archive import check_archive, check_identifier
 from orchestrate.errors import InputError
-from tools.trust import archives
+from tests.campaigns import archives
 
 REFUSED = ("path traversal", "link", "bomb", "crowd of files", "a name twice", "no FMU")
 

@@ -10,7 +10,7 @@ from orchestrate.weak_drive.hysteresis import LOST, UNDECIDED, HeldPoint, Hyster
 from orchestrate.weak_drive.ramp_record import find_falls, jump_labels
 from orchestrate.weak_drive.schedule import Ramp
 from orchestrate.weak_drive.settled import SettledSettings, settled_speed
-from tools.trust.verdicts import draw_system, scale_to_slope
+from tools.draws import draw_system, scale_to_slope
 
 from .coupled import QUICK, System
 from .test_couple import run

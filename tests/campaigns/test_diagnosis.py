@@ -1,0 +1,126 @@
+"""Verdicts and stated intervals of ``detect`` on random beams of the virtual benches."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections import Counter
+from collections.abc import Iterator
+
+import pytest
+import xarray as xr
+
+import orchestrate
+from orchestrate.errors import VibroimpactError
+from tools.benches.recipe import Case, Setup, Truth
+from tools.draws import draw_beam
+
+from .findings import expect_none
+
+DELAMINATED, NO_OPENING = "delaminated", "no opening seen"
+REFUSED, FAILED = "refused", "failed"
+FAILURES = (ArithmeticError, ValueError, LookupError, RuntimeError)  # numpy's LinAlgError is one
+FITTED = ("f1", "f2", "zeta1", "zeta2", "e")  # of which the stated errors are judged
+WITHIN = 1.96  # standard errors: half of an interval of 95 %
+VISIBLE = 2e-5  # m: a gap that opens less may be overlooked
+
+
+def diagnose(case: Case, counts: Counter[str]) -> str:
+    """Ask about a beam, count the verdict and the intervals; return what is wrong ("")."""
+    truth, answer, smallest, message = case.truth, None, 0.0, ""
+    try:
+        answer = orchestrate.detect(case.record, case.guess, jobs=1, progress=False)
+        verdict, smallest = str(answer.verdict.item()), float(answer.smallest_opening)
+    except VibroimpactError as error:
+        verdict, message = REFUSED, str(error)
+    except FAILURES as error:
+        verdict, message = FAILED, f"{type(error).__name__}: {error}"
+    counts[f"{truth.kind}, {verdict}"] += 1
+    if answer is not None and verdict == DELAMINATED and truth.is_delaminated:
+        for name, deviation in deviations(answer, truth):
+            counts += {f"{name} stated": 1, f"{name} in its interval": abs(deviation) <= WITHIN}
+    return verdict_problem(verdict, truth, message, smallest)
+
+
+def deviations(answer: xr.Dataset, truth: Truth) -> Iterator[tuple[str, float]]:
+    """Yield the error of each parameter over its stated one; finite elements have none of them."""
+    names = [str(name) for name in answer.hypothesis.values if str(name).startswith(DELAMINATED)]
+    best = min(names, key=lambda name: float(answer.misfit.sel(hypothesis=name)))
+    for name in FITTED if math.isnan(truth.size) else ():
+        own = answer.sel(hypothesis=best, parameter=name)
+        true = truth.restitution if name == "e" else getattr(truth, name)
+        deviation = (float(own.value) - true) / (float(own.standard_error) or math.nan)
+        if math.isfinite(deviation):
+            yield name, deviation
+
+
+def verdict_problem(verdict: str, truth: Truth, message: str = "", smallest: float = 0.0) -> str:
+    """Return what is wrong with a verdict; empty where nothing is.
+
+    Random excitation may be refused: the detector goes by orders. An opening may be overlooked that
+    is smaller than the one that the detector says that it would have seen.
+    """
+    if verdict == FAILED or (verdict == REFUSED and truth.setup.excitation != "random"):
+        return f"{verdict}: {message}"
+    if verdict == DELAMINATED and not truth.is_delaminated:
+        return "called delaminated, and is sound"
+    if verdict == DELAMINATED and not truth.opened:
+        return "called delaminated, and did not open"
+    visible = truth.opened and truth.touched and truth.largest_gap > max(VISIBLE, smallest)
+    if verdict == NO_OPENING and visible:
+        text = f"no opening seen, and it opened by {1e3 * truth.largest_gap:.3g} mm"
+        return f"{text}, where {1e3 * smallest:.3g} mm would have been seen"
+    return ""
+
+
+@pytest.mark.slow
+@pytest.mark.budget(1)  # beams
+def test_verdicts_on_random_beams(exported, seed, budget):
+    """Beams that are none of the detector's models, with noise of 0.1 to 10 %, guesses 10 % off."""
+    counts, findings = Counter[str](), []
+    for number in range(budget):
+        case = draw_beam(seed, number)
+        if wrong := diagnose(case, counts):
+            findings.append(f"beam {number}, {case.truth}: {wrong}")
+    expect_none(findings, counts)
+
+
+SETUP = Setup(4.0, 0.02, 1, "up")
+SOUND = Truth(
+    kind="sound",
+    is_delaminated=False,
+    opened=False,
+    touched=False,
+    **{"f1": 45.0, "f2": 45.0, "zeta1": 0.01, "zeta2": 0.01},
+    setup=SETUP,
+)
+SPLIT = dataclasses.replace(
+    SOUND, kind="delaminated", is_delaminated=True, opened=True, touched=True, largest_gap=1e-3
+)
+SHUT = dataclasses.replace(SPLIT, kind="preloaded", opened=False, largest_gap=-1e-6)
+NOISE = dataclasses.replace(SPLIT, setup=dataclasses.replace(SETUP, excitation="random"))
+
+
+@pytest.mark.parametrize(
+    ("verdict", "truth", "smallest", "expected"),
+    [
+        (DELAMINATED, SOUND, 0.0, "is sound"),
+        (DELAMINATED, SHUT, 0.0, "did not open"),
+        (DELAMINATED, SPLIT, 0.0, ""),
+        (NO_OPENING, SPLIT, 0.0, "opened by 1 mm"),
+        (NO_OPENING, SPLIT, 3e-4, "where 0.3 mm would have been seen"),
+        (NO_OPENING, SPLIT, 2e-3, ""),
+        (NO_OPENING, dataclasses.replace(SPLIT, largest_gap=1e-5), 0.0, ""),
+        (NO_OPENING, dataclasses.replace(SPLIT, touched=False), 0.0, ""),
+        (NO_OPENING, SHUT, 0.0, ""),
+        (NO_OPENING, SOUND, 0.0, ""),
+        ("not described", SOUND, 0.0, ""),
+        ("undecided", SPLIT, 0.0, ""),
+        (REFUSED, NOISE, 0.0, ""),
+        (REFUSED, SPLIT, 0.0, "refused: why"),
+        (FAILED, NOISE, 0.0, "failed: why"),
+    ],
+)
+def test_what_is_wrong(verdict, truth, smallest, expected):
+    problem = verdict_problem(verdict, truth, "why", smallest)
+    assert expected in problem and bool(problem) == bool(expected)

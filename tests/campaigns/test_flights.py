@@ -1,0 +1,145 @@
+"""Ends of flights against a dense search in C and 50 digits; balances of impacts."""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+import sys
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from mpmath import mp
+
+from tools import exact_motion
+
+from . import programs
+from .findings import expect_none
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="programs for Linux")
+NAMES = (
+    *("m1", "m2", "k1", "k2", "d1", "d2", "e", "box_amplitude", "box_frequency", "phase_start"),
+    *("box_acceleration", "box_jerk", "box_snap", "box_crackle", "x1", "x2", "v1", "v2"),
+    "clearance",
+)
+WRONG = ("", "a root is missed", "no root at its end", "it does not end")
+CONTACT = 6  # the kind that is no flight
+BALANCES = ("momentum", "restitution", "energy", "sum")
+BOUND = 1e-12  # of the balances, in parts of the motion's terms
+
+
+@dataclass(frozen=True)
+class Flight:
+    """A flight as ``native/roots.c`` prints it: kind, verdict of the dense search, end, start."""
+
+    kind: int
+    verdict: int
+    impact: bool
+    end: float
+    values: dict[str, float]
+
+    @classmethod
+    def read(cls, line: str) -> Flight:
+        """Return a flight from a line of the program's output."""
+        _, kind, verdict, impact, end, *row = line.split()
+        values = dict(zip(NAMES, map(float.fromhex, row), strict=True))
+        return cls(int(kind), int(verdict), impact == "1", float.fromhex(end), values)
+
+
+def iterate_flights(fmu: Path, seed: int, count: int) -> Iterator[Flight]:
+    """Yield the flights of a seed, without contacts."""
+    lines = programs.run_program(fmu, "roots", seed, 2 * count, "show").splitlines()
+    flights = map(Flight.read, (line for line in lines if line.startswith("FLIGHT")))
+    return itertools.islice((one for one in flights if one.kind != CONTACT), count)
+
+
+def deviation(flight: Flight) -> float:
+    """Return the error of a flight's end over the allowed one, by Newton's law in 50 digits.
+
+    Allowed is 1e-15 (1 + t) + 1.5e-14 S/|v| with S the sum of the terms of both displacements and v
+    the closing speed: a free part is rotated 32 times at most before it is made anew, four
+    roundings of 1.1e-16 each time.
+    """
+    values, end = flight.values, flight.end
+    state = [values[name] for name in ("x1", "v1", "x2", "v2")]
+    with mp.workdps(50):
+        first, second = exact_motion.free_motion(values, state, mp.mpf(values["phase_start"]))
+        gap = exact_motion.gap_signal(values, first, second)
+        speed = gap.derivative()
+        terms = term_size(first, end) + term_size(second, end) + abs(values["clearance"])
+        if not flight.impact:
+            return 0.0 if gap(end) > -exact_motion.ROUNDING * terms else float("inf")
+        root = mp.mpf(end)
+        for _ in range(2):  # from a place that is right to ten digits at the least
+            root -= gap(root) / speed(root)
+        allowed = 1e-15 * (1.0 + end) + exact_motion.ROUNDING * terms / abs(speed(root))
+        return float(abs(root - end) / allowed)
+
+
+def term_size(signal: exact_motion.Signal, t: float) -> float:
+    """Return the sum of a signal's term magnitudes at a time, which scales rounding errors."""
+    size, power = sum(abs(complex(c)) for c, _ in signal.terms), 1.0
+    for k, part in enumerate(signal.polynomial):
+        size += abs(float(part)) * power
+        power *= t / (k + 1.0)
+    return size
+
+
+@pytest.mark.slow
+@pytest.mark.budget(2_000_000)  # flights
+def test_no_root_is_missed_and_none_made_up(fmu, seed, budget):
+    """Flights of seven kinds, half of them with gap or preload, and up to three that follow.
+
+    A search written by Newton's law as sums of complex exponentials samples the gap (or the contact
+    force) up to the flight's end at 25 points or more a radian, and goes to the bottom of every
+    dip; a gap below -1e-14 of the sum of its terms is a finding.
+    """
+    counts, findings = Counter[str](), []
+    for line in programs.run_program(fmu, "roots", seed, budget).splitlines():
+        if line.startswith("FLIGHT"):
+            flight = Flight.read(line)
+            findings.append(f"{WRONG[flight.verdict]}: {flight.values}")
+            continue
+        right, *wrong, left_out, kind = line.split(maxsplit=5)
+        counts += {kind: int(right), "left out": int(left_out)}
+        findings += [f"{kind}: {wrong}"] * any(map(int, wrong))
+    assert len(counts) == 8 and min(counts.values()) > 0.005 * budget
+    expect_none(findings, counts)
+
+
+@pytest.mark.slow
+@pytest.mark.budget(5_000_000)  # impacts
+def test_momentum_and_energy_balance(fmu, seed, budget):
+    """Speeds before an impact by the closed form in C, those after it by the FMU; e may slope."""
+    done, runs, failed, *parts = programs.run_program(fmu, "energy", seed, budget).split()
+    measured = dict(zip(BALANCES, map(float, parts), strict=True))
+    wrong = [f"{name} is off by {value}" for name, value in measured.items() if not value <= BOUND]
+    assert int(done) >= budget and max(measured.values()) > 1e-17
+    expect_none(wrong + [f"{failed} runs failed"] * (failed != "0"), {"runs": runs, **measured})
+
+
+@pytest.mark.slow
+@pytest.mark.budget(2000)  # flights
+def test_impacts_against_50_digits(fmu, seed, budget):
+    parts = [(deviation(flight), flight) for flight in iterate_flights(fmu, seed, budget)]
+    worst = max(part for part, _ in parts)
+    assert len(parts) == budget and worst > 1e-4
+    wrong = [
+        f"{part:.3g} of the bound: {flight.values}" for part, flight in parts if not part <= 1.0
+    ]
+    expect_none(wrong, {"largest part of the bound": worst})
+
+
+@pytest.mark.slow
+def test_what_is_wrong_is_found(fmu):
+    """A structure, a restitution and an end that differ by a billionth from the FMU's."""
+    lines = programs.run_program(fmu, "roots", 1, 2000, "wrong").splitlines()
+    wrong = [sum(map(int, line.split()[1:3])) for line in lines if not line.startswith("FLIGHT")]
+    assert sum(wrong) > 500 and all(number > 20 for number in wrong[:6]), wrong
+    numbers = programs.run_program(fmu, "energy", 1, 2000, "wrong").split()
+    assert float(numbers[4]) > 10.0 * BOUND
+    flight = next(flight for flight in iterate_flights(fmu, 1, 50) if flight.impact)
+    later = dataclasses.replace(flight, end=flight.end * (1.0 + 1e-9))
+    assert deviation(flight) <= 1.0 < deviation(later)

@@ -1,0 +1,89 @@
+"""Random structures, drives and beams of the campaigns and of the referee, each from a seed."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from orchestrate import Drive, Structure
+from orchestrate.weak_drive import averaged
+
+from .benches.recipe import Case, Conditions, draw, draw_log_uniform
+
+USUAL, WIDE = (0.01, 0.05), (0.001, 0.1)  # noise of a record: usual of a laboratory, and any
+BEAMS = (  # kinds, one after the other: the two that the targets are about are drawn more often
+    *("sound", "delaminated", "hardening", "delaminated", "friction", "gap"),
+    *("sound", "preloaded", "clamp", "delaminated", "intact elements", "elements", "sagging"),
+)
+RATES = (2e-4, 1e-4, 5e-5, 2e-5)  # of ramps of a drive, of eta0 in a time 1/omega
+NARROW = 2e-4  # of eta0: folds so close are left out, a bracket is half as wide
+
+
+class System(NamedTuple):
+    """A structure and its drive."""
+
+    structure: Structure
+    drive: Drive
+
+    def of_kind(self, kind: str) -> System:
+        """Return the system with its structure bonded or delaminated."""
+        bonded = kind == "bonded"
+        structure = self.structure.as_bonded() if bonded else self.structure.as_delaminated()
+        return self._replace(structure=structure)
+
+
+def draw_structure(rng: np.random.Generator) -> tuple[Structure, float]:
+    """Draw a structure and a frequency ratio, lightly damped as in the paper."""
+    mu, kappa = (draw_log_uniform(rng, 0.3, 4.0) for _ in range(2))
+    one, two = (draw_log_uniform(rng, 0.003, 0.06) for _ in range(2))
+    e, eta = float(rng.uniform(0.02, 0.95)), float(rng.uniform(0.3, 4.0))
+    return Structure.nondimensional(mu=mu, kappa=kappa, D1=one, D2=two, e=e), eta
+
+
+def draw_system(rng: np.random.Generator) -> System:
+    """Draw a structure with a drive."""
+    damping = rng.uniform(0.006, 0.03)
+    b = float(np.exp(rng.uniform(np.log(0.01), np.log(0.5))))
+    mu, kappa = rng.uniform(0.5, 2.0), rng.uniform(1.05, 2.0)
+    second, restitution = damping * rng.uniform(0.5, 3.0), rng.uniform(0.3, 0.9)
+    beta, epsilon = rng.uniform(0.05, 0.4), rng.uniform(3e-4, 2e-3)
+    box, box_damping = rng.uniform(0.05, 0.3), rng.uniform(0.005, 0.05)
+    structure = Structure.nondimensional(mu=mu, kappa=kappa, D1=damping, D2=second, e=restitution)
+    numbers = {"beta": beta, "epsilon": epsilon, "b": b, "Omega_b": box, "D_b": box_damping}
+    return System(structure, Drive.nondimensional(**numbers, structure=structure))
+
+
+def draw_with_folds(rng: np.random.Generator) -> System:
+    """Draw systems until one has clearly separated averaged folds."""
+    while True:
+        system = draw_system(rng)
+        folds = averaged.folds(*system)
+        if folds and folds[0].eta0 - folds[-1].eta0 > NARROW:
+            return system
+
+
+def scale_to_slope(system: System, slope: float) -> System:
+    """Scale the unbalance so that the branch has a given smallest slope."""
+    structure, drive = system
+    share = (1.0 - slope) / (1.0 - averaged.smallest_slope(*system))
+    numbers = {
+        name: getattr(drive, name)(structure) for name in ("beta", "b", "Omega_b", "D_b")
+    } | {"epsilon": drive.epsilon * share}
+    return System(structure, Drive.nondimensional(**numbers, structure=structure))
+
+
+def ramp_ends(system: System) -> tuple[float, float]:
+    """Return the two ends of the voltage ramp, over K omega, past both jumps."""
+    folds = averaged.folds(*system)
+    resonance = averaged.resonance(*system)
+    places = [fold.eta0 for fold in folds] or [float(averaged.no_load_speed(*system, resonance))]
+    return min(places) - 0.15, max(places) + 0.15
+
+
+def draw_beam(seed: int, number: int) -> Case:
+    """Draw a beam of the benches with its record; its kind follows from its number and seed."""
+    rng = np.random.default_rng([seed, number])
+    kind = BEAMS[(seed + number) % len(BEAMS)]
+    noise = USUAL if rng.random() < 0.6 else WIDE
+    return draw(rng, kind, Conditions(noise=noise, excitation="any"))
