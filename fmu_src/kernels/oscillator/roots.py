@@ -153,6 +153,3 @@ def value_on_decided_side(m, tau, h0, h1):
     if h0 < -floor or floor < -1e-6 * h1:
         return h0
     return 2.0 * floor
-
-
-
