@@ -16,7 +16,7 @@ def differentiate(m, time):
     part, h = part_at(m, m[at.TIME]), m[at.SPACING]
     velocity, acceleration = m[at.BOX_VELOCITY], m[at.BOX_ACCELERATION]
     current_1, current_2 = slopes(m, at.AMPERE_SERIES, at.DEGREE, part)
-    force_1, force_2 = slopes(m, at.FORCE_SERIES, at.CUBIC - 1, part)
+    _, force_2 = slopes(m, at.FORCE_SERIES, at.CUBIC - 1, part)
     voltage_1, _ = slopes(m, at.VOLT_SERIES, at.DEGREE, part)
     current, voltage, factor = m[at.CURRENT], m[at.VOLTAGE], m[at.FORCE_FACTOR]
     snap = (factor * current_2 + force_2) / h / h - m[at.SUSPENSION_DAMPING] * m[at.BOX_JERK]

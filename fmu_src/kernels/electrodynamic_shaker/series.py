@@ -108,18 +108,17 @@ def write_energies(m, h, driven):
     cubic, other = at.AMPERE_SERIES, at.VOLT_SERIES
     if driven:
         cubic, other = at.VOLT_SERIES, at.AMPERE_SERIES
-    to, begun = at.WORK_SERIES, at.STATE + at.INPUT_WORK
-    write_work(m, to, m[begun], cubic, other, h)
+    current, speed = at.AMPERE_SERIES, at.SPEED_SERIES
+    write_work(m, at.WORK_SERIES, m[at.STATE + at.INPUT_WORK], cubic, other, h)
     resistance = h * m[at.COIL_RESISTANCE]
     if driven:
-        write_square(m, to + at.WORK_TERMS, m[begun + 1], at.AMPERE_SERIES, resistance)
+        write_square(m, at.HEAT_SERIES, m[at.STATE + at.HEAT], current, resistance)
     else:
-        current = at.AMPERE_SERIES
-        write_work(m, to + at.WORK_TERMS, m[begun + 1], current, current, resistance)
+        write_work(m, at.HEAT_SERIES, m[at.STATE + at.HEAT], current, current, resistance)
     damping = h * m[at.SUSPENSION_DAMPING]
-    write_square(m, to + 2 * at.WORK_TERMS, m[begun + 2], at.SPEED_SERIES, damping)
-    force, speed = at.FORCE_SERIES, at.SPEED_SERIES
-    write_work(m, to + 3 * at.WORK_TERMS, m[begun + 3], force, speed, h)
+    write_square(m, at.LOSS_SERIES, m[at.STATE + at.LOSS], speed, damping)
+    begun = m[at.STATE + at.FORCE_WORK]
+    write_work(m, at.FORCE_WORK_SERIES, begun, at.FORCE_SERIES, speed, h)
 
 
 def write_work(m, to, begun, cubic, other, factor):
@@ -170,9 +169,21 @@ def slopes(m, series, degree, part):
 
 def write_states(m, to, part):
     """Write the states at a ``part`` of the present interval."""
-    m[to + at.PLACE] = value(m, at.PLACE_SERIES, at.DEGREE, part)
-    m[to + at.SPEED] = value(m, at.SPEED_SERIES, at.DEGREE, part)
-    m[to + at.AMPERES] = value(m, at.AMPERE_SERIES, at.DEGREE, part)
-    for i in range(4):
-        series = at.WORK_SERIES + i * at.WORK_TERMS
-        m[to + at.INPUT_WORK + i] = value(m, series, at.WORK_DEGREE, part)
+    position, velocity, current = 0.0, 0.0, 0.0
+    for k in range(at.DEGREE, -1, -1):
+        position = position * part + m[at.PLACE_SERIES + k]
+        velocity = velocity * part + m[at.SPEED_SERIES + k]
+        current = current * part + m[at.AMPERE_SERIES + k]
+    m[to + at.PLACE] = position
+    m[to + at.SPEED] = velocity
+    m[to + at.AMPERES] = current
+    work, heat, loss, pushed = 0.0, 0.0, 0.0, 0.0
+    for k in range(at.WORK_DEGREE, -1, -1):
+        work = work * part + m[at.WORK_SERIES + k]
+        heat = heat * part + m[at.HEAT_SERIES + k]
+        loss = loss * part + m[at.LOSS_SERIES + k]
+        pushed = pushed * part + m[at.FORCE_WORK_SERIES + k]
+    m[to + at.INPUT_WORK] = work
+    m[to + at.HEAT] = heat
+    m[to + at.LOSS] = loss
+    m[to + at.FORCE_WORK] = pushed
