@@ -94,7 +94,7 @@ def simulate_limits(
     rows = []
     with Instance(fmu) as instance:
         instance.initialize(
-            0.0, coil_inductance=0.02, voltage_limit=12.0, current_limit=1.0, **growing_sine(0.0)
+            0.0, coil_inductance=0.02, voltage_limit=5.0, current_limit=1.0, **growing_sine(0.0)
         )
         for time, target in itertools.pairwise(times):
             instance.set(**growing_sine(time, frequency))

@@ -87,7 +87,9 @@ class Shaker:
         found = []
         if np.isfinite(self.limit):
             for side in (self.clipped,) if self.clipped else (1, -1):
-                found.append(("command", side, lambda t, _, s=side: s * self.command(t) - self.limit))
+                found.append(
+                    ("command", side, lambda t, _, s=side: s * self.command(t) - self.limit)
+                )
         if np.isfinite(self.other_limit):
             if self.held:
                 found.append(("held", self.held, lambda t, s: self.held * self.excess(t, s)))
@@ -152,9 +154,16 @@ class Shaker:
 
     def change(self, events, found, t, state):
         """Go through the event that ended an integration."""
-        (kind, side), L = next(
-            (event[:2] for event, times in zip(events, found.t_events, strict=True) if len(times))
-        ), self.p["coil_inductance"]
+        (kind, side), L = (
+            next(
+                (
+                    event[:2]
+                    for event, times in zip(events, found.t_events, strict=True)
+                    if len(times)
+                )
+            ),
+            self.p["coil_inductance"],
+        )
         if kind == "free":
             self.held = side
             if L and not self.current_control:
