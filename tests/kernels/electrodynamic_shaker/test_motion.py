@@ -29,7 +29,9 @@ def solve(values, first_current, stop):
 
 
 def check_random_shakers(seeds):
-    """Compare with scipy to 1e-10, over cubics that take the amplifier from limit to limit."""
+    """Compare with scipy to 1e-10, over cubics that take the amplifier from limit to limit; how
+    often what acts changed.
+    """
     changes = 0
     for seed in seeds:
         values = draw(seed)
@@ -40,7 +42,7 @@ def check_random_shakers(seeds):
         found = [m[slot] for slot in (*SLOTS, *ENERGIES)]
         assert found == pytest.approx(expected, rel=1e-10, abs=1e-12)
         changes += count
-    assert bool(changes) == bool(values["voltage_limit"] or values["current_limit"])
+    return changes
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -51,7 +53,8 @@ def test_random_shakers_are_those_of_the_equations(kind):
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_many_random_shakers_are_those_of_the_equations(kind):
-    check_random_shakers(range(kind + 1008, kind + 1328, 16))
+    changes = check_random_shakers(range(kind + 1008, kind + 1328, 16))
+    assert bool(changes) == (kind >= 4)
 
 
 def exponential(values, stop):
