@@ -102,13 +102,18 @@ INPUTS = (
     ),
     *cubic("box_force", ("N", "N/s", "N/s2", "N/s3"), "Force on the table"),
 )
-AMPLIFIER = ("current_control", "voltage_limit", "current_limit")
-COIL = ("force_factor", "coil_resistance", "coil_inductance", "velocity_start", "current_start")
-COMMAND = ("command",)
-# what holds the current of a voltage amplifier, or the voltage of a current amplifier
-BALANCE = ("command", "command_1")
-AT_START = (*COIL, *AMPLIFIER, "command")
+# what the current at the start follows from, and the voltage with the slope of a commanded current
+CURRENT = (
+    *("force_factor", "coil_resistance", "coil_inductance", "velocity_start", "current_start"),
+    *("current_control", "voltage_limit", "current_limit", "command"),
+)
+VOLTAGE = (*CURRENT, "command_1")
 MECHANICS = ("table_mass", "suspension_stiffness", "suspension_damping", "position_start")
+ELECTRIC: dict[str, Any] = {"dependencies": ("command", "command_1")}
+STORED = (
+    *("table_mass", "suspension_stiffness", "position_start", "velocity_start"),
+    *("coil_inductance", "current_start", "current_control", "voltage_limit", "current_limit"),
+)
 OUTPUTS = (
     output(
         "box_position",
@@ -123,40 +128,38 @@ OUTPUTS = (
         "box_acceleration",
         "m/s2",
         "Acceleration of the table, with the inputs as they are now",
-        (*MECHANICS, *AT_START, "command_1", "box_force"),
-        dependencies=(*BALANCE, "box_force"),
+        (*MECHANICS, *CURRENT, "box_force"),
+        dependencies=("command", "box_force"),
     ),
     output(
         "box_jerk",
         "m/s3",
         "Time derivative of box_acceleration, with the inputs as they are now",
-        (*MECHANICS, *AT_START, "command_1", "command_2", "box_force", "box_force_1"),
+        (*MECHANICS, *VOLTAGE, "box_force", "box_force_1"),
         nominal=100.0,
-        dependencies=(*BALANCE, "command_2", "box_force", "box_force_1"),
+        dependencies=("command", "command_1", "box_force", "box_force_1"),
     ),
-    output("current", "A", "Current of the coil", (*AT_START, "command_1"), dependencies=BALANCE),
-    output(
-        "voltage", "V", "Voltage of the amplifier", (*AT_START, "command_1"), dependencies=BALANCE
-    ),
+    output("current", "A", "Current of the coil", CURRENT, dependencies=("command",)),
+    output("voltage", "V", "Voltage of the amplifier", VOLTAGE, **ELECTRIC),
     output(
         "coil_force",
         "N",
         "Force of the coil on the table, Bl i",
-        (*AT_START, "command_1"),
-        dependencies=BALANCE,
+        CURRENT,
+        dependencies=("command",),
     ),
     output(
         "power",
         "W",
         "Electrical power of the amplifier, voltage times current",
-        (*AT_START, "command_1"),
-        dependencies=BALANCE,
+        VOLTAGE,
+        **ELECTRIC,
     ),
     output(
         "energy",
         "J",
         "Electrical work of the amplifier since the start, integral of power",
-        dependencies=COMMAND,
+        dependencies=("command",),
     ),
     output("coil_heat", "J", "Heat of coil_resistance since the start"),
     output(
@@ -169,17 +172,17 @@ OUTPUTS = (
         "stored_energy",
         "J",
         "Kinetic energy of the table, and energies of its spring and of coil_inductance",
-        ("table_mass", "suspension_stiffness", "position_start", *AT_START, "command_1"),
-        dependencies=COMMAND,
+        (*STORED, "command"),
+        dependencies=("command",),
     ),
     output(
         "limited",
         "",
         "A limit of voltage or current acts",
-        (*AT_START, "command_1"),
+        VOLTAGE,
         type=BOOLEAN,
         variability="discrete",
-        dependencies=BALANCE,
+        **ELECTRIC,
     ),
     output(
         "evaluations",
