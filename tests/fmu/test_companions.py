@@ -26,10 +26,11 @@ def archive(request):
         yield opened
 
 
-def test_terminals_of_both_models_fit_together(exported):
+@pytest.mark.parametrize("drive", ["MotorShaker", "ElectrodynamicShaker"])
+def test_terminals_of_both_models_fit_together(exported, drive):
     """Members of the same name: an output here, an input of the same unit there."""
     sides = []
-    for name in ("TwoMassImpactOscillator", "MotorShaker"):
+    for name in ("TwoMassImpactOscillator", drive):
         path = exported / "fmi3" / f"{name}.fmu"
         found = {v.name: v for v in fmpy.read_model_description(str(path)).modelVariables}
         with zipfile.ZipFile(path) as opened:
