@@ -12,7 +12,7 @@ from . import memory as at
 from .inputs import write_inputs, write_source
 from .series import copy_source, write_constant, write_prescribed_motion
 
-SAME = 1e-12  # relative: a current so near to the command has not left it
+SAME = 1e-12  # relative: a current so near to a new command has no way to go
 
 
 def decide_limits(m):
@@ -92,7 +92,7 @@ def follow_command(m, h):
     current, source = m[at.STATE + at.AMPERES], m[at.SOURCE_SERIES]
     if lags and m[at.FOLLOWED] == 0.0:
         gap = source - current
-        if limit > 0.0 and abs(gap) > SAME * (command_size(m) + abs(current)):
+        if limit > 0.0 and abs(gap) > SAME * (abs(source) + abs(current)):
             m[at.OTHER_SIDE] = 1.0 if gap > 0.0 else -1.0
             m[at.HELD] = m[at.OTHER_SIDE]
             return
@@ -106,14 +106,6 @@ def follow_command(m, h):
     m[at.OTHER_SIDE] = side
     write_guard(m, at.VOLT_SERIES, at.TERMS, side, -limit)
     decide_held(m, side, lags)
-
-
-def command_size(m):
-    """Return the size of the source's terms over an interval."""
-    total = 0.0
-    for k in range(at.CUBIC):
-        total += abs(m[at.SOURCE_SERIES + k])
-    return total
 
 
 def decide_held(m, side, lags):

@@ -126,6 +126,19 @@ def test_inductance_takes_its_energy_at_a_jump_of_a_commanded_current():
     assert other[at.ENERGY] == pytest.approx(m[at.ENERGY], rel=1e-6)
 
 
+def test_a_current_takes_its_time_where_the_voltage_is_limited():
+    """Also where intervals are so long that the command's cubic grows far beyond it in one."""
+    values = {"current_control": 1.0, "coil_inductance": 2.0, "voltage_limit": 10.0}
+    free = {"suspension_stiffness": 0.0, "suspension_damping": 0.0, "force_factor": 0.0}
+    m = started(**values, **free, command=-1e-3, command_2=-2.0, command_3=20.0)
+    assert m[at.CURRENT] == 0.0 and m[at.VOLTAGE] == -10.0 and m[at.LIMITED] == 1.0
+    advanced(m, 1e-4)
+    assert m[at.CURRENT] == pytest.approx(-10.0 / 2.0 * 1e-4, rel=1e-3)
+    advanced(m, 1e-3)
+    assert m[at.LIMITED] == 0.0
+    assert m[at.ENERGY] == pytest.approx(m[at.STORED_ENERGY] + m[at.COIL_HEAT], rel=1e-12)
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_state_that_was_saved_runs_on(kind):
     """Restored as from outside, before and behind a new input, with the same bits."""
