@@ -7,9 +7,9 @@
 ('eta',)
 
 What is described
-    :class:`Structure`, :class:`Excitation`, :class:`Drive`: two masses and their contact, the box's
-    harmonic motion, and a motor of limited power that shakes the box; in SI or by the paper's
-    numbers, in Python or in TOML files.
+    :class:`Structure`, :class:`Excitation`, :class:`Drive`, :class:`Shaker`: two masses and their
+    contact, the box's harmonic motion, and a motor of limited power or an electrodynamic shaker
+    that shakes the box; in SI or by the paper's numbers, in Python or in TOML files.
 What is asked
     :func:`simulate`, :func:`resonance`, :func:`resonance_levels`, :func:`contact_threshold`,
     :func:`sweep`, :func:`spectra`; :func:`map`, :func:`lyapunov`, :func:`poincare`,

@@ -53,6 +53,7 @@ from .response.sweep import sweep as sweep
 from .response.threshold import contact_threshold as contact_threshold
 from .structures import Drive as Drive
 from .structures import Excitation as Excitation
+from .structures import Shaker as Shaker
 from .structures import Structure as Structure
 from .version import __version__ as __version__
 from .weak_drive.capture import capture as capture

@@ -12,7 +12,7 @@ from filelock import FileLock
 from fmu_src.export import forms
 from fmu_src.export.errors import CannotExport
 from orchestrate.access.c_library import library
-from orchestrate.access.webassembly import web_kernel
+from orchestrate.access.webassembly import WEB_MODELS, web_kernel
 from orchestrate.errors import InputError
 from orchestrate.weak_drive.compiled import SOURCE
 
@@ -55,7 +55,8 @@ def refresh_model(name, build):
             except CannotExport as reason:
                 reasons[f"{form}/{name}"] = reason
     try:
-        web_kernel(name, build)
+        if name in WEB_MODELS:
+            web_kernel(name, build)
     except InputError as reason:
         reasons[f"wasm/{name}"] = CannotExport(str(reason))
     return reasons

@@ -59,8 +59,10 @@ PARTS: dict[str, set[str]] = {  # and of fmu_src
     "kernels.numerics": set(),
     "kernels.oscillator": {"kernels.numerics"},
     "kernels.shaker": {"kernels.numerics"},
+    "kernels.electrodynamic_shaker": {"kernels.numerics"},
     "runtime": set(),
-    "models": {"kernels.oscillator", "kernels.shaker", "runtime", "version"},
+    "models": {"kernels.oscillator", "kernels.shaker", "runtime", "version"}
+    | {"kernels.electrodynamic_shaker"},
     "export": {"runtime", "kernels.repetition"},
 }
 DYNAMIC = {"orchestrate/__init__.py", "fmu_src/export/sources.py"}

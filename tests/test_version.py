@@ -3,6 +3,7 @@
 import re
 
 import orchestrate
+from fmu_src.export import forms
 from fmu_src.export.sources import load_model
 from fmu_src.version import VERSION
 
@@ -25,4 +26,4 @@ def test_results_say_the_version_of_the_code():
 
 
 def test_the_models_bear_the_version():
-    assert {load_model(folder).version for folder in ("oscillator", "motor_shaker")} == {VERSION}
+    assert {load_model(folder).version for folder in forms.MODELS.values()} == {VERSION}

@@ -20,9 +20,16 @@ import numpy as np
 from orchestrate.access import Instance, describe, find
 from orchestrate.figures import files
 
-from .pictures import icon, oscillator
-from .pictures import shaker as shaker_pictures
-from .references import MODELS, REFERENCES, SHAKER, Reference, reference_rows, write_reference
+from .pictures import electrodynamic_shaker, icon, oscillator, shaker
+from .references import (
+    COIL,
+    MODELS,
+    REFERENCES,
+    SHAKER,
+    Reference,
+    reference_rows,
+    write_reference,
+)
 
 TABLES = Path(__file__).resolve().parents[1] / "docs" / "variables.md"
 SERIES = re.compile(r"\[(?!1\])\d+\]$")  # of a series, the first stands for all
@@ -76,21 +83,51 @@ def simulate_example(
     return np.array(times[1:]), dict(zip(names, np.array(rows).T, strict=True))
 
 
+def simulate_limits(
+    fmu: str | PathLike[str], points: int = 800
+) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Simulate a growing sine of voltage, cubic from step to step, until both limits act; return
+    times and values by name.
+    """
+    names, frequency = ("voltage", "current", "box_position", "limited"), 40.0
+    times = np.linspace(0.0, 1.5, points + 1)
+    rows = []
+    with Instance(fmu) as instance:
+        instance.initialize(
+            0.0, coil_inductance=0.02, voltage_limit=5.0, current_limit=1.0, **growing_sine(0.0)
+        )
+        for time, target in itertools.pairwise(times):
+            instance.set(**growing_sine(time, frequency))
+            instance.step(time, target)
+            rows.append([float(value) for value in instance.get(*names)])
+    return times[1:], dict(zip(names, np.array(rows).T, strict=True))
+
+
+def growing_sine(time: float, frequency: float = 40.0) -> dict[str, float]:
+    """Return command and derivatives of ``12 t sin(frequency t)``, V."""
+    turn, wave = 12.0 * np.exp(1j * frequency * time), 1j * frequency
+    values = [((time * wave**n + n * wave ** max(n - 1, 0)) * turn).imag for n in range(4)]
+    return dict(zip(("command", "command_1", "command_2", "command_3"), values, strict=True))
+
+
 def draw_documentation(
     reference: Reference, fmu: str | PathLike[str], rows: Sequence[Sequence[float]]
 ) -> None:
     """Draw a model's scheme, icon and example run into its documentation folder."""
     folder = MODELS / reference.folder
-    shaker = reference is SHAKER
-    scheme = shaker_pictures.draw_shaker if shaker else oscillator.draw_scheme
     tight: Any = {"dpi": 100, "bbox_inches": "tight"}
-    files.save(scheme(), folder / "documentation" / "scheme", **tight)
-    files.save(icon.draw_icon(shaker), folder / "model", dpi=96)
-    if shaker:
+    if reference is SHAKER:
+        scheme, image = shaker.draw_shaker(), icon.draw_motor()
         values = dict(zip(("time", *reference.outputs), np.array(rows).T, strict=True))
-        plot = shaker_pictures.draw_run_up(values["time"], values["speed"], values["box_position"])
+        plot = shaker.draw_run_up(values["time"], values["speed"], values["box_position"])
+    elif reference is COIL:
+        scheme, image = electrodynamic_shaker.draw_shaker(), icon.draw_coil()
+        plot = electrodynamic_shaker.draw_run(*simulate_limits(fmu))
     else:
+        scheme, image = oscillator.draw_scheme(), icon.draw_masses()
         plot = oscillator.draw_example(*simulate_example(fmu))
+    files.save(scheme, folder / "documentation" / "scheme", **tight)
+    files.save(image, folder / "model", dpi=96)
     files.save(plot, folder / "documentation" / "plot", ("svg",))
 
 

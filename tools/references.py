@@ -45,6 +45,11 @@ def shaker_inputs(time: float) -> tuple[float, ...]:
     return 3.0 if time < 3.0 else 8.0, 0.0 if time < 4.0 else 20.0
 
 
+def coil_inputs(time: float) -> tuple[float, ...]:
+    """Return command and force at a time: the command steps at 1 and 2 s, the force at 2 s."""
+    return 5.0 if time < 1.0 else -5.0 if time < 2.0 else 0.0, 0.0 if time < 2.0 else 50.0
+
+
 OSCILLATOR = Reference(
     model="TwoMassImpactOscillator",
     folder="oscillator",
@@ -71,7 +76,20 @@ SHAKER = Reference(
     step=0.005,
     stop=5.0,
 )
-REFERENCES = (OSCILLATOR, SHAKER)
+COIL = Reference(
+    model="ElectrodynamicShaker",
+    folder="electrodynamic_shaker",
+    inputs=("command", "box_force"),
+    outputs=(
+        *("box_position", "box_velocity", "box_acceleration", "current", "voltage", "power"),
+        *("energy", "coil_heat", "suspension_loss", "box_force_work", "stored_energy"),
+    ),
+    input_at=coil_inputs,
+    jumps=(1.0, 2.0),
+    step=0.005,
+    stop=3.0,
+)
+REFERENCES = (OSCILLATOR, SHAKER, COIL)
 
 
 def reference_rows(reference: Reference, fmu: str | PathLike[str]) -> list[list[float]]:

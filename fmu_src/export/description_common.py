@@ -39,6 +39,10 @@ UNITS = {  # SI exponents
     "Ohm": {"kg": 1, "m": 2, "s": -3, "A": -2},
     "H": {"kg": 1, "m": 2, "s": -2, "A": -2},
     "N.m/A": {"kg": 1, "m": 2, "s": -2, "A": -1},
+    "N/A": {"kg": 1, "m": 1, "s": -2, "A": -1},
+    "V/s": {"kg": 1, "m": 2, "s": -4, "A": -1},
+    "V/s2": {"kg": 1, "m": 2, "s": -5, "A": -1},
+    "V/s3": {"kg": 1, "m": 2, "s": -6, "A": -1},
 }
 QUANTITIES = {  # what a unit measures
     "kg": "Mass",

@@ -22,6 +22,7 @@ ALL_FORMS = FORMS + PLAIN_FORMS + sources_of(FORMS + PLAIN_FORMS)
 MODELS = {  # the folder of each model below fmu_src/models
     "TwoMassImpactOscillator": "oscillator",
     "MotorShaker": "motor_shaker",
+    "ElectrodynamicShaker": "electrodynamic_shaker",
 }
 
 

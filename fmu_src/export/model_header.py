@@ -16,7 +16,7 @@ typedef struct {
     Type type;
     int calculated, fixed;
     double start, minimum, maximum;
-    int input_derivatives, polynomial, rate, element;
+    int input_derivatives, set_flag, rate, element;
 } Variable;
 typedef struct { unsigned first, size; } Array;"""
 
@@ -48,7 +48,7 @@ def c_variable(variable: Variable, model: Model) -> str:
         c_number(minimum),
         c_number(maximum),
         str(variable.input_derivatives),
-        str(int(variable.slot in model.polynomial)),
+        str(model.set_flags.get(variable.slot, 0)),
         str(model.rate_slot(variable)),
         str(int(bool(variable.series))),
     ]
@@ -69,7 +69,6 @@ def shim_definitions(model: Model, slots: dict[str, int], real_outputs: bool) ->
         "LIMITED_CODE": str(model.limited),
         "TIME_SLOT": str(model.time_slot),
         "STOP_SLOT": str(model.stop_slot),
-        "SET_SLOT": str(model.set_slot),
         "VARIABLE_COUNT": f"{len(model.variables)}u",
         "REAL_OUTPUTS": str(int(real_outputs)),
         "REFRESH": str(int(model.refresh is not None)),

@@ -72,8 +72,8 @@ def sum_of_run(model: Model, memory: Any, initialize: Entry, advance: Entry) -> 
         for variable in model.variables if step == STEPS // 2 else ():
             if variable.type == REAL and not (variable.calculated or variable.fixed):
                 memory[variable.slot] += CHANGE
-            if variable.slot in model.polynomial:
-                memory[model.set_slot] = 1.0
+            if variable.slot in model.set_flags:
+                memory[model.set_flags[variable.slot]] = 1.0
         codes.append(advance(memory, step * STEP))
         total = fingerprint(total, memory[: len(model.variables)])
     if any(codes):

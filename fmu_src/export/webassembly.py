@@ -78,8 +78,8 @@ def slots(folder: str) -> dict[str, int]:
     """
     model = load_model(folder)
     found = {"SIZE": model.memory_size, "TIME": model.time_slot, "STOP": model.stop_slot}
-    cubic = model.polynomial
-    found |= {"SET": model.set_slot, "CUBIC": cubic.start, "CUBIC_END": cubic.stop}
+    cubic = model.set_flags
+    found |= {"SET": model.set_slot, "CUBIC": min(cubic), "CUBIC_END": max(cubic) + 1}
     for variable in model.variables:
         name, _, element = variable.name.partition("[")
         if element in ("", "1]"):

@@ -140,7 +140,7 @@ class Slave:
         self._stop_time = float("inf")  # of the experiment, not of the state
         self._warned = False  # of a step too short to advance the time
         self._stale = True  # outputs do not belong to the values set yet (initialisation mode)
-        self._polynomial = self.model.polynomial
+        self._set_flags = self.model.set_flags
         self._checked: dict[str, Any] = {REAL: None, INTEGER: None, BOOLEAN: None}
 
     def _choose_kernel(self, resources: str) -> None:
@@ -374,8 +374,8 @@ class Slave:
                 self.refuse(problem)
         for reference, value in zip(references, values):
             self._memory[reference] = float(value)
-            if reference in self._polynomial:
-                self._memory[self.model.set_slot] = 1.0
+            if reference in self._set_flags:
+                self._memory[self._set_flags[reference]] = 1.0
         self._stale = True
 
     def write_problem(self, variable: Variable, value: float) -> str:

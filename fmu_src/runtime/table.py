@@ -239,7 +239,7 @@ class Model:
         discarded, no error.
     time_slot, stop_slot, set_slot : int
         Slots of the communication point reached, of the flag that ends a step at its first event,
-        and of the flag to be raised when one of ``polynomial`` is set, to whatever value.
+        and of the first of the flags that tell of inputs set, see :attr:`set_flags`.
     initialize, advance : callable
         The kernel's entry points, ``(memory, time) -> code``; 0 is success.
     differentiate : callable
@@ -307,10 +307,16 @@ class Model:
         return self.rates[first] + variable.slot - first
 
     @property
-    def polynomial(self) -> range:
-        """Slots of the input that has derivatives, and of these."""
-        (value,) = (v for v in self.variables if v.input_derivatives)
-        return range(value.slot, value.slot + 1 + value.input_derivatives)
+    def set_flags(self) -> dict[int, int]:
+        """Slots of the flags to be raised when an input with derivatives, or one of these, is set,
+        to whatever value; by the input's slot.
+        """
+        values = [v for v in self.variables if v.input_derivatives]
+        return {
+            slot: self.set_slot + place
+            for place, value in enumerate(values)
+            for slot in range(value.slot, value.slot + 1 + value.input_derivatives)
+        }
 
     @property
     def entries(self) -> dict[str, Entry]:

@@ -41,11 +41,12 @@ from .events import NO_INPUT, EventInstance
 from .exported import FORMS, MODELS, PLAIN_FORMS, build, find, finder, sources_of, up_to_date
 from .impacts import STATE, Impacts
 from .instance import Instance, function_addresses
-from .models import OSCILLATOR, SHAKER
+from .models import ELECTRODYNAMIC_SHAKER, OSCILLATOR, SHAKER
 from .play import PLAYED, Player
 from .webassembly import build_web_kernels
 
 __all__ = [
+    "ELECTRODYNAMIC_SHAKER",
     "FORMS",
     "MODELS",
     "NO_INPUT",

@@ -1,4 +1,5 @@
-"""Names of the FMU models: ``TwoMassImpactOscillator`` and ``MotorShaker``."""
+"""Names of the FMU models."""
 
 OSCILLATOR = "TwoMassImpactOscillator"
 SHAKER = "MotorShaker"
+ELECTRODYNAMIC_SHAKER = "ElectrodynamicShaker"

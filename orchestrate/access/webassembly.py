@@ -16,9 +16,11 @@ from fmu_src.export.sources import model_sources
 from ..errors import InputError
 from ..files import made_once, open_folder, write_whole
 from .exported import SHIPPED, check, default_folder
+from .models import OSCILLATOR, SHAKER
 
 log = logging.getLogger(__name__)
 FORM = "wasm"
+WEB_MODELS = (OSCILLATOR, SHAKER)
 
 
 @dataclass(frozen=True)
@@ -70,11 +72,11 @@ def read_module(path: Path, guid: str) -> bytes:
 
 
 def build_web_kernels(folder: str | PathLike[str] | None = None) -> list[Path]:
-    """Compile all models' kernels to WebAssembly files in a folder; return the paths of those
-    made.
+    """Compile the kernels of the explorer's models to WebAssembly files in a folder; return the
+    paths of those made.
     """
     target, made = default_folder() if folder is None else Path(folder), []
-    for model in MODELS:
+    for model in WEB_MODELS:
         try:
             made.append(compile_module(model, target))
         except CannotExport as reason:

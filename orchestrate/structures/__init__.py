@@ -1,4 +1,4 @@
-"""Structure, excitation and motor drive as a user describes them, in SI or non-dimensional.
+"""Structure, excitation, motor and shaker as a user describes them, in SI or non-dimensional.
 
 ==================  ===============================================================================
 module              idea
@@ -6,6 +6,7 @@ module              idea
 :mod:`.structure`   two oscillators and their contact
 :mod:`.excitation`  the harmonic motion of the box
 :mod:`.drive`       a motor with an unbalance, and the box that it shakes
+:mod:`.shaker`      an electrodynamic shaker with its amplifier
 :mod:`.described`   that these can be read from a file
 :mod:`.ranges`      names, units, defaults and ranges, from the FMUs' variable tables
 :mod:`.files`       TOML files of these, and the sets that come with the package
@@ -17,6 +18,7 @@ module              idea
 from .drive import Drive
 from .excitation import Excitation
 from .files import SETS, read, resolve, write
+from .shaker import Shaker
 from .structure import PARAMETERS, Structure
 
 __all__ = [
@@ -24,6 +26,7 @@ __all__ = [
     "SETS",
     "Drive",
     "Excitation",
+    "Shaker",
     "Structure",
     "read",
     "resolve",

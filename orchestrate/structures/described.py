@@ -1,4 +1,4 @@
-"""Base class of Structure, Excitation and Drive: gives them ``from_file`` for TOML files."""
+"""Base class of what is described: gives it ``from_file`` for TOML files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Read and write TOML files of a structure, its excitation and drive; find shipped sets.
+"""Read and write TOML files of a structure, its excitation, drive or shaker; find shipped sets.
 
 ================  ================================================================================
 section           keys
@@ -17,6 +17,11 @@ section           keys
                   ``no_load_speed_rpm no_load_speed_rad_s no_load_speed_hz``: ``rotor_inertia`` is
                   then the rotor's alone, without the unbalance, or ``mechanical_time_constant``
                   (s) stands in place of it; or ``beta epsilon b``
+``[shaker]``      an electrodynamic shaker, SI: ``table_mass suspension_stiffness suspension_damping
+                  voltage_limit current_limit travel_limit``; or its data sheet's ``rated_force
+                  moving_mass suspension_resonance amplifier_power`` (N, kg, Hz, VA) and
+                  ``travel payload damping_ratio``; with both ``force_factor coil_resistance
+                  coil_inductance current_control``
 ``[box]``         ``box_mass box_stiffness box_damping``, SI; or ``Omega_b D_b``. What is not SI
                   refers to the structure.
 ================  ================================================================================
@@ -37,14 +42,26 @@ from ..files import read_text, write_whole
 from .described import Described
 from .drive import Drive
 from .excitation import Excitation
-from .ranges import DRIVE, STRUCTURE, expected_one_of
-from .sections import Section, check_masses, read_drive, read_excitation, read_structure
+from .ranges import DRIVE, SHAKER, STRUCTURE, expected_one_of
+from .sections import (
+    Section,
+    check_masses,
+    read_drive,
+    read_excitation,
+    read_shaker,
+    read_structure,
+)
+from .shaker import Shaker
 from .structure import Structure
 
 FOLDER = Path(__file__).parent / "sets"
 SETS = {name: FOLDER / f"{name}.toml" for name in ("paper", "quick", "beam", "rig")}
+SHAKERS = {  # sets of shakers alone
+    name: FOLDER.with_name("shakers") / f"{name}.toml"
+    for name in ("shaker_10N", "shaker_100N", "shaker_1kN")
+}
 MAX_BYTES = 1 << 16  # of a file: some twenty numbers and as many remarks as they need
-SECTIONS = ("structure", "excitation", "motor", "box")
+SECTIONS = ("structure", "excitation", "motor", "box", "shaker")
 
 
 def resolve(source: str | PathLike[str]) -> Path:
@@ -55,18 +72,22 @@ def resolve(source: str | PathLike[str]) -> Path:
     >>> resolve("beam").name
     'beam.toml'
     """
-    if str(source) in SETS:
-        return SETS[str(source)]
+    known = {**SETS, **SHAKERS}
+    if str(source) in known:
+        return known[str(source)]
     path = Path(source)
     if not path.is_file():
         what = "a folder" if path.is_dir() else "no such file"
-        expected = expected_one_of(str(source), SETS).replace("expected", "expected a TOML file or")
+        expected = expected_one_of(str(source), known).replace(
+            "expected", "expected a TOML file or"
+        )
         raise InputError(f"{source}: {what}; {expected}")
     return path
 
 
 def read(source: str | PathLike[str], structure: Structure | None = None) -> dict[str, Described]:
-    """Read a TOML file; return its structure, excitation and drive in a dict, those present.
+    """Read a TOML file; return its structure, excitation, drive and shaker in a dict, those
+    present.
 
     Examples
     --------
@@ -96,13 +117,15 @@ def read(source: str | PathLike[str], structure: Structure | None = None) -> dic
         if "structure" in sections:
             check_masses(sections["structure"], sections["motor"])
         contents["drive"] = read_drive(sections["motor"], sections["box"], structure)
+    if "shaker" in sections:
+        contents["shaker"] = read_shaker(sections["shaker"])
     return contents
 
 
 def read_section(
     source: str | PathLike[str], name: str, structure: Structure | None = None
 ) -> Described:
-    """Return a TOML file's ``structure``, ``excitation`` or ``drive``; raise if missing."""
+    """Return a TOML file's structure, excitation, drive or shaker; raise if missing."""
     contents = read(source, structure)
     if name not in contents:
         expected = "[motor] and [box]" if name == "drive" else f"[{name}]"
@@ -136,8 +159,9 @@ def write(
     structure: Structure | None = None,
     excitation: Excitation | None = None,
     drive: Drive | None = None,
+    shaker: Shaker | None = None,
 ) -> Path:
-    """Write structure, excitation and drive to a TOML file in SI, exact to the last bit."""
+    """Write structure, excitation, drive and shaker to a TOML file in SI, exact to the last bit."""
     tables: dict[str, Mapping[str, float | bool]] = {}
     if structure is not None:
         tables["structure"] = structure.parameters()
@@ -149,13 +173,15 @@ def write(
         values = drive.parameters()
         box = {name: values.pop(name) for name in list(values) if name.startswith("box_")}
         tables |= {"motor": values, "box": box}
+    if shaker is not None:
+        tables["shaker"] = shaker.parameters()
     text = "\n".join(toml_table(name, values) for name, values in tables.items())
     return write_whole(path, lambda place: place.write_text(text, encoding="utf-8"))
 
 
 def toml_table(name: str, values: Mapping[str, float | bool]) -> str:
     """Return one section as TOML text; each key has a comment with its meaning and unit."""
-    described = {**STRUCTURE, **DRIVE}
+    described = {**STRUCTURE, **DRIVE, **SHAKER}
     lines = [f"[{name}]"]
     for key, value in values.items():
         line = f"{key} = {str(value).lower() if isinstance(value, bool) else repr(value)}"

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from fmu_src.export.description_common import UNITS
+from fmu_src.models.electrodynamic_shaker import variables as electrodynamic_shaker
 from fmu_src.models.motor_shaker import variables as motor_shaker
 from fmu_src.models.oscillator import variables as oscillator
 
@@ -94,6 +95,15 @@ DRIVE = quantities_of(
     ),
 )
 
+SHAKER = quantities_of(
+    electrodynamic_shaker.VARIABLES,
+    (
+        *("table_mass", "suspension_stiffness", "suspension_damping"),
+        *("force_factor", "coil_resistance", "coil_inductance"),
+        *("voltage_limit", "current_limit", "travel_limit"),
+    ),
+)
+
 SMALLEST, LARGEST = STRUCTURE["m1"].minimum, STRUCTURE["m1"].maximum
 INPUTS = quantities_of(oscillator.VARIABLES, ("box_amplitude", "box_frequency", "phase_start"))
 EXCITATION = {
@@ -124,6 +134,18 @@ def non_negative_quantity(name: str, description: str) -> Quantity:
     return Quantity(name, "1", description, 0.0, LARGEST / 2.0)
 
 
+DATASHEET = {  # of an electrodynamic shaker
+    quantity.name: quantity
+    for quantity in (
+        Quantity("rated_force", "N", "Peak of a sine", SMALLEST, LARGEST),
+        Quantity("moving_mass", "kg", "Of the bare table with its coil", SMALLEST, LARGEST),
+        Quantity("suspension_resonance", "Hz", "Of the bare table", SMALLEST, LARGEST),
+        Quantity("amplifier_power", "VA", "Of a sine", SMALLEST, LARGEST),
+        Quantity("travel", "m", "Peak to peak; 0: no stops", 0.0, LARGEST),
+        Quantity("payload", "kg", "What is fixed to the table", 0.0, LARGEST),
+        non_negative_quantity("damping_ratio", "Of the bare table with its coil open"),
+    )
+}
 RATIO_QUANTITIES = {
     quantity.name: quantity
     for quantity in (

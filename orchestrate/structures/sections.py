@@ -13,17 +13,20 @@ from ..errors import InputError
 from .drive import Drive
 from .excitation import Excitation
 from .ranges import (
+    DATASHEET,
     DRIVE,
     EXCITATION,
     LARGEST,
     MECHANICS,
     RATIO_QUANTITIES,
+    SHAKER,
     SMALLEST,
     STRUCTURE,
     Quantity,
     check_flag,
     expected_one_of,
 )
+from .shaker import Shaker
 from .structure import Structure
 
 TO_RAD_S: dict[str, Callable[[float], float]] = {
@@ -47,7 +50,10 @@ TORQUE_LINE_KEYS = (
 SPEEDS = tuple(f"no_load_speed_{unit}" for unit in TO_RAD_S)
 DATASHEET_KEYS = ("rated_voltage", "stall_torque", *SPEEDS, "mechanical_time_constant")
 MOTOR_NUMBERS, BOX_NUMBERS = ("beta", "epsilon", "b"), ("Omega_b", "D_b")
+SHAKER_COMMON = ("force_factor", "coil_resistance", "coil_inductance")
+SHAKER_SI = tuple(name for name in SHAKER if name not in SHAKER_COMMON)
 QUANTITIES = {
+    **{q.name: q for q in (*SHAKER.values(), *DATASHEET.values())},
     **{q.name: q for q in (*STRUCTURE.values(), *EXCITATION.values(), *DRIVE.values())},
     **RATIO_QUANTITIES,
     **{
@@ -128,6 +134,13 @@ class Section:
         except InputError as error:
             raise InputError(f"{self.path}: {self.name}.{error}") from None
 
+    def flag(self, key: str) -> bool:
+        """Return a key's value as True or False; raise ``InputError`` if it is neither."""
+        try:
+            return check_flag(key, self.values[key])
+        except InputError as error:
+            raise InputError(f"{self.path}: {self.name}.{error}") from None
+
     def numbers(self, keys: Collection[str]) -> dict[str, float]:
         """Return a dict of checked floats for those of the given keys that the section has."""
         return {key: self.number(key) for key in self.present(keys)}
@@ -150,10 +163,7 @@ def read_structure(section: Section) -> Structure:
     section.allow(*COMMON_KEYS, *MECHANICS, *HALVES, *RATIOS)
     values: dict[str, Any] = section.numbers(COMMON_NUMBERS)
     if "bonded" in section.values:
-        try:
-            values["bonded"] = check_flag("bonded", section.values["bonded"])
-        except InputError as error:
-            raise InputError(f"{section.path}: {section.name}.{error}") from None
+        values["bonded"] = section.flag("bonded")
     if section.present(HALVES):
         section.uses_second_form(HALVES, (*MECHANICS[2:], *RATIOS))
         section.need(("m1", "m2", *HALVES))
@@ -211,6 +221,20 @@ def read_drive(motor: Section, box: Section, structure: Structure | None) -> Dri
         raise motor.error("beta", "it refers to a structure; expected a section [structure]")
     numbers = {**motor.numbers(MOTOR_NUMBERS), **box.numbers(BOX_NUMBERS)}
     return motor.make(lambda: Drive.nondimensional(**numbers, structure=structure))
+
+
+def read_shaker(section: Section) -> Shaker:
+    """Return the ``Shaker`` that a section ``[shaker]`` describes, in SI or by its data sheet."""
+    section.allow(*SHAKER_SI, *SHAKER_COMMON, "current_control", *DATASHEET)
+    values: dict[str, Any] = section.numbers((*SHAKER_SI, *SHAKER_COMMON, *DATASHEET))
+    if "current_control" in section.values:
+        values |= {"current_control": section.flag("current_control")}
+    section.need(("force_factor", "coil_resistance"))
+    if section.uses_second_form(SHAKER_SI, DATASHEET):
+        section.need(("rated_force", "moving_mass", "suspension_resonance", "amplifier_power"))
+        return section.make(lambda: Shaker.from_datasheet(**values))
+    section.need(("table_mass", "suspension_stiffness", "suspension_damping"))
+    return section.make(lambda: Shaker(**values))
 
 
 def check_masses(structure: Section, motor: Section) -> None:

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from fmu_src.export import forms
 from fmu_src.export.errors import CannotExport
 from fmu_src.export.sources import load_model
 from fmu_src.export.translation.kernel import translate
@@ -155,7 +156,7 @@ def test_what_would_be_evaluated_too_early_is_refused(tmp_path):
         translate({"entry": module_of(tmp_path, body).entry})
 
 
-@pytest.mark.parametrize("folder", ["oscillator", "motor_shaker"])
+@pytest.mark.parametrize("folder", forms.MODELS.values())
 def test_kernels_compile_without_a_warning(tmp_path, folder):
     """As C99, and by what they say need nothing but sqrt and fabs of the C library."""
     if CC is None:

@@ -26,12 +26,13 @@ def archive(request):
         yield opened
 
 
-def test_terminals_of_both_models_fit_together(exported):
+@pytest.mark.parametrize("drive", ["MotorShaker", "ElectrodynamicShaker"])
+def test_terminals_of_both_models_fit_together(exported, drive):
     """Members of the same name: an output here, an input of the same unit there. The structure has
     more, which FMI's matching rule "bus" allows: what another drive may have.
     """
     sides = []
-    for name in ("TwoMassImpactOscillator", "MotorShaker"):
+    for name in ("TwoMassImpactOscillator", drive):
         path = exported / "fmi3" / f"{name}.fmu"
         found = {v.name: v for v in fmpy.read_model_description(str(path)).modelVariables}
         with zipfile.ZipFile(path) as opened:

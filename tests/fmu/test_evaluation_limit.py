@@ -4,7 +4,7 @@ import pytest
 
 from .driver import BUILD, FORMS, run
 
-MODELS = ("TwoMassImpactOscillator", "MotorShaker")
+MODELS = ("TwoMassImpactOscillator", "MotorShaker", "ElectrodynamicShaker")
 DISCARD = 2
 forms = pytest.mark.parametrize("form", FORMS)
 models = pytest.mark.parametrize("model", MODELS)
@@ -26,11 +26,12 @@ def test_a_step_that_reaches_its_limit_is_discarded_and_changes_nothing(form, mo
 
 
 @forms
-def test_a_run_of_divided_steps_comes_to_the_same_bits(form, tmp_path):
-    """Through chattering: whatever was discarded has left no trace."""
-    path = BUILD / form / "TwoMassImpactOscillator.fmu"
+@pytest.mark.parametrize("model", ["TwoMassImpactOscillator", "ElectrodynamicShaker"])
+def test_a_run_of_divided_steps_comes_to_the_same_bits(form, model, tmp_path):
+    """Through chattering, or limits: whatever was discarded has left no trace."""
+    path = BUILD / form / f"{model}.fmu"
     limited, discarded, most, free = run(
-        "evaluation_limit.divided_steps", path, "TwoMassImpactOscillator", 9, cwd=tmp_path
+        "evaluation_limit.divided_steps", path, model, 9, cwd=tmp_path
     )
     assert discarded > 10 and 0 < most < 9
     assert limited == free

@@ -5,6 +5,8 @@ import numpy as np
 import pytest
 from fmpy import fmi2
 
+from fmu_src.export import forms
+
 from .driver import run
 
 
@@ -35,7 +37,7 @@ def test_the_motor_turns_in_a_default_run(exported, form):
     assert np.ptp(result["box_position"]) > 1e-5
 
 
-@pytest.mark.parametrize("name", ["TwoMassImpactOscillator", "MotorShaker"])
+@pytest.mark.parametrize("name", forms.MODELS)
 def test_a_message_needs_no_arguments(exported, tmp_path, name):
     """Importers that show the format as it is, and those that fill it in, show the same text."""
     path = exported / "fmi2" / f"{name}.fmu"

@@ -5,6 +5,7 @@ No forged state hangs, hands out what is no number, or has a derived constant re
 
 import pytest
 
+from fmu_src.kernels.electrodynamic_shaker import memory as coil
 from fmu_src.kernels.oscillator import memory as oscillator
 from fmu_src.kernels.shaker import memory as shaker
 
@@ -21,6 +22,11 @@ OSCILLATOR = [  # flight and contact, chattering with its short flights, a cubic
     ({**DRIVE, "clearance": 0.2}, 0.0, [0.0, 3.3, 17.9]),
 ]
 SHAKER = [({}, 0.0, [0.0, 0.02]), ({"armature_inductance": 0.01}, 3.0, [3.05])]
+COIL = [  # free, held and clipped; voltage and current control
+    ({"command": 3.0, "box_force_1": 5.0}, 0.0, [0.0, 0.3]),
+    ({"command": 9.0, "coil_inductance": 0.02, "current_limit": 1.0}, -3.0, [-2.9, -2.0]),
+    ({"command_1": 9.0, "voltage_limit": 5.0, "current_control": True}, 0.0, [0.2, 1.0]),
+]
 # variables that somebody may set are not forged into what they may be: the head, outputs, the rest
 SLOTS = {
     "TwoMassImpactOscillator": [
@@ -30,12 +36,22 @@ SLOTS = {
         (oscillator.TIME, oscillator.SIZE),
     ],
     "MotorShaker": [(-3, 0), (shaker.BOX_POSITION, shaker.SIZE)],
+    "ElectrodynamicShaker": [
+        (-3, 0),
+        (coil.BOX_POSITION, coil.SPEED_SERIES + 2),
+        (coil.EVENT, coil.SIZE),
+    ],
 }
 DERIVED = {
     "TwoMassImpactOscillator": (oscillator.OMEGA, oscillator.SEGMENT_INPUTS),
     "MotorShaker": (shaker.UNBALANCE, shaker.UNBALANCE + 1),
+    "ElectrodynamicShaker": (coil.VOLTAGE_SPACING, coil.BEGIN),
 }
-RUNS = {"TwoMassImpactOscillator": OSCILLATOR, "MotorShaker": SHAKER}
+RUNS = {
+    "TwoMassImpactOscillator": OSCILLATOR,
+    "MotorShaker": SHAKER,
+    "ElectrodynamicShaker": COIL,
+}
 
 
 def campaign(form, model, share, seed, cwd):

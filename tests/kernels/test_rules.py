@@ -15,7 +15,7 @@ PARSED = [ast.parse(path.read_text("utf-8"), feature_version=(3, 9)) for path in
 TREES = pytest.mark.parametrize(
     "tree", PARSED, ids=[f"{path.parent.name}-{path.stem}" for path in SOURCES]
 )
-SHARED = {"numerics.elementary", "numerics.slots"}
+SHARED = {"numerics.elementary", "numerics.first_root", "numerics.slots"}
 EXACT = {"sqrt", "floor"}  # what IEEE 754 fixes to the last bit
 CALLABLE = {"abs", "min", "max", "range", "float", "int"}
 FORBIDDEN = (

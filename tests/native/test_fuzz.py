@@ -1,4 +1,4 @@
-"""Both models under calls drawn at random, in every build that watches memory; and how much of the
+"""All models under calls drawn at random, in every build that watches memory; and how much of the
 shim all hostile tests together reach.
 """
 
@@ -43,10 +43,6 @@ def importer_of_model(request, exported, fmus, tmp_path_factory):
     return importers.Importer(program, importers.unpack_binary(path, version, folder), version)
 
 
-def is_shaker(importer):
-    return importer.library.stem == "MotorShaker"
-
-
 def seeds(version):
     """Inputs that the fuzzer has found to take different ways, in hexadecimal digits."""
     return (HERE / "corpus" / f"{version}.txt").read_text().split()
@@ -67,9 +63,9 @@ def test_what_the_fuzzer_found_is_survived(importer_of_model, every):
     assert f"PLAYED {len(lines)}\n" in done.stdout and " FAILURES 0" in done.stdout
 
 
-def test_the_motor_in_many_instances_threads_and_steps(importer_of_model):
+def test_a_drive_in_many_instances_threads_and_steps(importer_of_model):
     """What the oscillator is put through elsewhere; hostile calls and forged states."""
-    if not is_shaker(importer_of_model):
+    if importer_of_model.library.stem == "TwoMassImpactOscillator":
         pytest.skip("in test_importers")
     done = importer_of_model.run("hostile")
     assert int(re.search(r"CHECKS (\d+) FAILURES 0", done.stdout).group(1)) > 30_000
@@ -114,7 +110,7 @@ def test_no_error_with_sanitizers_in_the_shim(exported, fmus, tmp_path, version,
 @pytest.mark.skipif(shutil.which("gcov") is None, reason="gcov is not installed")
 @pytest.mark.parametrize("version", VERSIONS)
 def test_the_hostile_tests_reach_the_whole_shim(exported, fmus, tmp_path, version):
-    """More than 95 % of lines and of branches taken, both models together; the rest is printed."""
+    """More than 95 % of lines and of branches taken, all models together; the rest is printed."""
     lines, branches, left = {}, {}, []
     for model in MODELS:
         folder = tmp_path / model

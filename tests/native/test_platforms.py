@@ -36,6 +36,12 @@ FOLDERS = {
 }
 RUNS = {  # outputs, inputs, and one output that shows that something went on
     "TwoMassImpactOscillator": (COMMON, harmonic(1.13), "impact_count", 500),
+    "ElectrodynamicShaker": (
+        ["box_position", "current", "energy"],
+        {"command": 5.0},
+        "energy",
+        1e5,
+    ),
     "MotorShaker": (["box_position", "speed", "angle"], {"voltage": 5.0}, "angle", 1e5),
 }
 CODE_SIGNATURE, ID_DYLIB, LOAD_COMMANDS = 0x1D, 0xD, 32  # of a Mach-O file: where they begin

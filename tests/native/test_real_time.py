@@ -13,7 +13,7 @@ from .slave import slave
 
 HERE = Path(__file__).parent
 MANUAL = HERE.parents[1] / "docs" / "real_time.md"
-MODELS = ("TwoMassImpactOscillator", "MotorShaker")
+MODELS = ("TwoMassImpactOscillator", "MotorShaker", "ElectrodynamicShaker")
 VERSIONS = ("fmi2", "fmi3")
 WARNINGS = ("-std=c99", "-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Wvla", "-Werror")
 # what C's library has to have: nothing of it is a file, a lock or a clock

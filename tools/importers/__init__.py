@@ -17,12 +17,17 @@ from fmu_src.export.compiler import kernel_object
 from fmu_src.export.model_header import model_header
 from fmu_src.export.platforms import this_machine
 from fmu_src.export.source_code import kernel_source
+from fmu_src.kernels.electrodynamic_shaker import memory as coil
 from fmu_src.kernels.shaker import memory as shaker
 from orchestrate.access import describe
 
 HERE = Path(__file__).parent
 TYPES = {"Real": "R", "Float64": "R", "Integer": "I", "Int32": "I", "Boolean": "B"}
 FOLDERS = {"fmi2": ("linux64", "win64"), "fmi3": ("x86_64-linux", "x86_64-windows")}
+ROLES = {  # macro of a model that is not the oscillator, first and count of what a step only writes
+    "MotorShaker": ("MOTOR_SHAKER", shaker.RATES, shaker.STATE - shaker.RATES),
+    "ElectrodynamicShaker": ("ELECTRODYNAMIC_SHAKER", coil.GUARD, coil.TERMS),
+}
 SANITIZE = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-omit-frame-pointer")
 WARNINGS = ("-std=gnu11", "-Wall", "-Wextra", "-Werror", "-Wno-unused-function")
 
@@ -88,10 +93,9 @@ def names_header(fmu: Path) -> str:
         f"#define TIME_REFERENCE {time}u",
         f"#define FMI_VERSION {description.fmi_version[0]}",
     ]
-    is_shaker = description.name == "MotorShaker"
-    defines += ["#define MOTOR_SHAKER"] * is_shaker
-    first, end = (shaker.RATES, shaker.STATE) if is_shaker else (0, 0)
-    defines += [f"#define SCRATCH_FIRST {first}", f"#define SCRATCH_COUNT {end - first}"]
+    macro, first, count = ROLES.get(description.name, ("OSCILLATOR", 0, 0))
+    defines += [f"#define {macro}"]
+    defines += [f"#define SCRATCH_FIRST {first}", f"#define SCRATCH_COUNT {count}"]
     return "\n".join([*defines, "static const Name NAMES[] = {", *rows, "};", ""])
 
 

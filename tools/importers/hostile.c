@@ -168,6 +168,7 @@ static void bad_start(void) {
     double x;
     Integer whole, order = 1;
     Boolean truth;
+    IS_OK(set_reals(c, reference(BAD_START.fixed), 1, &BAD_START.value));
     IS_OK(set_reals(c, reference(BAD_START.name), 1, &BAD_START.bad));
     messages = 0;
     CHECK(fmi.ExitInitializationMode(c) == FMI_ERROR && messages == 1); SAYS(BAD_START.says);

@@ -7,9 +7,11 @@
 #include <pthread.h>
 #endif
 
-/* The sixth grows as long as something goes on: impacts, or the angle of the rotor. */
+/* The sixth grows as long as something goes on: impacts, the angle of the rotor, or the amplifier's work. */
 #ifdef MOTOR_SHAKER
 static const char *const OUTPUTS[] = {"box_position", "box_velocity", "speed", "motor_power", "motor_energy", "angle", "box_jerk", "stored_energy"};
+#elif defined(ELECTRODYNAMIC_SHAKER)
+static const char *const OUTPUTS[] = {"box_position", "box_velocity", "current", "voltage", "power", "energy", "box_jerk", "stored_energy"};
 #else
 static const char *const OUTPUTS[] = {"x1", "x2", "v1", "v2", "phase", "impact_count", "impact_time", "impact_energy"};
 #endif
@@ -21,11 +23,14 @@ static void outputs(void *instance, double values[OUTPUT_COUNT]) {
     for (size_t i = 0; i < OUTPUT_COUNT; i++) values[i] = fmu_get(instance, named(OUTPUTS[i]));
 }
 
-/* Harmonic drive of the paper: box_amplitude = 1/eta^2. Chaotic motion for eta around 1.1. Or a motor, at a voltage that differs too. */
+/* Harmonic drive of the paper: box_amplitude = 1/eta^2. Chaotic motion for eta around 1.1. Or a motor or an amplifier, at a voltage that differs too. */
 static void *driven(double eta) {
     void *instance = fmu_open("driven");
 #ifdef MOTOR_SHAKER
     fmu_set(instance, "voltage", 4.0 * eta);
+    return instance;
+#elif defined(ELECTRODYNAMIC_SHAKER)
+    fmu_set(instance, "command", 4.0 * eta);
     return instance;
 #endif
     fmu_set(instance, "box_amplitude", 1.0 / (eta * eta));

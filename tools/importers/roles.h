@@ -1,4 +1,4 @@
-/* The variables that hostile calls need, by what they are for, so that both models go through the same calls. NULL: the model has none. */
+/* The variables that hostile calls need, by what they are for, so that all models go through the same calls. NULL: the model has none. */
 #ifndef ROLES_H
 #define ROLES_H
 
@@ -13,6 +13,19 @@
 #define SMOOTH_INPUT "box_force"
 #define FIXED "motor_constant"
 #define FIXED_BOOLEAN NULL
+#define TUNABLE NULL
+#define COUNT NULL
+#define ARRAYS NULL
+#define TICKS NULL
+#elif defined(ELECTRODYNAMIC_SHAKER)
+#define OUTPUT "box_position"
+#define OUTPUT_RATE "box_velocity"
+#define INTEGER_OUTPUT NULL
+#define BOOLEAN_OUTPUT "limited"
+#define INPUT "command"
+#define SMOOTH_INPUT "box_force"
+#define FIXED "force_factor"
+#define FIXED_BOOLEAN "current_control"
 #define TUNABLE NULL
 #define COUNT NULL
 #define ARRAYS NULL
@@ -33,16 +46,22 @@
 #endif
 
 /* A start that cannot be: with the first value the instance does not initialize and gives no output, with the second it does. */
-typedef struct { const char *name; double bad, good; const char *says; } BadStart;
+typedef struct { const char *fixed; double value; const char *name; double bad, good; const char *says; } BadStart;
 
 /* A step that cannot be calculated: an input's value, and one with which the motion goes on. */
 typedef struct { const char *fixed; double value; const char *input; double bad, good, size; const char *says, *also; } BadStep;
 
 #ifdef MOTOR_SHAKER
-static const BadStart BAD_START = {"unbalance_mass", 1e3, 0.025, "rotor_inertia"};
+static const BadStart BAD_START = {"box_mass", 5.5, "unbalance_mass", 1e3, 0.025, "rotor_inertia"};
 static const BadStep BAD_STEPS[] = {{"motor_constant", 0.06, "voltage", 1e30, 4.0, 1.0, "voltage = 1e+30 V", "expected"}};
+#elif defined(ELECTRODYNAMIC_SHAKER)
+static const BadStart BAD_START = {"travel_limit", 1.0, "position_start", 2.0, 0.0, "position_start"};
+static const BadStep BAD_STEPS[] = {
+    {"travel_limit", 0.01, "command", 1e3, 0.0, 1.0, "travel_limit = 0.01 m", "box_position = "},
+    {"coil_inductance", 0.015625, "command", 1.0, 0.0, 1e9, "cannot finish", "reached 20.0 s"},
+};
 #else
-static const BadStart BAD_START = {"x1_start", 1.0, -1.0, "x2_start"}; /* beyond x2_start */
+static const BadStart BAD_START = {"m1", 1.0, "x1_start", 1.0, -1.0, "x2_start"}; /* beyond x2_start */
 static const BadStep BAD_STEPS[] = {
     {"d2", 0.0, "box_frequency", 1e9, 0.5, 1.0, "cannot finish", "time = 21.0 s"}, /* some hundred million nodes */
     {"bonded", 1.0, "box_crackle", 1e100, 0.0, 1e90, "box_acceleration = 0.0 m/s2", ""},

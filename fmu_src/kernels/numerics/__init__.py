@@ -1,1 +1,1 @@
-"""What the kernels share: elementary functions with the same bits on every machine."""
+"""What the kernels share: elementary functions with the same bits on every machine, first roots."""

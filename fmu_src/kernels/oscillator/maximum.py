@@ -3,18 +3,11 @@
 From summit to summit, with the certified steps of the root finder.
 """
 
+from ..numerics.first_root import EPS, LEAST_BOUND, clear_step, parabola_root
 from . import memory as at
 from .event_function import AHEAD, envelope, evaluate
 from .hermite import has_summit, interval_is_below
-from .roots import (
-    EPS,
-    LEAST_BOUND,
-    clear_from_node,
-    clear_step,
-    cross_clear_intervals,
-    parabola_root,
-    step_inside_interval,
-)
+from .roots import clear_from_node, cross_clear_intervals, step_inside_interval
 from .series import taylor_value
 
 # least progress, of a spacing: a summit is flat, nothing is lost; it grows from step to step, so
@@ -73,8 +66,8 @@ def step_to_summit(h1, h2, h3, h4, bound, reach):
 
 
 def scaled_clear_step(h0, h1, h2, h3, h4, bound, reach):
-    """Return :func:`.roots.clear_step` in units of the bound, or of ``-h4`` without one: scaled
-    amplitudes take the same steps.
+    """Return :func:`..numerics.first_root.clear_step` in units of the bound, or of ``-h4`` without
+    one: scaled amplitudes take the same steps.
     """
     unit = bound if bound > 0.0 else -h4
     scale = 1.0 / unit if unit > LEAST_BOUND else 1.0

@@ -12,6 +12,7 @@ digits.
 """
 
 from ..numerics.elementary import fraction, sincos_turns
+from ..numerics.first_root import INFINITE, clear_step_or_root
 from . import memory as at
 from .contact import first_nonzero_derivative, gap_acceleration
 from .event_function import (
@@ -33,7 +34,7 @@ from .impact import (
 )
 from .nodes import BLOCK, phasors_at
 from .response import displacement, set_free
-from .roots import INFINITE, clear_from_node, clear_step_or_root, root_accuracy
+from .roots import clear_from_node, root_accuracy
 from .series import required_order, set_series, short_flight_duration, taylor_value
 
 BRIEF = 1e-6  # of a radian of the fastest change: four terms of a Taylor series are exact

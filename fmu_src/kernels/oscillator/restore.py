@@ -8,6 +8,7 @@ that runs.
 """
 
 from ..numerics.elementary import sincos_turns
+from ..numerics.first_root import INFINITE
 from . import memory as at
 from .contact import first_nonzero_derivative
 from .event_function import evaluate, event_rounding, is_constant, set_node_values
@@ -15,7 +16,6 @@ from .excitation import begin_cubic, begin_segment
 from .motion import begin_common, begin_flight, set_phase
 from .nodes import BLOCK, LONGEST, seek_interval
 from .parameters import derive
-from .roots import INFINITE
 from .secular import clear_secular
 from .series import set_series, short_flight_duration
 

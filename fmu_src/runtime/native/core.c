@@ -367,7 +367,7 @@ Status may_set(Instance *instance, const char *call, const Variable *variable, d
 void set(Instance *instance, unsigned reference, double value) {
     State *state = &instance->state;
     state->memory[reference] = value;
-    if (VARIABLES[reference].polynomial) state->memory[SET_SLOT] = 1.0;
+    if (VARIABLES[reference].set_flag) state->memory[VARIABLES[reference].set_flag] = 1.0;
     state->stale = true;
 }
 

@@ -21,7 +21,7 @@ bool has_right_bits(double *memory) {
         for (unsigned i = 0; step == SELF_TEST_STEPS / 2 && i < VARIABLE_COUNT; i++) {
             const Variable *variable = &VARIABLES[i];
             if (variable->type == REAL && !variable->calculated && !variable->fixed) memory[i] += SELF_TEST_CHANGE;
-            if (variable->polynomial) memory[SET_SLOT] = 1.0;
+            if (variable->set_flag) memory[variable->set_flag] = 1.0;
         }
         if (kernel_advance(memory, step * SELF_TEST_STEP)) return false;
         sum = fingerprint(sum, memory);

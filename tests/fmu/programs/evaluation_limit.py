@@ -5,6 +5,10 @@ from driver import DISCARD, Refused, harmonic, open_fmu
 DRIVES = {
     "TwoMassImpactOscillator": (harmonic(0.3), 40.0),
     "MotorShaker": ({"voltage": 6.0, "speed_start": 40.0}, 0.4),
+    "ElectrodynamicShaker": (
+        {"command": 9.0, "command_1": -4.0, "coil_inductance": 0.02, "current_limit": 1.0},
+        4.0,
+    ),
 }
 PER_STEP = ("evaluations", "box_impulse", "box_impulse_moment", "x_rel_max")
 

@@ -5,16 +5,23 @@ from dataclasses import replace
 
 import pytest
 
+from fmu_src.kernels.electrodynamic_shaker import memory as coil
 from fmu_src.kernels.numerics import slots
 from fmu_src.kernels.oscillator import memory as oscillator
 from fmu_src.kernels.shaker import memory as shaker
+from fmu_src.models.electrodynamic_shaker import variables as coil_table
+from fmu_src.models.electrodynamic_shaker.model import MODEL as COIL
 from fmu_src.models.motor_shaker import variables as motor_shaker_table
 from fmu_src.models.motor_shaker.model import MODEL as SHAKER
 from fmu_src.models.oscillator import variables as oscillator_table
 from fmu_src.models.oscillator.model import MODEL as OSCILLATOR
 from fmu_src.runtime.table import numbered, with_slots
 
-MODELS = [(oscillator, oscillator_table.VARIABLES), (shaker, motor_shaker_table.VARIABLES)]
+MODELS = [
+    (oscillator, oscillator_table.VARIABLES),
+    (shaker, motor_shaker_table.VARIABLES),
+    (coil, coil_table.VARIABLES),
+]
 PROMISED = {  # given out before: saved states and other people's scripts rely on them
     **{"m1": 0, "e": 6, "box_amplitude": 15, "x1": 21, "x_rel_max": 40, "sample_count": 42},
     **{"x1_sample[1]": 43, "x2_sample[1]": 243, "v1_sample[1]": 443, "v2_sample[200]": 842},
@@ -36,12 +43,12 @@ def test_value_references_are_places_in_the_table_and_slots(memory, variables):
             assert getattr(memory, variable.name.upper()) == variable.slot
 
 
-@pytest.mark.parametrize("model", [OSCILLATOR, SHAKER], ids=lambda model: model.name)
+@pytest.mark.parametrize("model", [OSCILLATOR, SHAKER, COIL], ids=lambda model: model.name)
 def test_a_continuous_output_anywhere_in_the_table_has_a_rate_of_its_own(model):
     """Whichever variable became one, also behind all that there are: its rate lies among the rates,
     and in nobody else's slot.
     """
-    memory = oscillator if model is OSCILLATOR else shaker
+    memory = {OSCILLATOR: oscillator, SHAKER: shaker, COIL: coil}[model]
     first = next(v.slot for v in model.variables if v.causality == "output")
     could_be = [v for v in model.variables[first:] if not v.series]
     could_be = [replace(v, causality="output", variability="continuous") for v in could_be]
@@ -78,5 +85,5 @@ def test_no_slot_lies_in_another():
     assert oscillator.RATES + outputs == oscillator.ADDED_RATES
     added = oscillator.TIME - oscillator.EVALUATIONS
     assert oscillator.ADDED_RATES + added == oscillator.CUBIC_SET == oscillator.SIZE - 1
-    outputs = shaker.TIME - shaker.BOX_POSITION
-    assert shaker.OUTPUT_RATES + outputs == shaker.SIZE
+    for drive in (shaker, coil):
+        assert drive.OUTPUT_RATES + drive.TIME - drive.BOX_POSITION == drive.SIZE

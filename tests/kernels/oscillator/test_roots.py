@@ -10,15 +10,15 @@ import pytest
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
-from fmu_src.kernels.oscillator import memory as at
-from fmu_src.kernels.oscillator.event_function import evaluate
-from fmu_src.kernels.oscillator.roots import (
+from fmu_src.kernels.numerics.first_root import (
     clear_step,
     lowest_curvature,
     parabola_root,
     taylor_root,
-    walk,
 )
+from fmu_src.kernels.oscillator import memory as at
+from fmu_src.kernels.oscillator.event_function import evaluate
+from fmu_src.kernels.oscillator.roots import walk
 from tools import exact_motion as truth
 
 from .kernel import (

@@ -1,0 +1,124 @@
+"""Which limits act: the commanded quantity is clipped, the other one is held at its limit.
+
+A voltage amplifier clips its command at the voltage limit; where the current then would exceed its
+own limit, it is held there, by whatever voltage that takes. A current amplifier clips its command
+at the current limit; where the current then would take more than the voltage limit, the voltage is
+held there, and the current is what it makes of it. Held is what the source would drive beyond the
+limit: it is decided by the first term that does not vanish of the *balance*, the source minus what
+holding takes. Its terms are those of a prescribed current in both cases.
+"""
+
+from . import memory as at
+from .inputs import write_inputs, write_source
+from .series import copy_source, write_constant, write_prescribed_motion
+
+SAME = 1e-12  # relative: a current so near to a new command has no way to go
+
+
+def decide_limits(m):
+    """Decide which limits act from the present state's beginning on."""
+    h = m[at.CURRENT_SPACING]
+    m[at.CLIPPED] = 0.0
+    write_inputs(m, h)
+    clip_command(m)
+    write_source(m)
+    m[at.HELD] = 0.0
+    m[at.OTHER_SIDE] = 1.0
+    m[at.OTHER_ORDER] = 0.0
+    if m[at.CURRENT_CONTROL] != 0.0:
+        follow_command(m, h)
+    elif m[at.OTHER_LIMIT] > 0.0:
+        limit_current(m, h)
+
+
+def leading_term(m, series, terms, lowest):
+    """Return the number of the first term from ``lowest`` on that is not zero; ``terms`` if there
+    is none.
+    """
+    order = lowest
+    while order < terms and m[series + order] == 0.0:
+        order += 1
+    return order
+
+
+def clip_command(m):
+    """Decide whether the command is clipped."""
+    limit = m[at.COMMAND_LIMIT]
+    side = 1.0 if m[at.COMMAND_SERIES] >= 0.0 else -1.0
+    m[at.COMMAND_SIDE] = side
+    m[at.COMMAND_ORDER] = 0.0
+    if limit == 0.0:
+        return
+    write_guard(m, at.COMMAND_SERIES, at.CUBIC, side, -limit)
+    order = leading_term(m, at.GUARD, at.TERMS, int(m[at.COMMAND_LOWEST]))
+    m[at.COMMAND_ORDER] = order
+    if order < at.TERMS and m[at.GUARD + order] > 0.0:
+        m[at.CLIPPED] = side
+
+
+def write_guard(m, series, terms, factor, constant):
+    """Write ``factor`` times a series, plus a constant, into GUARD."""
+    for k in range(at.TERMS):
+        m[at.GUARD + k] = factor * m[series + k] if k < terms else 0.0
+    m[at.GUARD] += constant
+
+
+def limit_current(m, h):
+    """Decide whether the current of a voltage amplifier is held at its limit."""
+    limit, lags = m[at.OTHER_LIMIT], m[at.COIL_INDUCTANCE] > 0.0
+    current = m[at.STATE + at.AMPERES]
+    if not lags:
+        induced = m[at.FORCE_FACTOR] * m[at.STATE + at.SPEED]
+        current = (m[at.SOURCE_SERIES] - induced) / m[at.COIL_RESISTANCE]
+    side = 1.0 if current >= 0.0 else -1.0
+    m[at.OTHER_SIDE] = side
+    if lags and side * current < limit:
+        return
+    m[at.STATE + at.AMPERES] = side * limit
+    write_constant(m, at.AMPERE_SERIES, side * limit)
+    write_prescribed_motion(m, h)
+    write_guard(m, at.VOLT_SERIES, at.TERMS, -side, 0.0)
+    for k in range(at.CUBIC):
+        m[at.GUARD + k] += side * m[at.SOURCE_SERIES + k]
+    decide_held(m, side, lags)
+
+
+def follow_command(m, h):
+    """Decide whether the voltage of a current amplifier is held at its limit.
+
+    A current that is not the command's is on its way there; without a voltage limit it jumps.
+    """
+    limit, lags = m[at.OTHER_LIMIT], m[at.COIL_INDUCTANCE] > 0.0
+    current, source = m[at.STATE + at.AMPERES], m[at.SOURCE_SERIES]
+    if lags and m[at.FOLLOWED] == 0.0:
+        gap = source - current
+        if limit > 0.0 and abs(gap) > SAME * (abs(source) + abs(current)):
+            m[at.OTHER_SIDE] = 1.0 if gap > 0.0 else -1.0
+            m[at.HELD] = m[at.OTHER_SIDE]
+            return
+        m[at.STATE + at.INPUT_WORK] += 0.5 * m[at.COIL_INDUCTANCE] * gap * (source + current)
+    m[at.STATE + at.AMPERES] = source
+    if limit == 0.0:
+        return
+    copy_source(m, at.AMPERE_SERIES)
+    write_prescribed_motion(m, h)
+    side = 1.0 if m[at.VOLT_SERIES] >= 0.0 else -1.0
+    m[at.OTHER_SIDE] = side
+    write_guard(m, at.VOLT_SERIES, at.TERMS, side, -limit)
+    decide_held(m, side, lags)
+
+
+def decide_held(m, side, lags):
+    """Decide by the balance in GUARD whether the other quantity is held.
+
+    The guard of what is decided begins with as many zeros as the balance; where it is one of a
+    current that follows by its inductance, with one more.
+    """
+    order = leading_term(m, at.GUARD, at.TERMS, int(m[at.OTHER_LOWEST]))
+    held = order < at.TERMS and m[at.GUARD + order] > 0.0
+    if m[at.CURRENT_CONTROL] == 0.0 and order == at.TERMS:
+        held = True
+    m[at.HELD] = side if held else 0.0
+    if lags and order < at.TERMS and held == (m[at.CURRENT_CONTROL] != 0.0):
+        order += 1
+    m[at.OTHER_ORDER] = order

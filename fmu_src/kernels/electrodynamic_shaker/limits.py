@@ -1,0 +1,119 @@
+"""The first event of an interval: the first root of the guards, which are positive up to it.
+
+Guards are power series in parts of the interval. Where every term but the first is too small to
+bring one to zero, it has no root; else the certified steps of :mod:`..numerics.first_root` walk
+through the interval.
+"""
+
+from ..numerics.first_root import EPS, next_step
+from . import memory as at
+from .amplifier import write_guard
+
+NONE = 2.0  # behind the interval
+LEAST = 1e-40  # of the bound, relative to the terms: its inverse stays far from the largest number
+
+
+def find_event(m):
+    """Find the first event of the present interval."""
+    m[at.EVENT] = NONE
+    m[at.EVENT_KIND] = at.NO_EVENT
+    if m[at.COMMAND_LIMIT] > 0.0:
+        watch_command(m)
+    if m[at.OTHER_LIMIT] > 0.0:
+        watch_other(m)
+    if m[at.TRAVEL_LIMIT] > 0.0:
+        watch_limit(m, at.PLACE_SERIES, at.TERMS, m[at.TRAVEL_LIMIT], 1.0, 0, at.TRAVEL_EVENT)
+        watch_limit(m, at.PLACE_SERIES, at.TERMS, m[at.TRAVEL_LIMIT], -1.0, 0, at.TRAVEL_EVENT)
+
+
+def watch_command(m):
+    """Look for the event that the command reaches its limit, or comes back to it."""
+    limit, side = m[at.COMMAND_LIMIT], m[at.COMMAND_SIDE]
+    order = int(m[at.COMMAND_ORDER]) if m[at.INTERVAL] == 0.0 else 0
+    if m[at.CLIPPED] != 0.0:
+        write_guard(m, at.COMMAND_SERIES, at.CUBIC, m[at.CLIPPED], -limit)
+        note_root(m, order, at.COMMAND_EVENT)
+    else:
+        watch_limit(m, at.COMMAND_SERIES, at.CUBIC, limit, side, order, at.COMMAND_EVENT)
+        watch_limit(m, at.COMMAND_SERIES, at.CUBIC, limit, -side, 0, at.COMMAND_EVENT)
+
+
+def watch_other(m):
+    """Look for the event that the other quantity reaches its limit, or leaves it."""
+    limit, side = m[at.OTHER_LIMIT], m[at.OTHER_SIDE]
+    order = int(m[at.OTHER_ORDER]) if m[at.INTERVAL] == 0.0 else 0
+    own, other = at.VOLT_SERIES, at.AMPERE_SERIES
+    if m[at.CURRENT_CONTROL] != 0.0:
+        own, other = at.AMPERE_SERIES, at.VOLT_SERIES
+    if m[at.HELD] != 0.0:
+        write_guard(m, own, at.TERMS, -m[at.HELD], 0.0)
+        for k in range(at.CUBIC):
+            m[at.GUARD + k] += m[at.HELD] * m[at.SOURCE_SERIES + k]
+        note_root(m, order, at.OTHER_EVENT)
+    else:
+        watch_limit(m, other, at.TERMS, limit, side, order, at.OTHER_EVENT)
+        watch_limit(m, other, at.TERMS, limit, -side, 0, at.OTHER_EVENT)
+
+
+def watch_limit(m, series, terms, limit, side, order, kind):
+    """Look for the event that a series reaches a limit on a side."""
+    write_guard(m, series, terms, -side, limit)
+    note_root(m, order, kind)
+
+
+def note_root(m, order, kind):
+    """Make the root of GUARD the interval's event where it is earlier."""
+    root = first_root(m, order)
+    if root < m[at.EVENT]:
+        m[at.EVENT] = root
+        m[at.EVENT_KIND] = kind
+
+
+def first_root(m, order):
+    """Return the first root of GUARD in its interval, or NONE.
+
+    Where ``order`` is not 0, the terms before it are known to vanish, and the next ones to make it
+    positive: what speaks against that is rounding.
+    """
+    first = order
+    while first < at.TERMS and (
+        m[at.GUARD + first] == 0.0 or (order > 0 and m[at.GUARD + first] < 0.0)
+    ):
+        first += 1
+    if first == at.TERMS:
+        return NONE
+    lowest, size = m[at.GUARD + first], abs(m[at.GUARD + first])
+    if lowest < 0.0:
+        return 0.0
+    for k in range(first + 1, at.TERMS):
+        lowest += min(m[at.GUARD + k], 0.0)
+        size += abs(m[at.GUARD + k])
+    return NONE if lowest > 0.0 else walk(m, first, size)
+
+
+def walk(m, first, size):
+    """Return the first root of GUARD, divided by the power of its ``first`` term, or NONE."""
+    bound = LEAST * size
+    for k in range(first + 5, at.TERMS):
+        j = k - first
+        bound += abs(m[at.GUARD + k]) * (j * (j - 1) * (j - 2) * (j - 3) * (j - 4))
+    part = 0.0
+    while part < 1.0:
+        h0, h1, h2, h3, h4 = derivatives(m, first, part)
+        step, found = next_step(h0, h1, h2, h3, h4, bound, 1.0, 1.0 - part, EPS)
+        part += step
+        if found:
+            return part
+    return NONE
+
+
+def derivatives(m, first, part):
+    """Return value and four derivatives of GUARD, divided by the power of its ``first`` term."""
+    h0, h1, h2, h3, h4 = 0.0, 0.0, 0.0, 0.0, 0.0
+    for k in range(at.DEGREE, first - 1, -1):
+        h4 = h4 * part + h3
+        h3 = h3 * part + h2
+        h2 = h2 * part + h1
+        h1 = h1 * part + h0
+        h0 = h0 * part + m[at.GUARD + k]
+    return h0, h1, 2.0 * h2, 6.0 * h3, 24.0 * h4

@@ -1,0 +1,47 @@
+"""What an importer sees at a communication point, with the inputs as they are now."""
+
+from . import memory as at
+from .motion import part_at
+from .series import slopes, value, write_states
+
+
+def write_outputs(m):
+    """Write all outputs."""
+    part, h = part_at(m, m[at.TIME]), m[at.SPACING]
+    write_states(m, at.GUARD, part)
+    position, velocity = m[at.GUARD + at.PLACE], m[at.GUARD + at.SPEED]
+    current = m[at.GUARD + at.AMPERES]
+    voltage = value(m, at.VOLT_SERIES, at.DEGREE, part)
+    factor, mass, stiffness = m[at.FORCE_FACTOR], m[at.TABLE_MASS], m[at.SUSPENSION_STIFFNESS]
+    force = factor * current + value(m, at.FORCE_SERIES, at.CUBIC - 1, part)
+    force -= m[at.SUSPENSION_DAMPING] * velocity + stiffness * position
+    acceleration = force / mass
+    rise = factor * slopes(m, at.AMPERE_SERIES, at.DEGREE, part)[0] / h
+    rise += slopes(m, at.FORCE_SERIES, at.CUBIC - 1, part)[0] / h
+    rise -= m[at.SUSPENSION_DAMPING] * acceleration + stiffness * velocity
+    m[at.BOX_POSITION] = position
+    m[at.BOX_VELOCITY] = velocity
+    m[at.BOX_ACCELERATION] = acceleration
+    m[at.BOX_JERK] = rise / mass
+    m[at.CURRENT] = current
+    m[at.VOLTAGE] = voltage
+    m[at.COIL_FORCE] = factor * current
+    m[at.POWER] = voltage * current
+    m[at.ENERGY] = m[at.GUARD + at.INPUT_WORK]
+    m[at.COIL_HEAT] = m[at.GUARD + at.HEAT]
+    m[at.SUSPENSION_LOSS] = m[at.GUARD + at.LOSS]
+    m[at.BOX_FORCE_WORK] = m[at.GUARD + at.FORCE_WORK]
+    m[at.STORED_ENERGY] = 0.5 * (
+        mass * velocity * velocity
+        + stiffness * position * position
+        + m[at.COIL_INDUCTANCE] * current * current
+    )
+    m[at.LIMITED] = 1.0 if m[at.CLIPPED] != 0.0 or m[at.HELD] != 0.0 else 0.0
+
+
+def check_finite(m):
+    """Return OK, or NOT_FINITE where an output has left the range of floating-point numbers."""
+    total = 0.0
+    for i in range(at.BOX_POSITION, at.TIME):
+        total += m[i]
+    return at.OK if total - total == 0.0 else at.NOT_FINITE

@@ -1,0 +1,189 @@
+"""The motion over an interval as power series in parts of it, and the energies by their products.
+
+With table mass M, suspension k and c, force factor Bl, coil R and L:
+
+    M x'' + c x' + k x = Bl i + F(t)
+    L i' + R i + Bl x' = u(t)
+
+Either a voltage drives the coil, and i follows; or the current is prescribed, and u is what it
+takes. Each equation gives the next term of a series from those before it.
+"""
+
+from . import memory as at
+
+
+def is_voltage_driven(m):
+    """Return whether a voltage drives the coil: a commanded one while no current is held, or one
+    held at its limit.
+    """
+    if m[at.CURRENT_CONTROL] != 0.0:
+        return m[at.HELD] != 0.0
+    return m[at.HELD] == 0.0
+
+
+def write_interval(m):
+    """Write all series of the present interval from the states at its beginning."""
+    driven = is_voltage_driven(m)
+    driver = at.VOLT_SERIES if driven else at.AMPERE_SERIES
+    if m[at.HELD] != 0.0:
+        write_constant(m, driver, m[at.HELD] * m[at.OTHER_LIMIT])
+    else:
+        copy_source(m, driver)
+    if driven:
+        write_driven_motion(m, m[at.SPACING])
+    else:
+        write_prescribed_motion(m, m[at.SPACING])
+    write_energies(m, m[at.SPACING], driven)
+
+
+def write_constant(m, series, number):
+    """Write a constant as a series."""
+    for k in range(at.TERMS):
+        m[series + k] = 0.0
+    m[series] = number
+
+
+def copy_source(m, series):
+    """Write the source as a series of all terms."""
+    for k in range(at.TERMS):
+        m[series + k] = 0.0
+    for k in range(at.CUBIC):
+        m[series + k] = m[at.SOURCE_SERIES + k]
+
+
+def next_motion_terms(m, k, part):
+    """Write the terms k + 1 of position and velocity; ``part`` is the interval over k + 1."""
+    position, velocity = m[at.PLACE_SERIES + k], m[at.SPEED_SERIES + k]
+    force = m[at.FORCE_FACTOR] * m[at.AMPERE_SERIES + k] + m[at.FORCE_SERIES + k]
+    force -= m[at.SUSPENSION_DAMPING] * velocity + m[at.SUSPENSION_STIFFNESS] * position
+    m[at.PLACE_SERIES + k + 1] = part * velocity
+    m[at.SPEED_SERIES + k + 1] = part * (force / m[at.TABLE_MASS])
+
+
+def opposing_voltage(m, k):
+    """Return term k of the voltage over the resistance and that induced by the motion."""
+    drop = m[at.COIL_RESISTANCE] * m[at.AMPERE_SERIES + k]
+    return drop + m[at.FORCE_FACTOR] * m[at.SPEED_SERIES + k]
+
+
+def write_driven_motion(m, h):
+    """Write the series of motion and current for the voltage in VOLT_SERIES."""
+    inductance = m[at.COIL_INDUCTANCE]
+    m[at.PLACE_SERIES] = m[at.STATE + at.PLACE]
+    m[at.SPEED_SERIES] = m[at.STATE + at.SPEED]
+    m[at.AMPERE_SERIES] = m[at.STATE + at.AMPERES]
+    for k in range(at.DEGREE):
+        part = h / (k + 1)
+        if inductance > 0.0:
+            rest = m[at.VOLT_SERIES + k] - opposing_voltage(m, k)
+            m[at.AMPERE_SERIES + k + 1] = part * (rest / inductance)
+        else:
+            m[at.AMPERE_SERIES + k] = static_current(m, k)
+        next_motion_terms(m, k, part)
+    if inductance == 0.0:
+        m[at.AMPERE_SERIES + at.DEGREE] = static_current(m, at.DEGREE)
+
+
+def static_current(m, k):
+    """Return term k of the current without inductance."""
+    rest = m[at.VOLT_SERIES + k] - m[at.FORCE_FACTOR] * m[at.SPEED_SERIES + k]
+    return rest / m[at.COIL_RESISTANCE]
+
+
+def write_prescribed_motion(m, h):
+    """Write the series of motion and voltage for the current in AMPERE_SERIES."""
+    m[at.PLACE_SERIES] = m[at.STATE + at.PLACE]
+    m[at.SPEED_SERIES] = m[at.STATE + at.SPEED]
+    for k in range(at.DEGREE):
+        next_motion_terms(m, k, h / (k + 1))
+        rise = m[at.COIL_INDUCTANCE] * m[at.AMPERE_SERIES + k + 1] * ((k + 1) / h)
+        m[at.VOLT_SERIES + k] = opposing_voltage(m, k) + rise
+    m[at.VOLT_SERIES + at.DEGREE] = opposing_voltage(m, at.DEGREE)
+
+
+def write_energies(m, h, driven):
+    """Write the series of the amplifier's work, the heat, the loss and the work of the force on
+    the box.
+    """
+    cubic, other = at.AMPERE_SERIES, at.VOLT_SERIES
+    if driven:
+        cubic, other = at.VOLT_SERIES, at.AMPERE_SERIES
+    current, speed = at.AMPERE_SERIES, at.SPEED_SERIES
+    write_work(m, at.WORK_SERIES, m[at.STATE + at.INPUT_WORK], cubic, other, h)
+    resistance = h * m[at.COIL_RESISTANCE]
+    if driven:
+        write_square(m, at.HEAT_SERIES, m[at.STATE + at.HEAT], current, resistance)
+    else:
+        write_work(m, at.HEAT_SERIES, m[at.STATE + at.HEAT], current, current, resistance)
+    damping = h * m[at.SUSPENSION_DAMPING]
+    write_square(m, at.LOSS_SERIES, m[at.STATE + at.LOSS], speed, damping)
+    begun = m[at.STATE + at.FORCE_WORK]
+    write_work(m, at.FORCE_WORK_SERIES, begun, at.FORCE_SERIES, speed, h)
+
+
+def write_work(m, to, begun, cubic, other, factor):
+    """Write the series of ``begun`` and ``factor`` times the integral of a cubic times another
+    series.
+    """
+    m[to] = begun
+    for n in range(at.WORK_DEGREE):
+        first = n - at.DEGREE if n > at.DEGREE else 0
+        last = n if n < at.CUBIC else at.CUBIC - 1
+        total = 0.0
+        for j in range(first, last + 1):
+            total += m[cubic + j] * m[other + n - j]
+        m[to + n + 1] = factor * total / (n + 1)
+
+
+def write_square(m, to, begun, series, factor):
+    """Write the series of ``begun`` and ``factor`` times the integral of a series' square."""
+    m[to] = begun
+    for n in range(at.WORK_DEGREE):
+        j = n - at.DEGREE if n > at.DEGREE else 0
+        total = 0.0
+        while 2 * j < n:
+            total += m[series + j] * m[series + n - j]
+            j += 1
+        total *= 2.0
+        if 2 * j == n:
+            total += m[series + j] * m[series + j]
+        m[to + n + 1] = factor * total / (n + 1)
+
+
+def value(m, series, degree, part):
+    """Return a series' value at a ``part`` of its interval."""
+    total = m[series + degree]
+    for k in range(degree - 1, -1, -1):
+        total = total * part + m[series + k]
+    return total
+
+
+def slopes(m, series, degree, part):
+    """Return a series' first and second derivative by the part of its interval."""
+    first, second = 0.0, 0.0
+    for k in range(degree, 0, -1):
+        second = second * part + first
+        first = first * part + k * m[series + k]
+    return first, second
+
+
+def write_states(m, to, part):
+    """Write the states at a ``part`` of the present interval."""
+    position, velocity, current = 0.0, 0.0, 0.0
+    for k in range(at.DEGREE, -1, -1):
+        position = position * part + m[at.PLACE_SERIES + k]
+        velocity = velocity * part + m[at.SPEED_SERIES + k]
+        current = current * part + m[at.AMPERE_SERIES + k]
+    m[to + at.PLACE] = position
+    m[to + at.SPEED] = velocity
+    m[to + at.AMPERES] = current
+    work, heat, loss, pushed = 0.0, 0.0, 0.0, 0.0
+    for k in range(at.WORK_DEGREE, -1, -1):
+        work = work * part + m[at.WORK_SERIES + k]
+        heat = heat * part + m[at.HEAT_SERIES + k]
+        loss = loss * part + m[at.LOSS_SERIES + k]
+        pushed = pushed * part + m[at.FORCE_WORK_SERIES + k]
+    m[to + at.INPUT_WORK] = work
+    m[to + at.HEAT] = heat
+    m[to + at.LOSS] = loss
+    m[to + at.FORCE_WORK] = pushed

@@ -1,0 +1,100 @@
+"""The entry points: initialise once, then advance from one communication point to the next.
+
+An instance is one flat memory.
+"""
+
+from . import memory as at
+from .inputs import keep_inputs
+from .intervals import set_spacings
+from .motion import begin_state, local_time, renew_inputs, run_to
+from .outputs import check_finite, write_outputs
+
+WORK_MOST = 4e6  # series of a step: some seconds, compiled; EVALUATION_LIMIT may allow less
+
+
+def initialize(m, time):
+    """Begin at ``time`` (s) from the parameters, start values and inputs in ``m``.
+
+    Returns
+    -------
+    int
+        OK, or one of the codes of :mod:`.memory`.
+    """
+    for i in range(at.BOX_POSITION, at.EVALUATION_LIMIT):
+        m[i] = 0.0
+    for i in range(at.TIME, at.SIZE):
+        m[i] = 0.0
+    m[at.TIME] = time
+    m[at.TARGET] = time
+    m[at.ORIGIN] = time
+    m[at.COMMAND_TIME] = time
+    m[at.FORCE_TIME] = time
+    derive(m)
+    if m[at.TRAVEL_LIMIT] > 0.0 and abs(m[at.POSITION_START]) > m[at.TRAVEL_LIMIT]:
+        return at.START_TRAVEL
+    limited = m[at.CURRENT_CONTROL] == 0.0 and m[at.CURRENT_LIMIT] > 0.0
+    if limited and m[at.COIL_INDUCTANCE] > 0.0 and abs(m[at.CURRENT_START]) > m[at.CURRENT_LIMIT]:
+        return at.START_CURRENT
+    m[at.BEGIN + at.PLACE] = m[at.POSITION_START]
+    m[at.BEGIN + at.SPEED] = m[at.VELOCITY_START]
+    m[at.BEGIN + at.AMPERES] = m[at.CURRENT_START]
+    # without a voltage limit a commanded current is the command's from the start
+    m[at.FOLLOWED] = 1.0 if m[at.OTHER_LIMIT] == 0.0 else 0.0
+    keep_inputs(m)
+    begin_state(m)
+    if m[at.FOLLOWED] != 0.0:
+        m[at.BEGIN + at.AMPERES] = m[at.STATE + at.AMPERES]
+    write_outputs(m)
+    return check_finite(m)
+
+
+def derive(m):
+    """Compute what follows from the parameters alone."""
+    set_spacings(m)
+    if m[at.CURRENT_CONTROL] != 0.0:
+        m[at.COMMAND_LIMIT] = m[at.CURRENT_LIMIT]
+        m[at.OTHER_LIMIT] = m[at.VOLTAGE_LIMIT]
+    else:
+        m[at.COMMAND_LIMIT] = m[at.VOLTAGE_LIMIT]
+        m[at.OTHER_LIMIT] = m[at.CURRENT_LIMIT]
+
+
+def advance(m, time):
+    """Advance to the communication point ``time`` (s) with the inputs in ``m``.
+
+    Returns
+    -------
+    int
+        OK, or one of the codes of :mod:`.memory`; after another code than OK the memory is to be
+        thrown away.
+    """
+    renew_inputs(m)
+    m[at.TARGET] = time
+    m[at.WORK] = 0.0
+    m[at.WORK_LIMIT] = min(WORK_MOST, m[at.EVALUATION_LIMIT])
+    too_many = at.LIMITED_WORK if m[at.WORK_LIMIT] < WORK_MOST else at.UNFINISHED
+    needed = local_time(m, time) / m[at.SPACING] - m[at.INTERVAL]
+    if needed > WORK_MOST:
+        m[at.WORK] = needed
+        m[at.REPORT] = m[at.TIME]
+        return too_many
+    code = run_to(m, time)
+    if code != at.OK:
+        return too_many if code == at.UNFINISHED else code
+    m[at.TIME] = time
+    m[at.EVALUATIONS] = m[at.WORK]
+    write_outputs(m)
+    return check_finite(m)
+
+
+def refresh(m, time):
+    """Write the outputs for the inputs as they are now; ``time`` is not used.
+
+    Returns
+    -------
+    int
+        OK, or NOT_FINITE.
+    """
+    renew_inputs(m)
+    write_outputs(m)
+    return check_finite(m)

@@ -1,0 +1,1 @@
+"""``ElectrodynamicShaker``: variable table, error texts, documentation and reference results."""

@@ -1,0 +1,197 @@
+"""The variable table of ``ElectrodynamicShaker``. Standard library only: it travels inside the
+FMU.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ...kernels.electrodynamic_shaker import memory
+from ...runtime.table import (
+    BOOLEAN,
+    INTEGER,
+    LARGE,
+    TINY,
+    Variable,
+    drive,
+    evaluation_limit,
+    numbered,
+    output,
+    parameter,
+)
+
+LIMIT = 1e30  # of start values and inputs: squares, sums and energies of them stay finite
+
+
+def positive(name: str, unit: str, start: float, description: str) -> Variable:
+    """Return a parameter that is not zero."""
+    return parameter(name, unit, start, description, minimum=TINY, maximum=LARGE)
+
+
+def not_negative(name: str, unit: str, start: float, description: str, **more: Any) -> Variable:
+    """Return a parameter that may be zero."""
+    return parameter(name, unit, start, description, minimum=0.0, maximum=LARGE, **more)
+
+
+def start(name: str, unit: str, description: str, **more: Any) -> Variable:
+    """Return the start value of a state."""
+    return parameter(name, unit, 0.0, description, minimum=-LIMIT, maximum=LIMIT, **more)
+
+
+def cubic(name: str, units: tuple[str, ...], description: str) -> tuple[Variable, ...]:
+    """Return an input and its three time derivatives."""
+    limits: dict[str, Any] = {"minimum": -LIMIT, "maximum": LIMIT}
+    text = f"{description}: value when it was set; runs on as the cubic with {name}_1, {name}_2"
+    value = drive(name, units[0], 0.0, f"{text} and {name}_3", input_derivatives=3, **limits)
+    orders = zip(("First", "Second", "Third"), units[1:], strict=True)
+    return (
+        value,
+        *(
+            drive(
+                f"{name}_{i}",
+                unit,
+                0.0,
+                f"{order} time derivative of {name} when one of the four was set",
+                **limits,
+            )
+            for i, (order, unit) in enumerate(orders, 1)
+        ),
+    )
+
+
+MILLIMETRES: dict[str, Any] = {"display_unit": "mm"}
+PARAMETERS = (
+    positive("table_mass", "kg", 5.5, "Table with all that is fixed to it, M"),
+    not_negative("suspension_stiffness", "N/m", 1375.0, "Stiffness of the table's suspension, k"),
+    not_negative("suspension_damping", "N.s/m", 11.0, "Damping of the table's suspension, c"),
+    not_negative("force_factor", "N/A", 20.0, "Force over current, and voltage over velocity, Bl"),
+    positive(
+        "coil_resistance", "Ohm", 4.0, "Resistance of the coil and of the amplifier's output, R"
+    ),
+    not_negative("coil_inductance", "H", 0.0, "Inductance of the coil, L; 0: none"),
+    parameter(
+        "current_control",
+        "",
+        0.0,
+        "true: the command is the current, false: the voltage",
+        type=BOOLEAN,
+    ),
+    not_negative("voltage_limit", "V", 0.0, "Largest voltage of the amplifier; 0: no limit"),
+    not_negative("current_limit", "A", 0.0, "Largest current of the amplifier; 0: no limit"),
+    not_negative(
+        "travel_limit",
+        "m",
+        0.0,
+        "Distance of the stops from the middle, at which a step fails; 0: no stops",
+        **MILLIMETRES,
+    ),
+    start("position_start", "m", "Position of the table at the start", nominal=1e-3, **MILLIMETRES),
+    start("velocity_start", "m/s", "Velocity of the table at the start"),
+    start(
+        "current_start",
+        "A",
+        "Current at the start, where coil_inductance > 0, and where current_control is true, with "
+        "a voltage_limit",
+    ),
+)
+INPUTS = (
+    *cubic(
+        "command",
+        ("V", "V/s", "V/s2", "V/s3"),
+        "Voltage of the amplifier; where current_control is true its current, A",
+    ),
+    *cubic("box_force", ("N", "N/s", "N/s2", "N/s3"), "Force on the table"),
+)
+# what the current at the start follows from, and the voltage with the slope of a commanded current
+CURRENT = (
+    *("force_factor", "coil_resistance", "coil_inductance", "velocity_start", "current_start"),
+    *("current_control", "voltage_limit", "current_limit", "command"),
+)
+VOLTAGE = (*CURRENT, "command_1")
+MECHANICS = ("table_mass", "suspension_stiffness", "suspension_damping", "position_start")
+ELECTRIC: dict[str, Any] = {"dependencies": ("command", "command_1")}
+STORED = (
+    *("table_mass", "suspension_stiffness", "position_start", "velocity_start"),
+    *("coil_inductance", "current_start", "current_control", "voltage_limit", "current_limit"),
+)
+OUTPUTS = (
+    output(
+        "box_position",
+        "m",
+        "Position of the table",
+        ("position_start",),
+        nominal=1e-3,
+        **MILLIMETRES,
+    ),
+    output("box_velocity", "m/s", "Velocity of the table", ("velocity_start",), nominal=1e-2),
+    output(
+        "box_acceleration",
+        "m/s2",
+        "Acceleration of the table, with the inputs as they are now",
+        (*MECHANICS, *CURRENT, "box_force"),
+        dependencies=("command", "box_force"),
+    ),
+    output(
+        "box_jerk",
+        "m/s3",
+        "Time derivative of box_acceleration, with the inputs as they are now",
+        (*MECHANICS, *VOLTAGE, "box_force", "box_force_1"),
+        nominal=100.0,
+        dependencies=("command", "command_1", "box_force", "box_force_1"),
+    ),
+    output("current", "A", "Current of the coil", CURRENT, dependencies=("command",)),
+    output("voltage", "V", "Voltage of the amplifier", VOLTAGE, **ELECTRIC),
+    output(
+        "coil_force",
+        "N",
+        "Force of the coil on the table, Bl i",
+        CURRENT,
+        dependencies=("command",),
+    ),
+    output(
+        "power",
+        "W",
+        "Electrical power of the amplifier, voltage times current",
+        VOLTAGE,
+        **ELECTRIC,
+    ),
+    output(
+        "energy",
+        "J",
+        "Electrical work of the amplifier since the start, integral of power",
+        dependencies=("command",),
+    ),
+    output("coil_heat", "J", "Heat of coil_resistance since the start"),
+    output(
+        "suspension_loss",
+        "J",
+        "Energy lost in the damper of the table's suspension since the start",
+    ),
+    output("box_force_work", "J", "Work of box_force on the table since the start"),
+    output(
+        "stored_energy",
+        "J",
+        "Kinetic energy of the table, and energies of its spring and of coil_inductance",
+        (*STORED, "command"),
+        dependencies=("command",),
+    ),
+    output(
+        "limited",
+        "",
+        "A limit of voltage or current acts",
+        VOLTAGE,
+        type=BOOLEAN,
+        variability="discrete",
+        **ELECTRIC,
+    ),
+    output(
+        "evaluations",
+        "",
+        "Power series computed in the last communication step",
+        type=INTEGER,
+        variability="discrete",
+        minimum=0,
+    ),
+)
+LIMITS = (evaluation_limit("power series"),)
+VARIABLES = numbered(PARAMETERS + INPUTS + OUTPUTS + LIMITS, memory)

@@ -1,0 +1,292 @@
+"""The motion between and through limits, against other solutions of the same equations."""
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from fmu_src.kernels.electrodynamic_shaker import memory as at
+from fmu_src.kernels.electrodynamic_shaker import rates, restore, stepper
+
+from ...sparing import ordinary
+from .kernel import INPUTS, advanced, draw, memory_of, outputs, set_inputs, started
+from .truth import Shaker, polynomial
+
+KINDS = range(16)  # voltage or current control, with and without inductance, no limit to both
+SLOTS = (at.BOX_POSITION, at.BOX_VELOCITY, at.CURRENT, at.VOLTAGE, at.BOX_ACCELERATION)
+ENERGIES = (at.ENERGY, at.COIL_HEAT, at.SUSPENSION_LOSS, at.BOX_FORCE_WORK)
+LIMITS = {"voltage_limit": 3.0, "current_limit": 0.5}
+
+
+def solve(values, first_current, stop):
+    """Current, motion and energies by scipy, and how often what acts changed."""
+    shaker = Shaker(**values)
+    state = [values["position_start"], values["velocity_start"], first_current, *[0.0] * 4]
+    shaker.begin(0.0, state)
+    state = shaker.run(state, 0.0, stop)
+    current, _, voltage = shaker.electric(stop, state)
+    motion = [state[0], state[1], current, voltage, shaker.acceleration(stop, state)]
+    return [*motion, *state[3:]], shaker.changes
+
+
+def check_random_shakers(seeds):
+    """Compare with scipy to 1e-10, over cubics that take the amplifier from limit to limit; how
+    often what acts changed.
+    """
+    changes = 0
+    for seed in seeds:
+        values = draw(seed)
+        m = started(**values)
+        free = values["current_control"] and not values["voltage_limit"]
+        expected, count = solve(values, m[at.CURRENT] if free else values["current_start"], 1.0)
+        advanced(m, 1.0)
+        found = [m[slot] for slot in (*SLOTS, *ENERGIES)]
+        assert found == pytest.approx(expected, rel=1e-10, abs=1e-12)
+        changes += count
+    return changes
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_random_shakers_are_those_of_the_equations(kind):
+    check_random_shakers([kind])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS)
+def test_many_random_shakers_are_those_of_the_equations(kind):
+    changes = check_random_shakers(range(kind + 1008, kind + 1328, 16))
+    assert bool(changes) == (kind >= 4)
+
+
+def exponential(values, stop):
+    """Position, velocity and current in high precision: the cubics as states of their own."""
+    names = ("table_mass", "suspension_stiffness", "suspension_damping", "force_factor")
+    with mp.workdps(40):
+        M, k, c, Bl = (mp.mpf(values[name]) for name in names)
+        R, L = mp.mpf(values["coil_resistance"]), mp.mpf(values["coil_inductance"])
+        matrix = mp.zeros(11, 11)
+        matrix[0, 1] = 1
+        matrix[1, 0], matrix[1, 1], matrix[1, 2], matrix[1, 7] = -k / M, -c / M, Bl / M, 1 / M
+        matrix[2, 1], matrix[2, 2], matrix[2, 3] = -Bl / L, -R / L, 1 / L
+        for row in (3, 4, 5, 7, 8, 9):
+            matrix[row, row + 1] = 1
+        starts = ("position_start", "velocity_start", "current_start", *INPUTS)
+        state = mp.matrix([mp.mpf(values[name]) for name in starts])
+        return [float(x) for x in (mp.expm(matrix * mp.mpf(stop), method="taylor") * state)[:3]]
+
+
+@pytest.mark.parametrize("seed", [1, 17])
+def test_the_series_are_exact_to_the_last_digits(seed):
+    values = draw(seed)
+    m = advanced(started(**values), 3.0)
+    found = [m[slot] for slot in SLOTS[:3]]
+    assert found == pytest.approx(exponential(values, 3.0), rel=2e-14)
+    assert m[at.EVALUATIONS] > 100
+
+
+@pytest.mark.parametrize("kind", ordinary(KINDS))
+def test_communication_points_change_no_bit(kind):
+    """Points at random, some of them in quick succession, and one at an event."""
+    for seed in (kind, kind + 48):
+        values, rng = draw(seed), np.random.default_rng(seed)
+        whole = advanced(started(**values), 1.0)
+        times = sorted([*rng.uniform(0.0, 1.0, 30), 0.5, 0.5 + 1e-15])
+        assert outputs(advanced(started(**values), *times, 1.0)) == outputs(whole)
+        first = whole[at.ORIGIN]  # of the last state
+        if 0.0 < first < 1.0:
+            parts = advanced(started(**values), np.nextafter(first, 0.0), first)
+            assert outputs(advanced(parts, 1.0)) == outputs(whole)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_energy_is_kept(kind):
+    values = draw(kind + 64)
+    m = started(**values)
+    before = m[at.STORED_ENERGY]
+    for k in range(1, 65):
+        advanced(m, k / 64)
+        if k == 32:  # a jump, of a commanded current too
+            set_inputs(m, command=-values["command"], command_1=0.5)
+        terms = [m[at.ENERGY], m[at.BOX_FORCE_WORK], -m[at.COIL_HEAT], -m[at.SUSPENSION_LOSS]]
+        terms += [before, -m[at.STORED_ENERGY]]
+        assert abs(sum(terms)) < 3e-13 * sum(map(abs, terms))
+
+
+def test_inductance_takes_its_energy_at_a_jump_of_a_commanded_current():
+    """As it does over the short time that a high voltage limit leaves it."""
+    values = {"current_control": 1.0, "coil_inductance": 0.01, "command": 0.5}
+    m = advanced(started(**values), 0.1)
+    before = m[at.ENERGY]
+    set_inputs(m, command=2.0)
+    assert stepper.refresh(m, 0.0) == at.OK
+    assert m[at.ENERGY] - before == pytest.approx(0.5 * 0.01 * (2.0**2 - 0.5**2))
+    advanced(m, 0.2)
+    other = advanced(started(**values, voltage_limit=1e6, current_start=0.5), 0.1)
+    set_inputs(other, command=2.0)
+    advanced(other, 0.2)
+    assert other[at.ENERGY] == pytest.approx(m[at.ENERGY], rel=1e-6)
+
+
+def test_a_current_takes_its_time_where_the_voltage_is_limited():
+    """Also where intervals are so long that the command's cubic grows far beyond it in one."""
+    values = {"current_control": 1.0, "coil_inductance": 2.0, "voltage_limit": 10.0}
+    free = {"suspension_stiffness": 0.0, "suspension_damping": 0.0, "force_factor": 0.0}
+    m = started(**values, **free, command=-1e-3, command_2=-2.0, command_3=20.0)
+    assert m[at.CURRENT] == 0.0 and m[at.VOLTAGE] == -10.0 and m[at.LIMITED] == 1.0
+    advanced(m, 1e-4)
+    assert m[at.CURRENT] == pytest.approx(-10.0 / 2.0 * 1e-4, rel=1e-3)
+    advanced(m, 1e-3)
+    assert m[at.LIMITED] == 0.0
+    assert m[at.ENERGY] == pytest.approx(m[at.STORED_ENERGY] + m[at.COIL_HEAT], rel=1e-12)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_state_that_was_saved_runs_on(kind):
+    """Restored as from outside, before and behind a new input, with the same bits."""
+    values = draw(kind + 80)
+    m = started(**values)
+    for k in range(1, 21):
+        advanced(m, 0.05 * k)
+        if k in (5, 12):
+            set_inputs(m, box_force=3.0 * k)
+        if k == 9:
+            set_inputs(m, command_1=-values["command_1"])
+        again = list(m)
+        assert restore.restore(again, 0.0) == at.OK
+        assert outputs(advanced(again, 0.05 * k + 0.04)) == outputs(
+            advanced(list(m), 0.05 * k + 0.04)
+        )
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_reading_changes_nothing(kind):
+    """Inputs that are set, read, and set once more before the step: only the last ones count."""
+    values = draw(kind + 96)
+    m, other = (advanced(started(**values), 0.3) for _ in range(2))
+    for inputs in ({"command": 5.0}, {"box_force": 3.0}, {"command": -2.0, "command_1": 1.0}):
+        set_inputs(m, **inputs)
+        assert stepper.refresh(m, 0.0) == at.OK
+    set_inputs(other, box_force=3.0, command=-2.0, command_1=1.0)
+    assert outputs(advanced(m, 0.5)) == outputs(advanced(other, 0.5))
+
+
+def test_a_constant_that_is_set_to_its_value_is_no_new_input():
+    values = {"command": 3.0, "box_force": -1.0, "coil_inductance": 0.01, "current_limit": 0.5}
+    whole = advanced(started(**values), 1.0)
+    m = started(**values)
+    for k in range(1, 11):
+        set_inputs(m, command=3.0, box_force=-1.0)
+        advanced(m, k / 10)
+    assert outputs(m) == outputs(whole)
+
+
+def test_each_cubic_begins_where_its_own_inputs_are_set():
+    """The command runs on while the force is set in each step."""
+    values = {"command": 1.0, "command_1": 2.0, "command_2": -6.0, "coil_inductance": 0.01}
+    m = started(**values)
+    for k in range(8):
+        set_inputs(m, box_force=0.0, box_force_1=0.0)
+        advanced(m, (k + 1) / 8)
+    assert m[at.VOLTAGE] == pytest.approx(1.0 + 2.0 - 3.0, abs=1e-14)
+    set_inputs(m, command=1.0)  # to the value that it has as an input: it begins anew
+    advanced(m, 1.5)
+    expected = polynomial(dict(values, command_3=0.0), "command", 0.5)[0]
+    assert m[at.VOLTAGE] == pytest.approx(expected, abs=1e-14)
+
+
+@pytest.mark.parametrize("lags", [0.0, 0.02])
+@pytest.mark.parametrize("commanded", [0.0, 1.0])
+def test_limits_are_kept_and_told(commanded, lags):
+    """The commanded quantity, and the other one too where the table does not drive the coil beyond
+    it; ``limited`` says so.
+    """
+    values = {**LIMITS, "coil_inductance": lags, "current_control": commanded}
+    m = started(**values, command=0.3, command_1=4.0, command_2=-40.0, command_3=70.0)
+    seen = set()
+    for k in range(1, 401):
+        advanced(m, k / 200)
+        voltage, current = abs(m[at.VOLTAGE]), abs(m[at.CURRENT])
+        assert voltage <= 3.0 * (1 + 1e-12) and current <= 0.5 * (1 + 1e-12)
+        at_limit = voltage > 3.0 * (1 - 1e-9) or current > 0.5 * (1 - 1e-9)
+        assert m[at.LIMITED] == at_limit
+        seen.add((m[at.LIMITED], voltage > 3.0 * (1 - 1e-9)))
+    assert len(seen) >= 2
+
+
+@pytest.mark.parametrize("command", [2.0, 2.0 + 1e-12, -2.0, 2.0 - 1e-12])
+def test_a_command_at_its_limit(command):
+    """A constant at the limit is not clipped; just beyond it is."""
+    m = started(command=command, voltage_limit=2.0)
+    assert m[at.VOLTAGE] == max(-2.0, min(2.0, command))
+    assert m[at.LIMITED] == float(abs(command) > 2.0)
+    advanced(m, 5.0)
+    assert m[at.LIMITED] == float(abs(command) > 2.0)
+
+
+@pytest.mark.parametrize("lags", [0.0, 0.02])
+def test_a_held_current_stays_at_a_balance(lags):
+    """The command that holds the current at its limit, for good: no endless change of states."""
+    m = started(command=2.0, current_limit=0.5, coil_inductance=lags, force_factor=0.0)
+    advanced(m, 5.0)
+    assert m[at.CURRENT] == pytest.approx(0.5, rel=1e-12)
+    assert m[at.EVALUATIONS] < 5.0 / m[at.SPACING] + 10.0
+
+
+def test_no_event_is_missed():
+    """A command that is a ten millionth beyond its limit for 0.6 ms, and stops that a free table
+    reaches by a millionth of a millimetre, in steps that are much longer.
+    """
+    peak = 2.0 + 1e-7  # command = peak - (t - 1)^2
+    cubic = {"command": peak - 1.0, "command_1": 2.0, "command_2": -2.0}
+    m = advanced(started(**cubic, voltage_limit=2.0), 1.5)
+    assert m[at.ORIGIN] == pytest.approx(1.0 + 1e-7**0.5, abs=1e-9)  # of the last state
+    assert advanced(started(**cubic, voltage_limit=2.0), 1.0)[at.LIMITED] == 1.0
+    below = {**cubic, "command": peak - 1.0 - 2e-7}
+    assert advanced(started(**below, voltage_limit=2.0), 1.5)[at.ORIGIN] == 0.0
+    swing = {"force_factor": 0.0, "suspension_damping": 0.0, "velocity_start": 0.1}
+    highest = 0.1 / np.sqrt(1375.0 / 5.5)
+    assert stepper.advance(started(**swing, travel_limit=highest + 1e-9), 50.0) == at.OK
+    m = started(**swing, travel_limit=highest - 1e-9)
+    assert stepper.advance(m, 50.0) == at.TRAVEL
+    assert m[at.REPORT] == pytest.approx(0.5 * np.pi / np.sqrt(250.0), abs=1e-3)
+    assert m[at.BOX_POSITION] == pytest.approx(highest - 1e-9, rel=1e-14)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_rates_are_derivatives(kind):
+    """Of the outputs, by differences over a short time in which no limit begins to act."""
+    values, h = draw(kind + 112), 1e-4
+    m = advanced(started(**values), 0.4)
+    around = [advanced(list(m), 0.4 + k * h) for k in (1, 2, 3, 4)]
+    if len({(b[at.CLIPPED], b[at.HELD]) for b in (m, *around)}) > 1:
+        pytest.skip("a limit begins to act")
+    assert rates.differentiate(m, 0.0) == at.OK
+    weights = (-25 / 12, 4, -3, 4 / 3, -1 / 4)
+    for slot in range(at.BOX_POSITION, at.LIMITED):
+        slope = sum(w * b[slot] for w, b in zip(weights, (m, *around), strict=True)) / h
+        rate = m[at.OUTPUT_RATES + slot - at.BOX_POSITION]
+        assert rate == pytest.approx(slope, rel=1e-5, abs=1e-5 * (1 + abs(m[slot]) / 0.1)), slot
+
+
+@pytest.mark.parametrize(
+    "values", [{"coil_inductance": 1e-9}, {"suspension_stiffness": 1e30}, {"table_mass": 1e-30}]
+)
+def test_a_time_constant_far_below_the_step_is_refused_at_once(values):
+    m = started(command=1.0, **values)
+    assert stepper.advance(m, 1.0) == at.UNFINISHED
+    assert m[at.WORK] > stepper.WORK_MOST and m[at.REPORT] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("values", "code"),
+    [
+        ({"position_start": 0.02, "travel_limit": 0.01}, at.START_TRAVEL),
+        ({"current_start": -2.0, "current_limit": 1.0, "coil_inductance": 0.1}, at.START_CURRENT),
+        ({"current_start": -2.0, "current_limit": 1.0}, at.OK),
+        ({"position_start": 0.01, "travel_limit": 0.01, "velocity_start": -0.1}, at.OK),
+    ],
+)
+def test_starts_beyond_a_limit(values, code):
+    m = memory_of(**values)
+    assert stepper.initialize(m, 0.0) == code
+    if code == at.OK:
+        advanced(m, 0.01)

@@ -1,0 +1,184 @@
+"""The electrodynamic shaker's equations written once more, and solved by scipy from event to event.
+
+What the amplifier does is written as a rule of the instant: of the state, the command and the sides
+of the limits that act. Nothing is shared with the kernel.
+"""
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from fmu_src.models.electrodynamic_shaker.variables import VARIABLES
+
+DEFAULTS = {v.name: float(v.start) for v in VARIABLES if not v.calculated}
+STATES = ("box_position", "box_velocity", "current", "energy")
+LOSSES = ("coil_heat", "suspension_loss", "box_force_work")
+
+
+def polynomial(p, name, t):
+    """A cubic input and its first derivative."""
+    a, b, c, d = (p[key] for key in (name, *(f"{name}_{i}" for i in (1, 2, 3))))
+    return a + t * (b + t * (c / 2 + t * d / 6)), b + t * (c + t * d / 2)
+
+
+def limit_of(p, name):
+    """A limit, infinite where there is none."""
+    return p[name] or np.inf
+
+
+class Shaker:
+    """The shaker with its amplifier: state x, v, i, amplifier's work, heat, loss, force's work."""
+
+    def __init__(self, **values):
+        self.p = {**DEFAULTS, **values}
+        self.current_control = bool(self.p["current_control"])
+        names = ("voltage_limit", "current_limit")
+        self.limit, self.other_limit = (
+            limit_of(self.p, name) for name in (names[::-1] if self.current_control else names)
+        )
+        self.clipped, self.held = 0, 0
+
+    def source(self, t):
+        """The command, clipped, and its derivative."""
+        if self.clipped:
+            return self.clipped * self.limit, 0.0
+        return polynomial(self.p, "command", t)
+
+    def electric(self, t, state):
+        """Current, its derivative, and voltage."""
+        p, (_, v, i, *_) = self.p, state
+        R, L, Bl = p["coil_resistance"], p["coil_inductance"], p["force_factor"]
+        (source, slope), held = self.source(t), self.held * self.other_limit if self.held else 0.0
+        if self.current_control != bool(self.held):
+            i, rate = (held, 0.0) if self.held else (source, slope)
+            return i, rate, R * i + L * rate + Bl * v
+        u = held if self.held else source
+        if L:
+            return i, (u - R * i - Bl * v) / L, u
+        return (u - Bl * v) / R, 0.0, u
+
+    def acceleration(self, t, state):
+        p, (x, v, *_) = self.p, state
+        force = p["force_factor"] * self.electric(t, state)[0] + polynomial(p, "box_force", t)[0]
+        force -= p["suspension_damping"] * v + p["suspension_stiffness"] * x
+        return force / p["table_mass"]
+
+    def right_hand_side(self, t, state):
+        p, v = self.p, state[1]
+        i, rate, u = self.electric(t, state)
+        heat, loss = p["coil_resistance"] * i * i, p["suspension_damping"] * v * v
+        work = polynomial(p, "box_force", t)[0] * v
+        return [v, self.acceleration(t, state), rate, u * i, heat, loss, work]
+
+    def excess(self, t, state):
+        """What holding leaves of the source: beyond 0 on the side that is held."""
+        p, (_, v, i, *_) = self.p, state
+        R, L, Bl = p["coil_resistance"], p["coil_inductance"], p["force_factor"]
+        source, slope = self.source(t)
+        if self.current_control:  # what following takes, over the voltage limit
+            return source - i if L else R * source + Bl * v - self.held * self.other_limit
+        return source - R * self.held * self.other_limit - Bl * v
+
+    def other(self, t, state):
+        i, _, u = self.electric(t, state)
+        return u if self.current_control else i
+
+    def events(self):
+        """Functions of which one is zero where a limit begins or ends to act."""
+        found = []
+        if np.isfinite(self.limit):
+            for side in (self.clipped,) if self.clipped else (1, -1):
+                found.append(
+                    ("command", side, lambda t, _, s=side: s * self.command(t) - self.limit)
+                )
+        if np.isfinite(self.other_limit):
+            if self.held:
+                found.append(("held", self.held, lambda t, s: self.held * self.excess(t, s)))
+            else:
+                for side in (1, -1):
+                    found.append(
+                        ("free", side, lambda t, s, k=side: k * self.other(t, s) - self.other_limit)
+                    )
+        return found
+
+    def command(self, t):
+        return polynomial(self.p, "command", t)[0]
+
+    def begin(self, t, state):
+        """Decide what acts from a start, or from a jump of the command, on."""
+        command = self.command(t)
+        self.clipped = int(np.sign(command)) if abs(command) > self.limit else 0
+        self.hold(t, state)
+
+    def hold(self, t, state):
+        """Decide whether the other quantity is held."""
+        self.held, L = 0, self.p["coil_inductance"]
+        if not np.isfinite(self.other_limit):
+            return
+        if self.current_control and L and state[2] != self.source(t)[0]:
+            self.held = int(np.sign(self.source(t)[0] - state[2]))
+            return
+        if self.current_control or not L or abs(state[2]) >= self.other_limit:
+            other = self.other(t, state)
+            if abs(other) >= self.other_limit:
+                self.held = int(np.sign(other))
+                if self.held * self.excess(t, state) < 0:
+                    self.held = 0
+
+    def run(self, state, start, stop):
+        """State at ``stop``; how often what acts changed is in ``changes``."""
+        state, t, self.changes = np.array(state, float), start, 0
+        while t < stop:
+            events, functions = self.events(), []
+            for kind, _, function in events:
+
+                def event(s, y, f=function):
+                    return f(s, y)
+
+                rising = kind == "free" or (kind == "command" and not self.clipped)
+                event.terminal, event.direction = True, 1 if rising else -1
+                functions.append(event)
+            found = solve_ivp(
+                self.right_hand_side,
+                (t, stop),
+                state,
+                method="DOP853",
+                rtol=1e-13,
+                atol=1e-15,
+                events=functions,
+            )
+            t, state = found.t[-1], found.y[:, -1].copy()
+            if found.status == 1:
+                self.changes += 1
+                self.change(events, found, t, state)
+        return state
+
+    def change(self, events, found, t, state):
+        """Go through the event that ended an integration."""
+        (kind, side), L = (
+            next(
+                (
+                    event[:2]
+                    for event, times in zip(events, found.t_events, strict=True)
+                    if len(times)
+                )
+            ),
+            self.p["coil_inductance"],
+        )
+        if kind == "free":
+            self.held = side
+            if L and not self.current_control:
+                state[2] = side * self.other_limit
+            return
+        if kind == "held":
+            self.held = 0
+            if self.current_control and L:
+                state[2] = self.source(t)[0]
+                if abs(self.other(t, state)) > self.other_limit:
+                    self.held = int(np.sign(self.other(t, state)))
+            return
+        follows = self.current_control and not self.held
+        self.clipped = 0 if self.clipped else side
+        if follows:
+            state[2] = self.source(t)[0]
+        if follows or not self.current_control:
+            self.hold(t, state)
