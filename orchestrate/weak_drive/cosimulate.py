@@ -27,7 +27,7 @@ from ..access.channel import Channel
 from ..access.description import Description, describe
 from ..access.exported import finder
 from ..access.instance import REAL_TYPES, Instance
-from ..access.models import OSCILLATOR, SHAKER
+from ..access.models import ELECTRODYNAMIC_SHAKER, OSCILLATOR, SHAKER
 from ..access.play import CUBIC, PLAYED, Player
 from ..checks import checked_integer
 from ..errors import InputError
@@ -38,6 +38,7 @@ from ..running.job import Inputs, Table, brief, plain
 from ..running.runner import answer
 from ..structures import Excitation
 from ..structures.drive import Drive
+from ..structures.shaker import Shaker
 from ..structures.structure import Structure
 from .connection import FORCE, MOTION, OURS, BoxMotion, checked_links, checked_variable
 from .polynomials import Cubic, integrate_work, matched_cubic
@@ -274,7 +275,7 @@ def acceleration_at(cubic: Sequence[float], h: float) -> float:
 
 def cosimulate(
     structure: Structure,
-    drive: str | PathLike[str] | Drive,
+    drive: str | PathLike[str] | Drive | Shaker,
     *,
     connect: Mapping[str, str] | None = None,
     parameters: Mapping[str, float | bool] | None = None,
@@ -292,9 +293,9 @@ def cosimulate(
     ----------
     structure : Structure
         Delaminated or bonded.
-    drive : path or Drive
+    drive : path, Drive or Shaker
         An FMU of FMI 2.0 or 3.0 for co-simulation that moves the box, of any tool; or one of the
-        package's own drives.
+        package's own: a motor with an unbalance, an electrodynamic shaker.
     connect : mapping of str to str
         The drive's variables by the names here. Of ``box_acceleration`` (m/s2), ``box_velocity``
         and ``box_position`` at least one is an output of the drive; ``box_force`` (N) is its input,
@@ -354,9 +355,10 @@ def cosimulate(
     >>> run.x1.dims, bool(run.coupling_error.max() < 1e-6)
     (('time',), True)
     """
-    if isinstance(drive, Drive):
+    if isinstance(drive, (Drive, Shaker)):
         parameters = {**drive.parameters(), **(parameters or {})}
-        connect, drive = connect or OURS, finder(running)(SHAKER).path
+        model = SHAKER if isinstance(drive, Drive) else ELECTRODYNAMIC_SHAKER
+        connect, drive = connect or OURS, finder(running)(model).path
     path = Path(drive).resolve()
     description = describe(path)
     checked_links(connect or {}, description)

@@ -112,6 +112,28 @@ def test_only_box_acceleration_has_input_derivatives(fmus, name):
         )
 
 
+def test_two_inputs_have_derivatives(exported, fmus):
+    """Each input's cubic begins where its own derivatives are set; the refusal names both."""
+    path = exported / "fmi2" / "ElectrodynamicShaker.fmu"
+    with slave(path) as fmu, slave(path) as twin:
+        for one in (fmu, twin):
+            one.start(command=1.0, command_1=4.0, coil_inductance=0.01)
+            one.step(0.25)
+        reference = fmu.variables["box_force"].valueReference
+        fmu.fmu.setRealInputDerivatives([reference], [1], [3.0])
+        twin.set(box_force_1=3.0)
+        for one in (fmu, twin):
+            one.step(0.5)
+        names = ("voltage", "current", "box_position", "box_force_work")
+        assert fmu.get(*names) == twin.get(*names)
+        assert fmu.one("voltage") == pytest.approx(3.0)  # the command runs on
+    with slave(path) as fmu:
+        fmu.start()
+        reference = fmu.variables["voltage"].valueReference
+        told = fmu.refused("setRealInputDerivatives", [reference], [1], [0.5])
+        assert "orders 1 to 3 of command, orders 1 to 3 of box_force" in told
+
+
 @pytest.mark.parametrize("order", [0, 4, -1, 2**31 - 1, -(2**31)])
 def test_only_three_orders_of_input_derivatives(fmus, order):
     with slave(fmus["fmi2"]) as fmu:
