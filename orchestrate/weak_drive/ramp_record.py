@@ -22,7 +22,6 @@ from .run import CoupledRun
 
 APART = 12  # widths of the mean: falls of the slip that are closer are one
 COLUMNS_SHOWN = ("time", "voltage", "speed", "amplitude")
-SHARE = 0.1  # of a fall of the slip before and after its steep part
 
 
 class Suspect(NamedTuple):
@@ -98,7 +97,7 @@ class RampRecord:
         row = float(np.interp(self.sign * eta0, self.sign * self.eta0(leg), leg))
         return Suspect(math.floor(row), row, math.ceil(row))
 
-    def suspects(self, leg: np.ndarray, shown: float) -> list[Suspect]:
+    def suspects(self, leg: np.ndarray, shown: float, share: float) -> list[Suspect]:
         """Return the stretches of one ramp over which the slip falls by at least `shown`."""
         b, omega = self.job.drive.b(self.job.structure), self.job.structure.omega
         turn = float(np.median(np.diff(self.table["time"][leg]))) if len(leg) > 1 else math.inf
@@ -112,12 +111,14 @@ class RampRecord:
                 falls[-1] = falls[-1][0], low
             else:
                 falls.append((high, low))
-        return [self.suspect(leg, slip[high : low + 1], high, width) for high, low in falls]
+        return [self.suspect(leg, slip[high : low + 1], high, width, share) for high, low in falls]
 
-    def suspect(self, leg: np.ndarray, slip: np.ndarray, high: int, width: int) -> Suspect:
+    def suspect(
+        self, leg: np.ndarray, slip: np.ndarray, high: int, width: int, share: float
+    ) -> Suspect:
         """Return the rows of a ramp between which the mean slip does most of its fall."""
         done = (slip.max() - slip) / np.ptp(slip)
-        rows = [int(np.argmax(done >= part)) + high for part in (SHARE, 0.5, 1.0 - SHARE)]
+        rows = [int(np.argmax(done >= part)) + high for part in (share, 0.5, 1.0 - share)]
         before, half, after = (int(leg[0]) + row for row in rows)
         return Suspect(before, half + 0.5 * (width - 1), after + width - 1)
 

@@ -9,7 +9,7 @@ from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.hysteresis import LOST, UNDECIDED, HeldPoint, HysteresisLoop, Settings
 from orchestrate.weak_drive.ramp_record import find_falls, jump_labels
 from orchestrate.weak_drive.schedule import Ramp
-from orchestrate.weak_drive.settled import SettledSettings, settled_speed
+from orchestrate.weak_drive.settled import settled_speed
 from tools.trust.verdicts import draw_system, scale_to_slope
 
 from .coupled import QUICK, System
@@ -195,7 +195,7 @@ def test_falls_of_a_slip():
     assert jump_labels(["up", "down", "up"]) == ["up", "down", "up 2"]
 
 
-SETTLED = SettledSettings()
+SETTLED = Settings()
 
 
 def record(means):
