@@ -105,22 +105,28 @@ class RampRecord:
         if len(leg) < 2 * width:
             return []
         slip = np.convolve(self.slip(leg), np.full(width, 1.0 / width), "valid")
-        falls: list[tuple[int, int]] = []
-        for high, low in find_falls(slip, shown):
-            if falls and high - falls[-1][1] < APART * width:
-                falls[-1] = falls[-1][0], low
+        groups: list[list[tuple[int, int]]] = []
+        for fall in find_falls(slip, shown):
+            if groups and fall[0] - groups[-1][-1][1] < APART * width:
+                groups[-1].append(fall)
             else:
-                falls.append((high, low))
-        return [self.suspect(leg, slip[high : low + 1], high, width, share) for high, low in falls]
+                groups.append([fall])
+        first, middle = int(leg[0]), 0.5 * (width - 1)
+        suspects = []
+        for group in groups:
+            largest = max(group, key=lambda fall: slip[fall[0]] - slip[fall[1]])
+            before = first + row_where_done(slip, group[0], share)
+            half = first + row_where_done(slip, largest, 0.5) + middle
+            after = first + row_where_done(slip, group[-1], 1.0 - share) + width - 1
+            suspects.append(Suspect(before, half, after))
+        return suspects
 
-    def suspect(
-        self, leg: np.ndarray, slip: np.ndarray, high: int, width: int, share: float
-    ) -> Suspect:
-        """Return the rows of a ramp between which the mean slip does most of its fall."""
-        done = (slip.max() - slip) / np.ptp(slip)
-        rows = [int(np.argmax(done >= part)) + high for part in (share, 0.5, 1.0 - share)]
-        before, half, after = (int(leg[0]) + row for row in rows)
-        return Suspect(before, half + 0.5 * (width - 1), after + width - 1)
+
+def row_where_done(slip: np.ndarray, fall: tuple[int, int], part: float) -> int:
+    """Return the first row at which a part of a fall is done."""
+    high, low = fall
+    done = (slip[high] - slip[high : low + 1]) / (slip[high] - slip[low])
+    return high + int(np.argmax(done >= part))
 
 
 def find_falls(values: np.ndarray, least: float) -> list[tuple[int, int]]:
