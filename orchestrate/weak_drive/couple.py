@@ -169,49 +169,36 @@ class CoupleJob(CoupledRun):
         What happens to a motor that turns backward is told in a mirror, and its signs at the end.
         """
         records = [RampRecord(self, table, up) for up in (True, False)]
-        first, further = [], []
+        first: list[tuple[str, Jump | None, RampRecord]] = []
+        further: list[tuple[str, Jump | None, RampRecord]] = []
         for direction, record, rows in zip(
             DIRECTIONS, records, table["jump_rows"][-1], strict=True
         ):
-            jumps = [
-                Jump(int(row[0]), *row[1:3], Suspect(*row[3:]))
-                for row in rows[np.isfinite(rows[:, 0])].tolist()
-            ]
+            known = rows[np.isfinite(rows[:, 0])].tolist()
+            jumps = [Jump(int(row[0]), row[1], row[2], Suspect(*row[3:])) for row in known]
             jumps.sort(key=lambda jump: jump.outcome != LOST)  # the first sure one stands for all
             first.append((direction, jumps[0] if jumps else None, record))
             further += [(direction, jump, record) for jump in jumps[1:]]
-        every = first + further
-        volts, forward = self.drive.volts(self.structure), records[0].forward()
+        directions, every, records_of = zip(*first, *further, strict=True)
         columns = variables_shown(
-            forward, [jump.shown if jump else NOT_SHOWN for _, jump, _ in every]
+            records[0].forward(), [jump.shown if jump else NOT_SHOWN for jump in every]
         )
-        lows, highs = (
-            np.array([volts * jump[end] if jump else math.nan for _, jump, _ in every])
-            for end in (1, 2)
-        )
-        lost = np.array([jump is not None and jump.outcome == LOST for _, jump, _ in every])
-        places = np.where(lost, 0.5 * (lows + highs), math.nan)
-        texts = {
-            "jumps": (places, "voltage at which the motion is lost, whatever the ramp's rate"),
-            "jump_low": (lows, "last held voltage at which the motion stays"),
-            "jump_high": (highs, "first held voltage at which it is lost, or may be"),
-            "jump_lag": (columns["ramp_voltage"][1] - places, "how late the ramp shows the jump"),
-        }
-        columns |= {name: variable("jump", *of, "V", text) for name, (*of, text) in texts.items()}
+        columns |= bracket_variables(every, columns, self.drive.volts(self.structure))
         columns |= self.theory_variables(len(every))
         for name in MIRRORED & columns.keys() if records[0].sense < 0.0 else ():
             dims, values, attributes = columns[name]
             columns[name] = (dims, np.negative(values), attributes)
-        how = [self.decision(jump, record) for _, jump, record in every]
+        how = [self.decision(*pair) for pair in zip(every, records_of, strict=True)]
         decided, why = (np.array(parts) for parts in zip(*how, strict=True))
         columns["decided"] = ("jump", decided, {"long_name": "how jump or none was decided"})
         columns["no_jump"] = ("jump", why, {"long_name": "why there is no jump"})
-        return jump_labels([direction for direction, *_ in every]), columns
+        return jump_labels(directions), columns
 
     def decision(self, jump: Jump | None, record: RampRecord) -> tuple[str, str]:
         """Return how a jump or its absence was decided, and why there is none."""
         if jump is not None and jump.outcome == UNDECIDED:
-            low, high = (record.sense * self.drive.volts(self.structure) * end for end in jump[1:3])
+            volts = record.sense * self.drive.volts(self.structure)
+            low, high = volts * jump.low, volts * jump.high
             return "undecided", (
                 f"undecided between {low:.5g} and {high:.5g} V: voltages held for at most "
                 f"{self.hold:.4g} s do not tell; a longer hold may"
@@ -220,10 +207,10 @@ class CoupleJob(CoupledRun):
             return "by held voltages", ""
         if self.control is not None:
             return "", "a controller sets the voltage"
-        direction = "rise" if record.up else "fall"
+        direction, rule = "rise" if record.up else "fall", self.hysteresis
         if not record.rows().size:
             return "", f"the voltage does not {direction}"
-        if any(record.suspects(leg, self.hysteresis.shown) for leg in record.legs()):
+        if any(record.suspects(leg, rule.shown, rule.share) for leg in record.legs()):
             return "by held voltages", "no jump: held voltages lead back to the same speeds"
         return "by the record", "no jump: the speed follows the voltage"
 
@@ -254,6 +241,24 @@ class CoupleJob(CoupledRun):
             "missing_over_motor_work": float(table["missing"][-1]) / motor,
             "defects_over_motor_work": float(table["defect_sizes"][-1]) / motor,
         }
+
+
+def bracket_variables(
+    jumps: Sequence[Jump | None], shown: Mapping[str, Variable], volts: float
+) -> dict[str, Variable]:
+    """Build the variables of the voltages at which motions are lost, and of the ramp's lag."""
+    lows = np.array([volts * jump.low if jump else math.nan for jump in jumps])
+    highs = np.array([volts * jump.high if jump else math.nan for jump in jumps])
+    lost = np.array([jump is not None and jump.outcome == LOST for jump in jumps])
+    places = np.where(lost, 0.5 * (lows + highs), math.nan)
+    late = shown["ramp_voltage"][1] - places
+    text = "voltage at which the motion is lost, whatever the ramp's rate"
+    return {
+        "jumps": variable("jump", places, "V", text),
+        "jump_low": variable("jump", lows, "V", "last held voltage at which the motion stays"),
+        "jump_high": variable("jump", highs, "V", "first at which it is lost, or may be"),
+        "jump_lag": variable("jump", late, "V", "how late the ramp shows the jump"),
+    }
 
 
 def no_jumps() -> Table:

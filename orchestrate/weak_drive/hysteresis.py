@@ -24,7 +24,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -37,7 +37,6 @@ from .schedule import Constant, Schedule
 from .settled import SettledSettings, settled_speed
 
 NONE, LOST, UNDECIDED = range(3)
-LAG = 2.0  # rotor times 1/b by which a speed follows a ramp late, without a jump
 SAVED = (
     *("oscillator_state", "shaker_state", "master_memory"),
     *("revolution_memory", "control_memory"),
@@ -45,10 +44,11 @@ SAVED = (
 
 
 @dataclass(frozen=True)
-class Settings:
+class Settings(SettledSettings):
     """Set the steps and thresholds of the hysteresis loop; defaults serve all drives tried."""
 
     shown: float = 4e-3  # fall of the slip in a ramp's record that suggests a jump
+    share: float = 0.1  # of that fall, before and after the stretch over which voltages are held
     grid: float = 4e-3  # longest first step of the voltage
     width: float = 1e-4  # widest bracket of a jump
     finest: float = 1e-6  # shortest step of the voltage
@@ -58,9 +58,9 @@ class Settings:
     same: float = 2e-3  # largest difference of two settled speeds of one motion
     clear: float = 5e-3  # smallest difference of two motions' speeds at one voltage at a jump
     again: int = 3  # times that the motions beside a jump are held again
+    lag: float = 2.0  # rotor times 1/b by which a speed follows a ramp late, without a jump
     lead: float = 6.0  # how much earlier than the record a course begins, in rotor times 1/b
     max_holds: int = 150  # of a course
-    settled: SettledSettings = field(default_factory=SettledSettings)
 
 
 class HeldPoint(NamedTuple):
@@ -140,7 +140,7 @@ class VoltageHolder:
         With `ends` also until the speed has come from the first of two nearly to the second one,
         which is returned as its speed then.
         """
-        settings = self.settings.settled
+        settings = self.settings
         count = math.ceil(self.longest / self.step)
         piece = max(1, round(settings.piece / self.omega / self.step))
         run = self.begin(Constant(self.volts * voltage, count * self.step))
@@ -169,7 +169,7 @@ class HysteresisLoop(VoltageHolder):
         """Return all jumps of a run in one direction, by their voltages."""
         jumps = []
         for leg in record.legs():
-            suspects = record.suspects(leg, self.settings.shown)
+            suspects = record.suspects(leg, self.settings.shown, self.settings.share)
             if not self.longest:
                 ends = ((record.eta0(at.before), record.eta0(at.after), at) for at in suspects)
                 jumps += [Jump(UNDECIDED, *end) for end in ends]
@@ -215,7 +215,7 @@ class HysteresisLoop(VoltageHolder):
 
     def lag(self, record: RampRecord, leg: np.ndarray, row: int) -> float:
         """Return by how much a speed may follow a ramp late, without a jump."""
-        earlier = record.row_earlier(row, LAG, leg)
+        earlier = record.row_earlier(row, self.settings.lag, leg)
         return float(abs(record.eta0(row) - record.eta0(earlier)))
 
     def jumps(self, first: HeldPoint, last: float) -> list[Jump]:

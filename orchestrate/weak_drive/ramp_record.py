@@ -22,7 +22,6 @@ from .run import CoupledRun
 
 APART = 12  # widths of the mean: falls of the slip that are closer are one
 COLUMNS_SHOWN = ("time", "voltage", "speed", "amplitude")
-SHARE = 0.1  # of a fall of the slip before and after its steep part
 
 
 class Suspect(NamedTuple):
@@ -98,7 +97,7 @@ class RampRecord:
         row = float(np.interp(self.sign * eta0, self.sign * self.eta0(leg), leg))
         return Suspect(math.floor(row), row, math.ceil(row))
 
-    def suspects(self, leg: np.ndarray, shown: float) -> list[Suspect]:
+    def suspects(self, leg: np.ndarray, shown: float, share: float) -> list[Suspect]:
         """Return the stretches of one ramp over which the slip falls by at least `shown`."""
         b, omega = self.job.drive.b(self.job.structure), self.job.structure.omega
         turn = float(np.median(np.diff(self.table["time"][leg]))) if len(leg) > 1 else math.inf
@@ -106,20 +105,28 @@ class RampRecord:
         if len(leg) < 2 * width:
             return []
         slip = np.convolve(self.slip(leg), np.full(width, 1.0 / width), "valid")
-        falls: list[tuple[int, int]] = []
-        for high, low in find_falls(slip, shown):
-            if falls and high - falls[-1][1] < APART * width:
-                falls[-1] = falls[-1][0], low
+        groups: list[list[tuple[int, int]]] = []
+        for fall in find_falls(slip, shown):
+            if groups and fall[0] - groups[-1][-1][1] < APART * width:
+                groups[-1].append(fall)
             else:
-                falls.append((high, low))
-        return [self.suspect(leg, slip[high : low + 1], high, width) for high, low in falls]
+                groups.append([fall])
+        first, middle = int(leg[0]), 0.5 * (width - 1)
+        suspects = []
+        for group in groups:
+            largest = max(group, key=lambda fall: slip[fall[0]] - slip[fall[1]])
+            before = first + row_where_done(slip, group[0], share)
+            half = first + row_where_done(slip, largest, 0.5) + middle
+            after = first + row_where_done(slip, group[-1], 1.0 - share) + width - 1
+            suspects.append(Suspect(before, half, after))
+        return suspects
 
-    def suspect(self, leg: np.ndarray, slip: np.ndarray, high: int, width: int) -> Suspect:
-        """Return the rows of a ramp between which the mean slip does most of its fall."""
-        done = (slip.max() - slip) / np.ptp(slip)
-        rows = [int(np.argmax(done >= part)) + high for part in (SHARE, 0.5, 1.0 - SHARE)]
-        before, half, after = (int(leg[0]) + row for row in rows)
-        return Suspect(before, half + 0.5 * (width - 1), after + width - 1)
+
+def row_where_done(slip: np.ndarray, fall: tuple[int, int], part: float) -> int:
+    """Return the first row at which a part of a fall is done."""
+    high, low = fall
+    done = (slip[high] - slip[high : low + 1]) / (slip[high] - slip[low])
+    return high + int(np.argmax(done >= part))
 
 
 def find_falls(values: np.ndarray, least: float) -> list[tuple[int, int]]:

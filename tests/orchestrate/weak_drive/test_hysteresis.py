@@ -7,9 +7,9 @@ import pytest
 
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.hysteresis import LOST, UNDECIDED, HeldPoint, HysteresisLoop, Settings
-from orchestrate.weak_drive.ramp_record import find_falls, jump_labels
+from orchestrate.weak_drive.ramp_record import RampRecord, find_falls, jump_labels
 from orchestrate.weak_drive.schedule import Ramp
-from orchestrate.weak_drive.settled import SettledSettings, settled_speed
+from orchestrate.weak_drive.settled import settled_speed
 from tools.draws import draw_system, scale_to_slope
 
 from .coupled import QUICK, System
@@ -195,7 +195,24 @@ def test_falls_of_a_slip():
     assert jump_labels(["up", "down", "up"]) == ["up", "down", "up 2"]
 
 
-SETTLED = SettledSettings()
+def test_falls_close_to_each_other_are_one_stretch():
+    """It ends with the last one, though the first alone falls nearly as deep."""
+    time = np.arange(0.0, 2000.0, 5.0)
+    eta0 = 1.2 + 1e-4 * time
+    slip = np.interp(time, [0, 800, 850, 950, 1000, 2000], [0.02, 0.03, 0.01, 0.03, 0.01, 0.01])
+    job = SimpleNamespace(
+        structure=SimpleNamespace(omega=1.0),
+        drive=SimpleNamespace(b=lambda _: 0.1, volts=lambda _: 1.0),
+        schedule=Ramp(1.2, 1.4, 1e-4, back=False),
+    )
+    ramp = RampRecord(job, {"time": time, "voltage": eta0, "speed": eta0 - slip}, up=True)
+    (leg,) = ramp.legs()
+    (suspect,) = ramp.suspects(leg, 4e-3, 0.1)
+    assert time[suspect.before] < 830.0 and time[suspect.after] > 990.0
+    assert ramp.suspects(leg, 0.03, 0.1) == []
+
+
+SETTLED = Settings()
 
 
 def record(means):
