@@ -350,21 +350,22 @@ def test_a_voltage_is_held_after_another_and_the_speed_read_at_the_end(monkeypat
 
 
 @pytest.mark.slow
-@pytest.mark.budget(1)  # drives; one takes a minute or more, in processor time
+@pytest.mark.budget(1)  # drives; of more than one each takes a minute or more
 def test_jump_verdicts_of_random_drives(exported, seed, budget):
     """With folds at four rates, and with so little unbalance that folds are close or just vanish.
 
-    A short run, of one drive, has one rate of each.
+    A short run, of one drive, judges its bonded structure with folds at one rate.
     """
     counts, findings = Counter[str](), []
-    rates = RATES if budget > 1 else RATES[:1]
+    rates, kinds = (RATES, verdicts.KINDS) if budget > 1 else (RATES[:1], ("bonded",))
     for number in range(budget):
         rng = np.random.default_rng([seed, number])
         folded = draws.draw_with_folds(rng)
         edge = draws.scale_to_slope(folded, float(rng.uniform(*verdicts.SLOPES)))
-        for name, system, some in (("folds", folded, rates), ("near the edge", edge, rates[::3])):
+        systems = (("folds", folded, rates), ("near the edge", edge, rates[::3]))
+        for name, system, some in systems[: len(kinds)]:
             try:
-                for said, problem in verdicts.judge(system, some):
+                for said, problem in verdicts.judge(system, some, kinds):
                     counts[said] += 1
                     findings += [f"drive {number}, {name}, {problem}"] if problem else []
             except VibroimpactError as error:
