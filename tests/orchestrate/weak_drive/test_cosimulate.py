@@ -147,6 +147,21 @@ def test_our_own_drive_is_what_couple_has(exported):
 
 
 @pytest.mark.usefixtures("exported")
+def test_an_electrodynamic_shaker_of_ours_is_coupled_with_its_limits(exported):
+    shaker = orchestrate.Shaker.from_file("shaker_100N").replace(voltage_limit=2.0)
+    run = {"duration": 0.5, "progress": False, "record": ["current", "voltage", "limited"]}
+    command = {"command": (FINE, 4.0 * np.sin(60.0 * FINE))}
+    errors = [
+        orchestrate.cosimulate(STRUCTURE, shaker, inputs=command, step=h, **run)
+        for h in (0.004, 0.002)
+    ]
+    assert float(abs(errors[0].voltage).max()) == pytest.approx(2.0)
+    assert errors[0].limited.values.any() and not errors[0].limited.values.all()
+    coarse, fine = (float(run.coupling_error.max()) for run in errors)
+    assert fine < 0.4 * coarse
+
+
+@pytest.mark.usefixtures("exported")
 def test_the_work_on_the_drive_is_what_the_system_loses(exported):
     """Energy of the masses: what the box's motion puts in, less dampers and impacts."""
     structure = STRUCTURE.replace(d1=0.0, d2=0.0)
