@@ -10,7 +10,7 @@ from fmpy.validation import validate_fmu
 
 from ..fresh import ROOT
 from ..kernels.electrodynamic_shaker.truth import Shaker
-from .driver import BUILD, FORMS, run
+from .driver import BUILD, FORMS, run, run_with_output
 from .programs.electrodynamic_shaker_mistakes import MISTAKES
 
 FMUS = {form: BUILD / form / "ElectrodynamicShaker.fmu" for form in FORMS}
@@ -112,6 +112,19 @@ def test_mistakes_are_named_and_others_live_on(fmu, tmp_path):
 def test_a_stop_leaves_the_instance_where_it_was(fmu, tmp_path):
     program = "electrodynamic_shaker.a_stop_leaves_the_instance_where_it_was"
     assert run(program, fmu, cwd=tmp_path) == [True, True]
+
+
+@pytest.mark.parametrize("form", ["fmi2-python", "fmi2"])
+def test_libcosim(form, tmp_path):
+    """Another reader of the XML and another loop: the same bits."""
+    pytest.importorskip("libcosimpy")
+    names = ["box_position", "current", "voltage", "energy"]
+    values = {name: value for name, value in LIMITED.items() if value}
+    arguments = (values, names, 0.03125, 16)
+    (rows, known), done = run_with_output("libcosim.simulate", FMUS[form], *arguments, cwd=tmp_path)
+    expected = run("electrodynamic_shaker.motion", FMUS[form], values, 0.5, names, cwd=tmp_path)
+    assert rows[-1][1:] == expected
+    assert known > 30 and "error" not in done.stderr.lower()
 
 
 def test_reference_result(fmu, tmp_path):
