@@ -6,6 +6,7 @@ import dataclasses
 import functools
 import itertools
 import math
+import re
 import shutil
 import sys
 import zipfile
@@ -39,6 +40,7 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="libraries for L
 FORMS = ("fmi3", "fmi2", "fmi2-python")
 ARM = ("qemu-aarch64", "-L", "/usr/aarch64-linux-gnu")
 ARM_EVERY = 25  # sets: a process under an emulator each
+MANY = 1e6  # impacts in a step, from which on it may give up
 NOT = "no"  # where it is refused, or does not finish
 
 Bits = tuple[str, ...]
@@ -147,6 +149,8 @@ def bit_differences(drawn: ParameterSet, on_arm: bool) -> list[str]:
     for i, bits in enumerate(first[1:], 1):
         if bits[: len(STATE)] != first[0][: len(STATE)]:
             wrong.append(f"grid {i}: {differing_outputs(bits, first[0])}")
+    if first[0] == (NOT,) and (reason := unexplained_refusal(drawn)):
+        wrong.append(reason)
     last = len(grids) - 1
     others = {
         form: simulate_by_fmu(find(OSCILLATOR, form).path, drawn, grids[last]) for form in FORMS[1:]
@@ -158,6 +162,24 @@ def bit_differences(drawn: ParameterSet, on_arm: bool) -> list[str]:
         if bits != first[last] and not (name == "wasm" and NOT in (*bits, *first[last])):
             wrong.append(f"{name}: {differing_outputs(bits, first[last])}")
     return wrong
+
+
+def unexplained_refusal(drawn: ParameterSet) -> str:
+    """Return why one step does not get there; empty where it has a million impacts, or the set is
+    refused at its start.
+    """
+    values = {**drawn.values, "bonded": bool(drawn.values.get("bonded"))}
+    with Instance(find(OSCILLATOR).path) as instance:
+        try:
+            instance.initialize(drawn.start_time, **values)
+        except (FmuError, InputError):
+            return ""
+        try:
+            instance.step(drawn.start_time, drawn.start_time + drawn.duration)
+        except (FmuError, InputError) as error:
+            impacts = re.search(r"cannot finish.* after (\d+) impacts", str(error))
+            return "" if impacts and int(impacts[1]) >= MANY else str(error)
+    return ""
 
 
 def differing_outputs(one: Bits, other: Bits) -> str:
@@ -179,8 +201,8 @@ def reachable_grids(drawn: ParameterSet) -> list[list[float]]:
 def test_a_motion_has_the_same_bits_on_all_grids_forms_and_platforms(exported, seed, budget):
     """By one step, two, five uneven ones and 24, cubic inputs included; by all forms; on ARM.
 
-    That a set is refused, or not finished, may not depend on the grid either, up to the limit of
-    work of one step.
+    That a set is refused may not depend on the grid either. A step that does not finish is a
+    finding unless it has a million impacts.
     """
     findings, counts = [], Counter[str]()
     for number in range(budget):
@@ -234,6 +256,9 @@ def complaints(seed: int, numbers: Iterable[int]) -> dict[int, str]:
     [
         (1, (62, 675, 732, 804, 830, 877, 902, 1130, 2077, 4897, 5725, 7373, 8873)),
         (2, (2322,)),  # contacts of a trillionth of a radian
+        # open: e_slope of 1e58 s/m and more with motions next to nothing
+        pytest.param(2, (4861,), marks=pytest.mark.xfail(strict=True)),
+        pytest.param(2, (6252,), marks=[pytest.mark.xfail(strict=True), pytest.mark.slow]),
     ],
 )
 def test_sets_that_once_did_not_finish(exported, seed, numbers):
