@@ -6,7 +6,8 @@ in which the ramp's record suggests a jump:
 
 - Voltages are held on a grid of steps `grid`, from the ramp's own state before the stretch to the
   stretch's end, each until the speed has settled (:mod:`.settled`).
-- Every step in which the speed changes by `smallest` more than the voltage is halved, to `width`.
+- Every step in which the speed gains `smallest` on the voltage, or moves by `same` against it, is
+  halved, to `width`.
 - Then the voltage goes back over that step. The motion is *lost* there where the speed comes back
   more than `clear` away, and both motions last when they are held `again` times. Where it comes
   back, the step is halved further.
@@ -226,7 +227,7 @@ class HysteresisLoop(VoltageHolder):
         points = self.hold_grid(first, last)
         jumps: dict[tuple[float, float], Jump] = {}
         for _ in range(self.settings.max_holds):
-            i = self.largest_step(points, jumps)
+            i = self.largest_step(points, jumps, sign)
             if i is None:
                 break
             low, high = points[i : i + 2]
@@ -238,7 +239,7 @@ class HysteresisLoop(VoltageHolder):
             outcome = self.way_back(low, landed)
             points[i + 1] = high = landed if math.isfinite(landed.speed) else high
             if outcome == NONE and length > self.settings.finest:
-                if self.excess(low, high) <= 0.0:
+                if self.excess(low, high, sign) <= 0.0:
                     continue
                 if middle := self.hold_between(low, high):
                     points.insert(i + 1, middle)
@@ -277,21 +278,22 @@ class HysteresisLoop(VoltageHolder):
         return points
 
     def largest_step(
-        self, points: list[HeldPoint], decided: dict[tuple[float, float], Jump]
+        self, points: list[HeldPoint], decided: dict[tuple[float, float], Jump], sign: float
     ) -> int | None:
         """Return the index of the largest undecided step of the speed; None if all are small."""
         excess = [
-            -math.inf if (low.voltage, high.voltage) in decided else self.excess(low, high)
+            -math.inf if (low.voltage, high.voltage) in decided else self.excess(low, high, sign)
             for low, high in pairwise(points)
         ]
         i = int(np.argmax(excess)) if excess else 0
         return i if excess and excess[i] > 0.0 else None
 
-    def excess(self, low: HeldPoint, high: HeldPoint) -> float:
-        """Return by how much the speed changes more than one branch may."""
-        branch = self.settings.smallest + abs(high.voltage - low.voltage)
+    def excess(self, low: HeldPoint, high: HeldPoint, sign: float) -> float:
+        """Return by how much the speed changes more than on one branch, on which it rises."""
         scatter = min(difference_error(low, high), self.settings.smallest)
-        return abs(high.speed - low.speed) - branch - scatter
+        gained, length = sign * (high.speed - low.speed), abs(high.voltage - low.voltage)
+        against = -gained - self.settings.same
+        return max(gained - self.settings.smallest - length, against) - scatter
 
     def way_back(self, low: HeldPoint, landed: HeldPoint) -> int:
         """Return whether two motions exist at a step's lower voltage and the first is lost."""
