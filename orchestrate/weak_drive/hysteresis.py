@@ -5,7 +5,7 @@ loses the first. A steep but continuous branch is not a jump. The rule, for a st
 in which the ramp's record suggests a jump:
 
 - Voltages are held on a grid of steps `grid`, from the ramp's own state before the stretch to the
-  stretch's end, each until the speed has settled (:mod:`.settled`).
+  stretch's end, each taken to at `rate` and held until the speed has settled (:mod:`.settled`).
 - Every step in which the speed gains `smallest` on the voltage, or moves by `same` against it, is
   halved, to `width`.
 - Then the voltage goes back over that step. The motion is *lost* there where the speed comes back
@@ -34,7 +34,7 @@ import numpy as np
 from ..running.job import Table
 from .ramp_record import NOT_SHOWN, RampRecord, Suspect
 from .run import Run
-from .schedule import Constant, Schedule
+from .schedule import Course, Schedule
 from .settled import SettledSettings, settled_speed
 
 NONE, LOST, UNDECIDED = range(3)
@@ -51,6 +51,7 @@ class Settings(SettledSettings):
     shown: float = 4e-3  # fall of the slip in a ramp's record that suggests a jump
     share: float = 0.1  # of that fall, before and after the stretch over which voltages are held
     grid: float = 4e-3  # longest first step of the voltage
+    rate: float = 5e-5  # of the voltage from one step to the next, in a time 1/omega
     width: float = 1e-4  # widest bracket of a jump
     finest: float = 1e-6  # shortest step of the voltage
     # change of the speed over a step, beyond that of the voltage, up to which it may be one branch;
@@ -127,30 +128,39 @@ class VoltageHolder:
     def hold_step(self, step: int) -> HeldPoint:
         """Hold the voltage that the ramp has at a step, from its state there."""
         voltage = self.schedule.voltage((step + 0.5) * self.step) / self.volts
-        return self.hold(self.state_before(step), voltage)
+        return self.hold(self.state_before(step), voltage, voltage)
 
     def hold_from(self, point: HeldPoint, voltage: float, limit: float | None = None) -> HeldPoint:
-        """Change the voltage in one step from a held point, and hold it there."""
-        return self.hold(point.state, voltage, None if limit is None else (point.speed, limit))
+        """Take the voltage slowly from a held point to another one, and hold it there."""
+        ends = None if limit is None else (point.speed, limit)
+        return self.hold(point.state, point.voltage, voltage, ends)
 
     def hold(
-        self, state: Table | None, voltage: float, ends: tuple[float, float] | None = None
+        self,
+        state: Table | None,
+        first: float,
+        voltage: float,
+        ends: tuple[float, float] | None = None,
     ) -> HeldPoint:
-        """Simulate a constant voltage from a state until the speed settles.
+        """Take the voltage to another one at `rate`, and hold it until the speed settles.
 
         With `ends` also until the speed has come from the first of two nearly to the second one,
         which is returned as its speed then.
         """
         settings = self.settings
-        count = math.ceil(self.longest / self.step)
+        moves = math.ceil(abs(voltage - first) / settings.rate / self.omega / self.step)
+        count = moves + math.ceil(self.longest / self.step)
         piece = max(1, round(settings.piece / self.omega / self.step))
-        run = self.begin(Constant(self.volts * voltage, count * self.step))
+        times = (0.0, moves * self.step, count * self.step)
+        volts = (self.volts * first, self.volts * voltage, self.volts * voltage)
+        run = self.begin(Course(times, volts))
         speeds, speed, error = np.zeros(0), math.nan, 0.0
         try:
             if state is not None:
                 run.set_state(state)
-            for first in range(0, count, piece):
-                rows = run.revolve(range(first, min(first + piece, count)))
+            run.revolve(range(moves))
+            for begin in range(moves, count, piece):
+                rows = run.revolve(range(begin, min(begin + piece, count)))
                 speeds = np.append(speeds, np.abs(rows["speed"]) / self.omega)
                 speed, error = settled_speed(speeds, settings)
                 if math.isfinite(speed):
