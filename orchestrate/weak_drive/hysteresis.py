@@ -6,8 +6,8 @@ in which the ramp's record suggests a jump:
 
 - Voltages are held on a grid of steps `grid`, from the ramp's own state before the stretch to the
   stretch's end, each taken to at `rate` and held until the speed has settled (:mod:`.settled`).
-- Every step in which the speed gains `smallest` on the voltage, or moves by `same` against it, is
-  halved, to `width`.
+- Every step in which the speed gains `smallest` on the voltage, or moves by `against` against it,
+  is halved, to `width`.
 - Then the voltage goes back over that step. The motion is *lost* there where the speed comes back
   more than `clear` away, and both motions last when they are held `again` times. Where it comes
   back, the step is halved further.
@@ -55,8 +55,11 @@ class Settings(SettledSettings):
     width: float = 1e-4  # widest bracket of a jump
     finest: float = 1e-6  # shortest step of the voltage
     # change of the speed over a step, beyond that of the voltage, up to which it may be one branch;
-    # below 0.866 of `distinct`, so that no steps find a jump that others rule out
+    # below 0.866 of `clear`, so that no steps find a jump that others rule out
     smallest: float = 4e-3
+    against: float = (
+        1e-3  # change of the speed against the voltage up to which it may be one branch
+    )
     same: float = 2e-3  # largest difference of two settled speeds of one motion
     clear: float = 5e-3  # smallest difference of two motions' speeds at one voltage at a jump
     again: int = 3  # times that the motions beside a jump are held again
@@ -258,24 +261,15 @@ class HysteresisLoop(VoltageHolder):
             if outcome == LOST:
                 outcome, before = self.confirm(points[: i + 1], sign)
             jumps[step] = Jump(outcome or UNDECIDED, before, high.voltage)
+            if sign * (high.speed - low.speed) < 0.0:  # what a ramp comes to there is chance
+                jumps[step] = Jump(UNDECIDED, low.voltage, last)
+                del points[i + 2 :]
         else:
             return [Jump(UNDECIDED, first.voltage, last)]
-        return self.in_order(points, jumps, sign)
-
-    def in_order(
-        self, points: list[HeldPoint], jumps: dict[tuple[float, float], Jump], sign: float
-    ) -> list[Jump]:
-        """Return the jumps in the ramp's order, those after a fall against it undecided."""
-        ordered, fell = [], False
-        steps = {
-            (low.voltage, high.voltage): high.speed - low.speed for low, high in pairwise(points)
-        }
-        for step, jump in sorted(jumps.items(), key=lambda item: sign * item[0][0]):
-            fell |= sign * steps[step] < 0.0
-            ordered.append(jump._replace(outcome=UNDECIDED if fell else jump.outcome))
-        if not ordered and not self.comes_back(points):
-            return [Jump(UNDECIDED, points[0].voltage, points[-1].voltage)]
-        return ordered
+        if not jumps and not self.comes_back(points):
+            return [Jump(UNDECIDED, first.voltage, last)]
+        steps = ((low.voltage, high.voltage) for low, high in pairwise(points))
+        return [jumps[step] for step in steps if step in jumps]
 
     def hold_grid(self, first: HeldPoint, last: float) -> list[HeldPoint]:
         """Step the voltage over the grid; return the points at which the speed settled."""
@@ -302,7 +296,7 @@ class HysteresisLoop(VoltageHolder):
         """Return by how much the speed changes more than on one branch, on which it rises."""
         scatter = min(difference_error(low, high), self.settings.smallest)
         gained, length = sign * (high.speed - low.speed), abs(high.voltage - low.voltage)
-        against = -gained - self.settings.same
+        against = -gained - self.settings.against
         return max(gained - self.settings.smallest - length, against) - scatter
 
     def way_back(self, low: HeldPoint, landed: HeldPoint) -> int:

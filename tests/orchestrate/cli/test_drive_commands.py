@@ -386,7 +386,7 @@ CASES = {
         *(*OF_ALL, *DATASHEETS, *SCHEDULES, *CONTROLS),
         (["--algorithm", "euler"], ["algorithm", "euler", "jacobi", "rollback"]),
         (["--tolerance", "-1"], ["tolerance", ">= 0"]),
-        (["--hold", "0"], ["hold = 0.0 s", "0 < hold"]),
+        (["--hold", "-1"], ["hold = -1.0 s", "0 <= hold"]),
     ],
     "passage": [
         *(*OF_ALL, *SCHEDULES, *CONTROLS),
@@ -405,7 +405,6 @@ CASES = {
     ],
     "jump-voltages": [
         *(*OF_ALL, *VOLTAGES),
-        (["--rate", "1e-4"], ["rates", "two different ones"]),
         (["--rate", "1:2:3"], ["--rate 1:2:3", "A,B,..., such as 1e-4,5e-5"]),
         (["--rate", "1e-4,-1"], ["--rate 1e-4,-1", "> 0"]),
         (["--eta0", "1.5"], ["--eta0 1.5", "FIRST:LAST"]),
