@@ -57,9 +57,7 @@ class Settings(SettledSettings):
     # change of the speed over a step, beyond that of the voltage, up to which it may be one branch;
     # below 0.866 of `clear`, so that no steps find a jump that others rule out
     smallest: float = 4e-3
-    against: float = (
-        1e-3  # change of the speed against the voltage up to which it may be one branch
-    )
+    against: float = 1e-3  # the same where the speed moves against the voltage
     same: float = 2e-3  # largest difference of two settled speeds of one motion
     clear: float = 5e-3  # smallest difference of two motions' speeds at one voltage at a jump
     again: int = 3  # times that the motions beside a jump are held again

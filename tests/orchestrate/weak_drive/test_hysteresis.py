@@ -181,8 +181,9 @@ def test_a_motion_in_a_narrow_range_is_not_stepped_over():
     """From 1.5205 to 1.5225, within a step of the grid; past it the speed is lower."""
 
     def higher(motion, before, voltage):
-        inside = 1.5205 < voltage <= 1.5225 and before <= 1.5225
-        return 0.02 if inside else -0.005 * (voltage > 1.5225 or (motion < 0 and voltage > 1.51))
+        if (1.5205 if motion == 0.0 else 1.515) < voltage <= 1.5225 and motion >= 0.0:
+            return 0.02
+        return -0.005 if voltage > 1.5225 or (motion < 0.0 and voltage > 1.51) else 0.0
 
     lost, rest = Scripted(higher).course()
     assert lost.outcome == LOST and lost.low - 1e-9 <= 1.5205 <= lost.high + 1e-9
