@@ -297,7 +297,7 @@ def format_jump(at: xr.Dataset, volts: float, fold: float | None = None) -> str:
     if not math.isfinite(voltage):
         return f"jump {jump} none ({at.no_jump.item()})"
     error = 0.5 * abs(float(at.jump_high) - float(at.jump_low))
-    text = f"jump {jump} at {voltage:.4f} +- {error:.4f} V (eta0 = {voltage / volts:.4f})"
+    text = f"jump {jump} at {voltage:.5f} +- {error:.5f} V (eta0 = {voltage / volts:.5f})"
     text += f", shown at {float(at.ramp_voltage):.4f} V by the ramp"
     return text if fold is None else f"{text}; its branch has a fold at {fold:.4f} V"
 

@@ -79,7 +79,7 @@ def print_result(data: xr.Dataset, directions: tuple[str, ...]) -> None:
         columns = zip(at.jumps.values, at.standard_error.values, at.decided.values, strict=True)
         texts = [format_voltage(*column) for column in columns]
         change = float(at.jumps[1] - at.jumps[0])
-        last = "" if math.isnan(change) else f"{change:.4f}"
+        last = "" if math.isnan(change) else f"{change:.5f}"
         print(f"{jump:6}{texts[0]:>24}{texts[1]:>24}{last:>12}".rstrip())
     if bool((data.decided.sel(jump=list(directions)) == "undecided").any()):
         print("undecided: held voltages do not tell. Ask drive-branch: its folds are the jumps")
@@ -89,4 +89,4 @@ def format_voltage(value: float, error: float, decided: str) -> str:
     """Format a voltage with its error; "none" or "undecided" for NaN."""
     if math.isnan(value):
         return "undecided" if decided == "undecided" else "none"
-    return f"{value:.4f} +- {error:.4f}"
+    return f"{value:.5f} +- {error:.5f}"

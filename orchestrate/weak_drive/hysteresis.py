@@ -5,8 +5,9 @@ loses the first. A steep but continuous branch is not a jump. The rule, for a st
 in which the ramp's record suggests a jump:
 
 - Voltages are held on a grid of steps `grid`, from the ramp's own state before the stretch to the
-  stretch's end, each until the speed has settled (:mod:`.settled`).
-- Every step in which the speed changes by `smallest` more than the voltage is halved, to `width`.
+  stretch's end, each taken to at `rate` and held until the speed has settled (:mod:`.settled`).
+- Every step in which the speed gains `smallest` on the voltage, or moves by `against` against it,
+  is halved, to `width`.
 - Then the voltage goes back over that step. The motion is *lost* there where the speed comes back
   more than `clear` away, and both motions last when they are held `again` times. Where it comes
   back, the step is halved further.
@@ -33,7 +34,7 @@ import numpy as np
 from ..running.job import Table
 from .ramp_record import NOT_SHOWN, RampRecord, Suspect
 from .run import Run
-from .schedule import Constant, Schedule
+from .schedule import Course, Schedule
 from .settled import SettledSettings, settled_speed
 
 NONE, LOST, UNDECIDED = range(3)
@@ -50,11 +51,13 @@ class Settings(SettledSettings):
     shown: float = 4e-3  # fall of the slip in a ramp's record that suggests a jump
     share: float = 0.1  # of that fall, before and after the stretch over which voltages are held
     grid: float = 4e-3  # longest first step of the voltage
+    rate: float = 5e-5  # of the voltage from one step to the next, in a time 1/omega
     width: float = 1e-4  # widest bracket of a jump
     finest: float = 1e-6  # shortest step of the voltage
     # change of the speed over a step, beyond that of the voltage, up to which it may be one branch;
-    # below 0.866 of `distinct`, so that no steps find a jump that others rule out
+    # below 0.866 of `clear`, so that no steps find a jump that others rule out
     smallest: float = 4e-3
+    against: float = 1e-3  # the same where the speed moves against the voltage
     same: float = 2e-3  # largest difference of two settled speeds of one motion
     clear: float = 5e-3  # smallest difference of two motions' speeds at one voltage at a jump
     again: int = 3  # times that the motions beside a jump are held again
@@ -126,30 +129,39 @@ class VoltageHolder:
     def hold_step(self, step: int) -> HeldPoint:
         """Hold the voltage that the ramp has at a step, from its state there."""
         voltage = self.schedule.voltage((step + 0.5) * self.step) / self.volts
-        return self.hold(self.state_before(step), voltage)
+        return self.hold(self.state_before(step), voltage, voltage)
 
     def hold_from(self, point: HeldPoint, voltage: float, limit: float | None = None) -> HeldPoint:
-        """Change the voltage in one step from a held point, and hold it there."""
-        return self.hold(point.state, voltage, None if limit is None else (point.speed, limit))
+        """Take the voltage slowly from a held point to another one, and hold it there."""
+        ends = None if limit is None else (point.speed, limit)
+        return self.hold(point.state, point.voltage, voltage, ends)
 
     def hold(
-        self, state: Table | None, voltage: float, ends: tuple[float, float] | None = None
+        self,
+        state: Table | None,
+        first: float,
+        voltage: float,
+        ends: tuple[float, float] | None = None,
     ) -> HeldPoint:
-        """Simulate a constant voltage from a state until the speed settles.
+        """Take the voltage to another one at `rate`, and hold it until the speed settles.
 
         With `ends` also until the speed has come from the first of two nearly to the second one,
         which is returned as its speed then.
         """
         settings = self.settings
-        count = math.ceil(self.longest / self.step)
+        moves = math.ceil(abs(voltage - first) / settings.rate / self.omega / self.step)
+        count = moves + math.ceil(self.longest / self.step)
         piece = max(1, round(settings.piece / self.omega / self.step))
-        run = self.begin(Constant(self.volts * voltage, count * self.step))
+        times = (0.0, moves * self.step, count * self.step)
+        volts = (self.volts * first, self.volts * voltage, self.volts * voltage)
+        run = self.begin(Course(times, volts))
         speeds, speed, error = np.zeros(0), math.nan, 0.0
         try:
             if state is not None:
                 run.set_state(state)
-            for first in range(0, count, piece):
-                rows = run.revolve(range(first, min(first + piece, count)))
+            run.revolve(range(moves))
+            for begin in range(moves, count, piece):
+                rows = run.revolve(range(begin, min(begin + piece, count)))
                 speeds = np.append(speeds, np.abs(rows["speed"]) / self.omega)
                 speed, error = settled_speed(speeds, settings)
                 if math.isfinite(speed):
@@ -226,7 +238,7 @@ class HysteresisLoop(VoltageHolder):
         points = self.hold_grid(first, last)
         jumps: dict[tuple[float, float], Jump] = {}
         for _ in range(self.settings.max_holds):
-            i = self.largest_step(points, jumps)
+            i = self.largest_step(points, jumps, sign)
             if i is None:
                 break
             low, high = points[i : i + 2]
@@ -238,7 +250,7 @@ class HysteresisLoop(VoltageHolder):
             outcome = self.way_back(low, landed)
             points[i + 1] = high = landed if math.isfinite(landed.speed) else high
             if outcome == NONE and length > self.settings.finest:
-                if self.excess(low, high) <= 0.0:
+                if self.excess(low, high, sign) <= 0.0:
                     continue
                 if middle := self.hold_between(low, high):
                     points.insert(i + 1, middle)
@@ -247,24 +259,15 @@ class HysteresisLoop(VoltageHolder):
             if outcome == LOST:
                 outcome, before = self.confirm(points[: i + 1], sign)
             jumps[step] = Jump(outcome or UNDECIDED, before, high.voltage)
+            if sign * (high.speed - low.speed) < 0.0:  # what a ramp comes to there is chance
+                jumps[step] = Jump(UNDECIDED, low.voltage, last)
+                del points[i + 2 :]
         else:
             return [Jump(UNDECIDED, first.voltage, last)]
-        return self.in_order(points, jumps, sign)
-
-    def in_order(
-        self, points: list[HeldPoint], jumps: dict[tuple[float, float], Jump], sign: float
-    ) -> list[Jump]:
-        """Return the jumps in the ramp's order, those after a fall against it undecided."""
-        ordered, fell = [], False
-        steps = {
-            (low.voltage, high.voltage): high.speed - low.speed for low, high in pairwise(points)
-        }
-        for step, jump in sorted(jumps.items(), key=lambda item: sign * item[0][0]):
-            fell |= sign * steps[step] < 0.0
-            ordered.append(jump._replace(outcome=UNDECIDED if fell else jump.outcome))
-        if not ordered and not self.comes_back(points):
-            return [Jump(UNDECIDED, points[0].voltage, points[-1].voltage)]
-        return ordered
+        if not jumps and not self.comes_back(points):
+            return [Jump(UNDECIDED, first.voltage, last)]
+        steps = ((low.voltage, high.voltage) for low, high in pairwise(points))
+        return [jumps[step] for step in steps if step in jumps]
 
     def hold_grid(self, first: HeldPoint, last: float) -> list[HeldPoint]:
         """Step the voltage over the grid; return the points at which the speed settled."""
@@ -277,21 +280,22 @@ class HysteresisLoop(VoltageHolder):
         return points
 
     def largest_step(
-        self, points: list[HeldPoint], decided: dict[tuple[float, float], Jump]
+        self, points: list[HeldPoint], decided: dict[tuple[float, float], Jump], sign: float
     ) -> int | None:
         """Return the index of the largest undecided step of the speed; None if all are small."""
         excess = [
-            -math.inf if (low.voltage, high.voltage) in decided else self.excess(low, high)
+            -math.inf if (low.voltage, high.voltage) in decided else self.excess(low, high, sign)
             for low, high in pairwise(points)
         ]
         i = int(np.argmax(excess)) if excess else 0
         return i if excess and excess[i] > 0.0 else None
 
-    def excess(self, low: HeldPoint, high: HeldPoint) -> float:
-        """Return by how much the speed changes more than one branch may."""
-        branch = self.settings.smallest + abs(high.voltage - low.voltage)
+    def excess(self, low: HeldPoint, high: HeldPoint, sign: float) -> float:
+        """Return by how much the speed changes more than on one branch, on which it rises."""
         scatter = min(difference_error(low, high), self.settings.smallest)
-        return abs(high.speed - low.speed) - branch - scatter
+        gained, length = sign * (high.speed - low.speed), abs(high.voltage - low.voltage)
+        against = -gained - self.settings.against
+        return max(gained - self.settings.smallest - length, against) - scatter
 
     def way_back(self, low: HeldPoint, landed: HeldPoint) -> int:
         """Return whether two motions exist at a step's lower voltage and the first is lost."""

@@ -104,7 +104,7 @@ def test_a_jump_is_reported_with_where_the_ramp_shows_it(ask, folder):
 def test_a_jump_s_fold_is_added_where_branches_are_known():
     made = {"jumps": 1.5, "jump_low": 1.4999, "jump_high": 1.5001, "ramp_voltage": 1.52}
     at = xr.Dataset(made | {"decided": "by held voltages"}, {"jump": "up 2"})
-    text = "jump up 2 at 1.5000 +- 0.0001 V (eta0 = 3.0000), shown at 1.5200 V by the ramp"
+    text = "jump up 2 at 1.50000 +- 0.00010 V (eta0 = 3.00000), shown at 1.5200 V by the ramp"
     assert couple_command.format_jump(at, 0.5) == text
     assert couple_command.format_jump(at, 0.5, 1.5) == f"{text}; its branch has a fold at 1.5000 V"
 
@@ -253,7 +253,7 @@ def test_a_jump_that_no_ramp_has_and_an_undecided_one(capsys):
     data = xr.Dataset({name: (tuple(each), values) for name, values in made.items()}, each)
     jump_voltages.print_result(data, directions=("up", "down"))
     _, up, down, hint = capsys.readouterr().out.splitlines()
-    assert up.split() == ["up", "1.5000", "+-", "0.0001", "none"]
+    assert up.split() == ["up", "1.50000", "+-", "0.00010", "none"]
     assert down.split() == ["down", "undecided", "none"] and "drive-branch" in hint
     jump_voltages.print_result(data, directions=("up",))
     assert "drive-branch" not in capsys.readouterr().out
@@ -386,7 +386,7 @@ CASES = {
         *(*OF_ALL, *DATASHEETS, *SCHEDULES, *CONTROLS),
         (["--algorithm", "euler"], ["algorithm", "euler", "jacobi", "rollback"]),
         (["--tolerance", "-1"], ["tolerance", ">= 0"]),
-        (["--hold", "0"], ["hold = 0.0 s", "0 < hold"]),
+        (["--hold", "-1"], ["hold = -1.0 s", "0 <= hold"]),
     ],
     "passage": [
         *(*OF_ALL, *SCHEDULES, *CONTROLS),
@@ -405,7 +405,6 @@ CASES = {
     ],
     "jump-voltages": [
         *(*OF_ALL, *VOLTAGES),
-        (["--rate", "1e-4"], ["rates", "two different ones"]),
         (["--rate", "1:2:3"], ["--rate 1:2:3", "A,B,..., such as 1e-4,5e-5"]),
         (["--rate", "1e-4,-1"], ["--rate 1e-4,-1", "> 0"]),
         (["--eta0", "1.5"], ["--eta0 1.5", "FIRST:LAST"]),

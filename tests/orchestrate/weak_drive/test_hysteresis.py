@@ -153,9 +153,9 @@ def test_what_comes_after_a_speed_against_the_voltage_is_undecided():
             return 0.1
         return -0.02 if voltage > 1.52 or (motion and voltage > 1.51) else 0.0
 
-    jumps = Scripted(higher).course()
-    assert [jump.outcome for jump in jumps] == [UNDECIDED, UNDECIDED]
-    assert jumps[0].low - 1e-9 <= 1.52 <= jumps[0].high + 1e-9
+    (jump,) = Scripted(higher).course()
+    assert jump.outcome == UNDECIDED
+    assert jump.low - 1e-9 <= 1.52 < jump.low + 1e-4 and jump.high == 1.56
 
 
 @pytest.mark.parametrize(("early", "outcome"), [(0.0, LOST), (1e-4, LOST), (2e-3, UNDECIDED)])
@@ -175,6 +175,19 @@ def test_another_motion_on_the_way_back_is_undecided():
     """No step of the way there is large."""
     loop = Scripted(lambda motion, before, voltage: 0.02 * (voltage < before))
     assert [jump.outcome for jump in loop.course()] == [UNDECIDED]
+
+
+def test_a_motion_in_a_narrow_range_is_not_stepped_over():
+    """From 1.5205 to 1.5225, within a step of the grid; past it the speed is lower."""
+
+    def higher(motion, before, voltage):
+        if (1.5205 if motion == 0.0 else 1.515) < voltage <= 1.5225 and motion >= 0.0:
+            return 0.02
+        return -0.005 if voltage > 1.5225 or (motion < 0.0 and voltage > 1.51) else 0.0
+
+    lost, rest = Scripted(higher).course()
+    assert lost.outcome == LOST and lost.low - 1e-9 <= 1.5205 <= lost.high + 1e-9
+    assert rest.outcome == UNDECIDED and rest.low <= 1.5225 + 1e-9 and rest.high == 1.56
 
 
 def test_motions_of_nearly_one_speed_are_undecided():
