@@ -349,8 +349,9 @@ def cosimulate(
     --------
     >>> import orchestrate
     >>> beam, drive = orchestrate.Structure.from_file("beam"), orchestrate.Drive.from_file("beam")
+    >>> at_speed = {"speed_start": 60.0}  # rad/s
     >>> run = orchestrate.cosimulate(
-    ...     beam, drive, inputs={"voltage": 6.0}, duration=2.0, step=0.01, record=["speed"]
+    ...     beam, drive, parameters=at_speed, inputs={"voltage": 4.0}, duration=0.5, step=0.002
     ... )
     >>> run.x1.dims, bool(run.coupling_error.max() < 1e-6)
     (('time',), True)
