@@ -20,6 +20,8 @@ from orchestrate.cli import diagnose, passage
 from orchestrate.figures import diagnosis, weak_drive
 from orchestrate.units import Units, with_units
 
+from ...exports import BUILD
+
 BOX = ("--structure", "beam", "--hz", "12", "--g", "0.02")
 SWEPT = ("--structure", "beam", "--hz", "12:13:1", "--g", "0.02", "--direction", "up")
 SHORT = ("--transient", "10", "--samples", "4")
@@ -30,6 +32,15 @@ ASKED = {  # command, a unit, what is printed in it
         ("--structure", "beam", "--shock", "sawtooth", "--length", "0.01", "--g", "2"),
         "um",
         r"largest gap [\d.e+]+ um\b",
+    ),
+    "cosimulate": (
+        (
+            *("--structure", "beam", "--duration", "0.2", "--step", "0.01"),
+            *("--drive", str(BUILD / "fmi2" / "MotorShaker.fmu")),
+            *("--connect", "box_acceleration=box_acceleration", "box_force=box_force"),
+        ),
+        "mm",
+        r"largest displacement [\d.e+-]+ mm\b",
     ),
     "resonance": ((*SWEPT, *SHORT), "rpm", r"720 rpm"),
     "sweep": ((*SWEPT, *SHORT), "rpm", r"at 7[28]0 rpm"),
