@@ -26,7 +26,7 @@ class SettledSettings:
     block: int = 12  # revolutions of a mean; a multiple of the periods of most motions
     blocks: int = 48  # of the three long means of an irregular motion, together
     tolerance: float = 1e-4  # of the settled speed, over omega
-    piece: float = 150.0  # simulated between two tests, in 1/omega
+    piece: float = 50.0  # simulated between two tests, in 1/omega
 
 
 def settled_speed(speeds: np.ndarray, settings: SettledSettings) -> tuple[float, float]:
