@@ -176,6 +176,13 @@ QUESTIONS: dict[str, Ask] = {
     "detect": lambda q: o.detect(q.record(), GUESS, **QUIET),
     "detect_all": lambda q: o.detect_all({"one": q.record()}, GUESS, **QUIET)["one"],
     "plan_test": ask_plan,
+    "cosimulate": lambda q: o.cosimulate(
+        *q.system,
+        inputs={"voltage": q.ends[0] * q.system.drive.volts(q.system.structure)},
+        duration=10.0,
+        step=0.1,
+        **QUIET,
+    ),
     "couple": lambda q: o.couple(*q.system, voltage=q.ends, **FAST, **QUIET),
     "couple_all": lambda q: o.couple_all(
         {"one": q.system}, eta0=q.ends, rates=[4e-4], back=False, step=0.2, **QUIET
