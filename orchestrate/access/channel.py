@@ -7,12 +7,12 @@ variables. Both FMI versions; statuses are checked by FMPy.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from ctypes import Array, byref, c_bool, c_double, c_uint, c_void_p, cast
+from ctypes import Array, byref, c_bool, c_double, c_uint, c_void_p
 from math import isfinite
 from typing import Any, NamedTuple
 
 from ..errors import FmuError
-from .instance import Instance
+from .instance import Instance, function_addresses
 
 
 class Pointers(NamedTuple):
@@ -91,12 +91,10 @@ class Channel:
     def pointers(self) -> Pointers:
         """Return C addresses of an FMI 3.0 instance, its functions and its saved state."""
         names = ("SetFloat64", "GetFloat64", "DoStep", "GetFMUState", "SetFMUState")
-        functions = (getattr(self._fmu.dll, f"fmi3{name}") for name in names)
-        addresses = tuple(cast(function, c_void_p).value or 0 for function in functions)
+        instance, *addresses = function_addresses(self.instance, names)
         saved_state = self._states.setdefault(0, c_void_p())
-        return Pointers(
-            self._fmu.component, addresses, self._puts[-1][1], self._gets[1], saved_state
-        )
+        inputs, outputs = self._puts[-1][1], self._gets[1]
+        return Pointers(instance, tuple(addresses), inputs, outputs, saved_state)
 
     def begin(self) -> None:
         """Clear the FMU's log messages before a new call, so that an error shows only its own."""
