@@ -46,7 +46,7 @@ from .laboratory.stepped_sine import SteppedSine as SteppedSine
 from .laboratory.swept_sine import SweptSine as SweptSine
 from .reports.report import report as report
 from .response.resonance import resonance as resonance
-from .response.resonance_levels import resonance_levels as resonance_levels
+from .response.resonance import resonance_levels as resonance_levels
 from .response.simulate import simulate as simulate
 from .response.spectra import spectra as spectra
 from .response.sweep import sweep as sweep

@@ -23,13 +23,15 @@ FILES = sorted(
     for path in (ROOT / name).rglob("*.py*")
     if path.suffix in (".py", ".pyi")
 )
-GROUND = {"checks", "constants", "errors", "files", "flags", "temporary", "units", "version"}
+GROUND = {"arguments", "constants", "errors", "files", "flags", "outcomes"}
+GROUND |= {"temporary", "units", "version"}
 BELOW_ANSWERS = GROUND | {"structures", "access", "running"}
 FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know beside itself
-    "checks": {"errors"},
+    "arguments": {"errors"},
     "constants": set(),
     "errors": set(),
     "flags": set(),
+    "outcomes": set(),
     "version": set(),
     "files": {"errors"},
     "supervisor": set(),

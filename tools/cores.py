@@ -16,7 +16,6 @@ from unittest.mock import patch
 import numpy as np
 
 from orchestrate.access import OSCILLATOR, find
-from orchestrate.response.questions import series_arguments
 from orchestrate.response.sweep import SweepJob
 from orchestrate.running.executors import compute
 from orchestrate.running.job import Table
@@ -31,9 +30,9 @@ Done = tuple[bytes, Table]
 def figure_6_job(step: float) -> SweepJob:
     """Return the job of the paper's sweep with a step of the frequency ratio."""
     etas = np.round(np.arange(0.1, 8.0 + 0.5 * step, step), 3)
-    return SweepJob(
-        **series_arguments(Structure.nondimensional(), etas, None, None), name="figure 6"
-    )
+    rest = {"direction": "up", "transient": 500, "samples": 200, "tolerance": 1e-2}
+    call = {"structure": Structure.nondimensional(), "eta": etas, "start": None, **rest}
+    return SweepJob.from_call({**call, "peak_periods": 8}, name="figure 6")
 
 
 @dataclass

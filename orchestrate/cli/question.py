@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..constants import TURN
 from ..errors import InputError, StoreError
+from ..outcomes import REPEATED, UNDECIDED
 from ..units import (
     Units,
     as_shown,
@@ -31,9 +32,11 @@ if TYPE_CHECKING:
 
     from ..structures import Structure
 
-HOW_DECIDED = {  # of attractors; nothing is said where Newton's method confirms a stable orbit
-    2: ", by repeated states alone",
-    4: ", undecided: near an unstable orbit, or before impacts that have to come",
+HOW_DECIDED: dict[
+    int, str
+] = {  # of attractors; nothing is said where Newton's method confirms a stable orbit
+    REPEATED: ", by repeated states alone",
+    UNDECIDED: ", undecided: near an unstable orbit, or before impacts that have to come",
 }
 FAR_RATIO = 25.0  # frequency ratio from which, or from whose inverse, there is little to be seen
 FAR_LEVEL = 200.0  # times the level from which a clearance is hardly meant

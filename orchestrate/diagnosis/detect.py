@@ -12,7 +12,7 @@ from ..access import Player, finder
 from ..laboratory.record_checks import clipped_share
 from ..response.labels import Variable, flags, variable
 from ..response.questions import checked_structure
-from ..running.job import Inputs, Table
+from ..running.job import Table
 from ..running.runner import answer
 from ..structures import Structure
 from .bootstrap import Bootstrap, bootstrap
@@ -156,7 +156,7 @@ class DetectJob(SearchJob):
                 ratios = np.stack([made.sound, made.delaminated])
         return {**table, "end_bootstrap": ratios[np.newaxis]}
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         """Return the verdict, the quantities that it is based on, and all fits as a dataset."""
         import xarray as xr
 

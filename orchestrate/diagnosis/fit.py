@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..access import finder
-from ..checks import checked_word
+from ..arguments import checked_word
 from ..errors import InputError
 from ..response.labels import Variable, variable
 from ..response.questions import checked_structure
-from ..running.job import Inputs, Table
+from ..running.job import Table
 from ..running.runner import answer
 from ..structures import Structure
 from .curve_evidence import CurveData
@@ -211,7 +211,7 @@ class FitJob(SearchJob):
 
     kind: str
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         """Return the fitted parameters, their errors, and the fitted orders as a dataset."""
         import xarray as xr
 

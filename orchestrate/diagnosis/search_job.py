@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..access import OSCILLATOR, Player
 from ..laboratory.analysis.channels import Channels
-from ..running.job import Inputs, Job, Table
+from ..running.job import Job, Table
 from ..structures import Structure
 from .curve_evidence import CurveData
 from .decision_rule import SETTINGS
@@ -147,7 +147,7 @@ class SearchJob(Job):
                 found.append(DelaminatedWithClearance(self.guess, (*free, "clearance")))
         return tuple(found)
 
-    def items(self, inputs: Inputs) -> Sequence[tuple[str, float]]:
+    def items(self) -> Sequence[tuple[str, float]]:
         """Return the independent searches (sound hypotheses, parts of the scan), then the end."""
         sound = [("sound", float(position)) for position in range(len(self.sound))]
         scan = [("scan", split) for split in STARTING_SPLITS] if self.delaminated else []

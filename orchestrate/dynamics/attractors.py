@@ -11,25 +11,27 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import OSCILLATOR, REST, EventInstance, Instance, begin, finder, sampled
-from ..checks import REQUIRES_DELAMINATED, checked_integer
-from ..errors import InputError
-from ..response.labels import Variable, flags, si_state_coordinate, variable
-from ..response.questions import (
+from ..access import OSCILLATOR, REST, EventInstance, Instance, begin, sampled
+from ..arguments import (
+    REQUIRES_DELAMINATED,
     Numbers,
-    Point,
-    SeriesQuestion,
+    checked,
+    checked_integer,
     checked_numbers,
     checked_positive,
-    series_arguments,
+    positive,
+    whole,
 )
-from ..running.job import Inputs, Table
-from ..running.runner import answer
+from ..errors import InputError
+from ..outcomes import ABSENT
+from ..response.labels import Variable, flags, make_dataset, si_state_coordinate, variable
+from ..response.questions import Point, SeriesQuestion, ask
+from ..running.job import Table
 from ..structures import Structure
 from .clusters import ABOUT, FEATURES, AttractorSettings, run_until_settled
 from .decision import MotionDecider
 from .global_continuation import InstancePair, MatchedAttractors, SettledStarts, continue_attractors
-from .settled_motion import ABSENT, DECIDED, SettledMotion
+from .settled_motion import DECIDED, SettledMotion
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -48,6 +50,7 @@ DECIDED_BY = (
     "how it was decided: by a stable orbit of Newton's method; by states that repeat; irregular; "
     "undecided: states repeat nearly, near an unstable orbit or before impacts that have to come"
 )
+KEYWORDS = ("transient", "settle", "samples", "converged", "longest", "alike", "alike_irregular")
 COLUMNS = (*OF_ATTRACTORS, "multiplier", "how", "share", "state")
 SIZE_PERIODS, SAMPLES_PER_PERIOD = 8, 64  # of the response from rest, to measure its size
 AROUND, BEYOND = 0.7, 3.0  # of its largest displacement, of its largest gap: the second box
@@ -62,15 +65,25 @@ class RandomStart(NamedTuple):
     number: int  # of the start
 
 
+def half_widths(name: str, value: ArrayLike | None) -> Numbers | None:
+    """Return the user's half width(s) of the box of starts, m, or None; raise unless positive."""
+    scale = checked_numbers(name, value)
+    each = scale if isinstance(scale, tuple) else () if scale is None else (scale,)
+    wrong = [width for width in each if width <= 0.0]
+    if wrong:
+        raise InputError(f"{name} = {wrong[0]!r}: expected numbers > 0, m")
+    return scale
+
+
 @dataclass(frozen=True, kw_only=True)
 class AttractorsJob(SeriesQuestion):
     """Job of :func:`orchestrate.attractors`: random starts at each value of a parameter."""
 
-    starts: int = 60
-    seed: int = 0
-    scale: Numbers | None = None
-    width: float = 3.0
-    settings: AttractorSettings = AttractorSettings()
+    starts: int = whole(1)
+    seed: int = whole(0, 2**32 - 1)
+    scale: Numbers | None = checked(half_widths)
+    width: float = positive()
+    settings: AttractorSettings
     asked: ClassVar[str] = "attractors"
     chunk_size: ClassVar[int] = 240
     gathers: ClassVar[bool] = True
@@ -90,7 +103,7 @@ class AttractorsJob(SeriesQuestion):
         """Return the number of items: all starts at all values, and one that groups them."""
         return self.starts * super().count() + 1
 
-    def items(self, inputs: Inputs) -> Sequence[RandomStart | None]:
+    def items(self) -> Sequence[RandomStart | None]:
         """Return the items: each start at each value, then None, which stands for grouping."""
         points = self.series.points
         scales = self.half_widths()
@@ -166,10 +179,8 @@ class AttractorsJob(SeriesQuestion):
         """Return the indices that sort the parameter values, so that neighbours are adjacent."""
         return np.argsort(self.series.values, kind="stable")
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         """Return the dataset: the attractors at each value and the shares of starts they get."""
-        import xarray as xr
-
         along, shape = self.series.name, (len(self.series.values), self.starts)
         rows = table["features"].reshape(*shape, len(FEATURES))
         there = table["how"][0] != ABSENT
@@ -191,7 +202,7 @@ class AttractorsJob(SeriesQuestion):
             "feature": variable("feature", np.array(FEATURES), "1", "feature"),
         }
         title = f"Coexisting attractors along {along}: {self.structure.label()}"
-        return xr.Dataset(variables, coordinates, {"title": title})
+        return make_dataset(variables, coordinates, title)
 
     def existence_ranges(self, there: NDArray[np.bool_]) -> dict[str, Variable]:
         """Return the lowest and highest parameter value at which each attractor exists."""
@@ -239,7 +250,7 @@ def attractor_columns(matched: MatchedAttractors) -> Table:
     """Return matched attractors as arrays (values, attractors), NaN where one is absent."""
     shape = len(matched.motions), matched.count
     columns = {name: np.full(shape, np.nan) for name in (*OF_ATTRACTORS, "multiplier")}
-    how, share = np.zeros(shape, dtype=np.int8), np.zeros(shape)
+    how, share = np.full(shape, ABSENT, dtype=np.int8), np.zeros(shape)
     states = np.full((*shape, 4), np.nan)
     for i, motions in enumerate(matched.motions):
         for number, motion in zip(matched.numbers[i], motions, strict=True):
@@ -319,16 +330,16 @@ def starts_in_both_boxes(
     return states
 
 
-def attractor_settings(**given: Any) -> AttractorSettings:
-    """Check keywords on settling and clustering; return them as ``AttractorSettings``."""
+def attractor_settings(call: Mapping[str, Any]) -> AttractorSettings:
+    """Check a call's keywords on settling and clustering; return them as ``AttractorSettings``."""
     least = {"transient": 0, "samples": 4, "longest": 0}  # whole numbers
-    checked: dict[str, Any] = {
-        name: checked_integer(name, value, least[name])
+    settings: dict[str, Any] = {
+        name: checked_integer(name, call[name], least[name])
         if name in least
-        else checked_positive(name, value)
-        for name, value in given.items()
+        else checked_positive(name, call[name])
+        for name in KEYWORDS
     }
-    return AttractorSettings(**checked)
+    return AttractorSettings(**settings)
 
 
 def attractors(
@@ -438,31 +449,4 @@ def attractors(
     >>> found.multiplicity.values[0], found.share.values[0]
     (array([1., 2.]), array([0.825, 0.175]))
     """
-    job = AttractorsJob(
-        **series_arguments(structure, eta, frequency, amplitude, over, values),
-        name=f"attractors_{structure.label()}",
-        starts=checked_integer("starts", starts, 1),
-        seed=checked_integer("seed", seed, 0, 2**32 - 1),
-        scale=checked_half_widths(scale),
-        width=checked_positive("width", width),
-        settings=attractor_settings(
-            transient=transient,
-            settle=settle,
-            samples=samples,
-            converged=converged,
-            longest=longest,
-            alike=alike,
-            alike_irregular=alike_irregular,
-        ),
-    )
-    return answer(job, running, finder(running))
-
-
-def checked_half_widths(argument: ArrayLike | None) -> Numbers | None:
-    """Return the user's half width(s) of the box of starts, m, or None; raise unless positive."""
-    scale = checked_numbers("scale", argument)
-    each = scale if isinstance(scale, tuple) else () if scale is None else (scale,)
-    wrong = [value for value in each if value <= 0.0]
-    if wrong:
-        raise InputError(f"scale = {wrong[0]!r}: expected numbers > 0, m")
-    return scale
+    return ask(AttractorsJob, locals(), settings=attractor_settings(locals()))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import checked_integer
+from ..arguments import checked_integer
 from ..errors import InputError
 from ..response.labels import variable
 

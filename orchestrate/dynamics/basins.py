@@ -11,18 +11,19 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import OSCILLATOR, REST, STATE, EventInstance, Instance, begin, finder, gap_between
-from ..checks import REQUIRES_DELAMINATED, checked_integer
+from ..access import OSCILLATOR, STATE, EventInstance, Instance, begin, finder, gap_between
+from ..arguments import REQUIRES_DELAMINATED, checked_integer
 from ..errors import InputError
-from ..response.labels import si_state_coordinate, variable
-from ..response.questions import Point, Question, checked_point, checked_state
+from ..outcomes import ABSENT
+from ..response.labels import make_dataset, si_state_coordinate, variable
+from ..response.questions import Point, Question, ask, checked_point, checked_state
 from ..response.response_loop import stroboscopic_samples
-from ..running.job import Inputs, Table
-from ..running.runner import answer
+from ..running.job import Table
 from ..structures import Excitation, Structure
 from .attractors import (
     ATTRACTOR,
     COLUMNS,
+    KEYWORDS,
     SettledRows,
     attractor_columns,
     attractor_settings,
@@ -32,7 +33,6 @@ from .attractors import (
 from .clusters import AttractorSettings
 from .decision import MotionDecider
 from .global_continuation import InstancePair, SettledStarts, continue_attractors
-from .settled_motion import ABSENT
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -53,10 +53,6 @@ AXES = {  # coordinates of a plane of starts: units, long name
 SEARCH = 24  # random starts for the attractors that a default plane is laid around
 COUNT = 80  # values along its sides
 BEYOND = 2.0  # how far it goes, over the attractors' largest gap
-SETTINGS = (
-    *("transient", "settle", "samples", "converged", "longest"),
-    *("alike", "alike_irregular"),
-)
 GAPS = {"x_rel": ("x1", "x2"), "v_rel": ("v1", "v2")}
 
 
@@ -129,13 +125,23 @@ class BasinJob(Question):
     excitation: Excitation  # its phase is that of all starts where `phase` is not a coordinate
     x: PlaneAxis
     y: PlaneAxis
-    at: tuple[float, ...] = REST
-    known: tuple[tuple[float, ...], ...] = ()  # states on attractors that are known, at phase 0
-    settings: AttractorSettings = AttractorSettings()
+    at: tuple[float, ...]
+    known: tuple[tuple[float, ...], ...]  # states on attractors that are known, at phase 0
+    settings: AttractorSettings
     asked: ClassVar[str] = "basin"
     chunk_size: ClassVar[int] = 240
     gathers: ClassVar[bool] = True
     item: ClassVar[str] = "start"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.structure.bonded:
+            raise InputError(REQUIRES_DELAMINATED)
+        gaps = gap_between(self.plane().starts()[0], self.structure.gap_offset)
+        if not (gaps >= 0.0).any():
+            raise InputError(
+                "x and y: the masses overlap at every start; expected some with x2 >= x1"
+            )
 
     def plane(self) -> Plane:
         """Return the plane of starts."""
@@ -145,7 +151,7 @@ class BasinJob(Question):
         """Return the number of items: all starts of the plane, and one that groups them."""
         return self.x.number * self.y.number + 1
 
-    def items(self, inputs: Inputs) -> Sequence[PlaneStart | Point]:
+    def items(self) -> Sequence[PlaneStart | Point]:
         """Return the items: every start, then the point, which stands for grouping.
 
         Its excitation begins at phase 0, as do the responses after each start has been brought
@@ -191,10 +197,8 @@ class BasinJob(Question):
         labels[0, there] = columns.pop("labels")[0]
         return {**columns, "labels": labels}
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         """Return the dataset: the attractor number of each start, and the attractors."""
-        import xarray as xr
-
         plane = self.plane()
         text = "attractor that the start leads to; -1: the masses would overlap"
         sides = (plane.y, plane.x)
@@ -211,7 +215,7 @@ class BasinJob(Question):
             "eta": variable((), plane.point.excitation.eta(plane.point.structure), "1", "eta (2)"),
         }
         title = f"Basins of attraction: {plane.point.structure.label()}"
-        return xr.Dataset(variables, coordinates, {"title": title})
+        return make_dataset(variables, coordinates, title)
 
 
 def run_to_phase_zero(instance: Instance, start: PlaneStart) -> tuple[float, ...]:
@@ -313,15 +317,7 @@ def basin(
     (('v_rel', 'x_rel'), [1.0, 2.0])
     """
     point = checked_point(structure, eta, frequency, amplitude)
-    settings = attractor_settings(
-        transient=transient,
-        settle=settle,
-        samples=samples,
-        converged=converged,
-        longest=longest,
-        alike=alike,
-        alike_irregular=alike_irregular,
-    )
+    settings = attractor_settings(locals())
     known: KnownAttractors | None = None
     if x is None or y is None:
         known = find_known_attractors(point, settings, running)
@@ -333,18 +329,9 @@ def basin(
     )
     if sides[0].name == sides[1].name:
         raise InputError(f"x and y: {sides[0].name} twice; expected two coordinates")
-    job = BasinJob(
-        name=f"basin_{structure.label()}",
-        structure=point.structure,
-        excitation=point.excitation.replace(phase=phase),
-        x=sides[0],
-        y=sides[1],
-        at=checked_state("at", at, structure),
-        known=known.states if known else (),
-        settings=settings,
-    )
-    check_plane(job)
-    return answer(job, running, finder(running))
+    own = {"excitation": point.excitation.replace(phase=phase), "x": sides[0], "y": sides[1]}
+    at, states = checked_state("at", at, structure), known.states if known else ()
+    return ask(BasinJob, locals(), known=states, **own)
 
 
 class KnownAttractors(NamedTuple):
@@ -373,7 +360,7 @@ def find_known_attractors(
     """Find attractors from a few random starts, to lay the default plane around them."""
     excitation = {"frequency": point.excitation.frequency, "amplitude": point.excitation.amplitude}
     kept = {name: value for name, value in running.items() if name in ("fmu", "build_folder")}
-    asked = {name: getattr(settings, name) for name in SETTINGS}
+    asked = {name: getattr(settings, name) for name in KEYWORDS}
     search: Any = {**excitation, **asked, **kept, "jobs": 1, "progress": False}
     known = attractors(point.structure, starts=SEARCH, **search).isel(frequency=0)
     states = tuple(map(tuple, known.state.values.tolist()))
@@ -392,12 +379,3 @@ def find_known_attractors(
 def round_to_two_digits(value: float) -> float:
     """Round a positive number to two significant digits, for the end of an axis."""
     return float(f"{value:.1e}")
-
-
-def check_plane(job: BasinJob) -> None:
-    """Raise if the structure is bonded, or the masses overlap at every start of the plane."""
-    if job.structure.bonded:
-        raise InputError(REQUIRES_DELAMINATED)
-    states, _ = job.plane().starts()
-    if not (gap_between(states, job.structure.gap_offset) >= 0.0).any():
-        raise InputError("x and y: the masses overlap at every start; expected some with x2 >= x1")

@@ -10,23 +10,24 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..access import OSCILLATOR, EventInstance, finder
-from ..checks import checked_integer
+from ..access import OSCILLATOR, EventInstance
+from ..arguments import checked, checked_number, whole
 from ..errors import InputError
-from ..response.labels import Variable, flags, variable
-from ..response.questions import EXCITATION_PARAMETERS, checked_numbers, checked_structure
-from ..running.job import Inputs, Table
-from ..running.runner import answer
+from ..response.labels import variable
+from ..response.questions import EXCITATION_PARAMETERS, Question, ask, checked_structure
+from ..running.job import Table
 from ..structures import Structure
 from .bifurcation_curve import BifurcationCurve, BifurcationTracer
 from .bifurcations import KINDS, TORUS
 from .branches import (
     NODES,
     acceleration_at_start,
+    checked_limits,
     complete_excitation,
     require_inside_limits,
     require_orbit_dataset,
     start_nodes,
+    varied_setting,
 )
 from .closed_form import Floats
 from .codimension_two import POINT_KINDS, locate_points
@@ -35,13 +36,14 @@ from .families import ACCELERATION, Family, Setting, check_parameters, require_d
 from .orbit_point import OrbitPoint
 from .orbit_records import (
     OrbitRecord,
-    orbit_coordinates,
+    branch_dataset,
+    located_table,
+    located_variables,
     orbit_table,
-    orbit_variables,
-    prefixed_variables,
     record_with_check,
+    split_located,
 )
-from .orbits import FirstGuess, OneItemQuestion, excitation_arguments, finite_number
+from .orbits import FirstGuess, call_from_start, excitation_arguments
 from .tracer import BranchSegment, ContinuationSettings
 
 if TYPE_CHECKING:
@@ -52,11 +54,12 @@ if TYPE_CHECKING:
 
 
 POINT = "codimension_two"
+LEFT = "what is left of both conditions, of the multipliers' polynomial over its largest part"
 KEPT = ("state", "xi", "multipliers", *NODES)  # variables of orbits that those points have, too
 
 
 @dataclass(frozen=True, kw_only=True)
-class BorderJob(OneItemQuestion):
+class BorderJob(Question):
     """Job of :func:`orchestrate.border`: one bifurcation followed over two parameters."""
 
     setting: Setting  # the two parameters and their limits
@@ -64,18 +67,16 @@ class BorderJob(OneItemQuestion):
     period: int
     kind: int
     values: tuple[float, float]  # of the parameters there
-    longest: float
-    most: int
+    longest: float = checked(checked_number)
+    most: int = whole(1)
     asked: ClassVar[str] = "border"
 
     def call_text(self) -> str:
         """Return Python source of a ``border(...)`` call that repeats this, orbit included."""
-        setting, values = self.setting, np.array(self.values)
-        guess = self.start.as_argument(setting.point(values).excitation.frequency)
-        start = f"start={setting.orbit_call(values, self.period, guess)}"
-        keywords = [f"bifurcation={KINDS[self.kind]!r}", f"over={setting.over!r}"]
-        keywords += [f"limits={setting.limits!r}", f"longest={self.longest!r}", f"most={self.most}"]
-        return f"border({', '.join([repr(self.structure), start, *keywords])})"
+        keywords = {"over": self.setting.over, "limits": self.setting.limits}
+        more = {"longest": self.longest, "most": self.most}
+        values, kind = np.array(self.values), KINDS[self.kind]
+        return call_from_start(self, values, bifurcation=kind, **keywords, **more)
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Trace the bifurcation curve over both parameters; return its points as a table."""
@@ -92,47 +93,24 @@ class BorderJob(OneItemQuestion):
             **orbit_table(rows),
             "angle": np.array(angles),
             "ends": ends,
-            **{f"{POINT}_{name}": part for name, part in (orbit_table(at) if at else {}).items()},
-            f"{POINT}_kind": np.array([each.kind for each in points], dtype=int),
-            f"{POINT}_place": np.array([each.position for each in points], dtype=float),
+            **located_table(POINT, at, points),
         }
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         """Return the dataset of the curve and its points of codimension two."""
-        import xarray as xr
-
-        setting, ends = self.setting, [str(text) for text in table["ends"]]
-        located = {key: part for key, part in table.items() if key.startswith(POINT)}
-        table = {key: part for key, part in table.items() if key not in located}
-        names = orbit_coordinates(setting, table, "point")
-        title = f"{KINDS[self.kind]} over {' and '.join(setting.over)}: {self.structure.label()}"
-        attributes = {"title": title, "kind": KINDS[self.kind], "over": list(setting.over)}
-        attributes.update(first_end=ends[0], last_end=ends[1])
-        data = {**orbit_variables(setting, table, "point"), **names}
+        setting, kind = self.setting, KINDS[self.kind]
+        along, located = split_located(table, POINT)
+        title = f"{kind} over {' and '.join(setting.over)}: {self.structure.label()}"
+        first, last = map(str, along["ends"])
+        attributes = {"title": title, "kind": kind, "over": list(setting.over)}
+        attributes |= {"first_end": first, "last_end": last}
         text = "angle of the multipliers on the unit circle"
-        data["angle"] = variable("point", table["angle"], "rad", text)
-        data |= codimension_two_variables(setting, located)
-        return xr.Dataset(data, attrs=attributes).set_coords(list(names))
-
-
-def codimension_two_variables(setting: Setting, table: Table) -> dict[str, Variable]:
-    """Return dataset variables of the points of codimension two: kind, position, orbit."""
-    kinds = flags(POINT, table[f"{POINT}_kind"], "what happens as well", POINT_KINDS)
-    text = "position along the curve's points: between two where not whole"
-    data = {
-        f"{POINT}_kind": kinds,
-        f"{POINT}_place": variable(POINT, table[f"{POINT}_place"], "1", text),
-    }
-    if not len(table[f"{POINT}_kind"]):
-        empty = {name: variable(POINT, np.zeros(0), "1", name) for name in setting.over}
-        return {**data, **{f"{POINT}_{name}": each for name, each in empty.items()}}
-    rows = {key.removeprefix(f"{POINT}_"): part for key, part in table.items()}
-    parameters = orbit_coordinates(setting, rows, POINT)
-    data |= {f"{POINT}_{name}": parameters[name] for name in setting.over}
-    data |= prefixed_variables(setting, rows, POINT, KEPT)
-    text = "what is left of both conditions, of the multipliers' polynomial over its largest part"
-    data[f"{POINT}_residual"] = variable(POINT, rows["residual"], "1", text)
-    return data
+        data = {"angle": variable("point", along["angle"], "rad", text)}
+        kinds, names = ("what happens as well", POINT_KINDS), {name: name for name in setting.over}
+        data |= located_variables(setting, located, POINT, kinds, names, KEPT)
+        if "residual" in located:
+            data[f"{POINT}_residual"] = variable(POINT, located["residual"], "1", LEFT)
+        return branch_dataset(setting, along, data, attributes)
 
 
 def start_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
@@ -141,8 +119,8 @@ def start_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
     Orbit and bifurcation together: at a fold the orbit alone, at a fixed parameter, is no simple
     root, and beyond it there is none.
     """
-    nodes, values = np.array(job.start.nodes).reshape(-1, 4), np.array(job.values)
-    family = Family.from_nodes(job.setting, job.start.sequence(job.period), nodes)
+    (sequence, nodes), values = job.start.as_guess(job.period), np.array(job.values)
+    family = Family.from_nodes(job.setting, sequence, nodes)
     orbit = np.append(nodes.ravel(), values)
     try:
         point = OrbitPoint(family, Root(orbit, np.zeros_like(orbit), np.inf, 0))
@@ -262,36 +240,18 @@ def border(
     second = second_start_value(structure, names[1], given, acceleration)
     for name, number, pair in zip(names, (value, second), pairs, strict=True):
         require_inside_limits(name, number, pair)
-    fixed = tuple((name, number) for name, number in given if name not in names)
-    setting = Setting(structure, fixed, names, pairs, acceleration)
-    for i in range(2):  # what is out of range is said before any work
-        setting.form(np.array([pairs[0][i], pairs[1][i]]))
-    job = BorderJob(
-        name=f"border_{structure.label()}_{'_'.join(names)}",
-        structure=structure,
-        setting=setting,
-        start=nodes,
-        period=start.sizes["sample"],
-        kind=kind,
-        values=(value, second),
-        longest=finite_number("longest", longest),
-        most=checked_integer("most", most, 1),
-    )
-    return answer(job, running, finder(running))
+    setting = varied_setting(structure, given, names, pairs, acceleration)
+    own = {"setting": setting, "start": nodes, "period": start.sizes["sample"], "kind": kind}
+    return ask(BorderJob, locals(), f"_{'_'.join(names)}", values=(value, second), **own)
 
 
 def checked_limit_pairs(names: tuple[str, ...], limits: Any) -> tuple[tuple[float, float], ...]:
     """Return both parameters' limits as (low, high) of floats; raise if invalid."""
     try:
-        rows = [checked_numbers(name, row) for name, row in zip(names, limits, strict=True)]
+        return tuple(checked_limits(*each) for each in zip(names, limits, strict=True))
     except (TypeError, ValueError):
-        rows = []
-    good = [row for row in rows if isinstance(row, tuple) and len(row) == 2 and row[0] < row[1]]
-    if len(good) != 2:
-        raise InputError(
-            f"limits = {limits!r}: expected a lower and an upper one for each parameter"
-        )
-    return tuple((row[0], row[1]) for row in good)
+        expected = "expected a lower and an upper one for each parameter"
+        raise InputError(f"limits = {limits!r}: {expected}") from None
 
 
 def second_start_value(

@@ -11,14 +11,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..access import OSCILLATOR, EventInstance, finder
-from ..checks import checked_integer
+from ..access import OSCILLATOR, EventInstance
+from ..arguments import checked, checked_integer, checked_number, whole
 from ..constants import TURN
 from ..errors import InputError
-from ..response.labels import Variable, flags, variable
-from ..response.questions import checked_numbers, checked_structure
-from ..running.job import Inputs, Table
-from ..running.runner import answer
+from ..response.questions import Question, ask, checked_structure, excitation_numbers
+from ..running.job import Table
 from ..structures import Structure
 from ..structures.ranges import OF_LENGTH
 from .bifurcations import KINDS
@@ -28,20 +26,20 @@ from .families import ACCELERATION, Setting, check_parameters, require_delaminat
 from .orbit_point import OrbitPoint
 from .orbit_records import (
     OrbitRecord,
-    orbit_coordinates,
+    branch_dataset,
+    located_table,
+    located_variables,
     orbit_table,
-    orbit_variables,
-    prefixed_variables,
     record_with_check,
+    split_located,
 )
 from .orbit_search import solve_orbit
 from .orbit_tracer import OrbitTracer
 from .orbits import (
     NODE,
     FirstGuess,
-    OneItemQuestion,
+    call_from_start,
     excitation_arguments,
-    finite_number,
     guess_from_result,
     orbit,
 )
@@ -62,7 +60,7 @@ OrbitSegment = BranchSegment[OrbitPoint]
 
 
 @dataclass(frozen=True, kw_only=True)
-class BranchJob(OneItemQuestion):
+class BranchJob(Question):
     """Job of :func:`orchestrate.branch`: a branch of orbits continued over one parameter."""
 
     setting: Setting  # the parameter that varies and its limits
@@ -71,27 +69,17 @@ class BranchJob(OneItemQuestion):
     value: float  # of the parameter there
     # kind of the bifurcation at which the branch leaves; -1: that through the start, both ways
     switch: int
-    longest: float  # longest step
-    most: int  # most points in one direction
+    longest: float = checked(checked_number)  # longest step
+    most: int = whole(1)  # most points in one direction
     asked: ClassVar[str] = "branch"
 
     def call_text(self) -> str:
         """Return Python source of a ``branch(...)`` call that repeats this, start included."""
-        setting, values = self.setting, np.array([self.value])
-        guess = self.start.as_argument(setting.point(values).excitation.frequency)
-        start = f"start={setting.orbit_call(values, self.period, guess)}"
-        switch = [f"switch={KINDS[self.switch]!r}"] if self.switch >= 0 else []
-        steps = [f"longest={self.longest!r}", f"most={self.most}"]
-        (over,), (limits,) = setting.over, setting.limits
-        parts = [
-            repr(self.structure),
-            start,
-            *switch,
-            f"over={over!r}",
-            f"limits={limits!r}",
-            *steps,
-        ]
-        return f"branch({', '.join(parts)})"
+        (over,), (limits,) = self.setting.over, self.setting.limits
+        switch = {"switch": KINDS[self.switch]} if self.switch >= 0 else {}
+        keywords = {**switch, "over": over, "limits": limits}
+        more = {"longest": self.longest, "most": self.most}
+        return call_from_start(self, np.array([self.value]), **keywords, **more)
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Continue the branch from its first orbit; return orbits and bifurcations as a table."""
@@ -99,28 +87,23 @@ class BranchJob(OneItemQuestion):
         with EventInstance(fmus[OSCILLATOR]) as instance:
             return branch_table(instance, segments)
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         """Return the dataset of the branch: orbits, stability and bifurcations."""
-        import xarray as xr
-
         setting, (name,) = self.setting, self.setting.over
-        along = {key: table[key] for key in table if not key.startswith(BIFURCATION)}
-        data = {
-            **orbit_variables(setting, along, "point"),
-            **orbit_coordinates(setting, along, "point"),
-        }
-        ends = [str(text) for text in table["bifurcation_ends"]]
+        along, located = split_located(table, BIFURCATION)
         periods = along["zero"].shape[1]
         count = f"{periods} period{'s' * (periods != 1)}"
         title = f"Branch of orbits of {count} along {name}: {self.structure.label()}"
-        attributes = {"title": title, "over": name, "first_end": ends[0], "last_end": ends[1]}
-        dataset = xr.Dataset({**data, **bifurcation_variables(setting, table)}, attrs=attributes)
-        return dataset.set_coords(list(orbit_coordinates(setting, along, "point")))
+        first, last = map(str, along["ends"])
+        attributes = {"title": title, "over": name, "first_end": first, "last_end": last}
+        kinds = "kind of bifurcation", KINDS
+        at = located_variables(setting, located, BIFURCATION, kinds, {name: "value"}, KEPT)
+        return branch_dataset(setting, along, at, attributes)
 
 
 def trace_branch(job: BranchJob) -> list[OrbitSegment]:
     """Continue the branch in both directions (one if it leaves another); return its segments."""
-    guess = job.start.sequence(job.period), np.array(job.start.nodes).reshape(-1, 4)
+    guess = job.start.as_guess(job.period)
     settings = ContinuationSettings(job.longest, job.most)
     try:
         start = OrbitPoint(*solve_orbit(job.setting, guess, np.array([job.value])))
@@ -139,13 +122,8 @@ def branch_table(instance: EventInstance, segments: list[OrbitSegment]) -> Table
     ends = [segments[0].end if len(segments) > 1 else "start", segments[-1].end]
     along = orbit_table([record_of_point(instance, point) for point in points])
     at = [record_of_point(instance, each.point) for each in bifurcations]
-    return {
-        **along,
-        **{f"{BIFURCATION}_{name}": rows for name, rows in (orbit_table(at) if at else {}).items()},
-        "bifurcation_kind": np.array([each.kind for each in bifurcations], dtype=int),
-        "bifurcation_place": np.array([each.position for each in bifurcations]),
-        "bifurcation_ends": np.array(ends),
-    }
+    located = located_table(BIFURCATION, at, bifurcations)
+    return {**along, **located, "ends": np.array(ends)}
 
 
 def record_of_point(instance: EventInstance, point: OrbitPoint) -> OrbitRecord:
@@ -166,28 +144,6 @@ def join_segments(
         *(replace(each, position=middle + each.position) for each in forth.bifurcations),
     ]
     return [*reversed(back.points[1:]), *forth.points], bifurcations
-
-
-def bifurcation_variables(setting: Setting, table: Table) -> dict[str, Variable]:
-    """Return dataset variables of a branch's bifurcations: kind, position, orbit."""
-    (name,) = setting.over
-    kinds = flags(BIFURCATION, table["bifurcation_kind"], "kind of bifurcation", KINDS)
-    place = "position along the branch's points: between two where not whole"
-    data = {
-        "bifurcation_kind": kinds,
-        "bifurcation_place": variable(BIFURCATION, table["bifurcation_place"], "1", place),
-    }
-    if not len(table["bifurcation_kind"]):
-        data["bifurcation_value"] = variable(BIFURCATION, np.zeros(0), "1", name)
-        return data
-    rows = {
-        key.removeprefix(f"{BIFURCATION}_"): values
-        for key, values in table.items()
-        if key.startswith(BIFURCATION)
-    }
-    parameters = orbit_coordinates(setting, rows, BIFURCATION)
-    data["bifurcation_value"] = parameters[name]
-    return data | prefixed_variables(setting, rows, BIFURCATION, KEPT)
 
 
 def branch(
@@ -282,22 +238,24 @@ def branch(
         value = start_value(start, over, switch, structure, acceleration)
     require_inside_limits(over, value, low_high)
     nodes, kind = start_nodes(start, "switch", switch)
-    fixed = tuple((name, number) for name, number in given if name != over)
-    setting = Setting(structure, fixed, (over,), (low_high,), acceleration)
-    for limit in low_high:  # what is out of range is said before any work
-        setting.form(np.array([limit]))
-    job = BranchJob(
-        name=f"branch_{structure.label()}_{over}",
-        structure=structure,
-        setting=setting,
-        start=nodes,
-        period=start.sizes["sample"],
-        value=value,
-        switch=kind,
-        longest=finite_number("longest", longest),
-        most=checked_integer("most", most, 1),
-    )
-    return answer(job, running, finder(running))
+    setting = varied_setting(structure, given, (over,), (low_high,), acceleration)
+    own = {"setting": setting, "start": nodes, "period": start.sizes["sample"], "switch": kind}
+    return ask(BranchJob, locals(), f"_{over}", **own)
+
+
+def varied_setting(
+    structure: Structure,
+    given: tuple[tuple[str, float], ...],
+    over: tuple[str, ...],
+    limits: tuple[tuple[float, float], ...],
+    box_acceleration: float,
+) -> Setting:
+    """Return a setting whose parameters vary; raise where a limit is out of its range."""
+    fixed = tuple((name, number) for name, number in given if name not in over)
+    setting = Setting(structure, fixed, over, limits, box_acceleration)
+    for corner in zip(*limits, strict=True):
+        setting.form(np.array(corner))
+    return setting
 
 
 def require_orbit_dataset(start: Any, several: bool) -> None:
@@ -331,7 +289,7 @@ def require_same_parameter(start: xr.Dataset, over: str, switch: int | None) -> 
 def acceleration_at_start(start: xr.Dataset | None, argument: float | None) -> float:
     """Return the box's constant acceleration, m/s2: the argument, else that of the start, or 0."""
     if argument is not None or start is None:
-        return finite_number(ACCELERATION, 0.0 if argument is None else argument)
+        return checked_number(ACCELERATION, 0.0 if argument is None else argument)
     stored = start[ACCELERATION] if ACCELERATION in start.coords else None
     if stored is not None and not stored.ndim:  # a point of a branch along it
         return float(stored)
@@ -340,7 +298,7 @@ def acceleration_at_start(start: xr.Dataset | None, argument: float | None) -> f
 
 def checked_limits(over: str, limits: ArrayLike) -> tuple[float, float]:
     """Return the limits (low, high) as floats; raise unless they are two numbers in order."""
-    pair = checked_numbers(over, limits)
+    pair = excitation_numbers(over, limits)
     if not isinstance(pair, tuple) or len(pair) != 2 or not pair[0] < pair[1]:
         raise InputError(f"limits = {limits!r}: expected two numbers, the lower one first")
     return pair[0], pair[1]
@@ -394,11 +352,6 @@ def find_first_orbit(
 ) -> tuple[xr.Dataset, float]:
     """Find an orbit to begin a branch without ``start``; return it and the parameter's value."""
     excitation: dict[str, Any] = dict(arguments)
-    quiet: dict[str, Any] = {
-        name: value
-        for name, value in running.items()
-        if name in ("fmu", "build_folder", "progress")
-    }
     value = excitation[over] if over in excitation else limits[0]
     if over == ACCELERATION:
         value = box_acceleration
@@ -407,10 +360,20 @@ def find_first_orbit(
         value = own if limits[0] <= own <= limits[1] else limits[0]
         structure = structure.replace(**{over: value})
     require_inside_limits(over, value, limits)
-    start = orbit(
-        structure, period=period, box_acceleration=box_acceleration, **excitation, **quiet
-    )
-    return start, value
+    return orbit_at(structure, excitation, period, box_acceleration, running), value
+
+
+def orbit_at(
+    structure: Structure,
+    excitation: Mapping[str, Any],
+    period: int,
+    box_acceleration: float,
+    running: Mapping[str, Any],
+) -> xr.Dataset:
+    """Return the orbit that :func:`orchestrate.orbit` finds, computed by the same FMU."""
+    kept = {name: running[name] for name in running.keys() & {"fmu", "build_folder", "progress"}}
+    options: dict[str, Any] = {**excitation, **kept}
+    return orbit(structure, period=period, box_acceleration=box_acceleration, **options)
 
 
 def require_inside_limits(over: str, value: float, limits: tuple[float, float]) -> None:

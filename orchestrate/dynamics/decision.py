@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..access import STATE, EventInstance, Instance, begin
 from ..constants import TURN
 from ..errors import FmuError, InputError
+from ..outcomes import IRREGULAR, ORBIT, REPEATED, UNDECIDED
 from ..response.questions import Point
 from ..response.respond import Response, respond
 from ..response.response_loop import stroboscopic_samples
@@ -27,15 +28,7 @@ from .families import Setting
 from .guesses import Guess, begin_at_state, guess_from_impacts
 from .orbit_search import least_periods, solve_orbit, why_no_motion
 from .periodic_orbit import ImpactSequence, PeriodicOrbit
-from .settled_motion import (
-    IRREGULAR,
-    ON_KNOWN_MOTION,
-    ORBIT,
-    REPEATED,
-    UNDECIDED,
-    Floats,
-    SettledMotion,
-)
+from .settled_motion import ON_KNOWN_MOTION, Floats, SettledMotion
 from .turning_points import rotate_to_phase_zero
 
 RESIDUAL = 1e-9  # of an orbit's equations in units of a eta^2, at most

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..checks import REQUIRES_DELAMINATED
+from ..arguments import REQUIRES_DELAMINATED
 from ..errors import InputError
 from ..response.questions import EXCITATION_PARAMETERS, Point, make_point
 from ..structures import PARAMETERS, Structure

@@ -11,9 +11,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..access import OSCILLATOR, REST, STATE, EventInstance, Impacts, Instance, begin
+from ..access import OSCILLATOR, STATE, EventInstance, Impacts, Instance, begin
+from ..arguments import whole
 from ..response.questions import Point, SeriesQuestion, State
-from ..running.job import Inputs, Table
+from ..running.job import Table
 from .variational import nondimensional_impacts
 
 
@@ -28,30 +29,21 @@ class FollowedResponse(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class StartStatesQuestion(SeriesQuestion, ABC):
-    """Base of jobs along a parameter whose responses start from given or swept states."""
+class ImpactsQuestion(SeriesQuestion, ABC):
+    """Base of questions along a parameter about the impacts of responses after a transient."""
 
     # one state at phase 0 after the other, x1, x2 in m, v1, v2 in m/s: one for all values of the
     # parameter, or one for each
-    start: tuple[float, ...] = REST
-
-    def items(self, inputs: Inputs) -> Sequence[FollowedResponse]:
-        """Return for each parameter value the response to follow, with its start state."""
-        series = self.series
-        rows = np.reshape(self.start, (-1, 4))
-        starts = np.broadcast_to(rows, (len(series.points), 4)).tolist()
-        return [
-            FollowedResponse(*item) for item in zip(series.points, map(tuple, starts), strict=True)
-        ]
-
-
-@dataclass(frozen=True, kw_only=True)
-class ImpactsQuestion(StartStatesQuestion, ABC):
-    """Base of jobs that evaluate the impacts of responses after a transient."""
-
+    start: tuple[float, ...]
     # periods dropped, and followed after them
-    transient: int = 500
-    periods: int = 100
+    transient: int = whole(0)
+    periods: int = whole(1)
+
+    def items(self) -> Sequence[FollowedResponse]:
+        """Return for each parameter value the response to follow, with its start state."""
+        points = self.series.points
+        starts = np.broadcast_to(np.reshape(self.start, (-1, 4)), (len(points), 4)).tolist()
+        return [FollowedResponse(*each) for each in zip(points, map(tuple, starts), strict=True)]
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[FollowedResponse], previous: Table | None

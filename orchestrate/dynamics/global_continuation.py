@@ -18,11 +18,12 @@ from numpy.typing import NDArray
 
 from ..access import EventInstance, Instance, begin
 from ..access.description import describe
+from ..outcomes import IRREGULAR, ORBIT
 from ..response.questions import Point
 from ..response.response_loop import stroboscopic_samples
 from .clusters import AttractorSettings, irregular_clusters
 from .decision import MotionDecider
-from .settled_motion import IRREGULAR, ORBIT, Floats, SettledMotion
+from .settled_motion import Floats, SettledMotion
 
 # Distance over the motion's size beyond which attractors at neighbouring values may be different
 NEIGHBOUR_DISTANCE = 0.2

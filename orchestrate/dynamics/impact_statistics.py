@@ -10,15 +10,13 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..access import Impacts, finder
-from ..checks import checked_integer
-from ..response.labels import column_variables
-from ..response.questions import series_arguments, start_states
-from ..running.job import Inputs, Table
-from ..running.runner import answer
+from ..access import Impacts
+from ..response.labels import column_variables, make_dataset
+from ..response.questions import ask
+from ..running.job import Table
 from ..structures import Structure
 from .following import FollowedResponse, ImpactsQuestion
-from .lyapunov import Exponent, exact_exponent_without_impacts, largest_exponent
+from .lyapunov import exponent_of
 from .variational import contact_durations_after, period_in_tau
 
 if TYPE_CHECKING:
@@ -48,6 +46,7 @@ class ImpactStatisticsJob(ImpactsQuestion):
     """Job of :func:`orchestrate.impact_statistics`: impact statistics along a parameter."""
 
     asked: ClassVar[str] = "impact_statistics"
+    result: ClassVar[str] = "impacts"
     chunk_size: ClassVar[int] = 40
 
     def row(self, impacts: Impacts, item: FollowedResponse) -> Sequence[float]:
@@ -55,25 +54,19 @@ class ImpactStatisticsJob(ImpactsQuestion):
         numbers = response_statistics(impacts, item, self.periods)
         return [numbers[name] for name in FIELDS]
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         """Return the dataset of impact statistics over the parameter, a variable each."""
-        import xarray as xr
-
         along = self.series.name
         variables = column_variables(along, FIELDS, table["rows"].T)
         title = f"Responses along {along}, impact by impact: {self.structure.label()}"
-        return xr.Dataset(variables, self.series.coordinates(), {"title": title})
+        return make_dataset(variables, self.series.coordinates(), title)
 
 
 def response_statistics(impacts: Impacts, item: FollowedResponse, periods: int) -> dict[str, float]:
     """Return the impact statistics and Lyapunov exponent of one response, by ``FIELDS`` names."""
     structure, excitation = item.point
-    eta = excitation.eta(structure)
-    span = period_in_tau(eta)
-    known: Exponent | None = (
-        None if len(impacts.time) else exact_exponent_without_impacts(item.point)
-    )
-    exponent = known or largest_exponent(impacts, periods * span, item.point)
+    span = period_in_tau(excitation.eta(structure))
+    exponent = exponent_of(impacts, periods, item.point)
     return {
         **impact_counts(impacts, span, periods),
         "contact_share": contact_time(impacts, item, periods * span) / (periods * span),
@@ -182,13 +175,4 @@ def impact_statistics(
     >>> found.impacts.values.tolist(), found.contacts.values.tolist()
     ([30.0, 2.0], [1.0, 0.0])
     """
-    question = series_arguments(structure, eta, frequency, amplitude, over, values)
-    name = f"impacts_{structure.label()}"
-    job = ImpactStatisticsJob(
-        name=name,
-        **question,
-        transient=checked_integer("transient", transient, 0),
-        periods=checked_integer("periods", periods, 1),
-        start=start_states(start, ImpactStatisticsJob(name=name, **question)),
-    )
-    return answer(job, running, finder(running))
+    return ask(ImpactStatisticsJob, locals())

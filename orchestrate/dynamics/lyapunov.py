@@ -16,19 +16,19 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import Impacts, finder
-from ..checks import checked_integer
+from ..access import Impacts
+from ..arguments import checked, checked_flag, positive, whole
 from ..errors import InputError
-from ..response.labels import Variable, flags, variable
-from ..response.questions import Point, checked_positive, series_arguments, start_states
+from ..response.labels import Variable, flags, make_dataset, variable
+from ..response.questions import Point, ask
 from ..response.threshold import exceeds_threshold
-from ..running.job import Inputs, Table
-from ..running.runner import answer
+from ..running.job import Table
 from ..structures import Structure
 from .following import FollowedResponse, ImpactsQuestion
-from .lyapunov_growth import block_growth, growth_by_batch_means
 from .lyapunov_spectrum import (
     STATES,
+    block_growth,
+    growth_by_batch_means,
     kaplan_yorke_dimension,
     lyapunov_spectrum,
     spectrum_without_impacts,
@@ -77,6 +77,15 @@ def largest_exponent(
     return Exponent(*growth_by_batch_means(growth, batches))
 
 
+def exponent_of(
+    impacts: Impacts, periods: int, point: Point, blocks: int = BLOCKS, batches: int = BATCHES
+) -> Exponent:
+    """Return a response's largest exponent and its error, the exact one if it never impacts."""
+    known = None if len(impacts.time) else exact_exponent_without_impacts(point)
+    end = periods * period_in_tau(point.excitation.eta(point.structure))
+    return known or largest_exponent(impacts, end, point, blocks, batches)
+
+
 def exact_exponent_without_impacts(point: Point) -> Exponent | None:
     """Return the exact exponent of a response that never impacts; None if it may impact."""
     structure = point.structure
@@ -112,15 +121,15 @@ def classify_exponents(
 class LyapunovJob(ImpactsQuestion):
     """Job of :func:`orchestrate.lyapunov`: largest Lyapunov exponents along a parameter."""
 
-    periods: int = 2500
-    spectrum: bool = False  # whether all four exponents are wanted
+    spectrum: bool = checked(checked_flag)  # whether all four exponents are wanted
     # as in largest_exponent
-    blocks: int = BLOCKS
-    batches: int = BATCHES
+    blocks: int = whole(1)
+    batches: int = whole(3)
     # as in lyapunov
-    sigmas: float = SIGMAS
-    wander: float = WANDER
+    sigmas: float = positive()
+    wander: float = positive()
     asked: ClassVar[str] = "lyapunov"
+    result: ClassVar[str] = "exponent"
     chunk_size: ClassVar[int] = 5
 
     def row(self, impacts: Impacts, item: FollowedResponse) -> Sequence[float]:
@@ -139,9 +148,8 @@ class LyapunovJob(ImpactsQuestion):
         structure = item.point.structure
         if len(impacts.time):
             self.require_enough_impacts(impacts, item)
-            spectrum = lyapunov_spectrum(
-                impacts, self.end_tau(item), item.point, self.blocks, self.batches
-            )
+            end = self.periods * period_in_tau(item.point.excitation.eta(structure))
+            spectrum = lyapunov_spectrum(impacts, end, item.point, self.blocks, self.batches)
         elif structure.bonded:
             spectrum = spectrum_without_impacts(structure)
         else:
@@ -150,15 +158,9 @@ class LyapunovJob(ImpactsQuestion):
 
     def exponent(self, impacts: Impacts, item: FollowedResponse) -> Exponent:
         """Return the largest exponent and its error for one response."""
-        known = None if len(impacts.time) else exact_exponent_without_impacts(item.point)
-        if known is not None:
-            return known
-        self.require_enough_impacts(impacts, item)
-        return largest_exponent(impacts, self.end_tau(item), item.point, self.blocks, self.batches)
-
-    def end_tau(self, item: FollowedResponse) -> float:
-        """Return the time tau at which the periods followed end."""
-        return self.periods * period_in_tau(item.point.excitation.eta(item.point.structure))
+        if len(impacts.time) or exact_exponent_without_impacts(item.point) is None:
+            self.require_enough_impacts(impacts, item)
+        return exponent_of(impacts, self.periods, item.point, self.blocks, self.batches)
 
     def require_enough_impacts(self, impacts: Impacts, item: FollowedResponse) -> None:
         """Raise ``InputError`` if a response has too few impacts to estimate an error."""
@@ -171,10 +173,8 @@ class LyapunovJob(ImpactsQuestion):
                 f"expected periods with at least {needed} impacts{enough}"
             )
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         """Return the dataset over the parameter: exponents, errors, verdicts, impact rates."""
-        import xarray as xr
-
         along, (exponent, error, impacts) = self.series.name, table["rows"].T[:3]
         spans = self.periods * np.array([period_in_tau(eta) for eta in self.series.etas])
         verdicts = classify_exponents(exponent, error, np.log(self.wander) / spans, self.sigmas)
@@ -189,7 +189,7 @@ class LyapunovJob(ImpactsQuestion):
             variables |= spectrum_variables(along, table["rows"][:, 3:])
             coordinates["order"] = variable("order", np.arange(1, STATES + 1), "1", ORDER)
         title = f"{LARGEST} along {along}: {self.structure.label()}"
-        return xr.Dataset(variables, coordinates, {"title": title})
+        return make_dataset(variables, coordinates, title)
 
 
 def spectrum_variables(along: str, rows: NDArray[np.float64]) -> dict[str, Variable]:
@@ -286,18 +286,4 @@ def lyapunov(
     >>> float(found.kaplan_yorke_dimension[0].round(1))
     3.1
     """
-    question = series_arguments(structure, eta, frequency, amplitude, over, values)
-    name = f"exponent_{structure.label()}"
-    job = LyapunovJob(
-        name=name,
-        **question,
-        transient=checked_integer("transient", transient, 0),
-        periods=checked_integer("periods", periods, 1),
-        start=start_states(start, LyapunovJob(name=name, **question)),
-        spectrum=bool(spectrum),
-        blocks=checked_integer("blocks", blocks, 1),
-        batches=checked_integer("batches", batches, 3),
-        sigmas=checked_positive("sigmas", sigmas),
-        wander=checked_positive("wander", wander),
-    )
-    return answer(job, running, finder(running))
+    return ask(LyapunovJob, locals())

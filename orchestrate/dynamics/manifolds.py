@@ -11,15 +11,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..access import OSCILLATOR, Instance, begin, finder
-from ..checks import checked_integer
+from ..access import OSCILLATOR, Instance, begin
+from ..arguments import positive, whole
 from ..errors import InputError
-from ..response.labels import flags, nondimensional_state_coordinate, variable
-from ..response.questions import checked_positive, checked_structure
-from ..running.job import Inputs, Table
-from ..running.runner import answer
+from ..response.labels import flags, make_dataset, nondimensional_state_coordinate, variable
+from ..response.questions import ask, checked_structure
+from ..running.job import Table
 from ..structures import Structure
-from .branches import acceleration_at_start, complete_excitation, require_orbit_dataset
+from .branches import acceleration_at_start, complete_excitation, orbit_at, require_orbit_dataset
 from .closed_form import Floats
 from .continuation import SOLVER_ERRORS, fix_sign
 from .curve_growth import (
@@ -38,9 +37,9 @@ from .orbit_search import solve_orbit
 from .orbits import (
     FirstGuess,
     SingleOrbitQuestion,
+    call_from_start,
     excitation_arguments,
     guess_from_result,
-    orbit,
 )
 from .periodic_orbit import ON_CIRCLE, PHASE, PeriodicOrbit
 from .turning_points import stroboscopic_states
@@ -133,25 +132,26 @@ class ManifoldJob(SingleOrbitQuestion):
 
     start: FirstGuess  # nodes of the saddle
     period: int
-    length: float
-    spacing: float
-    angle: float
-    distance: float
-    most: int
+    length: float = positive()
+    spacing: float = positive()
+    angle: float = positive()
+    distance: float = positive()
+    most: int = whole(2)
     asked: ClassVar[str] = "manifold"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.saddle()  # what is none is said before any work
 
     def call_text(self) -> str:
         """Return Python source of a ``manifold(...)`` call that repeats this, saddle included."""
-        setting, values = self.setting, self.values
-        guess = self.start.as_argument(setting.point(values).excitation.frequency)
-        start = f"start={setting.orbit_call(values, self.period, guess)}"
         names = ("length", "spacing", "angle", "distance", "most")
-        more = [f"{name}={getattr(self, name)!r}" for name in names]
-        return f"manifold({', '.join([repr(self.structure), start, *more])})"
+        keywords = {name: getattr(self, name) for name in names}
+        return call_from_start(self, self.values, **keywords)
 
     def saddle(self) -> Saddle:
         """Solve for the saddle by Newton's method from the start's nodes; raise if it is none."""
-        guess = self.start.sequence(self.period), np.array(self.start.nodes).reshape(-1, 4)
+        guess = self.start.as_guess(self.period)
         try:
             family, root = solve_orbit(self.setting, guess, self.values)
         except SOLVER_ERRORS as reason:
@@ -220,20 +220,14 @@ class ManifoldJob(SingleOrbitQuestion):
             resolution=ROUNDING * largest / (self.distance * saddle.size * growth),
         )
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         """Return the dataset of both sides of the manifold: points, breaks, why each side ends."""
-        import xarray as xr
-
         point = self.setting.point(self.values)
         title = f"Unstable manifold of an orbit of {self.period} periods: {self.structure.label()}"
-        return xr.Dataset(
-            {**curve_variables(table, point), **break_variables(table)},
-            {
-                "side": variable("side", np.array(SIDES), "1", "on which the gap grows, or falls"),
-                **nondimensional_state_coordinate(),
-            },
-            {"title": title, **dict(self.excitation)},
-        )
+        sides = variable("side", np.array(SIDES), "1", "on which the gap grows, or falls")
+        coordinates = {"side": sides, **nondimensional_state_coordinate()}
+        variables = {**curve_variables(table, point), **break_variables(table)}
+        return make_dataset(variables, coordinates, title, **dict(self.excitation))
 
 
 def curves_table(curves: Sequence[GrownCurve], saddle: Saddle) -> Table:
@@ -395,26 +389,7 @@ def manifold(
         require_orbit_dataset(start, several=False)
     acceleration = acceleration_at_start(start, box_acceleration)
     if start is None:
-        run_options: dict[str, Any] = {
-            name: value
-            for name, value in running.items()
-            if name in ("fmu", "build_folder", "progress")
-        }
-        keywords: dict[str, Any] = {**dict(arguments), **run_options, "period": period}
-        start = orbit(structure, box_acceleration=acceleration, **keywords)
+        start = orbit_at(structure, dict(arguments), period, acceleration, running)
     excitation = complete_excitation(start, ("e",), arguments, (0.0, 0.0), structure)
-    job = ManifoldJob(
-        name=f"manifold_{structure.label()}",
-        structure=structure,
-        excitation=excitation,
-        box_acceleration=acceleration,
-        start=guess_from_result(start),
-        period=start.sizes["sample"],
-        length=checked_positive("length", length),
-        spacing=checked_positive("spacing", spacing),
-        angle=checked_positive("angle", angle),
-        distance=checked_positive("distance", distance),
-        most=checked_integer("most", most, 2),
-    )
-    job.saddle()  # what is none is said before any work
-    return answer(job, running, finder(running))
+    own = {"box_acceleration": acceleration, "period": start.sizes["sample"]}
+    return ask(ManifoldJob, locals(), start=guess_from_result(start), **own)

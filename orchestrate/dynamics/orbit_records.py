@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..access import EventInstance
+from ..outcomes import UNDECIDED
 from ..response.labels import (
     Variable,
     flags,
@@ -18,7 +19,6 @@ from ..response.labels import (
     variable,
     yes_or_no,
 )
-from ..response.multiplicity import UNDECIDED
 from ..response.questions import Point
 from ..running.job import Table
 from .closed_form import Floats
@@ -32,6 +32,9 @@ from .turning_points import (
     stroboscopic_states,
     turning_points,
 )
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 STABILITY = {0: "unstable", 1: "stable", UNDECIDED: "undecided"}
 KINDS = {-1: "none", 0: "impact", 1: "impact_into_contact", 2: "release"}
@@ -114,6 +117,21 @@ def orbit_table(records: Sequence[OrbitRecord]) -> Table:
     }
 
 
+def located_table(prefix: str, records: Sequence[OrbitRecord], located: Sequence[Any]) -> Table:
+    """Return points located on a branch as arrays: their orbits, kinds and positions."""
+    rows = orbit_table(records) if records else {}
+    rows["kind"] = np.array([each.kind for each in located], dtype=int)
+    rows["place"] = np.array([each.position for each in located], dtype=float)
+    return {f"{prefix}_{name}": column for name, column in rows.items()}
+
+
+def split_located(table: Table, prefix: str) -> tuple[Table, Table]:
+    """Return the columns along a branch, and those of points located on it, by their own names."""
+    located = {key: column for key, column in table.items() if key.startswith(prefix)}
+    along = {key: column for key, column in table.items() if key not in located}
+    return along, {key.removeprefix(f"{prefix}_"): column for key, column in located.items()}
+
+
 def orbit_coordinates(setting: Setting, table: Table, row: str) -> dict[str, Variable]:
     """Return dataset coordinates of a table of orbits: parameters, state and sample names."""
     points = [setting.point(values) for values in table["values"]]
@@ -160,17 +178,43 @@ def orbit_variables(setting: Setting, table: Table, row: str) -> dict[str, Varia
     }
 
 
-def prefixed_variables(
-    setting: Setting, table: Table, prefix: str, names: Sequence[str]
+def located_variables(
+    setting: Setting,
+    rows: Table,
+    prefix: str,
+    kinds: tuple[str, Mapping[int, str]],
+    parameters: Mapping[str, str],
+    kept: Sequence[str],
 ) -> dict[str, Variable]:
-    """Return the named orbit variables with names, rows and nodes prefixed, as at bifurcations."""
-    data: dict[str, Variable] = {}
-    for name, (dims, values, attributes) in orbit_variables(setting, table, prefix).items():
-        if name in names:
+    """Return dataset variables of points located on a branch: kind, place, parameters, orbit."""
+    line = "branch" if len(setting.over) == 1 else "curve"
+    place = f"position along the {line}'s points: between two where not whole"
+    data = {
+        f"{prefix}_kind": flags(prefix, rows["kind"], *kinds),
+        f"{prefix}_place": variable(prefix, rows["place"], "1", place),
+    }
+    if not len(rows["kind"]):
+        empty = {name: variable(prefix, np.zeros(0), "1", name) for name in parameters}
+        return data | {f"{prefix}_{label}": empty[name] for name, label in parameters.items()}
+    values = orbit_coordinates(setting, rows, prefix)
+    data |= {f"{prefix}_{label}": values[name] for name, label in parameters.items()}
+    for name, (dims, column, attributes) in orbit_variables(setting, rows, prefix).items():
+        if name in kept:
             each = (dims,) if isinstance(dims, str) else dims
             own = tuple(f"{prefix}_node" if dim == "node" else dim for dim in each)
-            data[f"{prefix}_{name}"] = own, values, attributes
+            data[f"{prefix}_{name}"] = own, column, attributes
     return data
+
+
+def branch_dataset(
+    setting: Setting, table: Table, more: Mapping[str, Variable], attributes: Mapping[str, Any]
+) -> xr.Dataset:
+    """Return the dataset of orbits along a branch, with more variables."""
+    import xarray as xr
+
+    names = orbit_coordinates(setting, table, "point")
+    data = {**orbit_variables(setting, table, "point"), **names, **more}
+    return xr.Dataset(data, attrs=attributes).set_coords(list(names))
 
 
 def state_variables(table: Table, points: Sequence[Point], row: str) -> dict[str, Variable]:

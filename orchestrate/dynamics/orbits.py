@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..access import OSCILLATOR, EventInstance, finder
-from ..checks import checked_integer
+from ..access import OSCILLATOR, EventInstance
+from ..arguments import checked, checked_integer, checked_number, checked_numbers, whole
 from ..constants import TURN
 from ..errors import InputError
-from ..response.questions import Question, checked_numbers, checked_point, checked_state
-from ..running.job import Inputs, Table
-from ..running.runner import answer
+from ..response.labels import make_dataset
+from ..response.questions import Question, ask, checked_point, checked_state
+from ..running.job import Table
 from ..structures import Structure
 from .closed_form import Floats
 from .continuation import SOLVER_ERRORS
@@ -56,26 +56,28 @@ class FirstGuess:
         times = [row[PHASE] / frequency for kind, row in rows if kind != RELEASE]
         return f"{{'impact_time': {times!r}}}"
 
-    def sequence(self, periods: int) -> ImpactSequence:
-        """Return the guess's impacts and releases as an impact sequence over some periods."""
-        return ImpactSequence(periods, self.kinds)
+    def as_guess(self, periods: int) -> Guess:
+        """Return the guess's impacts and releases over some periods, with their nodes."""
+        return ImpactSequence(periods, self.kinds), np.array(self.nodes).reshape(-1, 4)
+
+
+def call_from_start(job: Any, values: Floats, **keywords: Any) -> str:
+    """Return Python source of a call that begins with an orbit, the orbit's call included."""
+    setting = job.setting
+    guess = job.start.as_argument(setting.point(values).excitation.frequency)
+    start = setting.orbit_call(values, job.period, guess)
+    parts = [f"{name}={value!r}" for name, value in keywords.items()]
+    return f"{job.asked}({', '.join([repr(job.structure), f'start={start}', *parts])})"
 
 
 @dataclass(frozen=True, kw_only=True)
-class OneItemQuestion(Question, ABC):
-    """Base of jobs with a single item, computed in one go."""
-
-    def items(self, inputs: Inputs) -> Sequence[int]:
-        """Return the items: a list with 0, the index of the only one."""
-        return [0]
-
-
-@dataclass(frozen=True, kw_only=True)
-class SingleOrbitQuestion(OneItemQuestion, ABC):
-    """Base of jobs about one orbit at a fixed excitation."""
+class SingleOrbitQuestion(Question, ABC):
+    """Base of questions about one orbit at a fixed excitation."""
 
     excitation: tuple[tuple[str, float], ...]  # as the user gave it
-    box_acceleration: float  # constant acceleration of the box beside the harmonic one, m/s2
+    box_acceleration: float = checked(
+        checked_number
+    )  # constant acceleration of the box beside the harmonic one, m/s2
 
     @property
     def setting(self) -> Setting:
@@ -92,11 +94,11 @@ class SingleOrbitQuestion(OneItemQuestion, ABC):
 class OrbitJob(SingleOrbitQuestion):
     """Job of :func:`orchestrate.orbit`: one periodic orbit, checked by the FMU."""
 
-    period: int
+    period: int = whole(1, MAX_PERIODS)
     guess: FirstGuess | None
-    transient: int
+    transient: int = whole(0)
     search: int
-    tries: int
+    tries: int = whole(1)
     asked: ClassVar[str] = "orbit"
 
     def call_text(self) -> str:
@@ -117,18 +119,14 @@ class OrbitJob(SingleOrbitQuestion):
         with EventInstance(fmus[OSCILLATOR]) as instance:
             return orbit_table([find_orbit(instance, self)])
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         """Return the dataset of the orbit: states, impacts, multipliers, check by the FMU."""
-        import xarray as xr
-
         setting = self.setting
         title = f"Periodic orbit of {self.period} periods: {self.structure.label()}"
-        whole_table = xr.Dataset(
-            orbit_variables(setting, table, "point"),
-            orbit_coordinates(setting, table, "point"),
-            {"title": title},
+        variables = orbit_variables(setting, table, "point")
+        return make_dataset(variables, orbit_coordinates(setting, table, "point"), title).isel(
+            point=0
         )
-        return whole_table.isel(point=0)
 
 
 def find_orbit(instance: EventInstance, job: OrbitJob) -> OrbitRecord:
@@ -157,12 +155,13 @@ def orbit_guesses(
     if guess is not None and guess.state:
         yield guess_from_state(instance, point, form, np.array(guess.state), job.period)
     elif guess is not None:
-        nodes, sequence = np.array(guess.nodes), guess.sequence(job.period)
-        if nodes.shape[1:] == (4,):
-            yield sequence, nodes
+        phases = np.array(guess.nodes)
+        if phases.shape[1:] == (4,):
+            yield guess.as_guess(job.period)
             return
+        sequence = ImpactSequence(job.period, guess.kinds)
         for shift in np.arange(SHIFTS) * TURN / SHIFTS:
-            yield guess_from_phases(form, sequence, nodes[:, 0] + shift)
+            yield guess_from_phases(form, sequence, phases[:, 0] + shift)
     else:
         returns = close_returns(instance, point, form, job.period, job.transient, job.search)
         for state, _ in islice(list(returns), job.tries):
@@ -286,23 +285,7 @@ def orbit(
     require_delaminated(structure)
     point.excitation.check(structure)
     count = checked_integer("period", period, 1, MAX_PERIODS)
-    job = OrbitJob(
-        name=f"orbit_{structure.label()}_{count}T",
-        structure=structure,
-        excitation=excitation_arguments(eta, frequency, amplitude),
-        box_acceleration=finite_number("box_acceleration", box_acceleration),
-        period=count,
-        guess=checked_guess(guess, structure, point.excitation.frequency, count),
-        transient=checked_integer("transient", transient, 0),
-        search=checked_integer("search", search, count + 1),
-        tries=checked_integer("tries", tries, 1),
-    )
-    return answer(job, running, finder(running))
-
-
-def finite_number(name: str, argument: ArrayLike) -> float:
-    """Return one finite number as float; raise ``InputError`` if it is a list or no number."""
-    value = checked_numbers(name, argument)
-    if not isinstance(value, float):
-        raise InputError(f"{name} = {argument!r}: expected one number")
-    return value
+    excitation = excitation_arguments(eta, frequency, amplitude)
+    first = checked_guess(guess, structure, point.excitation.frequency, count)
+    search = checked_integer("search", search, count + 1)
+    return ask(OrbitJob, locals(), f"_{count}T", guess=first)

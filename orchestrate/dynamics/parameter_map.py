@@ -11,40 +11,38 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..access import OSCILLATOR, REST, EventInstance, Impacts, Instance, finder
-from ..checks import checked_integer
+from ..access import OSCILLATOR, EventInstance, Instance
+from ..arguments import Numbers, checked, checked_flag, positive, whole
 from ..errors import InputError
-from ..response.labels import Variable, flags, parameter_variable, variable
-from ..response.multiplicity import DECIDED, REPEATED, UNDECIDED, Decision
+from ..outcomes import REPEATED, UNDECIDED
+from ..response.labels import column_variables, flags, make_dataset, parameter_variable
+from ..response.multiplicity import DECIDED, Decision
 from ..response.questions import (
     EXCITATION_PARAMETERS,
-    Numbers,
     Point,
     Question,
+    answer_question,
     check_excitation_form,
-    checked_numbers,
-    checked_positive,
     checked_state,
     checked_structure,
+    excitation_numbers,
     make_point,
 )
 from ..response.respond import Response, count_impacts_until, respond
 from ..response.sweep import HOW_DECIDED
-from ..running.job import Inputs, Table, plain
+from ..running.job import Table, plain
 from ..running.options import Running, RunOptions
-from ..running.runner import answer
 from ..structures import PARAMETERS, Structure
-from ..structures.ranges import check_flag, expected_one_of
+from ..structures.ranges import expected_one_of
 from ..structures.structure import ValueListKeywords
 from .clusters import transient_periods
 from .following import follow_impacts
-from .lyapunov import exact_exponent_without_impacts, largest_exponent
-from .variational import period_in_tau
+from .lyapunov import exponent_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -67,31 +65,25 @@ class MapKeywords(Running, ValueListKeywords, total=False):
     """Keywords of :func:`map` beside its own: structure parameters and running options."""
 
 
-class MapAxis(NamedTuple):
-    """One axis of the map: a parameter's name and its values."""
-
-    name: str
-    values: tuple[float, ...]
-
-
 @dataclass(frozen=True, kw_only=True)
 class MapJob(Question):
     """Job of :func:`orchestrate.map`: responses over two parameters, each from the same start."""
 
     # parameters of the excitation and the structure; two of them are lists
     given: tuple[tuple[str, Numbers], ...]
-    transient: int = 300
-    settle: float = 300.0
-    samples: int = 60
-    tolerance: float = 1e-2
-    longest: int = 20_000
-    start: tuple[float, ...] = REST
-    exponent: bool = False
-    periods: int = 500
+    transient: int = whole(0)
+    settle: float = positive()
+    samples: int = whole(4)
+    tolerance: float = positive()
+    longest: int = whole(0)
+    start: tuple[float, ...]
+    exponent: bool = checked(checked_flag)
+    periods: int = whole(1)
     asked: ClassVar[str] = "map"
     chunk_size: ClassVar[int] = 120
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         _ = self.points  # what is wrong is said before any work
 
     @property
@@ -100,9 +92,9 @@ class MapJob(Question):
         return map_points(self.structure, self.given)
 
     @property
-    def axes(self) -> tuple[MapAxis, ...]:
-        """Return the map's two axes, those parameters whose value is a list."""
-        return tuple(MapAxis(name, value) for name, value in self.given if isinstance(value, tuple))
+    def axes(self) -> dict[str, tuple[float, ...]]:
+        """Return the map's two axes, those parameters whose value is a list, and their values."""
+        return {name: value for name, value in self.given if isinstance(value, tuple)}
 
     def parameters(self) -> dict[str, Any]:
         """Return the job's parameters for its identity, map parameters under their own names."""
@@ -110,7 +102,7 @@ class MapJob(Question):
         del others["given"]
         return {**{name: plain(value) for name, value in self.given}, **others}
 
-    def items(self, inputs: Inputs) -> Sequence[Point]:
+    def items(self) -> Sequence[Point]:
         """Return the items: structure and excitation of each grid point."""
         return self.points
 
@@ -128,11 +120,10 @@ class MapJob(Question):
         impacts = follow_impacts(eventful, item, response.end, self.samples // 2)
         impulse = impacts.impulse(item.structure, item.speed).max(initial=0.0) / item.structure.m1
         numbers = [rate, n, decided, response.x_rel_max / item.length, impulse]
-        return (
-            [*numbers, *self.exponent_at(eventful, item, response.end)]
-            if self.exponent
-            else numbers
-        )
+        if self.exponent:
+            later = follow_impacts(eventful, item, response.end, self.periods)
+            numbers += exponent_of(later, self.periods, item)
+        return numbers
 
     def decided_response(self, instance: Instance, item: Point) -> tuple[Response, Decision, float]:
         """Run a point on until its multiplicity is decided; return response, decision, impacts.
@@ -154,34 +145,19 @@ class MapJob(Question):
                 return response, decision, rate
             dropped = min(done, self.longest - done)
 
-    def exponent_at(
-        self, eventful: EventInstance, item: Point, start: ArrayLike
-    ) -> tuple[float, float]:
-        """Return a response's Lyapunov exponent and standard error; NaN with too few impacts."""
-        eta = item.excitation.eta(item.structure)
-        impacts: Impacts = follow_impacts(eventful, item, start, self.periods)
-        known = None if len(impacts.time) else exact_exponent_without_impacts(item)
-        return known or largest_exponent(impacts, self.periods * period_in_tau(eta), item)
-
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         """Return the dataset of the map: the variables of ``FIELDS`` over both parameters."""
-        import xarray as xr
-
-        names = tuple(axis.name for axis in self.axes)
-        shape = [len(axis.values) for axis in self.axes]
+        names, axes = tuple(self.axes), self.axes
         texts = {**FIELDS, **(EXPONENT if self.exponent else {})}
-        columns = zip(texts.items(), table["rows"].T, strict=True)
-        variables: dict[str, Variable] = {
-            name: variable(names, column.reshape(shape), "1", text)
-            for (name, text), column in columns
-        }
+        shape = (-1, *(len(values) for values in axes.values()))
+        variables = column_variables(names, texts, table["rows"].T.reshape(shape))
         decided = variables["multiplicity_decided"][1]
         variables["multiplicity_decided"] = flags(names, decided, HOW_DECIDED, DECIDED)
         coordinates = {
-            axis.name: parameter_variable(axis.name, axis.name, axis.values) for axis in self.axes
+            name: parameter_variable(name, name, values) for name, values in axes.items()
         }
         title = f"Map over {' and '.join(names)}: {self.structure.label()}"
-        return xr.Dataset(variables, coordinates, {"title": title})
+        return make_dataset(variables, coordinates, title)
 
 
 @lru_cache(maxsize=4)
@@ -286,18 +262,7 @@ def map(
             )
     box = {"eta": eta, "frequency": frequency, "amplitude": amplitude, "level": level}
     asked: dict[str, Any] = {**box, **others}
-    arguments = {name: checked_numbers(name, asked[name]) for name in asked if name not in running}
-    job = MapJob(
-        structure=checked_structure(structure),
-        name=f"map_{structure.label()}",
-        given=tuple((name, value) for name, value in arguments.items() if value is not None),
-        transient=checked_integer("transient", transient, 0),
-        settle=checked_positive("settle", settle),
-        samples=checked_integer("samples", samples, 4),
-        tolerance=checked_positive("tolerance", tolerance),
-        longest=checked_integer("longest", longest, 0),
-        start=checked_state("start", start, structure),
-        exponent=check_flag("exponent", exponent),
-        periods=checked_integer("periods", periods, 1),
-    )
-    return answer(job, running, finder(running))
+    numbers = {n: excitation_numbers(n, value) for n, value in asked.items() if n not in running}
+    given = tuple((name, value) for name, value in numbers.items() if value is not None)
+    start = checked_state("start", start, checked_structure(structure))
+    return answer_question(MapJob.from_call(locals()), running)

@@ -5,27 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import OSCILLATOR, REST, EventInstance, Impacts, Instance, begin, finder
-from ..checks import checked_integer, checked_word
+from ..access import OSCILLATOR, EventInstance, Impacts, Instance, begin
+from ..arguments import checked, checked_number, checked_word, whole
 from ..constants import TURN
-from ..errors import InputError
-from ..response.labels import variable, yes_or_no
-from ..response.questions import (
-    OneMotionQuestion,
-    Point,
-    checked_numbers,
-    checked_point,
-    checked_state,
-)
+from ..response.labels import make_dataset, variable, yes_or_no
+from ..response.questions import OneMotionQuestion, Point, ask, checked_point, checked_state
 from ..response.simulate import IN_TIME
-from ..running.job import Inputs, Table
-from ..running.runner import answer
+from ..running.job import Table
 from ..structures import Structure
 from .following import FollowedResponse, state_after_transient
 from .variational import contact_durations_after, nondimensional_impacts
@@ -49,12 +42,12 @@ Floats = NDArray[np.float64]
 class PoincareJob(OneMotionQuestion):
     """Job of :func:`orchestrate.poincare`: the Poincaré section of one motion."""
 
-    at: str = "phase"  # of `SECTIONS`
-    phase: float = 0.0  # of the box, in [0, 2 pi), where `at` is `"phase"`
+    at: str = checked(partial(checked_word, known=SECTIONS))
+    phase: float  # of the box, in [0, 2 pi), where `at` is `"phase"`
     # periods dropped, and followed after them
-    transient: int = 500
-    periods: int = 1000
-    start: tuple[float, ...] = REST  # x1, x2 in m, v1, v2 in m/s at phase 0
+    transient: int = whole(0)
+    periods: int = whole(1)
+    start: tuple[float, ...]  # x1, x2 in m, v1, v2 in m/s at phase 0
     asked: ClassVar[str] = "poincare"
 
     def work(
@@ -79,10 +72,8 @@ class PoincareJob(OneMotionQuestion):
                 return {"time": times, "rows": states_at_times(plain, point, start, times)}
         return impact_table(impacts)
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         """Return the dataset of the section's points: states, times, phases, impact speeds."""
-        import xarray as xr
-
         time, columns = table["time"], dict(zip(COLUMNS, table["rows"].T, strict=True))
         phase = np.mod(time * self.excitation.frequency, TURN)
         if self.at == "phase":
@@ -100,7 +91,7 @@ class PoincareJob(OneMotionQuestion):
         since = self.transient * self.excitation.period
         coordinates = {"time": variable("point", since + time, "s", "time from the start")}
         title = f"Poincaré section, {SECTIONS[self.at]}: {self.structure.label()}"
-        return xr.Dataset(variables, coordinates, {"title": title})
+        return make_dataset(variables, coordinates, title)
 
 
 def states_at_times(instance: Instance, point: Point, start: ArrayLike, times: Floats) -> Floats:
@@ -202,18 +193,7 @@ def poincare(
     >>> section.sizes["point"], float(abs(section.v_rel).max() < 1e-12)
     (3, 1.0)
     """
-    chosen, excitation = checked_point(structure, eta, frequency, amplitude)
-    angle = checked_numbers("phase", phase)
-    if not isinstance(angle, float):
-        raise InputError(f"phase = {phase!r}: expected a number, rad")
-    job = PoincareJob(
-        name=f"poincare_{structure.label()}",
-        structure=chosen,
-        excitation=excitation,
-        at=checked_word("at", at, SECTIONS),
-        phase=math.fmod(angle, TURN) % TURN,
-        transient=checked_integer("transient", transient, 0),
-        periods=checked_integer("periods", periods, 1),
-        start=checked_state("start", start, structure),
-    )
-    return answer(job, running, finder(running))
+    _, excitation = checked_point(structure, eta, frequency, amplitude)
+    phase = math.fmod(checked_number("phase", phase, "a number, rad"), TURN) % TURN
+    start = checked_state("start", start, structure)
+    return ask(PoincareJob, locals())

@@ -10,20 +10,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..access import gap_between
 from ..constants import TURN
+from ..outcomes import ABSENT, IRREGULAR, ORBIT, REPEATED, UNDECIDED, WORDS
 from ..response.multiplicity import MIN_RELATIVE_GAP
 from ..response.questions import Point
 from .periodic_orbit import PHASE, PeriodicOrbit
 from .turning_points import Amplitudes, stroboscopic_states, turning_points
 
 Floats = NDArray[np.float64]
-ABSENT, ORBIT, REPEATED, IRREGULAR, UNDECIDED = range(5)
-DECIDED = {
-    ABSENT: "absent",
-    ORBIT: "orbit",
-    REPEATED: "repeated",
-    IRREGULAR: "irregular",
-    UNDECIDED: "undecided",
-}
+DECIDED: dict[int, str] = {n: WORDS[n] for n in (ABSENT, ORBIT, REPEATED, IRREGULAR, UNDECIDED)}
 ON_KNOWN_MOTION = 1e-5  # over the motion's size: a state that is nearer lies on that motion
 LENGTHS = np.array(  # displacements, velocities, the gap and its rate, from a state
     [[1, 0, 0, 0, -1, 0], [0, 1, 0, 0, 1, 0], [0, 0, 1, 0, 0, -1], [0, 0, 0, 1, 0, 1]], dtype=float

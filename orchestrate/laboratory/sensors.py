@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..checks import checked_word
+from ..arguments import checked_word
 from ..errors import InputError
 from ..structures import Structure
 from ..structures.ranges import ADDED, STRUCTURE, Quantity, plain

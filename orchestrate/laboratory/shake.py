@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import OSCILLATOR, PLAYED, REST, Player, finder
+from ..access import OSCILLATOR, PLAYED, Player
+from ..arguments import checked_positive
 from ..errors import InputError
 from ..response.equations import absolute_accelerations
-from ..response.labels import variable, yes_or_no
-from ..response.questions import Question, checked_positive, checked_state, checked_structure
+from ..response.labels import make_dataset, variable, yes_or_no
+from ..response.questions import Question, ask, checked_state, checked_structure
 from ..response.simulate import IN_TIME, impact_columns, impact_variables
-from ..running.job import Inputs, Table
-from ..running.runner import answer
+from ..running.job import Table
 from ..structures import Structure
 from .pieces import Pieces
 from .signals import ExcitationSignal
@@ -47,7 +47,7 @@ class ShakeJob(Question):
     excitation: ExcitationSignal
     sample_rate: float  # hz
     accuracy: float  # of the cubic pieces, relative to the excitation's peak
-    start: tuple[float, ...] = REST  # x1, x2 in m, v1, v2 in m/s
+    start: tuple[float, ...]  # x1, x2 in m, v1, v2 in m/s
     asked: ClassVar[str] = "shake"
     chunk_size: ClassVar[int] = 20_000
     sequential: ClassVar[bool] = True
@@ -64,7 +64,7 @@ class ShakeJob(Question):
         found["excitation"] = {"kind": type(self.excitation).__name__, **found["excitation"]}
         return found
 
-    def items(self, inputs: Inputs) -> Sequence[int]:
+    def items(self) -> Sequence[int]:
         """Return the indices of the pieces."""
         return range(len(self.pieces.derivatives))
 
@@ -98,29 +98,24 @@ class ShakeJob(Question):
             "fmu_state": kept,
         }
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         """Return histories, impacts, and what is known of the excitation."""
-        import xarray as xr
-
         columns = [*PLAYED, "a1_abs", "a2_abs", "box_acceleration"]
+        contact = "whether the masses are in permanent contact"
         error = "largest distance of the box's acceleration to the signal, by a bound"
         transient = f"time after which the start's free vibration is below {DECAYED:g} of it"
-        return xr.Dataset(
+        return make_dataset(
             {
                 **{name: variable("time", table[name], *IN_TIME[name]) for name in columns},
-                "in_contact": yes_or_no(
-                    "time", table["in_contact"], "whether the masses are in permanent contact"
-                ),
+                "in_contact": yes_or_no("time", table["in_contact"], contact),
                 **impact_variables(table),
                 "excitation_error": variable((), self.pieces.error, "m/s2", error),
                 "transient_time": variable((), transient_time(self.structure), "s", transient),
             },
             {"time": variable("time", self.times(), "s", "time from the start")},
-            {
-                "title": f"Shaken by {self.excitation.description}: {self.structure.label()}",
-                "excitation": self.excitation.label,
-                "excitation_description": self.excitation.description,
-            },
+            f"Shaken by {self.excitation.description}: {self.structure.label()}",
+            excitation=self.excitation.label,
+            excitation_description=self.excitation.description,
         )
 
 
@@ -206,16 +201,9 @@ def shake(
         raise InputError(
             f"sample_rate = {rate!r} Hz: expected at most {most:.3g} for that duration"
         )
-    wanted = checked_positive("accuracy", accuracy)
-    if not 1e-10 <= wanted <= 1e-2:
-        raise InputError(f"accuracy = {wanted!r}: expected 1e-10 <= accuracy <= 0.01")
-    shaken = checked_structure(structure)
-    job = ShakeJob(
-        name=f"shake_{type(excitation).__name__}_{shaken.label()}",
-        structure=shaken,
-        excitation=excitation,
-        sample_rate=rate,
-        accuracy=wanted,
-        start=checked_state("start", start, shaken),
-    )
-    return answer(job, running, finder(running))
+    accuracy = checked_positive("accuracy", accuracy)
+    if not 1e-10 <= accuracy <= 1e-2:
+        raise InputError(f"accuracy = {accuracy!r}: expected 1e-10 <= accuracy <= 0.01")
+    start = checked_state("start", start, checked_structure(structure))
+    name = f"shake_{type(excitation).__name__}_{structure.label()}"
+    return ask(ShakeJob, locals(), name=name, sample_rate=rate, start=start)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..checks import checked_word
+from ..arguments import checked_word
 from ..errors import InputError
 from ..structures.ranges import Quantity
 from .pieces import ERROR, Floats, Pieces, equal_nodes, phase_step

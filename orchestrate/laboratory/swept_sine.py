@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..checks import checked_word
+from ..arguments import checked_word
 from ..constants import TURN
 from ..errors import InputError
 from ..structures.ranges import Quantity

@@ -13,7 +13,7 @@ import orchestrate
 
 from ..dynamics.lyapunov import CHAOTIC, NEUTRAL
 from ..dynamics.stable_windows import StableWindow, stable_windows
-from ..response.multiplicity import REPEATED
+from ..outcomes import REPEATED
 from ..running.store import write_netcdf
 from ..structures import Drive, Structure
 from ..weak_drive import averaged

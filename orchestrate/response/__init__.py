@@ -13,7 +13,6 @@ module                      idea
 :mod:`.simulate`            a motion in time
 :mod:`.sweep`               responses along a parameter; the columns of their CSV
 :mod:`.resonance`           resonance curves, bonded against delaminated, with peaks and jumps
-:mod:`.resonance_levels`    the same at several levels of the shaking
 :mod:`.threshold`           the level at which a pressed structure opens, or an open one touches
 :mod:`.turns_and_jumps`     significant maxima and jumps of a curve
 :mod:`.spectra`             amplitude spectra of the masses' accelerations

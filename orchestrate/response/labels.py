@@ -3,16 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..structures.ranges import EXCITATION, LEVEL, RATIO_QUANTITIES, STRUCTURE
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 Dims = str | tuple[str, ...]
 Variable = tuple[Dims, Any, dict[str, Any]]
 COORDINATES = ("xi_1", "xi_2", "xi_1'", "xi_2'")  # of a non-dimensional state
 STATE = ("x1", "x2", "v1", "v2")  # of a state in m and m/s
+
+
+def make_dataset(
+    variables: Mapping[str, Variable], coordinates: Mapping[str, Variable], title: str, **more: Any
+) -> xr.Dataset:
+    """Return a dataset of variables and coordinates, with its title and more attributes."""
+    import xarray as xr  # takes most of a second: only where a dataset is made
+
+    return xr.Dataset(variables, coordinates, {"title": title, **more})
 
 
 def variable(dims: Dims, values: Any, units: str, long_name: str, **more: Any) -> Variable:

@@ -18,19 +18,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fmu_src.kernels import repetition
-from fmu_src.kernels.repetition import (
-    IRREGULAR,
-    MIN_RELATIVE_GAP,
-    REPEATED,
-    UNDECIDED,
-    memory_size,
-)
+from fmu_src.kernels.repetition import MIN_RELATIVE_GAP, memory_size
 
 from ..access.c_library import loaded_library
+from ..outcomes import WORDS, Outcome
 
-__all__ = ["IRREGULAR", "MIN_RELATIVE_GAP", "REPEATED", "UNDECIDED", "memory_size"]
+__all__ = ["MIN_RELATIVE_GAP", "memory_size"]
 RULES = {"decide": "decide_multiplicity", "repeat": "find_repetition"}  # in C
-DECIDED = {IRREGULAR: "irregular", REPEATED: "repeated", UNDECIDED: "undecided"}
+DECIDED: dict[int, str] = {
+    n: WORDS[n] for n in (Outcome.IRREGULAR, Outcome.REPEATED, Outcome.UNDECIDED)
+}
 
 
 @functools.cache

@@ -1,4 +1,4 @@
-"""Check the user's arguments: excitation, parameter values, start states; base classes of jobs.
+"""One kind of question: arguments that are checked, points at which they are asked, a job.
 
 An excitation is given as ``eta``: frequency ``eta omega`` and amplitude ``1/eta^2`` m, so that x is
 the xi of (3) in metres; or as ``frequency`` in rad/s with ``amplitude`` in m, or with ``level``,
@@ -7,20 +7,20 @@ the peak acceleration in m/s2, where that varies.
 
 from __future__ import annotations
 
-import math
 from abc import ABC
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import REST, gap_between
-from ..checks import MAX_COUNT
+from ..access import REST, finder, gap_between
+from ..arguments import Numbers, checked, checked_numbers
 from ..errors import InputError
-from ..running.job import Inputs, Job, brief
+from ..running.job import Job, brief
+from ..running.runner import answer
 from ..structures import PARAMETERS, Excitation, Structure
 from ..structures.ranges import EXCITATION, LEVEL, RATIO_QUANTITIES, expected_one_of
 from .labels import Variable, parameter_variable, variable
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 State = tuple[float, ...]
-Numbers = float | tuple[float, ...]
+Kind = TypeVar("Kind", bound="Question")
 EXCITATION_PARAMETERS = {
     "eta": RATIO_QUANTITIES["eta"],
     **{name: EXCITATION[name] for name in ("frequency", "amplitude")},
@@ -217,14 +217,13 @@ def checked_point(
 ) -> Point:
     """Return the operating point of scalar excitation arguments; raise if incomplete or lists."""
     arguments = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
-    checked = {
-        name: checked_numbers(name, value) for name, value in arguments.items() if value is not None
-    }
-    check_excitation_form(checked)
-    for name, value in checked.items():
+    given = {name: value for name, value in arguments.items() if value is not None}
+    values = {name: excitation_numbers(name, value) for name, value in given.items()}
+    check_excitation_form(values)
+    for name, value in values.items():
         if isinstance(value, tuple):
             raise InputError(f"{name}: {len(value)} values; expected one number")
-    return make_point(checked_structure(structure), checked)
+    return make_point(checked_structure(structure), values)
 
 
 # -- what was given, checked ----------------------------------------------------------------------
@@ -237,42 +236,12 @@ def checked_structure(structure: object) -> Structure:
     return structure
 
 
-def checked_numbers(name: str, argument: ArrayLike | None) -> Numbers | None:
-    """Return an argument as float or tuple of floats, checked for its range; None if not given."""
-    if argument is None:
-        return None
-    try:
-        array = np.asarray(argument)
-        if array.dtype.kind not in "iuf":
-            raise ValueError
-        array = array.astype(float)
-    except (TypeError, ValueError, OverflowError):
-        raise InputError(f"{name} = {argument!r}: expected a number or a list of numbers") from None
-    if array.ndim > 1 or not 1 <= array.size <= MAX_COUNT:
-        shape = "x".join(map(str, array.shape))
-        raise InputError(f"{name}: {shape} values; expected a number or a list of 1 to {MAX_COUNT}")
-    result = tuple(array.ravel().tolist())
-    check = EXCITATION_PARAMETERS[name].check if name in EXCITATION_PARAMETERS else float
-    result = tuple(check(number) for number in result)
-    bad = [
-        number
-        for number in result
-        if not math.isfinite(number) or (name in EXCITATION_PARAMETERS and number <= 0.0)
-    ]
-    if bad:
-        raise InputError(
-            f"{name} = {bad[0]!r}: expected finite numbers"
-            + " > 0" * (name in EXCITATION_PARAMETERS)
-        )
-    return result if array.ndim else result[0]
-
-
-def checked_positive(name: str, value: Any) -> float:
-    """Return an argument as finite float above zero; raise ``InputError`` otherwise."""
-    number = checked_numbers(name, value)
-    if not isinstance(number, float) or number <= 0.0:
-        raise InputError(f"{name} = {value!r}: expected a number > 0")
-    return number
+def excitation_numbers(name: str, value: ArrayLike | None) -> Numbers | None:
+    """Return an excitation's numbers, checked for their range; of another name, finite ones."""
+    quantity = EXCITATION_PARAMETERS.get(name)
+    if quantity is None:
+        return checked_numbers(name, value)
+    return checked_numbers(name, value, quantity.check, " > 0")
 
 
 def checked_states(name: str, value: ArrayLike | None, structure: Structure) -> NDArray[np.float64]:
@@ -310,16 +279,10 @@ def checked_state(name: str, value: ArrayLike | None, structure: Structure) -> t
     return tuple(rows[0].tolist())
 
 
-def end_states(swept: xr.Dataset, series: Series) -> NDArray[np.float64]:
-    """Return a sweep's end states at the series' values (nearest), in m and m/s, (n, 4)."""
-    rows = swept.end_state.sel({series.name: list(series.values)}, method="nearest")
-    states: NDArray[np.float64] = rows.values * series.scales()
-    return states
-
-
-def start_states(start: ArrayLike | xr.Dataset | None, question: SeriesQuestion) -> State:
+def start_states(
+    start: ArrayLike | xr.Dataset | None, structure: Structure, series: Series
+) -> State:
     """Return the start states given by the user: one for all, one per value, or of a sweep."""
-    series = question.series
     if hasattr(start, "end_state"):
         swept: xr.Dataset = start  # type: ignore[assignment]
         there = swept.end_state.dims
@@ -329,8 +292,9 @@ def start_states(start: ArrayLike | xr.Dataset | None, question: SeriesQuestion)
                 f"start: a dataset over {', '.join(map(str, there))}; expected a sweep in one "
                 f"direction over the same values of {series.name}"
             )
-        return tuple(end_states(swept, series).ravel().tolist())
-    rows = checked_states("start", start, question.structure)
+        ends = swept.end_state.sel({series.name: list(series.values)}, method="nearest")
+        return tuple((ends.values * series.scales()).ravel().tolist())
+    rows = checked_states("start", start, structure)
     if len(rows) not in (1, len(series.values)):
         raise InputError(
             f"start: {len(rows)} states; expected one, or one for each of {len(series.values)} "
@@ -344,10 +308,23 @@ def start_states(start: ArrayLike | xr.Dataset | None, question: SeriesQuestion)
 
 @dataclass(frozen=True, kw_only=True)
 class Question(Job, ABC):
-    """Base of jobs that answer a public function about a structure."""
+    """Job of a public function about a structure: its fields are the function's arguments."""
 
     structure: Structure
     asked: ClassVar[str] = ""  # name of the function
+    result: ClassVar[str] = ""  # first word of the result's name, where that is another
+
+    def __post_init__(self) -> None:
+        checked_structure(self.structure)
+        self.check_fields()
+
+    @classmethod
+    def from_call(cls: type[Kind], call: Mapping[str, Any], more: str = "", /, **own: Any) -> Kind:
+        """Return the job of a function's call: its arguments by name, but for its ``own``."""
+        label = checked_structure(call["structure"]).label()
+        values = {f.name: call[f.name] for f in fields(cls) if f.name in call}
+        values["name"] = f"{cls.result or cls.asked}_{label}{more}"
+        return cls(**values | own)
 
     def call_text(self) -> str:
         """Return Python source of the public function's call that repeats this job."""
@@ -366,30 +343,46 @@ class Question(Job, ABC):
         return f"{self.asked}({', '.join(texts)})"
 
 
+def ask(kind: type[Question], call: Mapping[str, Any], more: str = "", /, **own: Any) -> xr.Dataset:
+    """Answer a public function's call, given by its local variables, see `Question.from_call`."""
+    return answer_question(kind.from_call(call, more, **own), call["running"])
+
+
+def answer_question(job: Question, running: Mapping[str, Any]) -> xr.Dataset:
+    """Answer a question by the FMU that the running options choose."""
+    return answer(job, running, finder(running))
+
+
 @dataclass(frozen=True, kw_only=True)
 class OneMotionQuestion(Question, ABC):
-    """Base of jobs that simulate one motion, under one excitation."""
+    """Base of questions about one motion, under one excitation."""
 
     excitation: Excitation
 
-    def items(self, inputs: Inputs) -> Sequence[Point]:
+    def items(self) -> Sequence[Point]:
         """Return the items: a list with the structure under its excitation."""
         return [Point(self.structure, self.excitation)]
 
 
 @dataclass(frozen=True, kw_only=True)
 class SeriesQuestion(Question, ABC):
-    """Base of jobs that compute responses along one parameter."""
+    """Base of questions about responses along one parameter."""
 
     # the excitation
-    eta: Numbers | None = None
-    frequency: Numbers | None = None
-    amplitude: Numbers | None = None
+    eta: Numbers | None = checked(excitation_numbers, None)
+    frequency: Numbers | None = checked(excitation_numbers, None)
+    amplitude: Numbers | None = checked(excitation_numbers, None)
     over: str | None = None  # parameter that takes `values`
     values: Numbers | None = None
 
     def __post_init__(self) -> None:
-        _ = self.series  # what is wrong is said before any work
+        super().__post_init__()
+        name = self.over if self.over in EXCITATION_PARAMETERS else "values"
+        object.__setattr__(self, "values", excitation_numbers(str(name), self.values))
+        series = self.series  # what is wrong is said before any work
+        if hasattr(self, "start"):
+            states = start_states(self.start, self.structure, series)
+            object.__setattr__(self, "start", states)
 
     @property
     def series(self) -> Series:
@@ -402,22 +395,6 @@ class SeriesQuestion(Question, ABC):
         """Return the number of parameter values."""
         return len(self.series.values)
 
-
-def series_arguments(
-    structure: Structure,
-    eta: ArrayLike | None,
-    frequency: ArrayLike | None,
-    amplitude: ArrayLike | None,
-    over: str | None = None,
-    values: ArrayLike | None = None,
-) -> dict[str, Any]:
-    """Check the user's excitation arguments; return them as fields of a series question."""
-    arguments = {"eta": eta, "frequency": frequency, "amplitude": amplitude}
-    checked = {name: checked_numbers(name, value) for name, value in arguments.items()}
-    checked_values = checked_numbers(over if over in EXCITATION_PARAMETERS else "values", values)
-    return {
-        "structure": checked_structure(structure),
-        **checked,
-        "over": over,
-        "values": checked_values,
-    }
+    def items(self) -> Sequence[Any]:
+        """Return the operating points."""
+        return self.series.points

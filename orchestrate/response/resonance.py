@@ -1,25 +1,24 @@
-"""Resonance curves, bonded and delaminated, peaks and jumps: ``orchestrate.resonance``."""
+"""Resonance curves, bonded and delaminated: ``resonance``, and ``resonance_levels`` of several."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from dataclasses import dataclass, fields
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import finder
-from ..checks import checked_integer
+from ..access import REST
+from ..arguments import checked, positive
 from ..errors import InputError
-from ..running.job import Inputs, Table
-from ..running.runner import answer
+from ..outcomes import IRREGULAR
+from ..running.job import Table
 from ..structures import Structure
-from .labels import Variable, variable, yes_or_no
-from .multiplicity import IRREGULAR
-from .peaks import PEAKS
-from .questions import Point, checked_positive, series_arguments
-from .sweep import RESPONSE_QUANTITIES, Direction, SweepJob, multiplicity_variables
+from .labels import Variable, make_dataset, parameter_variable, variable, yes_or_no
+from .questions import Point, Series, ask, excitation_numbers, make_series
+from .sweep import RESPONSE_QUANTITIES, Direction, SweepJob, response_variables
 from .threshold import threshold_variables
 from .turns_and_jumps import inside_irregular, jump_indices, prominent_maxima
 
@@ -33,15 +32,15 @@ KINDS = ("bonded", "delaminated")
 DIMENSIONS = ("structure", "direction")
 REPORTED = {**RESPONSE_QUANTITIES, "x_rel_max": ("m", "largest gap over the sampled periods")}
 PEAK_QUANTITIES = ("x1_max", "x2_max", "a1_max", "a2_max", "x_rel_max", "impacts_per_period")
+RAGGED = ("peak", "jump")  # of each level as many as it has
 
 
 @dataclass(frozen=True, kw_only=True)
 class ResonanceJob(SweepJob):
     """Job of :func:`orchestrate.resonance`: up and down sweeps, bonded and delaminated."""
 
-    # as in resonance
-    prominence: float = 0.1
-    jump: float = 0.15
+    prominence: float = positive()
+    jump: float = positive()
     asked: ClassVar[str] = "resonance"
 
     def __post_init__(self) -> None:
@@ -49,25 +48,25 @@ class ResonanceJob(SweepJob):
         if self.direction == "given":
             raise InputError("direction = 'given': expected one of up, down, both")
 
+    def parameters(self) -> dict[str, Any]:
+        """Return the parameters; the start is none of them."""
+        return {name: value for name, value in super().parameters().items() if name != "start"}
+
     def independent_series(self) -> int:
         """Return how many sweeps are independent: each direction, for both structures."""
         return len(KINDS) * super().independent_series()
 
-    def items(self, inputs: Inputs) -> Sequence[Point]:
+    def items(self) -> Sequence[Point]:
         """Return the operating points of all responses, the bonded structure's first."""
         both = self.structure.as_bonded(), self.structure.as_delaminated()
-        points = super().items(inputs)
+        points = super().items()
         return [Point(structure, point.excitation) for structure in both for point in points]
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         """Return the dataset of the resonance curves with their peaks and jumps."""
-        import xarray as xr
-
-        curves = xr.Dataset(
-            self.variables({name: self.in_order(values) for name, values in table.items()}),
-            self.coordinates(),
-            {"title": f"Resonance curves: {self.structure.label()}"},
-        )
+        ordered = {name: self.in_order(values) for name, values in table.items()}
+        title = f"Resonance curves: {self.structure.label()}"
+        curves = make_dataset(self.variables(ordered), self.coordinates(), title)
         return curves.assign(self.peaks(curves) | self.jumps(curves))
 
     def in_order(self, values: NDArray[np.generic]) -> NDArray[np.generic]:
@@ -80,20 +79,8 @@ class ResonanceJob(SweepJob):
 
     def variables(self, table: Table) -> dict[str, Variable]:
         """Return dataset variables of the curves: amplitudes, accelerations, multiplicity."""
-        along = (*DIMENSIONS, self.series.name)
-        length = self.series.scales()[:, 0]
-        numbers = {
-            **{name: table[name] for name in (*PEAKS, "x_rel_max", "impacts_per_period")},
-            "xi_rel_max": table["x_rel_max"] / length,
-            **{f"xi{i}_max": table[f"x{i}_max"] / length for i in (1, 2)},
-        }
-        contact = "whether permanent contact occurs in the sampled periods"
-        return {
-            **self.threshold(),
-            **{name: variable(along, numbers[name], *REPORTED[name]) for name in REPORTED},
-            "permanent_contact": yes_or_no(along, table["permanent_contact"], contact),
-            **multiplicity_variables(along, table),
-        }
+        along, length = (*DIMENSIONS, self.series.name), self.series.scales()[:, 0]
+        return {**self.threshold(), **response_variables(along, table, length, REPORTED)}
 
     def threshold(self) -> dict[str, Variable]:
         """Return dataset variables of the contact threshold; empty without a clearance."""
@@ -184,6 +171,88 @@ class ResonanceJob(SweepJob):
         }
 
 
+def distinct_numbers(name: str, value: Any) -> tuple[float, ...]:
+    """Return one or more numbers as a tuple; raise ``InputError`` if one is repeated."""
+    values = excitation_numbers(name, value)
+    listed = values if isinstance(values, tuple) else (values,)
+    if values is None or len(set(listed)) < len(listed):
+        raise InputError(f"{name}: expected numbers, each once")
+    return tuple(float(number) for number in listed if number is not None)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ResonanceLevelsJob(ResonanceJob):
+    """Job of :func:`orchestrate.resonance_levels`: resonance curves at several levels."""
+
+    frequency: tuple[float, ...] = checked(distinct_numbers)
+    level: tuple[float, ...] = checked(distinct_numbers)  # peak accelerations, m/s2
+    asked: ClassVar[str] = "resonance_levels"
+
+    @property
+    def series(self) -> Series:
+        """Return the operating points of the first level along the frequency."""
+        return make_series(self.structure, None, self.frequency, self.amplitudes(self.level[0]))
+
+    def amplitudes(self, level: float) -> tuple[float, ...]:
+        """Return the box's amplitudes, m, that give a level at all frequencies."""
+        return tuple(level / f**2 for f in self.frequency)
+
+    @cached_property
+    def level_jobs(self) -> tuple[ResonanceJob, ...]:
+        """Return one resonance job per level, in the order of the levels."""
+        own = {field.name: getattr(self, field.name) for field in fields(ResonanceJob)}
+        return tuple(
+            ResonanceJob(**own | {"amplitude": self.amplitudes(level)}) for level in self.level
+        )
+
+    def independent_series(self) -> int:
+        """Return how many sweeps are independent, over all levels."""
+        return len(self.level) * super().independent_series()
+
+    def items(self) -> Sequence[Point]:
+        """Return the operating points of all responses, level by level."""
+        return [point for job in self.level_jobs for point in job.items()]
+
+    def dataset(self, table: Table) -> xr.Dataset:
+        """Return the dataset of all curves, with ``level`` as first dimension."""
+        import xarray as xr
+
+        parts = {name: np.split(values, len(self.level_jobs)) for name, values in table.items()}
+        curves = [
+            job.dataset({name: parts[name][i] for name in parts})
+            for i, job in enumerate(self.level_jobs)
+        ]
+        levels = xr.Variable(*parameter_variable("level", "level", self.level))
+        whole, *_ = regular = [curve.drop_dims(RAGGED) for curve in curves]
+        joined = xr.concat(
+            regular,
+            dim=xr.DataArray(levels, dims="level", name="level"),
+            data_vars=[
+                str(name) for name, values in whole.data_vars.items() if "structure" in values.dims
+            ],
+            coords=["amplitude"],
+            compat="equals",
+            join="exact",
+        )
+        ragged = [
+            xr.concat(
+                [self.rows_of_level(i, curve, name) for i, curve in enumerate(curves)], dim=name
+            )
+            for name in RAGGED
+        ]
+        result = xr.merge([joined, *ragged], combine_attrs="drop_conflicts")
+        result.attrs["title"] = f"Resonance curves over the level: {self.structure.label()}"
+        return result
+
+    def rows_of_level(self, index: int, curve: xr.Dataset, name: str) -> xr.Dataset:
+        """Return the peaks or jumps of one level's curves, with a variable of the level."""
+        of_kind = [str(key) for key, values in curve.data_vars.items() if values.dims == (name,)]
+        part = curve[of_kind].reset_coords(drop=True)
+        level = np.full(curve.sizes[name], self.level[index])
+        text = f"level of the {name}: peak acceleration of the box"
+        return part.assign({f"{name}_level": variable(name, level, "m/s2", text)})
+
+
 def resonance(
     structure: Structure,
     *,
@@ -255,15 +324,60 @@ def resonance(
     >>> found.peak_structure.values[0].item(), float(found.peak_eta[0].round(3))
     ('bonded', 1.05)
     """
-    job = ResonanceJob(
-        **series_arguments(structure, eta, frequency, amplitude),
-        name=f"resonance_{structure.label()}",
-        direction=direction,
-        transient=checked_integer("transient", transient, 0),
-        samples=checked_integer("samples", samples, 1),
-        tolerance=checked_positive("tolerance", tolerance),
-        peak_periods=checked_integer("peak_periods", peak_periods, 1),
-        prominence=checked_positive("prominence", prominence),
-        jump=checked_positive("jump", jump),
-    )
-    return answer(job, running, finder(running))
+    return ask(ResonanceJob, locals(), start=REST)
+
+
+def resonance_levels(
+    structure: Structure,
+    *,
+    frequency: ArrayLike,
+    level: ArrayLike,
+    direction: Direction = "both",
+    transient: int = 500,
+    samples: int = 60,
+    tolerance: float = 1e-2,
+    peak_periods: int = 8,
+    prominence: float = 0.1,
+    jump: float = 0.15,
+    **running: Unpack[Running],
+) -> xr.Dataset:
+    """Compute resonance curves at several excitation levels, bonded and delaminated.
+
+    Parameters
+    ----------
+    structure : Structure
+        With a clearance, or a restitution that depends on the speed; without both the curves at
+        two levels are in proportion.
+    frequency : array_like
+        rad/s.
+    level : array_like
+        Peak accelerations of the box, m/s2: each is held at all frequencies.
+    direction, transient, samples, tolerance, peak_periods, prominence, jump
+        As in :func:`orchestrate.resonance`.
+    **running
+        ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`.
+
+    Returns
+    -------
+    xarray.Dataset
+        What :func:`orchestrate.resonance` answers, with ``level`` as first dimension; of each peak
+        and jump its ``peak_level``, ``jump_level``. The threshold of a structure with a clearance,
+        ``threshold_acceleration`` over the frequency, is one curve for all levels.
+
+    Raises
+    ------
+    InputError
+        Where a number is out of its range.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.response.resonance import resonance_levels
+    >>> pressed = Structure.from_halves(m1=1.0, m2=1.0, f1=42.0, f2=55.0, clearance=-20e-6)
+    >>> shaken = {"frequency": 2.0 * np.pi * np.array([40.0, 44.0]), "level": [0.05, 5.0]}
+    >>> found = resonance_levels(pressed, **shaken, transient=20, samples=4, direction="up")
+    >>> found.x_rel_max.sel(structure="delaminated", direction="up").values.max(axis=1) > 0.0
+    array([False,  True])
+    """
+    return ask(ResonanceLevelsJob, locals(), start=REST)

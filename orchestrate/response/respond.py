@@ -10,15 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..access import Instance, four_numbers, gap_between
+from ..outcomes import REPEATED, UNDECIDED
 from ..structures import Excitation, Structure
-from .multiplicity import (
-    REPEATED,
-    UNDECIDED,
-    Decision,
-    Repetition,
-    decide_multiplicity,
-    find_repetition,
-)
+from .multiplicity import Decision, Repetition, decide_multiplicity, find_repetition
 from .questions import Point
 from .response_loop import COUNTS, LoopSettings, Responses, response_loop, round_state
 from .threshold import exceeds_threshold

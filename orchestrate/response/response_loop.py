@@ -29,7 +29,8 @@ from ..access import (
     samples_per_step,
 )
 from ..errors import FmuError
-from .multiplicity import REPEATED, decide_multiplicity, library, memory_size
+from ..outcomes import REPEATED
+from .multiplicity import decide_multiplicity, library, memory_size
 from .questions import Point
 
 FUNCTIONS = (  # as Calls of the C source has them

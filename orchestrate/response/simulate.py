@@ -10,14 +10,13 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import NO_INPUT, OSCILLATOR, REST, EventInstance, Impacts, begin, finder
-from ..checks import checked_integer
-from ..running.job import Inputs, Table
-from ..running.runner import answer
+from ..access import NO_INPUT, OSCILLATOR, EventInstance, Impacts, begin
+from ..arguments import whole
+from ..running.job import Table
 from ..structures import Structure
 from .equations import absolute_accelerations
-from .labels import Variable, variable, yes_or_no
-from .questions import OneMotionQuestion, Point, checked_point, checked_state
+from .labels import Variable, make_dataset, variable, yes_or_no
+from .questions import OneMotionQuestion, Point, ask, checked_point, checked_state
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -47,11 +46,12 @@ IN_TIME = {  # units, long name
 class SimulateJob(OneMotionQuestion):
     """Job of :func:`orchestrate.simulate`: one motion in time."""
 
-    periods: int = 20
-    transient: int = 0
-    points: int = 200
-    start: tuple[float, ...] = REST
+    periods: int = whole(1)
+    transient: int = whole(0)
+    points: int = whole(1)
+    start: tuple[float, ...]
     asked: ClassVar[str] = "simulate"
+    result: ClassVar[str] = "motion"
 
     def grid(self) -> NDArray[np.float64]:
         """Return the equally spaced times, s, at which the motion is sampled."""
@@ -87,20 +87,16 @@ class SimulateJob(OneMotionQuestion):
             **{"a1": first - box, "a2": second - box},
         }
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         """Return the dataset of the motion: variables over time, and its impacts."""
-        import xarray as xr
-
         contact = "whether the masses are in permanent contact"
-        return xr.Dataset(
-            {
-                **{name: variable("time", table[name], *IN_TIME[name]) for name in IN_TIME},
-                "in_contact": yes_or_no("time", table["in_contact"], contact),
-                **impact_variables(table),
-            },
-            self.coordinates(),
-            {"title": f"Motion in time: {self.structure.label()}"},
-        )
+        variables = {
+            **{name: variable("time", table[name], *IN_TIME[name]) for name in IN_TIME},
+            "in_contact": yes_or_no("time", table["in_contact"], contact),
+            **impact_variables(table),
+        }
+        title = f"Motion in time: {self.structure.label()}"
+        return make_dataset(variables, self.coordinates(), title)
 
     def coordinates(self) -> dict[str, Variable]:
         """Return dataset coordinates of time: in seconds, in units of tau, in periods."""
@@ -201,14 +197,6 @@ def simulate(
     >>> motion.sizes["time"], motion.sizes["impact"], int(motion.sticks.sum())
     (401, 60, 2)
     """
-    chosen, excitation = checked_point(structure, eta, frequency, amplitude)
-    job = SimulateJob(
-        name=f"motion_{structure.label()}",
-        structure=chosen,
-        excitation=excitation.replace(phase=phase),
-        periods=checked_integer("periods", periods, 1),
-        transient=checked_integer("transient", transient, 0),
-        points=checked_integer("points", points, 1),
-        start=checked_state("start", start, structure),
-    )
-    return answer(job, running, finder(running))
+    _, excitation = checked_point(structure, eta, frequency, amplitude)
+    start = checked_state("start", start, structure)
+    return ask(SimulateJob, locals(), excitation=excitation.replace(phase=phase), start=start)

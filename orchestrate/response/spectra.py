@@ -15,15 +15,14 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import OSCILLATOR, REST, Instance, begin, finder, sampled
-from ..checks import checked_integer
+from ..access import OSCILLATOR, REST, Instance, begin, sampled
+from ..arguments import positive, whole
 from ..errors import InputError
-from ..running.job import Inputs, Table
-from ..running.runner import answer
+from ..running.job import Table
 from ..structures import Structure
 from .equations import absolute_accelerations
-from .labels import variable
-from .questions import Point, SeriesQuestion, checked_positive, series_arguments
+from .labels import make_dataset, variable
+from .questions import Point, SeriesQuestion, ask
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -70,10 +69,10 @@ def hann_spectrum(signal: Floats, interval: float) -> tuple[Floats, Floats]:
 class SpectraJob(SeriesQuestion):
     """Job of :func:`orchestrate.spectra`: spectra of responses, bonded and delaminated."""
 
-    periods: int = 64
-    points: int = 1024
-    transient: int = 2000
-    highest: float = 40.0
+    periods: int = whole(1)
+    points: int = whole(2)
+    transient: int = whole(0)
+    highest: float = positive()
     asked: ClassVar[str] = "spectra"
 
     def __post_init__(self) -> None:
@@ -82,10 +81,6 @@ class SpectraJob(SeriesQuestion):
             raise InputError(
                 f"highest = {self.highest:g}: expected at most points/2 = {self.points / 2:g}"
             )
-
-    def items(self, inputs: Inputs) -> Sequence[Point]:
-        """Return the operating points of all responses."""
-        return self.series.points
 
     def orders(self) -> Floats:
         """Return the spectral lines as multiples of the excitation frequency."""
@@ -120,10 +115,8 @@ class SpectraJob(SeriesQuestion):
         _, between = amplitude_spectrum(accelerations.T, interval)
         return (frequency**2 * displaced)[:, :shown], between[:, :shown]
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         """Return the dataset of the spectra over parameter, kind, mass and order."""
-        import xarray as xr
-
         along, orders = self.series.name, self.orders()
         speeds = np.array([point.excitation.frequency for point in self.series.points])
         text = "amplitude of the absolute acceleration"
@@ -143,7 +136,7 @@ class SpectraJob(SeriesQuestion):
             ),
         }
         title = f"Spectra, bonded and delaminated: {self.structure.label()}"
-        return xr.Dataset(variables, coordinates, {"title": title})
+        return make_dataset(variables, coordinates, title)
 
 
 def spectra(
@@ -205,12 +198,4 @@ def spectra(
     >>> found.acceleration.sel(mass=1, order=20.0)[0].values.round(1)
     array([0. , 9.3, 0. ])
     """
-    job = SpectraJob(
-        **series_arguments(structure, eta, frequency, amplitude),
-        name=f"spectra_{structure.label()}",
-        periods=checked_integer("periods", periods, 1),
-        points=checked_integer("points", points, 2),
-        transient=checked_integer("transient", transient, 0),
-        highest=checked_positive("highest", highest),
-    )
-    return answer(job, running, finder(running))
+    return ask(SpectraJob, locals())

@@ -4,22 +4,32 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import OSCILLATOR, REST, Instance, finder
-from ..checks import checked_integer
+from ..access import OSCILLATOR, Instance
+from ..arguments import checked, checked_word, positive, whole
 from ..errors import InputError
-from ..running.job import Inputs, Table
-from ..running.runner import answer
+from ..outcomes import REPEATED
+from ..running.job import Table
 from ..structures import Structure
-from .labels import Dims, Variable, flags, nondimensional_state_coordinate, variable, yes_or_no
-from .multiplicity import DECIDED, REPEATED, Decision
-from .peaks import PEAKS, POINTS, peaks
-from .questions import Point, SeriesQuestion, checked_positive, series_arguments, start_states
+from .labels import (
+    COORDINATES,
+    Dims,
+    Variable,
+    flags,
+    make_dataset,
+    nondimensional_state_coordinate,
+    variable,
+    yes_or_no,
+)
+from .multiplicity import DECIDED, Decision
+from .peaks import POINTS, peaks
+from .questions import Point, SeriesQuestion, answer_question
 from .respond import Response, responses_from
 from .response_loop import LoopSettings, periods_to_sample, response_loop
 
@@ -54,12 +64,12 @@ HOW_DECIDED = "how the multiplicity was decided; where it is undecided it is a g
 class SweepJob(SeriesQuestion):
     """Job of :func:`orchestrate.sweep`: responses along one parameter, up, down or both."""
 
-    direction: Direction = "up"
-    transient: int = 500
-    samples: int = 200
-    tolerance: float = 1e-2
-    start: tuple[float, ...] = REST
-    peak_periods: int = 8
+    direction: Direction = checked(partial(checked_word, known=DIRECTIONS))
+    transient: int = whole(0)
+    samples: int = whole(1)
+    tolerance: float = positive()
+    start: tuple[float, ...]
+    peak_periods: int = whole(1)
     asked: ClassVar[str] = "sweep"
     chunk_size: ClassVar[int] = 100
     in_threads: ClassVar[bool] = True
@@ -68,9 +78,6 @@ class SweepJob(SeriesQuestion):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.direction not in DIRECTIONS:
-            expected = ", ".join(DIRECTIONS)
-            raise InputError(f"direction = {self.direction!r}: expected one of {expected}")
         values, name = self.series.values, self.series.name
         if self.direction != "given" and len(set(values)) < len(values):
             twice = next(value for value in values if values.count(value) > 1)
@@ -92,7 +99,7 @@ class SweepJob(SeriesQuestion):
         """Return the number of responses, over all directions."""
         return self.independent_series() * super().count()
 
-    def items(self, inputs: Inputs) -> Sequence[Point]:
+    def items(self) -> Sequence[Point]:
         """Return the operating points of all responses, in computing order."""
         points = self.series.points
         return [points[index] for order in self.orders() for index in order]
@@ -149,12 +156,11 @@ class SweepJob(SeriesQuestion):
         """Return, as bytes, the state that the next chunk's first response starts from."""
         return bytes(table["end"][-1].tobytes())
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         """Return the dataset of the sweep over the parameter, in the order of its values."""
-        import xarray as xr
-
         ordered = {name: self.in_order(values) for name, values in table.items()}
-        return xr.Dataset(self.variables(ordered), self.coordinates(), {"title": self.title()})
+        title = f"Responses along {self.series.name}, {self.direction}: {self.structure.label()}"
+        return make_dataset(self.variables(ordered), self.coordinates(), title)
 
     def in_order(self, values: NDArray[np.generic]) -> NDArray[np.generic]:
         """Reorder rows from computing order to the values' order, (direction, value) if both."""
@@ -171,25 +177,13 @@ class SweepJob(SeriesQuestion):
         if self.direction == "both":
             along = ("direction", self.series.name)
         scales = self.series.scales()
-        length = scales[:, 0]
-        numbers = {
-            "xi_rel_max": table["x_rel_max"] / length,
-            "impacts_per_period": table["impacts_per_period"],
-            **{name: table[name] for name in PEAKS},
-            **{f"xi{i}_max": table[f"x{i}_max"] / length for i in (1, 2)},
-        }
-        gaps = table["gap"] / length[:, None]
-        contact = "whether permanent contact occurs in the sampled periods"
+        gaps, text = (
+            table["gap"] / scales[:, :1],
+            "stroboscopic samples of the gap xi_2 - xi_1 (21)",
+        )
         return {
-            "xi_rel": variable(
-                (*along, "sample"), gaps, "1", "stroboscopic samples of the gap xi_2 - xi_1 (21)"
-            ),
-            **{
-                name: variable(along, numbers[name], *RESPONSE_QUANTITIES[name])
-                for name in RESPONSE_QUANTITIES
-            },
-            "permanent_contact": yes_or_no(along, table["permanent_contact"], contact),
-            **multiplicity_variables(along, table),
+            "xi_rel": variable((*along, "sample"), gaps, "1", text),
+            **response_variables(along, table, scales[:, 0], RESPONSE_QUANTITIES),
             "end_state": variable((*along, "coordinate"), table["end"] / scales, "1", END),
         }
 
@@ -206,10 +200,6 @@ class SweepJob(SeriesQuestion):
             coordinates["direction"] = variable("direction", np.array(["up", "down"]), "1", text)
         return coordinates
 
-    def title(self) -> str:
-        """Return the title of the dataset: parameter, direction and structure."""
-        return f"Responses along {self.series.name}, {self.direction}: {self.structure.label()}"
-
 
 @dataclass(frozen=True, kw_only=True)
 class RunOnJob(SweepJob):
@@ -219,7 +209,7 @@ class RunOnJob(SweepJob):
     sequential: ClassVar[bool] = False
     warmup_items: ClassVar[int] = 0
 
-    def items(self, inputs: Inputs) -> Sequence[Any]:
+    def items(self) -> Sequence[Any]:
         """Return operating point and start state of each response."""
         points = self.series.points
         states = np.broadcast_to(np.reshape(self.start, (-1, 4)), (len(points), 4))
@@ -230,9 +220,16 @@ class RunOnJob(SweepJob):
         return self.table(fmus, [point for point, _ in items], [start for _, start in items])
 
 
-def multiplicity_variables(along: Dims, table: Table) -> dict[str, Variable]:
-    """Return dataset variables of the multiplicity and of how it was decided."""
+def response_variables(
+    along: Dims, table: Table, length: NDArray[np.float64], quantities: Mapping[str, Any]
+) -> dict[str, Variable]:
+    """Return dataset variables of responses: quantities, contact, multiplicity, how decided."""
+    names = {"xi_rel_max": "x_rel_max", "xi1_max": "x1_max", "xi2_max": "x2_max"}
+    numbers = {**table, **{xi: table[x] / length for xi, x in names.items()}}
+    contact = "whether permanent contact occurs in the sampled periods"
     return {
+        **{name: variable(along, numbers[name], *quantities[name]) for name in quantities},
+        "permanent_contact": yes_or_no(along, table["permanent_contact"], contact),
         "multiplicity": variable(along, table["multiplicity"].astype("i4"), "1", MULTIPLICITY),
         "multiplicity_decided": flags(along, table["decided"], HOW_DECIDED, DECIDED),
     }
@@ -340,19 +337,8 @@ def sweep(
     >>> found.impacts_per_period.values
     array([10., 30.])
     """
-    question = series_arguments(structure, eta, frequency, amplitude, over, values)
-    name, kind = f"sweep_{structure.label()}_{direction}", SweepJob
-    states = start_states(start, SweepJob(name=name, direction=direction, **question))
-    if len(states) > 4:
-        kind, direction = RunOnJob, "given"
-    job = kind(
-        **question,
-        name=name,
-        direction=direction,
-        transient=checked_integer("transient", transient, 0),
-        samples=checked_integer("samples", samples, 1),
-        tolerance=checked_positive("tolerance", tolerance),
-        start=states,
-        peak_periods=checked_integer("peak_periods", peak_periods, 1),
-    )
-    return answer(job, running, finder(running))
+    job = SweepJob.from_call(locals(), f"_{direction}")
+    if len(job.start) > len(COORDINATES):
+        starts = np.reshape(job.start, (-1, len(COORDINATES)))
+        job = RunOnJob(**vars(job) | {"direction": "given", "start": starts})
+    return answer_question(job, running)

@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import REQUIRES_DELAMINATED
+from ..arguments import REQUIRES_DELAMINATED
 from ..errors import InputError
 from ..running.job import brief
 from ..structures import Excitation, Structure
-from .labels import Variable, parameter_variable, variable
-from .questions import checked_numbers, checked_structure
+from .labels import Variable, make_dataset, parameter_variable, variable
+from .questions import checked_structure, excitation_numbers
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -191,14 +191,10 @@ def contact_threshold(
     >>> level.event, (level.threshold_acceleration / 9.80665).values.round(3)
     ('opens', array([0.209, 0.006]))
     """
-    import xarray as xr
-
     if checked_structure(structure).bonded:
         raise InputError(REQUIRES_DELAMINATED)
-    checked = {
-        "eta": checked_numbers("eta", eta),
-        "frequency": checked_numbers("frequency", frequency),
-    }
+    given = {"eta": eta, "frequency": frequency}
+    checked = {name: excitation_numbers(name, values) for name, values in given.items()}
     arguments = {name: values for name, values in checked.items() if values is not None}
     if len(arguments) != 1:
         raise InputError(
@@ -209,16 +205,14 @@ def contact_threshold(
     speeds = column * structure.omega if name == "eta" else column
     other = {"eta": speeds / structure.omega, "frequency": speeds, name: column}
     event = threshold_event(structure)
-    return xr.Dataset(
+    return make_dataset(
         threshold_variables(structure, name, speeds),
         {
             **{key: parameter_variable(key, name, each) for key, each in other.items()},
             "hertz": variable(name, speeds / (2.0 * np.pi), "Hz", "frequency of the box"),
         },
-        {
-            "title": f"Level at which the structure {event}: {structure.label()}",
-            "event": event,
-            "call": f"contact_threshold({structure!r}, {name}={brief(values)})",
-            **{key: float(value) for key, value in structure.parameters().items()},
-        },
+        f"Level at which the structure {event}: {structure.label()}",
+        event=event,
+        call=f"contact_threshold({structure!r}, {name}={brief(values)})",
+        **{key: float(value) for key, value in structure.parameters().items()},
     )

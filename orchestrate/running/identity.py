@@ -46,24 +46,15 @@ class Fmu(Protocol):
 Identity = dict[str, Any]
 
 
-def identity_of(job: Job, fmus: Mapping[str, Fmu], known: Mapping[str, Identity]) -> Identity:
-    """Return a job's identity as a dict: its parameters, digests of code and FMUs, needed
-    results.
-    """
+def identity_of(job: Job, fmus: Mapping[str, Fmu]) -> Identity:
+    """Return a job's identity as a dict: its parameters, digests of code and FMUs."""
     identity: Identity = {
         "question": {"kind": type(job).__name__, **job.parameters()},
         "fmu": {model: fmus[model].guid for model in job.models},
         "code": code_digests(type(job).__module__),
     }
-    if job.needs():
-        identity["from"] = {name: fingerprint(known[name]) for name in job.needs()}
     restored: Identity = json.loads(json.dumps(identity))  # as it reads back from a file
     return restored
-
-
-def fingerprint(identity: Identity) -> str:
-    """Return a short SHA-256 digest (hexadecimal digits) of an identity or other JSON data."""
-    return hashlib.sha256(json.dumps(identity, sort_keys=True).encode()).hexdigest()[:DIGITS]
 
 
 def difference(stored: Identity, current: Identity) -> str:

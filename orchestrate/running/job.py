@@ -15,11 +15,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from ..arguments import CHECK
+
 if TYPE_CHECKING:
     import xarray as xr
 
 Table = dict[str, np.ndarray]  # arrays by name, one entry an item along the first axis
-Inputs = Mapping[str, "xr.Dataset"]  # results that a job starts from, by name
 MAX_LISTED = 4  # a longer list of numbers is summarized by its ends, count and digest
 
 
@@ -36,39 +37,36 @@ class Chunk:
 
 @dataclass(frozen=True)
 class Job(ABC):
-    """Base class of one computation with a stored result; subclasses define its items and the
-    work.
-    """
+    """Base of a computation with a stored result; subclasses define its items and the work."""
 
     name: str  # of the result; it decides no number
     models: ClassVar[tuple[str, ...]] = ("TwoMassImpactOscillator",)
     chunk_size: ClassVar[int] = 1
     sequential: ClassVar[bool] = False
-    has_final_chunk: ClassVar[bool] = (
-        False  # a sequential job's last chunk starts from all before it
-    )
+    has_final_chunk: ClassVar[bool] = False  # a sequential job's last one starts from all before
     gathers: ClassVar[bool] = False  # the last item starts from all others, in a chunk of its own
-    warmup_items: ClassVar[int] = (
-        0  # items after which a sequential job has forgotten its beginning
-    )
+    warmup_items: ClassVar[int] = 0  # after which a sequential job has forgotten its beginning
     in_threads: ClassVar[bool] = False  # whether its work is in the FMU, past Python
     item: ClassVar[str] = "item"  # what the progress bar counts
 
-    def needs(self) -> tuple[str, ...]:
-        """Return the names of other jobs whose results this job takes as input."""
-        return ()
+    def check_fields(self) -> None:
+        """Check the fields that have a check, and set them to what it returns."""
+        for each in fields(self):
+            if CHECK in each.metadata:
+                value = each.metadata[CHECK](each.name, getattr(self, each.name))
+                object.__setattr__(self, each.name, value)
 
     def count(self) -> int:
-        """Return the number of items; a job whose items need other results knows it by itself."""
-        return len(self.items({}))
+        """Return the number of items."""
+        return len(self.items())
 
     def independent_series(self) -> int:
         """Return how many equally long, independent series a sequential job's items form."""
         return 1
 
-    @abstractmethod
-    def items(self, inputs: Inputs) -> Sequence[Any]:
-        """Return all items in order, plain data for the workers; ``inputs``: the needed results."""
+    def items(self) -> Sequence[Any]:
+        """Return all items in order, plain data for the workers; by default there is one."""
+        return [0]
 
     @abstractmethod
     def work(self, fmus: Mapping[str, Path], items: Sequence[Any], previous: Table | None) -> Table:
@@ -86,7 +84,7 @@ class Job(ABC):
         raise NotImplementedError
 
     @abstractmethod
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         """Return the final xarray dataset from the arrays of all chunks, concatenated.
 
         The last chunk of a job that ``gathers`` adds arrays of other names.

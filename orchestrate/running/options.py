@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TypedDict
 
-from ..checks import checked_integer
+from ..arguments import checked_integer
 from ..errors import InputError
 
 MAX_JOBS = 1024  # processes of one machine

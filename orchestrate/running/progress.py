@@ -11,15 +11,12 @@ from __future__ import annotations
 import logging
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from .identity import Fmu, Identity
 from .job import Chunk, Job, Table, last_entries
 from .provenance import with_provenance
 from .store import Store
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 log = logging.getLogger(__name__)
 MIN_GAP = 3  # chunks in a row not begun: from here on, guessing the middle one pays
@@ -59,7 +56,6 @@ class Progress:
         self.guesses: dict[int, Guess] = {}
         self._ends: dict[int, Table] = {}  # last entries of chunks that are certain
         self.wasted = 0  # items that were guessed in vain
-        self.inputs: Mapping[str, xr.Dataset] = {}
         self.items: Sequence[Any] | None = None
 
     def valid_chunks(self) -> set[int]:
@@ -99,10 +95,9 @@ class Progress:
         """Return the number of items of a chunk."""
         return self.chunks[index].stop - self.chunks[index].start
 
-    def start(self, inputs: Mapping[str, xr.Dataset]) -> None:
-        """Make the job's items from the results of other jobs that it needs."""
-        self.inputs = inputs
-        self.items = self.job.items(inputs)
+    def start(self) -> None:
+        """Make the job's items; finish it if all chunks are stored."""
+        self.items = self.job.items()
         self.finish_if_done()
 
     # -- what may be computed next ----------------------------------------------------------------
@@ -246,10 +241,10 @@ class Progress:
             return
         if self.wasted:
             log.debug("%s: %d items were guessed in vain", self.job.name, self.wasted)
-        dataset = self.job.dataset(self.table(), self.inputs)
+        dataset = self.job.dataset(self.table())
         dataset = with_provenance(dataset, self.job, self.identity, self.fmus, self.store.begun)
         self.result = self.store.finish(dataset)
-        self.inputs, self.items = {}, None
+        self.items = None
 
     def table(self) -> Table:
         """Return the arrays of all chunks, concatenated (a gathering job: and the last's)."""

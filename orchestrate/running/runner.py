@@ -22,7 +22,7 @@ import numpy as np
 
 from ..files import open_folder
 from .executors import InlineExecutor, Processes, Threads, Workers, compute, running_workers
-from .identity import Fmu, Identity, identity_of
+from .identity import Fmu, identity_of
 from .job import Job, Table
 from .options import RunOptions
 from .progress import Progress, Task
@@ -53,7 +53,7 @@ def answer_all(
 
 
 class Runner:
-    """Compute several jobs, which may need each other's results, with common workers."""
+    """Compute several jobs with common workers."""
 
     def __init__(self, jobs: Sequence[Job], options: RunOptions, find: FmuFinder) -> None:
         self.jobs, self.options = jobs, options
@@ -77,13 +77,12 @@ class Runner:
 
     def open(self) -> None:
         """Open the store of each job and read which results and chunks it already has."""
-        known: dict[str, Identity] = {}
         for job in self.jobs:
             fmus = {model: self.fmus[model] for model in job.models}
-            known[job.name] = identity_of(job, fmus, known)
-            store = open_store(job.name, known[job.name], self.options)
+            identity = identity_of(job, fmus)
+            store = open_store(job.name, identity, self.options)
             try:
-                self.states[job.name] = Progress(job, store, known[job.name], fmus)
+                self.states[job.name] = Progress(job, store, identity, fmus)
             except BaseException:
                 store.close()
                 raise
@@ -202,14 +201,11 @@ class Runner:
                 self.futures[future] = state, task
 
     def ready(self, state: Progress) -> bool:
-        """Return whether a job has chunks to compute; make its items once inputs are there."""
+        """Return whether a job has chunks to compute; make its items at first."""
         if state.complete:
             return False
         if state.items is None:
-            needs = [self.states[name] for name in state.job.needs()]
-            if not all(need.complete for need in needs):
-                return False
-            state.start({need.job.name: need.result for need in needs if need.result is not None})
+            state.start()
         return not state.complete
 
 

@@ -20,10 +20,10 @@ from numpy.typing import ArrayLike
 
 from ..access.exported import finder
 from ..access.models import OSCILLATOR, SHAKER
-from ..checks import checked_integer
+from ..arguments import checked_integer
 from ..errors import InputError
 from ..response.labels import Variable, parameter_variable, variable, yes_or_no
-from ..running.job import Inputs, Job, Table
+from ..running.job import Job, Table
 from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.ranges import DRIVE
@@ -78,7 +78,7 @@ class CaptureJob(Job):
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
     item: ClassVar[str] = "value"
 
-    def items(self, inputs: Inputs) -> Sequence[System]:
+    def items(self) -> Sequence[System]:
         """Return one pair of structure and drive for each parameter value."""
         system = System(self.structure, self.drive)
         return [replace_parameter(system, self.over, value) for value in self.values] or [system]
@@ -109,7 +109,7 @@ class CaptureJob(Job):
         distance = self.tolerance / system.drive.volts(system.structure)
         return self.time or usual_limit(*system, distance)
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         """Build the dataset of outcomes over voltage and of the threshold voltages."""
         import xarray as xr
 
@@ -121,9 +121,9 @@ class CaptureJob(Job):
         text = "time from which the speed stays beyond the resonance; NaN where it does not"
         how = "how the outcome was decided"
         edge = "voltage from which a motor switched on from rest passes the resonance"
-        folds = np.array([self.highest_fold(system) for system in self.items(inputs)])[kept]
+        folds = np.array([self.highest_fold(system) for system in self.items()])[kept]
         known = "voltage above which no motion below the resonance exists, by the averaged theory"
-        volts = np.array([drive.volts(structure) for structure, drive in self.items(inputs)])
+        volts = np.array([drive.volts(structure) for structure, drive in self.items()])
         above = low - folds > THEORY * volts[kept]
         variables = {
             "passes": yes_or_no(over, passes > 0, "whether the motor passes the resonance"),
@@ -365,6 +365,6 @@ def capture(
         *(structure, drive, over or "", parameter_values, voltages),
         *(float(tolerance), float(time or 0.0), stay, scheme, control),
     )
-    for each in job.items({}):  # refused now, not amid the work
+    for each in job.items():  # refused now, not amid the work
         couple_job(*each, Constant(voltages[-1], job.time_limit(each)), scheme, 0.0, control)
     return answer(job, running, finder(running))

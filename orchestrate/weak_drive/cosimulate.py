@@ -29,12 +29,12 @@ from ..access.exported import finder
 from ..access.instance import REAL_TYPES, Instance
 from ..access.models import ELECTRODYNAMIC_SHAKER, OSCILLATOR, SHAKER
 from ..access.play import CUBIC, PLAYED, Player
-from ..checks import checked_integer
+from ..arguments import checked_integer
 from ..errors import InputError
 from ..response.labels import variable, yes_or_no
 from ..response.questions import Question, checked_state, checked_structure
 from ..response.simulate import IN_TIME, impact_columns, impact_variables
-from ..running.job import Inputs, Table, brief, plain
+from ..running.job import Table, brief, plain
 from ..running.runner import answer
 from ..structures import Excitation
 from ..structures.drive import Drive
@@ -181,7 +181,7 @@ class CosimulateJob(Question):
         structure = f"Structure{brief(plain(self.structure))}"
         return f"{self.asked}({structure}, {self.drive!r}, {', '.join(texts)})"
 
-    def items(self, inputs: Inputs) -> Sequence[int]:
+    def items(self) -> Sequence[int]:
         """Return the one item: the whole run."""
         return [0]
 
@@ -237,7 +237,7 @@ class CosimulateJob(Question):
             return [target]
         return [target * part for part in np.cumsum(BEGINNING) / sum(BEGINNING)]
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         """Return the dataset over communication points, and of the impacts."""
         import xarray as xr
 

@@ -18,7 +18,7 @@ from ..access.instance import Instance
 from ..access.models import OSCILLATOR, SHAKER
 from ..errors import InputError
 from ..response.labels import Variable, variable
-from ..running.job import Chunk, Inputs, Table
+from ..running.job import Chunk, Table
 from ..running.options import Running
 from ..structures.drive import Drive
 from ..structures.structure import Structure
@@ -62,7 +62,7 @@ class CoupleJob(CoupledRun):
         """Return the number of items: all communication steps and one hysteresis loop."""
         return self.steps() + 1
 
-    def items(self, inputs: Inputs) -> Sequence[int]:
+    def items(self) -> Sequence[int]:
         """Return the item indices: all communication steps, then the hysteresis loop."""
         return range(self.count())
 
@@ -129,7 +129,7 @@ class CoupleJob(CoupledRun):
                     rows[0, i, j] = (*jump[:-1], *jump.shown)
         return {"jump_rows": rows}
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         """Build the dataset of all revolutions, of the jumps and of their verdicts."""
         import xarray as xr
 

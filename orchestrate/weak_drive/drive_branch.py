@@ -19,12 +19,12 @@ import numpy as np
 from ..access.exported import finder
 from ..access.instance import Instance
 from ..access.models import OSCILLATOR, SHAKER
-from ..checks import checked_integer
+from ..arguments import checked_integer
 from ..dynamics.bifurcations import FLIP, FOLD, GRAZING, KINDS, TORUS, TOUCHING
 from ..dynamics.continuation import SOLVER_ERRORS
 from ..dynamics.tracer import LIMIT, Bifurcation, BranchSegment, ContinuationSettings
 from ..errors import InputError
-from ..running.job import Inputs, Job, Table
+from ..running.job import Job, Table
 from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
@@ -83,7 +83,7 @@ class DriveBranchJob(Job):
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
     item: ClassVar[str] = "branch"
 
-    def items(self, inputs: Inputs) -> Sequence[Structure]:
+    def items(self) -> Sequence[Structure]:
         """Return the structure as bonded and as delaminated."""
         return self.structure.as_bonded(), self.structure.as_delaminated()
 
@@ -194,7 +194,7 @@ class DriveBranchJob(Job):
         numbers[: len(codes)] = codes
         return numbers
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         """Build the dataset of both branches and of their bifurcations."""
         import xarray as xr
 

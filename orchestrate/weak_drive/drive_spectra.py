@@ -17,11 +17,11 @@ import numpy as np
 
 from ..access.exported import finder
 from ..access.models import OSCILLATOR, SHAKER
-from ..checks import checked_integer
+from ..arguments import checked_integer
 from ..constants import TURN
 from ..errors import InputError
 from ..response.spectra import amplitude_spectrum
-from ..running.job import Inputs, Job, Table
+from ..running.job import Job, Table
 from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
@@ -56,7 +56,7 @@ class DriveSpectraJob(Job):
 
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
 
-    def items(self, inputs: Inputs) -> Sequence[Structure]:
+    def items(self) -> Sequence[Structure]:
         """Return the structure as bonded and as delaminated."""
         return self.structure.as_bonded(), self.structure.as_delaminated()
 
@@ -115,7 +115,7 @@ class DriveSpectraJob(Job):
         threshold = own_resonance.dividing_speed(structure, self.drive) * structure.omega
         return short.record_displacements(fmus, structure)[1] < threshold
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         """Build the dataset of acceleration amplitudes over spectral lines."""
         import xarray as xr
 

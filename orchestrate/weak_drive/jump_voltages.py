@@ -16,7 +16,7 @@ import numpy as np
 from ..access.exported import finder
 from ..access.models import OSCILLATOR, SHAKER
 from ..errors import InputError
-from ..running.job import Inputs, Job, Table
+from ..running.job import Job, Table
 from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
@@ -50,7 +50,7 @@ class JumpVoltagesJob(Job):
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
     item: ClassVar[str] = "ramp"
 
-    def items(self, inputs: Inputs) -> Sequence[tuple[Structure, Ramp]]:
+    def items(self) -> Sequence[tuple[Structure, Ramp]]:
         """Return the structure and the schedule of each ramp, the slowest first."""
         both = (self.structure.as_bonded(), self.structure.as_delaminated())
         return [(structure, schedule) for schedule in self.schedules for structure in both]
@@ -63,14 +63,14 @@ class JumpVoltagesJob(Job):
         for structure, schedule in items:
             hold = None if schedule is self.schedules[0] else 0.0
             job = couple_job(structure, self.drive, schedule, self.scheme, hold=hold)
-            data = job.dataset(job.run_here(fmus), {})
+            data = job.dataset(job.run_here(fmus))
             first = data.sel(jump=list(DIRECTIONS))
             rows.append([first[name].values for name in COLUMNS])
             decided.append(first.decided.values.astype("U20"))
             shown.append([shown_jumps(data, direction) for direction in DIRECTIONS])
         return {"jumps": np.array(rows), "decided": np.array(decided), "shown": np.array(shown)}
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         """Build the dataset of jump voltages over the rate and at rate 0."""
         import xarray as xr
 

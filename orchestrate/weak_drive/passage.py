@@ -17,11 +17,11 @@ import numpy as np
 
 from ..access.exported import finder
 from ..access.models import OSCILLATOR, SHAKER
-from ..checks import checked_integer
+from ..arguments import checked_integer
 from ..constants import TURN
 from ..errors import InputError
 from ..response.labels import variable
-from ..running.job import Chunk, Inputs, Job, Table
+from ..running.job import Chunk, Job, Table
 from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
@@ -79,9 +79,9 @@ class PassageJob(Job):
     has_final_chunk: ClassVar[bool] = True
     item: ClassVar[str] = "step"
 
-    def items(self, inputs: Inputs) -> Sequence[int]:
+    def items(self) -> Sequence[int]:
         """Return the item indices: all communication steps, then the hysteresis loop."""
-        return self.run.items(inputs)
+        return self.run.items()
 
     def chunks(self) -> list[Chunk]:
         """Split the items into chunks; the hysteresis loop is its own last chunk."""
@@ -100,12 +100,12 @@ class PassageJob(Job):
 
         return self.run.work_on(fmus, items, previous, self.chunk_size, revolve_with_samples)
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         """Build the dataset of samples over time and of the jumps."""
         import xarray as xr
 
         of_run = {name: table[name] for name in (*COLUMNS, "jump_rows")}
-        revolutions = self.run.dataset(of_run, inputs)
+        revolutions = self.run.dataset(of_run)
         samples = {name: table[KEPT + name] for name in SAMPLES}
         centres, what = self.sample_centres(revolutions)
         away = np.abs(samples["time"][:, np.newaxis] - centres).min(axis=1, initial=math.inf)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...checks import checked_word
+from ...arguments import checked_word
 from ...errors import InputError
 from .channels import Channels, checked_number
 

@@ -16,6 +16,7 @@ from orchestrate.dynamics.basins import (
     basin,
     run_to_phase_zero,
 )
+from orchestrate.dynamics.clusters import AttractorSettings
 from orchestrate.errors import InputError
 from orchestrate.response.questions import Point
 from orchestrate.response.simulate import simulate
@@ -196,6 +197,7 @@ def test_what_is_known_is_told_though_no_start_of_the_plane_leads_there(found):
         y=PlaneAxis("v2", one[3] - 1e-4, one[3] + 1e-4, 2),
         at=tuple(one.tolist()),
         known=(tuple(two.tolist()),),
+        settings=AttractorSettings(),
     )
     near = answer(job, {}, finder({}))
     assert near.share.values.tolist() == [1.0, 0.0]

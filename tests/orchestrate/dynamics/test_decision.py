@@ -16,14 +16,8 @@ from orchestrate.dynamics.decision import (
     middle_of_longest_run,
 )
 from orchestrate.dynamics.orbit_search import least_periods
-from orchestrate.dynamics.settled_motion import (
-    IRREGULAR,
-    ORBIT,
-    REPEATED,
-    UNDECIDED,
-    ScaledStates,
-    same_nodes,
-)
+from orchestrate.dynamics.settled_motion import ScaledStates, same_nodes
+from orchestrate.outcomes import IRREGULAR, ORBIT, REPEATED, UNDECIDED
 from orchestrate.response.questions import Point
 from orchestrate.response.sweep import sweep
 from orchestrate.structures import Excitation, Structure

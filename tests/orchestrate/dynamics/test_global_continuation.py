@@ -18,7 +18,7 @@ from orchestrate.dynamics.global_continuation import (
     InstancePair,
     match_neighbours,
 )
-from orchestrate.dynamics.settled_motion import ORBIT
+from orchestrate.outcomes import ORBIT
 from orchestrate.response.questions import Point
 from orchestrate.running import runner
 from orchestrate.structures import Excitation, Structure

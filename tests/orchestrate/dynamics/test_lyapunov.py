@@ -27,7 +27,7 @@ from orchestrate.dynamics.lyapunov import (
     lyapunov,
     min_impacts,
 )
-from orchestrate.dynamics.lyapunov_growth import scaled_products
+from orchestrate.dynamics.lyapunov_spectrum import scaled_products
 from orchestrate.dynamics.variational import monodromy, period_in_tau
 from orchestrate.errors import InputError
 from orchestrate.response.questions import Point

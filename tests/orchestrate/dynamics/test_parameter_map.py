@@ -9,7 +9,7 @@ from orchestrate.dynamics.lyapunov import lyapunov
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.dynamics.parameter_map import map
 from orchestrate.errors import InputError
-from orchestrate.response.multiplicity import REPEATED, UNDECIDED
+from orchestrate.outcomes import REPEATED, UNDECIDED
 from orchestrate.response.simulate import simulate
 from orchestrate.response.sweep import sweep
 from orchestrate.structures import Structure

@@ -3,10 +3,11 @@
 import pytest
 import xarray as xr
 
-from orchestrate.dynamics import borders, branches, manifolds
+from orchestrate.dynamics import manifolds
 from orchestrate.dynamics.branches import branch, complete_excitation
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.errors import InputError
+from orchestrate.response import questions
 from orchestrate.structures import Structure
 
 PAPER = Structure.nondimensional(e=0.7, D=0.005)
@@ -34,8 +35,7 @@ def test_where_omega_varies_the_frequency_is_kept_that_was_asked_for(over):
 def test_the_constant_acceleration_of_the_start_is_kept(monkeypatch):
     """Of an orbit that is stable, whose manifold is refused after that."""
     start = orbit(PAPER, eta=1.7, box_acceleration=0.05)
-    for module in (branches, borders):
-        monkeypatch.setattr(module, "answer", lambda job, *rest: job)
+    monkeypatch.setattr(questions, "answer", lambda job, *rest: job)
     kept = branch(PAPER, start=start, limits=(1.6, 1.8))
     assert kept.setting.box_acceleration == 0.05
     given = branch(PAPER, start=start, limits=(1.6, 1.8), box_acceleration=0.0)
@@ -43,7 +43,6 @@ def test_the_constant_acceleration_of_the_start_is_kept(monkeypatch):
     along = branch(PAPER, start=start, over="box_acceleration", limits=(0.0, 0.1))
     assert along.value == 0.05
     monkeypatch.setattr(manifolds.ManifoldJob, "saddle", lambda job: None)
-    monkeypatch.setattr(manifolds, "answer", lambda job, *rest: job)
     assert manifolds.manifold(PAPER, start=start).box_acceleration == 0.05
 
 

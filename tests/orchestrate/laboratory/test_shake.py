@@ -312,9 +312,8 @@ def test_a_stored_run_goes_on_and_is_read_again(tmp_path):
 @pytest.mark.parametrize("rate", [400.0, 1e3, 1234.5, 1e4 / 3.0, 20.0])
 def test_parts_of_the_record_are_the_whole_record(rate):
     """Where a time of reading is a node of the pieces as well, or none lies in a piece."""
-    job = ShakeJob(
-        name="", structure=BEAM, excitation=SIGNALS["samples"], sample_rate=rate, accuracy=1e-6
-    )
+    asked = {"structure": BEAM, "excitation": SIGNALS["samples"], "start": (0.0,) * 4}
+    job = ShakeJob(name="", **asked, sample_rate=rate, accuracy=1e-6)
     nodes = job.pieces.nodes
     cuts = [0.0, *nodes[[1, 2, 30, 31, len(nodes) // 2]], math.inf]
     parts = [job.times(one, other) for one, other in pairwise(cuts)]

@@ -12,7 +12,7 @@ import pytest
 import orchestrate
 from orchestrate import Structure
 from orchestrate.access import OSCILLATOR, EventInstance, begin, find
-from orchestrate.response.multiplicity import REPEATED, UNDECIDED
+from orchestrate.outcomes import REPEATED, UNDECIDED
 from orchestrate.response.threshold import exceeds_threshold
 from orchestrate.structures import Excitation
 

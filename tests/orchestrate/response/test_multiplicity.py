@@ -12,11 +12,9 @@ from orchestrate.dynamics.families import Setting
 from orchestrate.dynamics.guesses import guess_from_state
 from orchestrate.dynamics.orbit_search import least_periods, solve_orbit, why_no_motion
 from orchestrate.dynamics.turning_points import stroboscopic_states
+from orchestrate.outcomes import IRREGULAR, REPEATED, UNDECIDED
 from orchestrate.response.multiplicity import (
-    IRREGULAR,
     MIN_RELATIVE_GAP,
-    REPEATED,
-    UNDECIDED,
     Decision,
     decide_multiplicity,
     find_repetition,

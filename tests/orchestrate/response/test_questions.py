@@ -10,22 +10,19 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from orchestrate.checks import checked_integer
+from orchestrate.arguments import checked_integer
 from orchestrate.errors import InputError
-from orchestrate.response.questions import (
-    checked_numbers,
-    checked_point,
-    checked_states,
-    make_series,
-    series_arguments,
-)
+from orchestrate.response.questions import checked_point, checked_states, excitation_numbers
+from orchestrate.response.sweep import SweepJob
 from orchestrate.structures import Structure
 
 OWN = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=0.9, e=0.6)
 
 
-def along(structure=OWN, eta=None, frequency=None, amplitude=None, over=None, values=None):
-    return make_series(**series_arguments(structure, eta, frequency, amplitude, over, values))
+def along(structure=OWN, **asked):
+    """The points of a sweep."""
+    rest = {"direction": "given", "transient": 0, "samples": 1, "tolerance": 0.1, "peak_periods": 1}
+    return SweepJob.from_call({"structure": structure, "start": None, **rest, **asked}).series
 
 
 def test_eta_is_a_frequency_and_an_amplitude():
@@ -151,9 +148,9 @@ def test_whole_numbers(given):
 
 
 def test_numbers_of_any_kind():
-    assert checked_numbers("eta", np.float32(0.5)) == 0.5
-    assert checked_numbers("eta", range(1, 3)) == (1.0, 2.0)
-    assert checked_numbers("values", None) is None
+    assert excitation_numbers("eta", np.float32(0.5)) == 0.5
+    assert excitation_numbers("eta", range(1, 3)) == (1.0, 2.0)
+    assert excitation_numbers("values", None) is None
 
 
 def test_the_call_is_one_that_can_be_made_again(exported):

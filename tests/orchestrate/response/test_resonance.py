@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from orchestrate.errors import InputError
-from orchestrate.response.multiplicity import IRREGULAR
+from orchestrate.outcomes import IRREGULAR
 from orchestrate.response.resonance import resonance
 from orchestrate.response.sweep import sweep
 from orchestrate.response.turns_and_jumps import inside_irregular

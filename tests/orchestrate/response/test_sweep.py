@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from orchestrate.access import OSCILLATOR, Instance, begin, find, sampled
 from orchestrate.errors import InputError
-from orchestrate.response.multiplicity import DECIDED, IRREGULAR, REPEATED, UNDECIDED
+from orchestrate.outcomes import IRREGULAR, REPEATED, UNDECIDED
+from orchestrate.response.multiplicity import DECIDED
 from orchestrate.response.simulate import simulate
 from orchestrate.response.sweep import SweepJob, sweep
 from orchestrate.structures import Excitation, Structure

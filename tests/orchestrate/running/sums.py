@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 import xarray as xr
 
-from orchestrate.running.job import Inputs, Job, Table
+from orchestrate.running.job import Job, Table
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Squares(Job):
     def count(self) -> int:
         return self.size
 
-    def items(self, inputs: Inputs) -> range:
+    def items(self) -> range:
         return range(self.size)
 
     def work(self, fmus: Any, items: Any, previous: Table | None) -> Table:
@@ -33,7 +33,7 @@ class Squares(Job):
         assert self.fail_at not in items, "as it was told to"
         return {"square": np.array([float(item * item) for item in items])}
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         return xr.Dataset({"square": ("number", table["square"])}, attrs={"title": "Squares"})
 
 
@@ -50,7 +50,7 @@ class Sums(Squares):
         squares = super().work(fmus, items, None)["square"]
         return {"sum": np.cumsum(squares) + (previous["sum"][-1] if previous else 0.0)}
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         return xr.Dataset({"sum": ("number", table["sum"])})
 
 
@@ -63,7 +63,7 @@ class Gathered(Squares):
     def count(self) -> int:
         return self.size + 1
 
-    def items(self, inputs: Inputs) -> range:
+    def items(self) -> range:
         return range(self.size + 1)
 
     def work(self, fmus: Any, items: Any, previous: Table | None) -> Table:
@@ -71,30 +71,8 @@ class Gathered(Squares):
             return super().work(fmus, items, None)
         return {"whole": previous["square"].sum(keepdims=True)}
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         return xr.Dataset({"square": ("number", table["square"]), "whole": table["whole"][0]})
-
-
-@dataclass(frozen=True)
-class Roots(Job):
-    """Roots of the squares of another job."""
-
-    source: str = "squares"
-
-    def needs(self) -> tuple[str, ...]:
-        return (self.source,)
-
-    def count(self) -> int:
-        return 10
-
-    def items(self, inputs: Inputs) -> list[float]:
-        return [float(value) for value in inputs[self.source].square.values]
-
-    def work(self, fmus: Any, items: Any, previous: Table | None) -> Table:
-        return {"root": np.sqrt(np.array(items))}
-
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        return xr.Dataset({"root": ("number", table["root"])})
 
 
 @dataclass(frozen=True)
@@ -121,7 +99,7 @@ class Forgetful(Job):
     def count(self) -> int:
         return self.size
 
-    def items(self, inputs: Inputs) -> range:
+    def items(self) -> range:
         return range(self.size)
 
     def boundary_state(self, table: Table) -> bytes:
@@ -136,7 +114,7 @@ class Forgetful(Job):
             values.append(value)
         return {"value": np.array(values)}
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         return xr.Dataset({"value": ("number", table["value"])})
 
 
@@ -150,5 +128,5 @@ class Noise(Squares):
         rows = [np.random.default_rng(item).uniform(size=1000) for item in items]
         return {"noise": np.array(rows)}
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
+    def dataset(self, table: Table) -> xr.Dataset:
         return xr.Dataset({"noise": (("number", "part"), table["noise"])})

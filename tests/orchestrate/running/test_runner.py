@@ -22,7 +22,7 @@ from orchestrate.running.options import RunOptions
 from orchestrate.running.runner import answer, answer_all, gather
 
 from .conftest import Find
-from .sums import Gathered, Roots, Squares, Sums
+from .sums import Gathered, Squares, Sums
 
 SQUARES = np.arange(10.0) ** 2
 
@@ -66,16 +66,10 @@ def test_processes_give_what_this_process_gives(find, monkeypatch, job):
     assert answer(job, {"jobs": 2}, find).identical(alone)
 
 
-def test_needed_results_come_first(find, tmp_path):
-    paths = answer_all([Squares("squares"), Roots("roots")], tmp_path, RunOptions(), find)
-    assert np.array_equal(xr.load_dataset(paths["roots"]).root, np.arange(10.0))
-
-
-def test_a_changed_source_makes_what_was_started_from_it_stale(find, tmp_path):
-    answer_all([Squares("squares"), Roots("roots")], tmp_path, RunOptions(), find)
-    (tmp_path / "squares.nc").unlink()
-    with pytest.raises(InputError, match=r"roots\.nc: .*squares"):
-        answer_all([Squares("squares", pause=1e-9), Roots("roots")], tmp_path, RunOptions(), find)
+def test_several_jobs_are_stored_in_a_folder(find, tmp_path):
+    paths = answer_all([Squares("squares"), Sums("sums")], tmp_path, RunOptions(), find)
+    assert np.array_equal(xr.load_dataset(paths["squares"]).square, np.arange(10.0) ** 2)
+    assert xr.load_dataset(paths["sums"]).sizes["number"] == 10
 
 
 def test_jobs_side_by_side_come_in_their_order(find):

@@ -15,7 +15,6 @@ import numpy as np
 import pytest
 
 from orchestrate.access import OSCILLATOR, find
-from orchestrate.response.questions import series_arguments
 from orchestrate.response.sweep import SweepJob
 from orchestrate.running.journal import journal_path
 from orchestrate.running.options import RunOptions
@@ -40,8 +39,9 @@ def job(figure: str, direction: str, low: float = 0.1, high: float = 8.0, step: 
     e, D = FIGURES[figure]
     etas = np.round(np.arange(low, high + 0.5 * step, step), 3)
     structure = Structure.nondimensional(e=e, D=D)
-    asked = series_arguments(structure, etas, None, None)
-    return SweepJob(**asked, name="sweep", direction=direction, transient=40, samples=40)
+    asked = {"structure": structure, "eta": etas, "direction": direction, "start": None}
+    rest = {"transient": 40, "samples": 40, "tolerance": 1e-2, "peak_periods": 8}
+    return SweepJob(**asked, **rest, name="sweep")
 
 
 def progress_of(sweep: SweepJob, store=None) -> Progress:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orchestrate.checks import MAX_COUNT, checked_integer
+from orchestrate.arguments import MAX_COUNT, checked_integer
 from orchestrate.errors import InputError
 from orchestrate.flags import flag_words
 from orchestrate.running.options import RunOptions
