@@ -62,7 +62,7 @@ def simulate_schedule(
 ) -> tuple[float, int]:
     """Return the seconds a job would take on some workers, and the wasted guessed values."""
     progress = Progress(job, Memory(), {}, {OSCILLATOR: find(OSCILLATOR)})
-    progress.start({})
+    progress.start()
     busy: list[tuple[float, int, Task, Done]] = []
     now = 0.0
     while not progress.complete:

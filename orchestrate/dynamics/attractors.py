@@ -23,7 +23,7 @@ from ..arguments import (
     whole,
 )
 from ..errors import InputError
-from ..outcomes import ABSENT
+from ..outcomes import ABSENT, WORDS
 from ..response.labels import Variable, flags, make_dataset, si_state_coordinate, variable
 from ..response.questions import Point, SeriesQuestion, ask
 from ..running.job import Table
@@ -31,7 +31,7 @@ from ..structures import Structure
 from .clusters import ABOUT, FEATURES, AttractorSettings, run_until_settled
 from .decision import MotionDecider
 from .global_continuation import InstancePair, MatchedAttractors, SettledStarts, continue_attractors
-from .settled_motion import DECIDED, SettledMotion
+from .settled_motion import SettledMotion
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -281,7 +281,7 @@ def attractor_variables(
         "share": variable(dims, columns["share"], "1", f"share of the {of}"),
         **{name: variable(dims, columns[name], "1", OF_ATTRACTORS[name]) for name in OF_ATTRACTORS},
         "multiplier": variable(dims, columns["multiplier"], "1", MULTIPLIER),
-        "decided_by": flags(dims, columns["how"], DECIDED_BY, DECIDED),
+        "decided_by": flags(dims, columns["how"], DECIDED_BY, WORDS),
         "state": variable((*dims, "coordinate"), columns["state"], "1", text),
     }
 

@@ -10,14 +10,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..access import gap_between
 from ..constants import TURN
-from ..outcomes import ABSENT, IRREGULAR, ORBIT, REPEATED, UNDECIDED, WORDS
+from ..outcomes import ORBIT
 from ..response.multiplicity import MIN_RELATIVE_GAP
 from ..response.questions import Point
 from .periodic_orbit import PHASE, PeriodicOrbit
 from .turning_points import Amplitudes, stroboscopic_states, turning_points
 
 Floats = NDArray[np.float64]
-DECIDED: dict[int, str] = {n: WORDS[n] for n in (ABSENT, ORBIT, REPEATED, IRREGULAR, UNDECIDED)}
 ON_KNOWN_MOTION = 1e-5  # over the motion's size: a state that is nearer lies on that motion
 LENGTHS = np.array(  # displacements, velocities, the gap and its rate, from a state
     [[1, 0, 0, 0, -1, 0], [0, 1, 0, 0, 1, 0], [0, 0, 1, 0, 0, -1], [0, 0, 0, 1, 0, 1]], dtype=float
@@ -30,7 +29,7 @@ class SettledMotion:
     """A motion that responses settle to: its states, period, impacts, gap, and how decided."""
 
     point: Point
-    # of `DECIDED`: by a stable orbit of Newton's method, by states that repeat, or neither
+    # of `Outcome`: by a stable orbit of Newton's method, by states that repeat, or neither
     decided: int
     # x1, x2 in m, v1, v2 in m/s at phase 0 of successive periods: all of a periodic motion's, some
     # of an irregular one

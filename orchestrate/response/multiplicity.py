@@ -21,13 +21,11 @@ from fmu_src.kernels import repetition
 from fmu_src.kernels.repetition import MIN_RELATIVE_GAP, memory_size
 
 from ..access.c_library import loaded_library
-from ..outcomes import WORDS, Outcome
+from ..outcomes import WORDS
 
 __all__ = ["MIN_RELATIVE_GAP", "memory_size"]
 RULES = {"decide": "decide_multiplicity", "repeat": "find_repetition"}  # in C
-DECIDED: dict[int, str] = {
-    n: WORDS[n] for n in (Outcome.IRREGULAR, Outcome.REPEATED, Outcome.UNDECIDED)
-}
+DECIDED = {n: WORDS[n] for n in (repetition.IRREGULAR, repetition.REPEATED, repetition.UNDECIDED)}
 
 
 @functools.cache

@@ -237,7 +237,7 @@ def checked_structure(structure: object) -> Structure:
 
 
 def excitation_numbers(name: str, value: ArrayLike | None) -> Numbers | None:
-    """Return an excitation's numbers, checked for their range; of another name, finite ones."""
+    """Return numbers, an excitation's checked for their range; None if not given."""
     quantity = EXCITATION_PARAMETERS.get(name)
     if quantity is None:
         return checked_numbers(name, value)

@@ -69,7 +69,7 @@ def test_what_is_on_disk_is_certain(find, tmp_path, models):
     options = RunOptions(store=path)
     store = runner.open_store("job", {}, options)
     progress = Progress(Forgetful("job"), store, {}, models)
-    progress.start({})
+    progress.start()
     certain, guess = progress.next_task(), None
     progress.under_way.add(certain.chunk.index)
     guess = progress.next_task()

@@ -12,7 +12,7 @@ def play(progress: Progress, workers: int, seed: int, stop: int = -1) -> None:
     """Compute a job, or so many chunks of it."""
     draw, busy = random.Random(seed), []
     fmus = {model: fmu.path for model, fmu in progress.fmus.items()}
-    progress.start({})
+    progress.start()
     while not progress.complete and stop != 0:
         while len(busy) < workers and (task := progress.next_task()) is not None:
             progress.under_way.add(task.chunk.index)
