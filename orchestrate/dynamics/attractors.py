@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
@@ -30,8 +30,7 @@ from ..running.job import Table
 from ..structures import Structure
 from .clusters import ABOUT, FEATURES, AttractorSettings, run_until_settled
 from .decision import MotionDecider
-from .global_continuation import InstancePair, MatchedAttractors, SettledStarts, continue_attractors
-from .settled_motion import SettledMotion
+from .global_continuation import MatchedAttractors, continue_attractors, instance_pair
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -54,15 +53,6 @@ KEYWORDS = ("transient", "settle", "samples", "converged", "longest", "alike", "
 COLUMNS = (*OF_ATTRACTORS, "multiplier", "how", "share", "state")
 SIZE_PERIODS, SAMPLES_PER_PERIOD = 8, 64  # of the response from rest, to measure its size
 AROUND, BEYOND = 0.7, 3.0  # of its largest displacement, of its largest gap: the second box
-
-
-class RandomStart(NamedTuple):
-    """A random start to run: parameter value, its index, the size of the box to draw it from."""
-
-    value_index: int  # of the value among all
-    point: Point
-    scale: float | None  # half width of the box of starts, m; None: from the response from rest
-    number: int  # of the start
 
 
 def half_widths(name: str, value: ArrayLike | None) -> Numbers | None:
@@ -103,77 +93,50 @@ class AttractorsJob(SeriesQuestion):
         """Return the number of items: all starts at all values, and one that groups them."""
         return self.starts * super().count() + 1
 
-    def items(self) -> Sequence[RandomStart | None]:
-        """Return the items: each start at each value, then None, which stands for grouping."""
-        points = self.series.points
-        scales = self.half_widths()
-        starts = [
-            RandomStart(value_index, point, scales[value_index], number)
-            for value_index, point in enumerate(points)
-            for number in range(self.starts)
-        ]
-        return [*starts, None]
-
-    def half_widths(self) -> Sequence[float | None]:
-        """Return the half width, m, of the box of starts at each value; None: from the response."""
-        if isinstance(self.scale, tuple):
-            return self.scale
-        return [self.scale] * len(self.series.points)
+    def items(self) -> Sequence[tuple[int, int] | None]:
+        """Return the items: value and start by number, then None, which stands for grouping."""
+        return [*itertools.product(range(len(self.series.points)), range(self.starts)), None]
 
     def progress_note(self, first: int) -> str:
         """Return a note for the progress bar while the last item gathers attractors, else none."""
         return "attractors carried to neighbours" if first == self.count() - 1 else ""
 
-    def work(
-        self, fmus: Mapping[str, Path], items: Sequence[RandomStart | None], previous: Table | None
-    ) -> Table:
+    def work(self, fmus: Mapping[str, Path], items: Sequence[Any], previous: Table | None) -> Table:
         """Run starts until they settle, a row each; at the last item group them to attractors."""
-        starts = [item for item in items if item is not None]
-        with InstancePair(fmus[OSCILLATOR]) as instances:
-            if not starts:
-                assert previous is not None
+        with instance_pair(fmus[OSCILLATOR]) as instances:
+            if previous is not None:
                 return self.gather_attractors(instances, previous)
-            rows = SettledRows()
-            for value_index, some in itertools.groupby(starts, lambda item: item.value_index):
-                group = list(some)
-                decider = MotionDecider(*instances, group[0].point, self.settings)
-                for state in self.draw_starts(decider.plain, value_index, group):
-                    rows.add(*decider.decide(state))
-            return rows.table()
+            rows = []
+            for index, group in itertools.groupby(items, lambda item: item[0]):
+                decider = MotionDecider(*instances, self.series.points[index], self.settings)
+                starts = self.draw_starts(decider, index)
+                rows += [settled_row(decider, starts[number]) for _, number in group]
+            return settled_table(rows)
 
-    def draw_starts(
-        self, instance: Instance, value_index: int, group: Sequence[RandomStart]
-    ) -> Iterator[NDArray[np.float64]]:
-        """Yield the random start states of a group of starts at one parameter value."""
-        point, scale = group[0].point, group[0].scale
-        seed = (self.seed, value_index)
+    def draw_starts(self, decider: MotionDecider, index: int) -> NDArray[np.float64]:
+        """Return the random start states at one value of the parameter."""
+        point, seed = decider.point, (self.seed, index)
         if self.scale is not None:
-            assert scale is not None
-            states = random_starts(self.starts, scale, seed, point.structure)
-        else:
-            size = size_from_rest(instance, point, self.settings)
-            gap = self.width * (size.gap or point.length)
-            states = starts_in_both_boxes(self.starts, gap, size, seed, point)
-        for item in group:
-            yield states[item.number]
+            scale = self.scale[index] if isinstance(self.scale, tuple) else self.scale
+            return random_starts(self.starts, scale, seed, point.structure)
+        size = size_from_rest(decider.plain, point, self.settings)
+        gap = self.width * (size.gap or point.length)
+        return starts_in_both_boxes(self.starts, gap, size, seed, point)
 
     def gather_attractors(
         self, instances: tuple[Instance, EventInstance | None], table: Table
     ) -> Table:
         """Group all starts' settled motions into attractors, matched along the parameter."""
-        series, order = self.series, self.order()
-        shape = len(series.points), self.starts
-        features = table["features"].reshape(*shape, len(FEATURES))
-        ends, decided = table["end"].reshape(*shape, 4), table["decided"].reshape(shape)
+        points, order = self.series.points, self.order()
+        starts = {n: np.split(rows, len(points)) for n, rows in table.items()}
         matched = continue_attractors(
             instances,
-            [series.points[i] for i in order],
-            [SettledStarts(features[i], ends[i], decided[i]) for i in order],
+            [points[i] for i in order],
+            [{name: rows[i] for name, rows in starts.items()} for i in order],
             self.settings,
         )
-        back = np.argsort(order)
-        columns = {name: rows[back] for name, rows in attractor_columns(matched).items()}
-        return {name: rows[np.newaxis] for name, rows in columns.items()}
+        columns = attractor_columns(matched)
+        return {name: rows[np.newaxis, np.argsort(order)] for name, rows in columns.items()}
 
     def order(self) -> NDArray[np.intp]:
         """Return the indices that sort the parameter values, so that neighbours are adjacent."""
@@ -217,33 +180,21 @@ class AttractorsJob(SeriesQuestion):
         }
 
 
-@dataclass
-class SettledRows:
-    """Collects a table of settled motions: features, a state, how decided; a row per start."""
+SettledRow = tuple[Sequence[float], NDArray[np.float64], int]  # features, a state, how decided
+ABSENT_ROW: SettledRow = ([np.nan] * len(FEATURES), np.full(4, np.nan), ABSENT)  # masses overlap
 
-    features: list[list[float]] = field(default_factory=list)
-    ends: list[NDArray[np.float64]] = field(default_factory=list)
-    decided: list[int] = field(default_factory=list)
 
-    def add(self, motion: SettledMotion, state: NDArray[np.float64]) -> None:
-        """Append a row: a settled motion's features, and a state on it at phase 0."""
-        self.features.append(motion.features)
-        self.ends.append(state)
-        self.decided.append(motion.decided)
+def settled_row(decider: MotionDecider, start: ArrayLike) -> SettledRow:
+    """Return a row of what a start settles to: features, a state at phase 0, how decided."""
+    motion, state = decider.decide(start)
+    return motion.features, state, motion.decided
 
-    def add_absent(self) -> None:
-        """Append a row of NaN for an impossible start (its masses overlap)."""
-        self.features.append([np.nan] * len(FEATURES))
-        self.ends.append(np.full(4, np.nan))
-        self.decided.append(ABSENT)
 
-    def table(self) -> Table:
-        """Return the collected rows as a dict of arrays: features, end states, how decided."""
-        return {
-            "features": np.array(self.features, dtype=float),
-            "end": np.array(self.ends, dtype=float),
-            "decided": np.array(self.decided, dtype=np.int8),
-        }
+def settled_table(rows: Sequence[SettledRow]) -> Table:
+    """Return the rows of settled starts as a dict of arrays."""
+    features, ends, decided = zip(*rows, strict=True)
+    columns = {"features": np.array(features, dtype=float), "end": np.array(ends, dtype=float)}
+    return {**columns, "decided": np.array(decided, dtype=np.int8)}
 
 
 def attractor_columns(matched: MatchedAttractors) -> Table:

@@ -13,26 +13,29 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..access import OSCILLATOR, STATE, EventInstance, Instance, begin, finder, gap_between
 from ..arguments import REQUIRES_DELAMINATED, checked_integer
+from ..constants import TURN
 from ..errors import InputError
 from ..outcomes import ABSENT
 from ..response.labels import make_dataset, si_state_coordinate, variable
-from ..response.questions import Point, Question, ask, checked_point, checked_state
+from ..response.questions import Point, Question, State, ask, checked_point, checked_state
 from ..response.response_loop import stroboscopic_samples
 from ..running.job import Table
 from ..structures import Excitation, Structure
 from .attractors import (
+    ABSENT_ROW,
     ATTRACTOR,
     COLUMNS,
     KEYWORDS,
-    SettledRows,
     attractor_columns,
     attractor_settings,
     attractor_variables,
     attractors,
+    settled_row,
+    settled_table,
 )
 from .clusters import AttractorSettings
 from .decision import MotionDecider
-from .global_continuation import InstancePair, SettledStarts, continue_attractors
+from .global_continuation import continue_attractors, instance_pair
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -110,14 +113,6 @@ def masses_from_gap(
     return middle - half, middle + half
 
 
-class PlaneStart(NamedTuple):
-    """A start on the plane: point at phase 0, state (m and m/s), and the box's phase (rad)."""
-
-    point: Point
-    state: tuple[float, ...]
-    phase: float
-
-
 @dataclass(frozen=True, kw_only=True)
 class BasinJob(Question):
     """Job of :func:`orchestrate.basin`: all starts on a plane, run until they settle."""
@@ -151,50 +146,34 @@ class BasinJob(Question):
         """Return the number of items: all starts of the plane, and one that groups them."""
         return self.x.number * self.y.number + 1
 
-    def items(self) -> Sequence[PlaneStart | Point]:
-        """Return the items: every start, then the point, which stands for grouping.
+    def items(self) -> Sequence[tuple[State, float] | None]:
+        """Return the items: state and phase of each start, then None, which stands for grouping."""
+        states, phases = self.plane().starts()
+        return [*zip(map(tuple, states.tolist()), phases.tolist(), strict=True), None]
 
-        Its excitation begins at phase 0, as do the responses after each start has been brought
-        there; the phase of a start is its own.
-        """
-        plane = self.plane()
-        states, phases = plane.starts()
-        rows = zip(map(tuple, states.tolist()), phases.tolist(), strict=True)
-        structure, excitation = plane.point
-        point = Point(structure, excitation.replace(phase=0.0))
-        return [*(PlaneStart(point, *row) for row in rows), point]
-
-    def work(
-        self, fmus: Mapping[str, Path], items: Sequence[PlaneStart | Point], previous: Table | None
-    ) -> Table:
+    def work(self, fmus: Mapping[str, Path], items: Sequence[Any], previous: Table | None) -> Table:
         """Run starts until they settle (overlapping masses: absent), or group them at the end."""
-        with InstancePair(fmus[OSCILLATOR]) as instances:
-            if isinstance(items[0], Point):
-                assert previous is not None
-                return self.gather_attractors(instances, items[0], previous)
-            rows, decider = SettledRows(), None
-            for item in items:
-                assert isinstance(item, PlaneStart)
-                decider = decider or MotionDecider(*instances, item.point, self.settings)
-                offset = item.point.structure.gap_offset
-                if gap_between(np.array(item.state), offset) < 0.0:
-                    rows.add_absent()
-                else:
-                    rows.add(*decider.decide(run_to_phase_zero(decider.plain, item)))
-            return rows.table()
+        point = Point(self.structure, self.excitation.replace(phase=0.0))  # a start has its own
+        with instance_pair(fmus[OSCILLATOR]) as instances:
+            if previous is not None:
+                return self.gather_attractors(instances, point, previous)
+            decider, rows = MotionDecider(*instances, point, self.settings), []
+            for state, phase in items:
+                overlap = gap_between(np.array(state), self.structure.gap_offset) < 0.0
+                start = state if overlap else run_to_phase_zero(decider.plain, point, state, phase)
+                rows.append(ABSENT_ROW if overlap else settled_row(decider, start))
+            return settled_table(rows)
 
     def gather_attractors(
         self, instances: tuple[Instance, EventInstance | None], point: Point, table: Table
     ) -> Table:
         """Group all starts' settled motions into attractors; return arrays with starts' labels."""
         there = table["decided"] != ABSENT
-        names = "features", "end", "decided"
-        starts = SettledStarts(*(table[name][there] for name in names))
-        columns = attractor_columns(
-            continue_attractors(instances, [point], [starts], self.settings, self.known)
-        )
+        starts = {name: rows[there] for name, rows in table.items()}
+        matched = continue_attractors(instances, [point], [starts], self.settings, self.known)
+        columns = attractor_columns(matched)
         labels = np.full((1, len(there)), -1, dtype=np.int16)
-        labels[0, there] = columns.pop("labels")[0]
+        labels[0, there] = columns["labels"][0]
         return {**columns, "labels": labels}
 
     def dataset(self, table: Table) -> xr.Dataset:
@@ -218,13 +197,13 @@ class BasinJob(Question):
         return make_dataset(variables, coordinates, title)
 
 
-def run_to_phase_zero(instance: Instance, start: PlaneStart) -> tuple[float, ...]:
-    """Simulate from a start until the box is at phase 0; return the state there."""
-    left = -start.phase % (2.0 * math.pi)
+def run_to_phase_zero(instance: Instance, point: Point, state: State, phase: float) -> State:
+    """Simulate from a start at a phase until the box is at phase 0; return the state there."""
+    left = -phase % TURN
     if left == 0.0:
-        return start.state
-    excitation = start.point.excitation.replace(phase=start.phase)
-    begin(instance, start.point.structure, excitation, start.state)
+        return state
+    structure, excitation = point
+    begin(instance, structure, excitation.replace(phase=phase), state)
     instance.step(0.0, left / excitation.frequency)
     return tuple(instance.get(*STATE))
 

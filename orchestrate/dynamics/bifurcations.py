@@ -5,35 +5,34 @@ from __future__ import annotations
 from enum import IntEnum
 
 
-class BifurcationKind(IntEnum):
-    """Kinds of bifurcation on a branch of orbits, by their numbers in results."""
+class NamedKind(IntEnum):
+    """Base of kinds with a number in results, and a name in words."""
 
-    FOLD = 0
-    FLIP = 1
-    TORUS = 2
-    GRAZING = 3
-    TOUCHING = 4
-    CONTACT_LOST = 5
-    CONTACT_BEGUN = 6
-    EARLIER_RELEASE = 7
-    HALVING = 8
+    label: str
 
-    @property
-    def label(self) -> str:
-        """Return the kind's name in words, such as "period doubling"."""
-        return KINDS[self]
+    def __new__(cls, number: int, label: str) -> NamedKind:
+        """Return the member with its number and name."""
+        kind = int.__new__(cls, number)
+        kind._value_, kind.label = number, label
+        return kind
+
+
+class BifurcationKind(NamedKind):
+    """Kinds of bifurcation on a branch of orbits."""
+
+    FOLD = 0, "fold"
+    FLIP = 1, "period doubling"
+    TORUS = 2, "Neimark-Sacker"
+    GRAZING = 3, "grazing of an impact"  # its closing speed falls to zero
+    TOUCHING = 4, "grazing of a flight"  # the gap falls to zero between two impacts
+    CONTACT_LOST = 5, "loss of permanent contact"
+    CONTACT_BEGUN = 6, "begin of permanent contact"
+    # the contact force (18) falls to zero in permanent contact
+    EARLIER_RELEASE = 7, "earlier release"
+    # it has become the orbit of half its period, which doubles there
+    HALVING = 8, "period halving"
 
 
 FOLD, FLIP, TORUS, GRAZING, TOUCHING, *_ = BifurcationKind
 *_, CONTACT_LOST, CONTACT_BEGUN, EARLIER_RELEASE, HALVING = BifurcationKind
-KINDS: dict[int, str] = {
-    FOLD: "fold",
-    FLIP: "period doubling",
-    TORUS: "Neimark-Sacker",
-    GRAZING: "grazing of an impact",  # its closing speed falls to zero
-    TOUCHING: "grazing of a flight",  # the gap falls to zero between two impacts
-    CONTACT_LOST: "loss of permanent contact",
-    CONTACT_BEGUN: "begin of permanent contact",
-    EARLIER_RELEASE: "earlier release",  # the contact force (18) falls to zero in permanent contact
-    HALVING: "period halving",  # it has become the orbit of half its period, which doubles there
-}
+KINDS: dict[int, str] = {kind: kind.label for kind in BifurcationKind}

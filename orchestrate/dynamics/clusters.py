@@ -93,15 +93,6 @@ def repeats_first(response: Response, settings: AttractorSettings) -> bool:
     return nearly.multiplicity == response.multiplicity
 
 
-def response_features(response: Response, length: float) -> list[float]:
-    """Return a response's phase-independent features: multiplicity, impacts, gap statistics."""
-    n, gaps = response.multiplicity, response.gap / length
-    impacts = response.impacts_per_period
-    if n:  # over whole periods of the response
-        gaps, impacts = gaps[-n:], round(n * impacts) / n
-    return [n, impacts, response.x_rel_max / length, float(gaps.mean()), float(gaps.std())]
-
-
 def irregular_clusters(rows: ArrayLike, settings: AttractorSettings) -> NDArray[np.intp]:
     """Cluster irregular responses' feature rows by single linkage; return a label per row."""
     table = np.asarray(rows, dtype=float).reshape(-1, len(FEATURES))

@@ -15,14 +15,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from enum import IntEnum
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
 from .bifurcation_curve import BifurcationCurve
-from .bifurcations import FLIP, FOLD, GRAZING, TORUS, TOUCHING
+from .bifurcations import FLIP, FOLD, GRAZING, TORUS, TOUCHING, NamedKind
 from .closed_form import Floats
 from .continuation import (
     SOLVER_ERRORS,
@@ -46,35 +45,23 @@ CONVERGED = 1e-9  # a step of Newton's method, in unknowns over their scale
 FAR = 0.1  # a point at the end of a curve is not farther away from its last root
 
 
-class PointKind(IntEnum):
-    """Kinds of codimension-two points on a bifurcation curve, by their numbers in results."""
+class PointKind(NamedKind):
+    """Kinds of codimension-two points on a bifurcation curve."""
 
-    CUSP = 0
-    FOLD_FLIP = 1
-    RESONANCE_1 = 2
-    RESONANCE_2 = 3
-    RESONANCE_3 = 4
-    RESONANCE_4 = 5
-    FOLD_TORUS = 6
-    FLIP_TORUS = 7
-    GRAZING_FOLD = 8
-    GRAZING_FLIP = 9
-    GRAZING_TORUS = 10
+    CUSP = 0, "cusp"
+    FOLD_FLIP = 1, "fold-flip"
+    RESONANCE_1 = 2, "resonance 1:1"
+    RESONANCE_2 = 3, "resonance 1:2"
+    RESONANCE_3 = 4, "resonance 1:3"
+    RESONANCE_4 = 5, "resonance 1:4"
+    FOLD_TORUS = 6, "fold-Neimark-Sacker"
+    FLIP_TORUS = 7, "flip-Neimark-Sacker"
+    GRAZING_FOLD = 8, "grazing fold"
+    GRAZING_FLIP = 9, "grazing period doubling"
+    GRAZING_TORUS = 10, "grazing Neimark-Sacker"
 
 
-POINT_KINDS: dict[int, str] = {
-    PointKind.CUSP: "cusp",
-    PointKind.FOLD_FLIP: "fold-flip",
-    PointKind.RESONANCE_1: "resonance 1:1",
-    PointKind.RESONANCE_2: "resonance 1:2",
-    PointKind.RESONANCE_3: "resonance 1:3",
-    PointKind.RESONANCE_4: "resonance 1:4",
-    PointKind.FOLD_TORUS: "fold-Neimark-Sacker",
-    PointKind.FLIP_TORUS: "flip-Neimark-Sacker",
-    PointKind.GRAZING_FOLD: "grazing fold",
-    PointKind.GRAZING_FLIP: "grazing period doubling",
-    PointKind.GRAZING_TORUS: "grazing Neimark-Sacker",
-}
+POINT_KINDS: dict[int, str] = {kind: kind.label for kind in PointKind}
 ON_CURVE: dict[int, tuple[PointKind, ...]] = {  # with a test function, by the curve's kind
     FOLD: (PointKind.CUSP, PointKind.FOLD_FLIP, PointKind.RESONANCE_1, PointKind.FOLD_TORUS),
     FLIP: (PointKind.FOLD_FLIP, PointKind.RESONANCE_2, PointKind.FLIP_TORUS),

@@ -9,7 +9,8 @@ each leads to the other, or where Newton's method follows the orbit from one to 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -21,6 +22,7 @@ from ..access.description import describe
 from ..outcomes import IRREGULAR, ORBIT
 from ..response.questions import Point
 from ..response.response_loop import stroboscopic_samples
+from ..running.job import Table
 from .clusters import AttractorSettings, irregular_clusters
 from .decision import MotionDecider
 from .settled_motion import Floats, SettledMotion
@@ -30,34 +32,13 @@ NEIGHBOUR_DISTANCE = 0.2
 BY_SIMULATION, BY_NEWTON = 1, 2  # how an attractor was continued to a neighbouring value
 
 
-@dataclass
-class InstancePair:
-    """Context manager that opens the FMU as a plain instance and, if FMI 3.0, one with events."""
-
-    path: Path  # of the FMU
-
-    def __enter__(self) -> tuple[Instance, EventInstance | None]:
-        """Open the FMU twice: without events, and with events where it has them."""
-        self._plain = Instance(self.path)
-        self._eventful = EventInstance(self.path) if describe(self.path).is_fmi3 else None
-        return self._plain, self._eventful
-
-    def __exit__(self, *error: object) -> None:
-        """Close both instances."""
-        self._plain.close()
-        if self._eventful is not None:
-            self._eventful.close()
-
-
-@dataclass
-class SettledStarts:
-    """Motions that random starts at one parameter value settle to: features, states, how
-    decided.
-    """
-
-    features: Floats  # by `clusters.FEATURES`
-    ends: Floats  # states on the motions at phase 0
-    decided: NDArray[np.int_]  # of `settled_motion.DECIDED`
+@contextmanager
+def instance_pair(path: Path) -> Iterator[tuple[Instance, EventInstance | None]]:
+    """Open the FMU as a plain instance and, if it is of FMI 3.0, as one with events."""
+    with ExitStack() as stack:
+        plain = stack.enter_context(Instance(path))
+        eventful = describe(path).is_fmi3
+        yield plain, stack.enter_context(EventInstance(path)) if eventful else None
 
 
 @dataclass
@@ -69,24 +50,23 @@ class AttractorsAtValue:
     # of each random start, its attractor
     labels: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
 
-    def collect_from_starts(self, starts: SettledStarts, settings: AttractorSettings) -> None:
+    def collect_from_starts(self, starts: Table, settings: AttractorSettings) -> None:
         """Group the motions that random starts settle to into attractors; label each start."""
-        self.labels = np.full(len(starts.ends), -1, dtype=np.intp)
+        features, ends, decided = (starts[name] for name in ("features", "end", "decided"))
+        self.labels = np.full(len(ends), -1, dtype=np.intp)
         seen: dict[bytes, int] = {}
-        for i in np.flatnonzero(starts.decided != IRREGULAR):
-            row = starts.features[i]
+        for i in np.flatnonzero(decided != IRREGULAR):
+            row = features[i]
             key = row.tobytes()
             if key not in seen:
-                motion = self.motion_from_features(row, starts.ends[i], int(starts.decided[i]))
+                motion = self.motion_from_features(row, ends[i], int(decided[i]))
                 seen[key] = self.find_or_add(motion)
             self.labels[i] = seen[key]
-        irregular = np.flatnonzero(starts.decided == IRREGULAR)
-        groups = irregular_clusters(starts.features[irregular], settings)
+        irregular = np.flatnonzero(decided == IRREGULAR)
+        groups = irregular_clusters(features[irregular], settings)
         for group in range(int(groups.max(initial=-1)) + 1):
             members = irregular[groups == group]
-            self.motions.append(
-                self.mean_irregular_motion(starts.features[members], starts.ends[members[0]])
-            )
+            self.motions.append(self.mean_irregular_motion(features[members], ends[members[0]]))
             self.labels[members] = len(self.motions) - 1
 
     def motion_from_features(self, row: Floats, state: Floats, decided: int) -> SettledMotion:
@@ -169,7 +149,7 @@ class MatchedAttractors:
 def continue_attractors(
     instances: tuple[Instance, EventInstance | None],
     points: Sequence[Point],
-    starts: Sequence[SettledStarts],
+    starts: Sequence[Table],
     settings: AttractorSettings,
     seeds: Sequence[Sequence[float]] = (),
 ) -> MatchedAttractors:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 from ..access import OSCILLATOR, EventInstance, Instance
 from ..arguments import Numbers, checked, checked_flag, positive, whole
 from ..errors import InputError
-from ..outcomes import REPEATED, UNDECIDED
+from ..outcomes import UNDECIDED
 from ..response.labels import column_variables, flags, make_dataset, parameter_variable
 from ..response.multiplicity import DECIDED, Decision
 from ..response.questions import (
@@ -33,7 +33,7 @@ from ..response.questions import (
     excitation_numbers,
     make_point,
 )
-from ..response.respond import Response, count_impacts_until, respond
+from ..response.respond import Response, count_later_impacts, respond
 from ..response.sweep import HOW_DECIDED
 from ..running.job import Table, plain
 from ..running.options import Running, RunOptions
@@ -134,12 +134,9 @@ class MapJob(Question):
         dropped, done, start = transient_periods(self.transient, self.settle, eta), 0, self.start
         while True:
             response = respond(instance, *item, start, dropped, self.samples, self.tolerance)
-            decision, rate = response.decision(self.tolerance), response.impacts_per_period
-            if decision.decided == REPEATED:
-                n, period = decision.multiplicity, item.excitation.period
-                ends = ((dropped + self.samples + later) * period for later in (0, n))
-                count = count_impacts_until(instance, response.impact_count, *ends)
-                decision, rate = Decision(n, response.confirm(decision, count)), count / n
+            run = item.excitation.period, dropped + self.samples, response.impact_count
+            count_later = partial(count_later_impacts, instance, *run)
+            decision, rate = response.conclude(response.decision(self.tolerance), count_later)
             done, start = done + dropped + self.samples, response.end
             if decision.decided != UNDECIDED or done >= self.longest:
                 return response, decision, rate

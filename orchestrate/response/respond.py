@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -47,25 +47,24 @@ class Response:
 
     def decision(self, tolerance: float) -> Decision:
         """Return the multiplicity as decided by how deviations decay, and how it was decided."""
-        return self.checked(
-            decide_multiplicity(self.samples, self.frequency, self.x_rel_max, tolerance)
-        )
+        return decide_multiplicity(self.samples, self.frequency, self.x_rel_max, tolerance)
 
-    def checked(self, decision: Decision) -> Decision:
-        """Return a decision, undecided where impacts have to come that there are none of."""
-        n, decided = decision
-        is_late = decided == REPEATED and self.lacks_impacts(self.impacts_per_period, n)
-        return Decision(n, UNDECIDED if is_late else decided)
+    def conclude(self, decision: Decision, count: Callable[[int], int]) -> tuple[Decision, float]:
+        """Return a decision, undecided where impacts speak against it, and impacts per period.
 
-    def confirm(self, decision: Decision, impacts: int) -> int:
-        """Return how the multiplicity was decided, undecided if impacts speak against it.
-
-        A response that still converges, by less than the tolerance, may yet gain or lose some.
+        A response that still converges, by less than the tolerance, may yet gain or lose impacts:
+        ``count`` gives those of the next n periods. Impacts per period are exact where it repeats,
+        else the mean over the samples.
         """
-        n, decided = decision
-        if decided == REPEATED and (self.lacks_impacts(impacts, n) or not self.repeats(impacts, n)):
-            return UNDECIDED
-        return decided
+        (n, decided), mean = decision, self.impacts_per_period
+        if decided != REPEATED:
+            return decision, mean
+        if self.lacks_impacts(mean, n):
+            return Decision(n, UNDECIDED), mean
+        impacts = count(n)
+        if self.lacks_impacts(impacts, n) or not self.repeats(impacts, n):
+            decided = UNDECIDED
+        return Decision(n, decided), impacts / n
 
     def repeats(self, impacts: int, n: int) -> bool:
         """Return whether the samples have the impacts of a motion with so many in n periods.
@@ -132,9 +131,10 @@ def responses_from(
         )
 
 
-def count_impacts_until(instance: Instance, before: int, time: float, target: float) -> int:
-    """Run the FMU on to a time; return the impacts since an earlier count."""
-    if target > time:
-        instance.step(time, target)
+def count_later_impacts(
+    instance: Instance, period: float, done: int, before: int, periods: int
+) -> int:
+    """Run the FMU on for some periods after those done; return the impacts since a count."""
+    instance.step(done * period, (done + periods) * period)
     count: int = instance.get("impact_count")[0]
     return count - before

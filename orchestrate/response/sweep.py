@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike, NDArray
 from ..access import OSCILLATOR, Instance
 from ..arguments import checked, checked_word, positive, whole
 from ..errors import InputError
-from ..outcomes import REPEATED
 from ..running.job import Table
 from ..structures import Structure
 from .labels import (
@@ -137,19 +136,15 @@ class SweepJob(SeriesQuestion):
 
     def row(self, response: Response, decision: Decision, later: int) -> dict[str, Any]:
         """Return one response's numbers by column name; ``later``: impacts after its periods."""
-        n, decided = response.checked(decision)
-        impacts = response.impacts_per_period
-        if decided == REPEATED:
-            count = later - response.impact_count
-            impacts, decided = count / n, response.confirm(Decision(n, decided), count)
+        found, impacts = response.conclude(decision, lambda n: later - response.impact_count)
         return {
             "gap": response.gap,
             "gap_offset": response.gap_offset,
             "x_rel_max": response.x_rel_max,
             "impacts_per_period": impacts,
             "permanent_contact": response.permanent_contact,
-            "multiplicity": n,
-            "decided": decided,
+            "multiplicity": found.multiplicity,
+            "decided": found.decided,
         }
 
     def boundary_state(self, table: Table) -> bytes:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
+from ..arguments import checked_flag
 from ..constants import GRAVITY, TURN
 from ..errors import InputError
 from .drive import Drive
@@ -23,7 +24,6 @@ from .ranges import (
     SMALLEST,
     STRUCTURE,
     Quantity,
-    check_flag,
     expected_one_of,
 )
 from .shaker import Shaker
@@ -137,7 +137,7 @@ class Section:
     def flag(self, key: str) -> bool:
         """Return a key's value as True or False; raise ``InputError`` if it is neither."""
         try:
-            return check_flag(key, self.values[key])
+            return checked_flag(key, self.values[key])
         except InputError as error:
             raise InputError(f"{self.path}: {self.name}.{error}") from None
 

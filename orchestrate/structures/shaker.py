@@ -7,10 +7,11 @@ import math
 from dataclasses import dataclass
 from os import PathLike
 
+from ..arguments import checked_flag
 from ..constants import TURN
 from ..errors import InputError
 from .described import Described
-from .ranges import DATASHEET, SHAKER, check_flag
+from .ranges import DATASHEET, SHAKER
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,7 +63,7 @@ class Shaker(Described):
     def __post_init__(self) -> None:
         for name, quantity in SHAKER.items():
             object.__setattr__(self, name, quantity.check(getattr(self, name)))
-        flag = check_flag("current_control", self.current_control)
+        flag = checked_flag("current_control", self.current_control)
         object.__setattr__(self, "current_control", flag)
 
     @classmethod

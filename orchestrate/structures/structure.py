@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from os import PathLike
 from typing import TYPE_CHECKING, Any, TypedDict, TypeVar
 
+from ..arguments import checked_flag
 from ..errors import InputError
 from .described import Described
 from .plausible import warn_of_per_cent
@@ -17,7 +18,6 @@ from .ranges import (
     OF_LENGTH,
     RATIO_QUANTITIES,
     STRUCTURE,
-    check_flag,
     construct_or_explain,
     exact_inverse,
     expected_one_of,
@@ -185,7 +185,7 @@ class Structure(Described):
     def __post_init__(self) -> None:
         for name, quantity in STRUCTURE.items():
             object.__setattr__(self, name, quantity.check(getattr(self, name)))
-        object.__setattr__(self, "bonded", check_flag("bonded", self.bonded))
+        object.__setattr__(self, "bonded", checked_flag("bonded", self.bonded))
 
     @classmethod
     def nondimensional(
