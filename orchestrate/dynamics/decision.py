@@ -84,20 +84,15 @@ class MotionDecider:
     def periodic_motion(self, response: Response) -> tuple[SettledMotion | None, bool]:
         """Return a response's periodic motion (or None), and whether an unstable orbit is near."""
         n = response.multiplicity
-        if n:
-            known = self.known_motion_at(response.end, n)
-            if known is not None:
-                return known, False
+        known = self.known_motion_at(response.end, n) if n else None
+        if known is not None:
+            return known, False
         unstable = False
         for periods in [n] if n else self.possible_periods(response):
             orbit, free_phase = self.orbit_near(response.end, periods)
-            if orbit is None:
-                continue
-            if largest_multiplier(orbit) >= 1.0 - MARGIN:
-                unstable = True
-                continue
-            motion = SettledMotion.from_orbit(self.point, orbit, free_phase)
-            if self.converges_to(response.end, motion) and self.repeats_in_fmu(motion):
+            motion = self.stable_motion(orbit, free_phase)
+            unstable |= orbit is not None and motion is None
+            if motion and self.converges_to(response.end, motion) and self.repeats_in_fmu(motion):
                 return self.remember(motion), False
         return None, unstable
 
@@ -148,13 +143,16 @@ class MotionDecider:
         self.known.append(motion)
         return motion
 
+    def stable_motion(self, orbit: PeriodicOrbit | None, free_phase: float) -> SettledMotion | None:
+        """Return a stable orbit as a motion; None without one."""
+        if orbit is None or np.abs(orbit.multipliers()).max(initial=0.0) >= 1.0 - MARGIN:
+            return None
+        return SettledMotion.from_orbit(self.point, orbit, free_phase)
+
     def stable_orbit_at(self, state: ArrayLike, periods: int) -> SettledMotion | None:
         """Solve for a stable orbit of some periods near a state; None without one."""
-        orbit, free_phase = self.orbit_near(state, periods)
-        if orbit is None or largest_multiplier(orbit) >= 1.0 - MARGIN:
-            return None
-        motion = SettledMotion.from_orbit(self.point, orbit, free_phase)
-        return self.remember(motion) if self.repeats_in_fmu(motion) else None
+        motion = self.stable_motion(*self.orbit_near(state, periods))
+        return self.remember(motion) if motion and self.repeats_in_fmu(motion) else None
 
     def converges_to(self, state: ArrayLike, motion: SettledMotion) -> bool:
         """Return whether the FMU's response from a state comes closer to a stable orbit.
@@ -224,19 +222,12 @@ class MotionDecider:
         if motion.orbit is None or self.eventful is None:
             return None
         orbit = self.solve((motion.orbit.sequence, motion.orbit.nodes))
-        if orbit is None or largest_multiplier(orbit) >= 1.0 - MARGIN:
+        continued = self.stable_motion(orbit, phase_far_from_impacts(orbit) if orbit else 0.0)
+        if continued is None or not self.stays_on(continued):
             return None
-        continued = SettledMotion.from_orbit(self.point, orbit, phase_far_from_impacts(orbit))
-        if not self.stays_on(continued):
-            return None
-        own = self.stable_orbit_at(
-            continued.states[0], continued.multiplicity
-        )  # with the impacts of the FMU
-        return (
-            own
-            if own is not None and own.nearest(continued.states[0])[1] < ON_KNOWN_MOTION
-            else None
-        )
+        state = continued.states[0]
+        own = self.stable_orbit_at(state, continued.multiplicity)  # with the impacts of the FMU
+        return own if own is not None and own.nearest(state)[1] < ON_KNOWN_MOTION else None
 
     def stays_on(self, motion: SettledMotion) -> bool:
         """Return whether the FMU, started on an orbit, is still on it after its period."""
@@ -270,11 +261,6 @@ class MotionDecider:
         impacts = len(instance.impacts(begun, end).time)
         last, away = states.nearest(instance.read(*STATE))
         return impacts == orbit.sequence.impacts and last == first and away < RETURNS
-
-
-def largest_multiplier(orbit: PeriodicOrbit) -> float:
-    """Return the largest absolute value of an orbit's Floquet multipliers."""
-    return float(np.abs(orbit.multipliers()).max(initial=0.0))
 
 
 def without_copies(orbit: PeriodicOrbit) -> PeriodicOrbit:
