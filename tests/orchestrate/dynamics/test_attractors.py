@@ -77,15 +77,6 @@ def test_scale_is_three_times_the_largest_gap_from_rest():
         attractors(PAPER, **asked, scale=-1.0)
 
 
-def test_units_do_not_matter():
-    own = Structure(m1=0.8, m2=0.8, k1=5000.0, k2=6000.0, d1=0.4, d2=0.4)
-    unit = Structure.nondimensional(D=own.D1)
-    asked = {"eta": TWO, "starts": 8, "seed": 3, "transient": 300}
-    one, two = (attractors(s, **asked) for s in (own, unit))
-    np.testing.assert_array_equal(one.attractor_of, two.attractor_of)
-    np.testing.assert_allclose(one.xi_rel_max, two.xi_rel_max, rtol=1e-3)
-
-
 def test_a_bonded_structure_has_nothing_to_tell():
     with pytest.raises(InputError, match="bonded = True: expected a delaminated structure"):
         attractors(PAPER.as_bonded(), eta=1.0)

@@ -46,17 +46,6 @@ def test_the_basins_of_newtons_method_are_fractal():
     assert float(found.boundary_basin_entropy) > math.log(2.0)
 
 
-def test_stripes_between_the_points_of_a_cantor_set():
-    """A stripe that is left out as a middle third has the colour of its level, by turns."""
-    levels = 7
-    thirds = np.arange(3**levels)[:, np.newaxis] // 3 ** np.arange(levels)[::-1] % 3
-    middle = thirds == 1
-    left_out = np.where(middle.any(axis=1), middle.argmax(axis=1), levels)
-    found = orchestrate.basin_entropy(basins(np.tile(left_out % 2, (1024, 1))), box=4)
-    dimension = 1.0 + math.log(2.0) / math.log(3.0)
-    assert float(found.boundary_dimension) == pytest.approx(dimension, abs=0.05)
-
-
 def test_the_entropy_of_a_box_is_that_of_its_shares():
     labels = np.array([[0, 0, 1, 1], [0, 1, 1, 1], [2, 2, 0, 1], [2, 2, -1, 1]])
     found = box_entropies(labels, 2)

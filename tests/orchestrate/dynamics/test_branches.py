@@ -28,6 +28,7 @@ DOCS = Path(__file__).resolve().parents[3] / "docs"
 FOLD, FLIP, TORUS, GRAZING, TOUCHING, CONTACT_LOST = range(6)
 HALVING = 8
 STARTS = {1: 1.5, 2: 4.0, 3: 6.0, 4: 8.0}
+LIMITS = {1: (1.37, 8.0), 2: (1.37, 8.0), 3: (1.37, 8.0), 4: (1.37, 9.5)}
 PERIODS = ordinary(STARTS, 2)  # of those that last longer nothing is written otherwise
 WALL_RATE = 1e5  # of mass 2 where it is a wall: the difference is 1e-10
 
@@ -35,7 +36,7 @@ WALL_RATE = 1e5  # of mass 2 where it is a wall: the difference is 1e-10
 @functools.cache
 def windows(period):
     """The branch with one impact in so many periods, for Figure 6."""
-    return branch(PAPER, eta=STARTS[period], period=period, limits=(1.37, 9.5))
+    return branch(PAPER, eta=STARTS[period], period=period, limits=LIMITS[period])
 
 
 def values(found, kind):
@@ -65,7 +66,7 @@ def test_borders_of_stability_are_those_of_the_closed_form(period, low, high):
 def test_all_orbits_of_a_branch_are_those_of_the_closed_form(period):
     found = windows(period)
     eta = found.eta.values
-    assert (np.diff(eta) > 0.0).all()
+    assert (np.diff(eta) > 0.0).all() and len(eta) < 450  # steps are long
     for i in range(0, len(eta), 10):
         truth = SingleImpact(float(eta[i]), period)
         assert found.node_closing.values[i, 0] == pytest.approx(truth.closing, abs=1e-10)
@@ -103,7 +104,7 @@ def test_period_doubling_against_a_stiff_wall():
     """At omega = 2.5 and restitution 0.8 the orbit doubles its period at a wall 0.07667521 away."""
     structure = wall(0.0, 0.8)
     start = orbit(structure, eta=2.5, guess={"impact_time": [2.0]})
-    found = branch(structure, start=start, over="box_acceleration", limits=(-0.1, 0.2))
+    found = branch(structure, start=start, over="box_acceleration", limits=(0.0, 0.1))
     assert np.abs(values(found, FLIP) - 0.07667521).min() < 2e-8
 
 
@@ -113,12 +114,12 @@ def test_impacts_begin_where_the_linear_response_touches():
     given = {"over": "amplitude", "box_acceleration": 1.0}
     known = {"frequency": 1.0, "amplitude": 0.2, "box_acceleration": 1.0}
     start = orbit(structure, guess={"impact_time": [2.0]}, **known)
-    above = branch(structure, start=start, limits=(0.02, 0.3), **given)
+    above = branch(structure, start=start, limits=(0.08, 0.22), **given)
     assert values(above, GRAZING) == pytest.approx([0.1], abs=1e-9)
-    below = branch(structure, start=above, switch=grazing_of(above), limits=(0.02, 0.3), **given)
+    below = branch(structure, start=above, switch=grazing_of(above), limits=(0.08, 0.22), **given)
     assert not (below.node_kind.values >= 0).any()
-    assert below.amplitude.values.min() == 0.02
-    again = branch(structure, start=below.isel(point=-1), limits=(0.02, 0.3), **given)
+    assert below.amplitude.values.min() == 0.08
+    again = branch(structure, start=below.isel(point=-1), limits=(0.08, 0.22), **given)
     assert values(again, TOUCHING) == pytest.approx([0.1], abs=1e-9)
 
 
@@ -129,9 +130,11 @@ def grazing_of(found):
 def test_a_doubled_branch_leaves_at_a_period_doubling():
     first = windows(2)
     number = int(np.flatnonzero(first.bifurcation_kind.values == FLIP)[0])
-    found = branch(PAPER, start=first, switch=number, limits=(1.37, 9.5))
+    found = branch(PAPER, start=first, switch=number, limits=(1.37, 9.5), most=40)
     assert found.sizes["sample"] == 4
     assert found.eta.values[0] == pytest.approx(first.bifurcation_value.values[number], abs=1e-12)
+    assert abs(found.multipliers.values[0]).max() > 1.0 - 1e-6
+    assert not bool(found.stable[0])  # a multiplier is -1 to rounding there
     later = found.isel(point=slice(3, None))
     assert (np.abs(later.xi.values[:, :2] - later.xi.values[:, 2:]).max(axis=(1, 2)) > 1e-6).all()
     assert later.fmu_same_impacts.values.mean() > 0.9
@@ -184,13 +187,6 @@ def test_permanent_contact_is_followed_until_it_is_lost():
         assert contacts(instance, lost + 1e-5, found) == 0
 
 
-@pytest.mark.slow
-def test_the_loss_of_contact_is_found_in_steps_of_other_lengths():
-    found = branch(PAPER, eta=0.4, limits=(0.4, 0.45))
-    assert found.attrs["last_end"] == "loss of permanent contact"
-    assert found.eta.values[-1] == pytest.approx(0.417391, abs=1e-6)
-
-
 def contacts(instance, eta, found):
     """Permanent contacts of the FMU over 20 periods, from a branch's last orbit on."""
     excitation = Excitation.nondimensional(eta, PAPER)
@@ -225,13 +221,11 @@ def test_the_table_in_the_documentation_is_this(period):
     printed = {(float(row[1]), row[2].strip()) for row in rows if float(row[1]) > 1.37}
     found = windows(period)
     names = [w.replace("_", " ") for w in found.bifurcation_kind.attrs["flag_meanings"].split()]
-    limit = {1: 8.0, 2: 8.0, 3: 8.0, 4: 9.5}[period]
     own = {
         (round(float(value), 8), names[kind])
         for value, kind in zip(
             found.bifurcation_value.values, found.bifurcation_kind.values, strict=True
         )
-        if value < limit
     }
     assert {name for _, name in own} == {name for _, name in printed}
     values_own, values_printed = sorted(v for v, _ in own), sorted(v for v, _ in printed)
@@ -263,21 +257,6 @@ def test_two_bifurcations_of_a_kind_within_a_step_are_found(longest):
         assert np.abs(truth.multipliers + 1.0).min() < 1e-9
 
 
-def test_the_branch_of_t_1_is_followed_in_few_steps():
-    """From 1.37 both ways: 395 points; a time would be the machine's."""
-    found = branch(PAPER, start=orbit(PAPER, eta=1.37), limits=(0.9, 8.0))
-    assert found.sizes["point"] < 450
-    assert found.eta.min() < 1.3 < 7.0 < found.eta.max()
-
-
-def test_start_values_and_directions():
-    """The same branch from another orbit of it has the same bifurcations."""
-    one = windows(2)
-    other = branch(PAPER, start=orbit(PAPER, eta=4.5, period=2), limits=(1.37, 9.5))
-    assert other.bifurcation_kind.values.tolist() == one.bifurcation_kind.values.tolist()
-    assert other.bifurcation_value.values == pytest.approx(one.bifurcation_value.values, abs=1e-10)
-
-
 def test_the_call_told_asks_it_again():
     first = branch(PAPER, eta=2.5, limits=(2.4, 2.7))
     names = {"orbit": orbit, "branch": branch, "Structure": Structure}
@@ -285,11 +264,6 @@ def test_the_call_told_asks_it_again():
     assert again.bifurcation_value.values == pytest.approx(
         first.bifurcation_value.values, abs=1e-12
     )
-
-
-def test_a_result_kept_on_disk_is_the_same(tmp_path):
-    question = {"eta": 1.5, "limits": (1.4, 1.6), "store": tmp_path / "branch.nc"}
-    assert branch(PAPER, **question).identical(branch(PAPER, **question))
 
 
 @pytest.mark.parametrize(
@@ -345,14 +319,3 @@ def test_directions_have_the_side_that_a_component_gives_them():
     assert fix_sign(-vector) == pytest.approx(-vector)
     fold = np.array([[0.0, 1.0], [0.0, 1.0]])  # the tangent is across the last row
     assert unit_tangent(fold) == pytest.approx([1.0, 0.0])
-
-
-def test_at_a_bifurcation_no_orbit_is_called_stable():
-    """A multiplier is -1 to rounding there."""
-    window = branch(Structure.nondimensional(), eta=2.7, limits=(2.6, 2.8), progress=False)
-    flip = int(np.flatnonzero(window.bifurcation_kind.values == 1)[0])
-    doubled = branch(
-        Structure.nondimensional(), start=window, switch=flip, limits=(2.6, 2.8), progress=False
-    )
-    assert abs(doubled.multipliers.values[0]).max() > 1.0 - 1e-6
-    assert not bool(doubled.stable[0])

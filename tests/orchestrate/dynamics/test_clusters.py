@@ -12,14 +12,11 @@ from orchestrate.access import OSCILLATOR, REST, Instance, find
 from orchestrate.dynamics.clusters import (
     AttractorSettings,
     irregular_clusters,
-    response_features,
     run_until_settled,
     single_linkage,
     transient_periods,
 )
 from orchestrate.response.questions import Point
-from orchestrate.response.respond import Response, respond
-from orchestrate.response.sweep import sweep
 from orchestrate.structures import Excitation, Structure
 
 PAPER = Structure.nondimensional()
@@ -52,19 +49,6 @@ def test_irregular_responses_are_grouped_by_their_means():
     assert irregular_clusters(np.empty((0, 5)), AttractorSettings()).tolist() == []
 
 
-def test_features_of_periodic_responses_are_over_whole_periods():
-    samples = np.zeros((48, 4))
-    samples[:, 1] = [3.0, 6.0, 9.0, 12.0, 15.0] * 9 + [3.0, 6.0, 9.0]
-    given = {"x_rel_max": 16.0, "permanent_contact": False, "frequency": 1.0, "tolerance": 1e-2}
-    given |= {"impacts_per_period": 19.0 / 48.0, "impact_count": 19}
-    periodic = Response(samples=samples, **given)
-    assert response_features(periodic, 3.0) == pytest.approx(
-        [5, 0.4, 16.0 / 3.0, 3.0, np.sqrt(2.0)]
-    )
-    irregular = Response(samples=np.arange(192.0).reshape(48, 4), **given)
-    assert response_features(irregular, 3.0)[:2] == [0, 19.0 / 48.0]
-
-
 @pytest.mark.parametrize(
     ("eta", "multiplicity", "least", "most"),
     [
@@ -80,19 +64,6 @@ def test_a_response_is_run_on_until_it_is_known(exported, eta, multiplicity, lea
         response, periods = run_until_settled(instance, point, REST, AttractorSettings())
     assert response.multiplicity == multiplicity
     assert least <= periods <= most
-
-
-def test_a_long_transient_is_not_what_it_settles_to(exported):
-    """At D = 0.05 T/1 is unstable at 1.116: deviations take thousands of periods to grow."""
-    damped = PAPER.replace(D=0.05)
-    point = Point(damped, Excitation.nondimensional(1.116, damped))
-    near = sweep(damped, eta=1.115, transient=3000, samples=10).end_state.values[0]
-    with Instance(find(OSCILLATOR).path) as instance:
-        early = respond(instance, *point, near, 500, 200, 1e-2)
-        response, periods = run_until_settled(instance, point, near, AttractorSettings())
-    assert (early.multiplicity, early.impacts_per_period) == (1, 1.0)
-    assert (response.multiplicity, response_features(response, 1.0)[1]) == (2, 1.5)
-    assert periods > 2_000
 
 
 def test_short_periods_take_more_of_them():

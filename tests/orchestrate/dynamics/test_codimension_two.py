@@ -201,14 +201,6 @@ def test_what_the_multipliers_beside_1_say_on_a_fold(monkeypatch):
             assert found[kind].residual < 1e-9
 
 
-def test_a_curve_without_such_points_says_so():
-    start = window(1)
-    found = orchestrate.border(
-        PAPER, start=start, bifurcation=0, limits=[(2.5, 2.8), (0.69, 0.71)], **QUIET
-    )
-    assert found.sizes["codimension_two"] == 0
-
-
 class SteepCurve:
     """A curve whose equations are so steep that a Newton step is small far from any root."""
 

@@ -22,8 +22,6 @@ from orchestrate.response.questions import Point
 from orchestrate.response.sweep import sweep
 from orchestrate.structures import Excitation, Structure
 
-from ...processors import printed_on_each
-
 PAPER = Structure.nondimensional()
 USUAL = AttractorSettings()
 CONTACT = Structure.nondimensional(mu=2.1943, kappa=0.4061, D=0.0116, e=0.4291)
@@ -178,52 +176,3 @@ def test_distances_compare_gaps_with_the_gap():
 )
 def test_the_middle_of_the_longest_run_on_a_ring(flags, expected):
     assert middle_of_longest_run(np.array([letter == "1" for letter in flags])) == expected
-
-
-def test_an_irregular_response_that_nearly_repeats_is_irregular():
-    """After 20,000 periods its states happen to repeat nearly, after 12."""
-    structure = Structure(
-        m2=0.4505499090518278,
-        k2=0.6514549578221194,
-        d1=0.027043267030094763,
-        d2=0.02628385110590592,
-        e=0.190396868006822,
-    )
-    found = attractors(structure, eta=3.302924616126182, starts=16, seed=1002570824)
-    assert (found.multiplicity.values == 0).all()
-    assert (found.decided_by.values == IRREGULAR).all()
-
-
-CHATTERS = Structure(
-    m2=1.5321447410144347,
-    k2=0.4343997719460892,
-    d1=0.1119910034761803,
-    d2=0.028651252432709787,
-    e=0.13639711938433108,
-)
-CHATTERED = (-2.47883363e-04, 1.77404919e-02, -2.77914382e-01, -2.72764355e-01)
-
-
-def test_an_orbit_with_other_impacts_than_the_fmu_is_no_motion():
-    """Of 69 periods, with a multiplier of 0.04; chattering ends with one more impact in the FMU."""
-    settings = AttractorSettings(transient=2, settle=1.0, samples=140, longest=1000)
-    motion, _ = decided_from(CHATTERS, 3.845496239719113, CHATTERED, settings)
-    assert motion.decided != ORBIT
-
-
-LABELS = """
-import orchestrate
-paper = orchestrate.Structure.nondimensional()
-asked = {"starts": 12, "jobs": 1, "progress": False}
-near = orchestrate.attractors(paper, eta=[0.4, 1.2, 1.3048, 1.335], **asked)
-words = ["number", "multiplicity", "impacts_per_period", "decided_by", "attractor_of"]
-print([near[word].values.tolist() for word in words])
-"""
-
-
-@pytest.mark.slow
-def test_labels_do_not_depend_on_the_processor():
-    """Linear algebra has other last digits on other processors."""
-    printed = printed_on_each(["-c", LABELS], ("Haswell", "SkylakeX", "Nehalem", "Zen"))
-    found = set(printed.values())
-    assert len(found) == 1 and "1.5" in found.pop()

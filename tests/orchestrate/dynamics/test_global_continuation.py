@@ -13,10 +13,7 @@ from orchestrate.dynamics.attractors import attractors
 from orchestrate.dynamics.clusters import AttractorSettings
 from orchestrate.dynamics.decision import MotionDecider
 from orchestrate.dynamics.global_continuation import (
-    BY_NEWTON,
-    BY_SIMULATION,
-    InstancePair,
-    match_neighbours,
+    instance_pair,
 )
 from orchestrate.outcomes import ORBIT
 from orchestrate.response.questions import Point
@@ -24,24 +21,7 @@ from orchestrate.running import runner
 from orchestrate.structures import Excitation, Structure
 
 PAPER = Structure.nondimensional()
-HIDDEN = [1.335, 1.35, 1.365]
-
 pytestmark = pytest.mark.usefixtures("exported")
-
-
-def kinds(data, i):
-    """Multiplicity and impacts of what is there at a value."""
-    here = data.isel(eta=i)
-    n = here.multiplicity.values
-    there = n > 0
-    return set(zip(n[there], (n * here.impacts_per_period.values)[there], strict=True))
-
-
-def test_both_attractors_are_found_where_few_starts_lead_to_one():
-    found = attractors(PAPER, eta=HIDDEN, starts=60)
-    for i in range(3):
-        assert kinds(found, i) == {(1.0, 1.0), (2.0, 3.0)}
-    assert found.number.values.tolist() == [2, 2, 2]
 
 
 @pytest.fixture(scope="module")
@@ -125,40 +105,25 @@ def motion(n, impacts):
     )
 
 
-def test_attractors_that_lead_to_each_other_are_one():
-    links = {(0, 0, 1): (1, BY_SIMULATION), (0, 1, 1): (0, BY_SIMULATION)}
-    links |= {(1, 0, 0): (1, BY_SIMULATION), (1, 1, 0): (0, BY_SIMULATION)}
-    before, after = value((1, 1.0), (2, 1.5)), value((2, 1.5), (4, 1.5))
-    assert sorted(match_neighbours(before, after, 0, links)) == [(0, 1), (1, 0)]
+T, TWO, FOUR, OTHER = (1, 1.0), (2, 1.5), (4, 1.5), (3, 2.0)
 
 
-def test_an_attractor_that_jumps_to_another_ends():
-    links = {
-        (0, 0, 1): (0, BY_SIMULATION),
-        (0, 1, 1): (0, BY_SIMULATION),
-        (1, 0, 0): (0, BY_SIMULATION),
-    }
-    assert match_neighbours(value((1, 1.0), (2, 1.5)), value((1, 1.0)), 0, links) == [(0, 0)]
-
-
-def test_an_orbit_that_is_followed_is_one_though_its_state_leads_elsewhere():
-    links = {
-        (0, 0, 1): (1, BY_NEWTON),
-        (1, 0, 0): (0, BY_SIMULATION),
-        (1, 1, 0): (0, BY_SIMULATION),
-    }
-    found = match_neighbours(value((2, 1.5)), value((1, 1.0), (2, 1.5)), 0, links)
-    assert found == [(0, 1)]
-
-
-def test_neither_jump_joins_two_attractors_that_do_not_look_alike():
-    links = {
-        (0, 0, 1): (0, BY_SIMULATION),
-        (0, 1, 1): (0, BY_SIMULATION),
-        (1, 0, 0): (1, BY_SIMULATION),
-    }
-    found = match_neighbours(value((1, 1.0), (3, 2.0)), value((2, 1.5)), 0, links)
-    assert found == [(1, 0)]
+@pytest.mark.parametrize(
+    ("before", "after", "forth", "back", "expected"),
+    [
+        ([T, TWO], [TWO, FOUR], [1, 0], [1, 0], [(0, 1), (1, 0)]),  # they lead to each other
+        ([T, TWO], [T], [0, 0], [0], [(0, 0)]),  # one jumps to the other and ends
+        ([TWO], [T, TWO], [(1, BY_NEWTON)], [0, 0], [(0, 1)]),  # followed, though it leads away
+        ([T, OTHER], [TWO], [0, 0], [1], [(1, 0)]),  # a jump joins none that do not look alike
+    ],
+)
+def test_which_attractors_of_neighbours_are_one(before, after, forth, back, expected):
+    links = {}
+    for i, leads in ((0, forth), (1, back)):
+        for k, to in enumerate(leads):
+            links[i, k, 1 - i] = to if isinstance(to, tuple) else (to, BY_SIMULATION)
+    found = match_neighbours(value(*before), value(*after), 0, links)
+    assert sorted(found) == expected
 
 
 CHATTERING = Structure(
@@ -171,16 +136,9 @@ CHATTERING = Structure(
 GAINS = 1.8903747226797813, 1.8960458468478205  # it gains an impact between these
 
 
-def test_chattering_that_gains_an_impact_on_the_way_is_there_once():
-    """The sequence of one value is a root at the other one too, with an impact too few."""
-    found = attractors(CHATTERING, eta=list(GAINS), starts=4)
-    assert found.number.values.tolist() == [1, 1]
-    assert found.impacts_per_period.values.tolist() == [[6.0], [7.0]]
-
-
 def test_an_orbit_that_is_followed_has_the_impacts_that_the_fmu_runs_through():
     points = [Point(CHATTERING, Excitation.nondimensional(eta, CHATTERING)) for eta in GAINS]
-    with InstancePair(find(OSCILLATOR).path) as instances:
+    with instance_pair(find(OSCILLATOR).path) as instances:
         before, after = (MotionDecider(*instances, point, AttractorSettings()) for point in points)
         motion, _ = before.decide(REST)
         followed = after.continue_orbit(motion)

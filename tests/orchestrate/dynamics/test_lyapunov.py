@@ -165,13 +165,6 @@ def test_units_do_not_matter():
     assert on.exponent.item() == pytest.approx(same.exponent.item(), rel=1e-9)
 
 
-def test_verdicts():
-    exponent, error = [0.1, -0.1, 0.1, 0.001, -np.inf], [0.01, 0.01, 0.05, 1e-6, np.nan]
-    expected = [CHAOTIC, PERIODIC, NEUTRAL, NEUTRAL, PERIODIC]
-    assert classify_exponents(exponent, error, 0.01).tolist() == expected
-    assert classify_exponents(0.1, 0.05, 0.01, sigmas=1.0) == CHAOTIC
-
-
 def test_products_of_matrices():
     matrices = np.random.default_rng(3).normal(size=(23, 4, 4))
     found, logs = scaled_products(matrices, 5)

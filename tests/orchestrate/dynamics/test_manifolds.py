@@ -161,22 +161,6 @@ def test_its_direction_is_the_eigenvector_at_phase_0():
     assert image == pytest.approx(saddle.multiplier * saddle.direction, abs=1e-9)
 
 
-def test_it_is_tangent_to_the_eigenvector():
-    """What it misses of the tangent grows as the square of the distance."""
-    data = curve()
-    part = data.sel(side="+")
-    away = part.state.values - saddle_of(data)
-    direction = away[0] / np.linalg.norm(away[0])
-    missed, distance = [], []
-    for target in (2e-4, 4e-4, 8e-4):
-        i = int(np.argmax(np.linalg.norm(away, axis=1) > target))
-        along = float(away[i] @ direction)
-        missed.append(np.linalg.norm(away[i] - along * direction))
-        distance.append(along)
-    powers = np.diff(np.log(missed)) / np.diff(np.log(distance))
-    assert powers == pytest.approx(2.0, abs=0.1)
-
-
 def test_images_of_its_points_lie_on_it():
     """By the FMU, two periods: on the points of numbers greater by 1, to 1e-8."""
     job = manifolds.ManifoldJob(**job_fields())
@@ -229,15 +213,6 @@ def test_breaks_are_rows_of_nan_and_never_connected():
     assert abs(int(first.break_impacts)) == 1
 
 
-def test_the_scale_of_a_structure_does_not_matter():
-    beam = Structure.nondimensional(omega=75.0, m1=1.5)
-    own = orchestrate.manifold(beam, frequency=225.0, amplitude=1e-4, length=0.5, **QUIET)
-    unit = curve(length=0.5)
-    assert own.xi.values[:, :40] == pytest.approx(unit.xi.values[:, :40], abs=1e-9, nan_ok=True)
-    metres = 9e-4 * unit.x_rel.values[:, :40]
-    assert own.x_rel.values[:, :40] == pytest.approx(metres, abs=1e-12, nan_ok=True)
-
-
 @pytest.mark.slow
 def test_its_bits_are_the_same_with_the_kernels_of_any_processor():
     """Its far points lie on a chaotic attractor: a last bit more would be another curve."""
@@ -247,13 +222,6 @@ def test_its_bits_are_the_same_with_the_kernels_of_any_processor():
         "print(hashlib.sha256(m.state.values.tobytes()).hexdigest())"
     )
     assert len(set(printed_on_each(["-c", code], ("Haswell", "Nehalem")).values())) == 1
-
-
-def test_pictures():
-    (plane,) = orchestrate.plot(curve()).axes
-    lines = {line.get_label(): line for line in plane.get_lines()}
-    assert len(lines) == 3 and "saddle" in lines
-    assert np.isnan(lines["where it falls"].get_ydata()).any()
 
 
 @pytest.mark.parametrize(

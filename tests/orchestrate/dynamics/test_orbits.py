@@ -6,15 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from orchestrate.access import OSCILLATOR, REST, EventInstance, begin, find
 from orchestrate.dynamics import orbits
-from orchestrate.dynamics.lyapunov import lyapunov
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.errors import InputError
 from orchestrate.flags import flag_words
 from orchestrate.structures import Excitation, Structure
 
 from .single_impact import SingleImpact
+from .stroboscopic import assert_multipliers
 
 PAPER = Structure.nondimensional(e=0.7, D=0.005)
 UNDECIDED = "undecided"
@@ -30,20 +29,9 @@ def multipliers(found):
     return found.multipliers.values @ np.array([1.0, 1.0j])
 
 
-def stroboscopic(instance, eta, states, periods, structure=PAPER):
-    """The FMU's own map of states at phase 0."""
-    excitation = Excitation.nondimensional(eta, structure)
-    ends = []
-    for state in states:
-        begin(instance, structure, excitation, state)
-        instance.advance(0.0, periods * excitation.period)
-        ends.append(instance.read("x1", "x2", "v1", "v2").copy())
-    return np.array(ends)
-
-
 @pytest.mark.parametrize(
     ("period", "eta"),
-    [(1, 1.5), (1, 2.6), (1, 3.0), (2, 4.0), (3, 6.0), (3, 5.6), (4, 8.0), (4, 7.6)],
+    [(1, 1.5), (1, 3.0), (2, 4.0), (3, 5.6), (4, 8.0)],
 )
 def test_one_impact_in_n_periods_is_that_of_the_closed_form(period, eta):
     found, truth = known(eta, period), SingleImpact(eta, period)
@@ -54,16 +42,6 @@ def test_one_impact_in_n_periods_is_that_of_the_closed_form(period, eta):
     assert bool(found.stable) == (truth.largest < 1.0)
     assert found.fmu_same_impacts
     assert found.fmu_return < 1e-13 * max(1.0, truth.largest)
-
-
-@pytest.mark.parametrize("numbers", [{"e": 0.3, "mu": 0.5, "kappa": 2.0}, {"D": 0.1, "mu": 3.0}])
-def test_other_structures_follow_the_closed_form_too(numbers):
-    structure = Structure.nondimensional(**numbers)
-    truth = SingleImpact(2.0, 1, **numbers)
-    guess = {"impact_time": [truth.phase / 2.0 + 0.05]}
-    found = orbit(structure, eta=2.0, guess=guess)
-    assert found.impact_velocity.item() == pytest.approx(truth.closing, abs=1e-11)
-    assert np.abs(multipliers(found) - truth.multipliers).max() < 1e-9
 
 
 @pytest.mark.parametrize(("eta", "V"), [(1.7, 2.013768092), (2.2, 1.898748738), (2.5, 0.645352178)])
@@ -84,25 +62,8 @@ def test_a_heavy_stiff_mass_2_is_a_wall(eta, V):
 )
 def test_multipliers_are_those_of_the_fmus_own_map(eta, period):
     """Central differences of the FMU's stroboscopic map, no equation of ours in them."""
-    found, step = known(eta, period), 1e-6
-    state = found.state.values[0]
-    with EventInstance(find(OSCILLATOR).path) as instance:
-        moved = [state + sign * step * axis for axis in np.eye(4) for sign in (1.0, -1.0)]
-        ends = stroboscopic(instance, eta, moved, period)
-    matrix = ((ends[0::2] - ends[1::2]) / (2.0 * step)).T
-    seen = np.linalg.eigvals(matrix)
-    size = max(1.0, np.abs(seen).max())
-    for multiplier in multipliers(found):
-        assert np.abs(seen - multiplier).min() < 1e-5 * size
-
-
-@pytest.mark.parametrize(("eta", "period"), [(1.5, 1), (2.865, 2), (0.6, 1), (4.0, 2), (1.0, 1)])
-def test_the_product_is_what_dampers_and_impacts_dictate(eta, period):
-    found = known(eta, period)
-    impacts = int((found.node_kind.values == 0).sum())
-    dictated = 0.7 ** (2 * impacts) * np.exp(-2.0 * 0.01 * period * 2.0 * np.pi / eta)
-    assert np.prod(multipliers(found)).real == pytest.approx(dictated, rel=1e-9)
-    assert found.multiplier_product.item() == pytest.approx(dictated, rel=1e-12)
+    box = Excitation.nondimensional(eta, PAPER)
+    assert_multipliers(known(eta, period), PAPER, box, period)
 
 
 def test_chattering_into_permanent_contact_leaves_two_multipliers():
@@ -116,14 +77,6 @@ def test_chattering_into_permanent_contact_leaves_two_multipliers():
     assert np.abs(multipliers(found)[2:]).max() == 0.0
     assert np.abs(multipliers(found)[:2]).min() > 0.5
     assert found.multiplier_product.item() == 0.0
-
-
-@pytest.mark.parametrize(("eta", "period"), [(1.5, 1), (4.0, 2), (0.6, 1)])
-def test_lyapunov_exponents_are_those_of_the_multipliers(eta, period):
-    """From the impacts of a settled response of the FMU: log of the largest multiplier over nT."""
-    seen = lyapunov(PAPER, eta=[eta], transient=3000, periods=2000)
-    told = known(eta, period).exponent.item()
-    assert told == pytest.approx(seen.exponent.item(), rel=5e-3)
 
 
 @pytest.mark.parametrize(
@@ -150,26 +103,6 @@ def test_an_orbit_without_impacts():
     assert found.fmu_return < 1e-10
     decay = np.exp(-0.005 * 2.0 * np.pi / 1.5)
     assert np.abs(multipliers(found)) == pytest.approx([decay] * 4)
-
-
-def test_an_attractor_found_by_simulation_is_the_orbit():
-    """A stable orbit attracts the FMU from rest; an unstable one does not."""
-    with EventInstance(find(OSCILLATOR).path) as instance:
-        settled = stroboscopic(instance, 4.0, [REST], 3000)[0]
-    states = known(4.0, 2).state.values
-    assert np.abs(states - settled).max(axis=1).min() < 1e-12
-
-
-def test_an_unstable_orbit_is_left():
-    found = known(3.0)
-    assert not found.stable
-    with EventInstance(find(OSCILLATOR).path) as instance:
-        state = found.state.values[0] + [0.0, 1e-9, 0.0, 0.0]
-        ends = np.array([stroboscopic(instance, 3.0, [state], n)[0] for n in (2, 4, 40)])
-    away = np.abs(ends - found.state.values[0]).max(axis=1)
-    factor = np.abs(multipliers(found)[0])
-    assert away[1] / away[0] == pytest.approx(factor**2, rel=0.05)
-    assert away[2] > 1e-4
 
 
 @pytest.mark.parametrize("form", ["state", "times", "orbit"])
@@ -200,12 +133,6 @@ def test_the_physical_form_is_the_same_orbit_in_metres():
     assert found.impact_time.item() == pytest.approx(plain.impact_time.item() / 75.0)
     assert found.fmu_return < 1e-13
     assert found.exponent.item() == pytest.approx(plain.exponent.item(), rel=1e-9)
-
-
-def test_a_result_kept_on_disk_is_the_same(tmp_path):
-    first = orbit(PAPER, eta=1.5, store=tmp_path / "orbit.nc")
-    again = orbit(PAPER, eta=1.5, store=tmp_path / "orbit.nc")
-    assert first.identical(again)
 
 
 @pytest.mark.parametrize("guessed", [False, True])

@@ -53,30 +53,12 @@ def test_what_is_undecided_is_run_on():
         assert int(run_on.multiplicity.sel(where)) == n == orbit_of(where, n)
 
 
-def test_a_response_whose_impacts_still_change_is_run_on():
-    """Of 9 small impacts a period, which were told, 7 last."""
-    slow = Structure.nondimensional(mu=1.745243, kappa=2.351081, D1=0.0074778, D2=0.0029072)
-    slow = slow.replace(clearance=-0.0182273)
-    given = {"eta": [4.3113614, 4.5], "e": [0.6487, 0.7], "transient": 300}
-    stopped, run_on = (map(slow, **given, longest=most) for most in (0, 20_000))
-    assert int(stopped.multiplicity_decided[0, 0]) == UNDECIDED
-    assert int(run_on.multiplicity_decided[0, 0]) == REPEATED
-    assert float(run_on.impacts_per_period[0, 0]) == 7.0
-
-
 def orbit_of(where, n):
     """The period of the stable orbit that the response from rest settles to."""
     structure = PAPER.replace(e=where["e"])
     end = sweep(structure, eta=where["eta"], transient=20_000, samples=4).end_state.values[0]
     found = orbit(structure, eta=where["eta"], period=n, guess=end)
     return n if bool(found.stable) and float(found.fmu_return) < 1e-9 else 0
-
-
-def test_impacts_are_counted_over_the_response_s_own_period():
-    structure = Structure.nondimensional(mu=0.879, kappa=1.838, D=0.0194, e=0.372)
-    found = map(structure, eta=[3.26, 3.27], e=[0.371, 0.372], samples=40)  # no multiple of 3
-    assert int(found.multiplicity.sel(eta=3.26, e=0.372)) == 3
-    assert float(found.impacts_per_period.sel(eta=3.26, e=0.372)) == 10.0 / 3.0
 
 
 def test_the_largest_impulse_is_that_of_the_motion(found):

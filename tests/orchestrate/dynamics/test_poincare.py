@@ -103,16 +103,6 @@ def test_a_motion_without_impacts_has_no_section_at_them(exported):
         assert orchestrate.plot(section).axes
 
 
-@pytest.mark.parametrize("at", ["phase", "impacts", "releases"])
-def test_pictures(exported, at):
-    section = orchestrate.poincare(PAPER, eta=0.4, at=at, transient=50, periods=30, **QUIET)
-    (plane,) = orchestrate.plot(section).axes
-    points = sum(len(line.get_xdata()) for line in plane.lines)
-    assert points == section.sizes["point"]
-    low, high = plane.get_ylim()
-    assert high - low >= 0.09 * abs(high + low) / 2.0
-
-
 @pytest.mark.parametrize(
     ("wrong", "named"),
     [

@@ -7,27 +7,19 @@ import pytest
 
 import orchestrate
 from orchestrate import Structure
-from orchestrate.access import OSCILLATOR, EventInstance, begin, find
 from orchestrate.structures import Excitation
+
+from .stroboscopic import assert_multipliers
 
 BOX = {"frequency": 1.2, "amplitude": 1.0}
 SLOWER = Structure(d1=0.02, d2=0.05, m2=1.3, e=0.9, e_slope=0.3)
 IN_SI = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=2.0, e=0.8, e_slope=1.5)
 CASES = [
     (SLOWER, BOX, 1),
-    (SLOWER.replace(clearance=-0.05), BOX, 1),
     (SLOWER, {"frequency": 2.9, "amplitude": 0.7}, 1),
     (IN_SI, {"frequency": 130.0, "amplitude": 2e-3}, 1),
     (Structure(e=0.5, e_slope=0.4), {"frequency": 0.4, "amplitude": 6.25}, 1),  # with a contact
 ]
-
-
-def flown(structure, excitation, state, periods):
-    """State of the FMU after some periods."""
-    with EventInstance(find(OSCILLATOR).path) as instance:
-        begin(instance, structure, excitation, state)
-        instance.advance(0.0, periods * excitation.period)
-        return np.array(instance.get("x1", "x2", "v1", "v2"))
 
 
 @pytest.mark.parametrize(("structure", "box", "period"), CASES)
@@ -38,20 +30,10 @@ def test_the_fmu_runs_through_orbits_and_its_map_has_their_multipliers(structure
     assert found.sizes["node"] >= 1
     constant = orchestrate.orbit(structure.replace(e_slope=0.0), **box, period=period)
     assert abs(found.multipliers - constant.multipliers).max() > 1e-4
-    excitation, state = Excitation(**box), found.state.values[0]
-    scale = np.array([1.0, 1.0, structure.omega, structure.omega]) * box["amplitude"]
-    columns = [
-        flown(structure, excitation, state + step, period)
-        - flown(structure, excitation, state - step, period)
-        for step in 1e-6 * np.diag(scale)
-    ]
-    matrix = np.array(columns).T / scale[:, None] / 2e-6
-    values, expected = np.linalg.eigvals(matrix), found.multipliers.values @ np.array([1.0, 1.0j])
-    order = [np.lexsort((v.imag.round(5), -np.abs(v).round(5))) for v in (values, expected)]
-    assert values[order[0]] == pytest.approx(expected[order[1]], abs=1e-5)
+    assert_multipliers(found, structure, Excitation(**box), period)
 
 
-@pytest.mark.parametrize(("structure", "box", "period"), CASES[:4])
+@pytest.mark.parametrize(("structure", "box", "period"), CASES[:3])
 def test_the_product_of_the_multipliers_is_what_dampers_and_impacts_leave(structure, box, period):
     """By Liouville's formula, and e(v) d(e(v) v)/dv of each impact."""
     found = orchestrate.orbit(structure, **box, period=period)
@@ -62,14 +44,15 @@ def test_the_product_of_the_multipliers_is_what_dampers_and_impacts_leave(struct
     span = period * 2.0 * np.pi / box["frequency"]
     expected = np.prod(parted[0] / speed * rate) * np.exp(-losses * span)
     assert np.prod(found.multipliers.values @ np.array([1.0, 1.0j])) == pytest.approx(expected)
+    assert float(found.multiplier_product) == pytest.approx(expected)
 
 
 def test_a_branch_over_the_slope_ends_where_its_limits_are_and_is_run_through():
     """From e at all speeds on, point by point as the orbits that are computed alone."""
     structure = SLOWER.replace(e_slope=0.0)
-    found = orchestrate.branch(structure, **BOX, over="e_slope", limits=(0.0, 0.5))
+    found = orchestrate.branch(structure, **BOX, over="e_slope", limits=(0.0, 0.2))
     along = found.e_slope.values
-    assert along.min() == 0.0 and along.max() == 0.5
+    assert along.min() == 0.0 and along.max() == 0.2
     for point in (0, len(along) // 2, -1):
         alone = orchestrate.orbit(structure.replace(e_slope=float(along[point])), **BOX)
         found_here = found.isel(point=point)
@@ -91,12 +74,3 @@ def test_impulses_are_the_changes_of_momentum():
     unit = IN_SI.m1 * IN_SI.omega * 2e-3 * (130.0 / IN_SI.omega) ** 2
     largest = float(found.impulse_max.sel(frequency=130.0, e_slope=1.5))
     assert largest == pytest.approx(float(alone.impulse.max()) / unit, rel=1e-6)
-
-
-def test_exponents_are_those_of_the_multipliers():
-    structure = SLOWER.replace(d1=0.1, d2=0.12, e=0.6)
-    orbit = orchestrate.orbit(structure, **BOX)
-    asked = {**BOX, "transient": 100, "periods": 200, "start": orbit.state.values[0]}
-    found = orchestrate.lyapunov(structure, **asked)
-    assert orbit.stable and float(found.impacts_per_period.squeeze()) >= 1.0
-    assert float(found.exponent.squeeze()) == pytest.approx(float(orbit.exponent), abs=2e-3)

@@ -23,7 +23,6 @@ from orchestrate.access import (
 )
 from orchestrate.dynamics.closed_form import ClosedForm
 from orchestrate.dynamics.following import follow_impacts
-from orchestrate.dynamics.lyapunov import decay_rate
 from orchestrate.dynamics.release import contact_durations
 from orchestrate.dynamics.variational import contact_durations_after, monodromy, period_in_tau
 from orchestrate.response.questions import Point
@@ -102,15 +101,6 @@ def test_releases_are_those_of_the_fmu(instances, structure, eta):
         assert touching == [True, release >= ends[stick]]
 
 
-def test_permanent_contact_is_in_the_matrices(instances):
-    _, eventful = instances
-    seen = 0
-    for structure in (ALIKE[0], *UNLIKE):
-        point = Point(structure, Excitation.nondimensional(0.3, structure))
-        seen += follow_impacts(eventful, point, REST, 3).sticks.any()
-    assert seen >= 5
-
-
 @pytest.mark.parametrize("eta", [0.4, 7.4])
 def test_contacts_shorter_than_a_look_are_seen(instances, eta):
     """Pressed together, but the force vanishes long before the next impact."""
@@ -180,12 +170,6 @@ def test_nothing_overflows_in_a_long_flight():
     assert np.isfinite(form.contact(np.array([1e4]))).all()
 
 
-@pytest.mark.parametrize("damping", [0.005, 1.0, 3.0])
-def test_decay_rate_is_that_of_the_matrix(damping):
-    values = np.linalg.eigvals([[0.0, 1.0], [-1.2, -2.0 * damping]])
-    assert decay_rate(damping, 1.2) == pytest.approx(-values.real.max(), rel=1e-12)
-
-
 def test_the_centre_of_mass_is_left_in_contact():
     matrix = form_of(make(mu=3.0)).centre()
     np.testing.assert_allclose(matrix @ matrix, matrix, atol=1e-15)
@@ -201,12 +185,3 @@ def test_the_common_motion_is_that_of_the_flow_matrices(structure):
     states = form.contact(time) @ free + form.steady(phase + form.eta * time, True)
     found = np.stack(form.common_motion(time, np.array(phase), start[0], start[2]), axis=1)
     np.testing.assert_allclose(found, states[:, [0, 2]], atol=1e-14)
-
-
-def test_the_numbers_are_those_of_the_structure():
-    structure = UNLIKE[-1]
-    form = form_of(structure)
-    expected = [structure.D1, structure.D2, structure.D3]
-    assert form.damping.tolist() == pytest.approx(expected, rel=1e-14)
-    squares = [1.0, structure.omega_2**2, structure.omega_3**2]
-    assert form.stiffness.tolist() == pytest.approx(squares, rel=1e-14)

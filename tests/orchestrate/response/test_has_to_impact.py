@@ -54,20 +54,6 @@ def test_without_its_impacts_nothing_is_decided(case):
     assert int(mapped.multiplicity_decided[0, 0]) == UNDECIDED
 
 
-@pytest.mark.parametrize("transient", [404, 408])
-def test_impacts_before_the_periods_that_are_counted_decide_nothing(transient):
-    """Bursts every 430 periods: the last of one are in the samples, none in the period after."""
-    asked, excitation = place_of(*CASES[0])
-    wide = {"transient": transient, "tolerance": 0.2, **QUIET}
-    swept = orchestrate.sweep(OPEN, **asked, samples=60, **wide)
-    assert (int(swept.multiplicity[0]), float(swept.impacts_per_period[0])) == (1, 0.0)
-    assert swept.multiplicity_decided.values.tolist() == [UNDECIDED]
-    axes = {"frequency": [asked["frequency"], 2.0], "amplitude": [excitation.amplitude, 1.0]}
-    mapped = orchestrate.map(OPEN, **axes, longest=0, **wide)
-    assert float(mapped.impacts_per_period[0, 0]) == 0.0
-    assert int(mapped.multiplicity_decided[0, 0]) == UNDECIDED
-
-
 @pytest.mark.parametrize(
     ("numbers", "frequency", "above"),
     [
@@ -107,18 +93,6 @@ def test_below_the_level_all_is_decided_as_before(case):
     assert float(found.impacts[0]) == 0.0 and float(found.exponent[0]) < 0.0
 
 
-def test_a_linear_response_doubles_no_period():
-    """Its transient swings at nearly half the excitation's frequency, within the tolerance."""
-    open_structure = structure_with(0.0598880476, 2.7116176646, 2.7427717642, 0.013, 0.6)
-    open_structure = open_structure.replace(D2=0.0029653560)
-    asked = {"eta": [2.0771284874], "progress": False}
-    early = orchestrate.sweep(open_structure, transient=623, samples=60, **asked)
-    late = orchestrate.sweep(open_structure, transient=5000, samples=60, **asked)
-    assert early.impacts_per_period.values == late.impacts_per_period.values == 0.0
-    assert early.multiplicity_decided.values.tolist() == [UNDECIDED]
-    assert late.multiplicity.values == 1 and late.multiplicity_decided.values == REPEATED
-
-
 @pytest.mark.parametrize("structure", [OPEN, PRESSED])
 def test_the_level_itself_is_not_exceeded(structure):
     for frequency in np.linspace(0.3, 2.0, 40) * structure.omega:
@@ -126,9 +100,3 @@ def test_the_level_itself_is_not_exceeded(structure):
         at = Excitation(frequency=frequency, amplitude=float(level.threshold_amplitude[0]))
         assert not exceeds_threshold(structure, at)
         assert exceeds_threshold(structure, at.replace(amplitude=at.amplitude * (1.0 + 1e-9)))
-
-
-def test_without_a_clearance_no_response_is_said_to_have_to_impact():
-    point = Structure.nondimensional(), Excitation(frequency=1.0, amplitude=1.0)
-    assert not exceeds_threshold(*point)
-    assert not exceeds_threshold(point[0].as_bonded().replace(clearance=-1.0), point[1])

@@ -76,11 +76,6 @@ def test_against_dense_communication_points(structure, eta):
     assert max(errors[2:]) < (0.5 * step if chatters else step**4 / 50)
 
 
-def test_without_the_cubics_it_would_be_coarse():
-    samples = np.abs(np.sin(np.linspace(0.0, 2.0 * np.pi, 21) + 0.1)).max()
-    assert 1.0 - samples > 1e-3  # what 20 samples a period would say
-
-
 def test_crests_of_cubics_are_exact():
     random = np.random.default_rng(1)
     for _ in range(100):

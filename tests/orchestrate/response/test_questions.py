@@ -10,7 +10,6 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from orchestrate.arguments import checked_integer
 from orchestrate.errors import InputError
 from orchestrate.response.questions import checked_point, checked_states, excitation_numbers
 from orchestrate.response.sweep import SweepJob
@@ -65,12 +64,6 @@ def test_both_forms_are_the_same_question(eta, length):
     physical = along(frequency=eta * OWN.omega, amplitude=amplitude)
     assert physical.etas[0] == pytest.approx(eta, rel=1e-15)
     assert physical.points[0].length == pytest.approx(length, rel=1e-14)
-
-
-def test_amplitudes_go_with_their_frequencies():
-    found = along(frequency=[80.0, 90.0], amplitude=[1e-3, 2e-3])
-    pairs = [(p.excitation.frequency, p.excitation.amplitude) for p in found.points]
-    assert pairs == [(80.0, 1e-3), (90.0, 2e-3)]
 
 
 def test_a_parameter_of_the_structure_is_replaced_and_eta_stays():
@@ -138,13 +131,6 @@ def test_a_dataset_is_no_state():
     """It is not printed whole: a message is one line."""
     with pytest.raises(InputError, match="^start = a dataset: expected x1, x2[^\n]*$"):
         checked_states("start", xr.Dataset({"x1": 0.0}), Structure())
-
-
-@pytest.mark.parametrize("given", [0, 1.0, True, None, "7", 10**7])
-def test_whole_numbers(given):
-    with pytest.raises(InputError, match="periods = .*expected a whole number from 1 to"):
-        checked_integer("periods", given, 1)
-    assert checked_integer("periods", np.int64(3), 1) == 3
 
 
 def test_numbers_of_any_kind():

@@ -5,7 +5,6 @@ import pytest
 
 from orchestrate.access import OSCILLATOR, Instance, find
 from orchestrate.errors import FmuError
-from orchestrate.response.multiplicity import library
 from orchestrate.response.questions import Point
 from orchestrate.response.response_loop import (
     CompiledResponseLoop,
@@ -95,7 +94,3 @@ def test_what_the_fmu_refuses_is_its_own_message(instance):
         response_loop(instance).respond(
             [point], [(np.nan, 0.0, 0.0, 0.0)], LoopSettings(transient=5, samples=3)
         )
-
-
-def test_a_library_is_there():
-    assert library() is not None

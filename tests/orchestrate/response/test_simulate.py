@@ -8,7 +8,6 @@ from scipy.integrate import solve_ivp
 
 from orchestrate.errors import InputError
 from orchestrate.response.simulate import simulate
-from orchestrate.response.sweep import sweep
 from orchestrate.structures import Structure
 
 PAPER = Structure.nondimensional()
@@ -146,25 +145,6 @@ def test_communication_points_change_nothing():
     np.testing.assert_array_equal(coarse.impact_time, fine.impact_time)
     for name in ("x1", "v2", "a1", "contact_force"):
         np.testing.assert_allclose(coarse[name], fine[name][::8], rtol=1e-9, atol=1e-12)
-
-
-def test_it_goes_on_where_a_sweep_is():
-    swept = sweep(PAPER, eta=1.13, transient=30, samples=10)
-    motion = simulate(PAPER, eta=1.13, transient=30, periods=10, points=1)
-    np.testing.assert_allclose(motion.x_rel[1:], swept.xi_rel[0], atol=1e-10)
-    assert motion.sizes["time"] == 11
-    assert float(motion.time[0]) == 30 * 2.0 * np.pi / 1.13
-    assert motion.periods_done.values.round(12).tolist() == list(range(30, 41))
-
-
-def test_si_is_the_same_motion_in_other_units():
-    own = simulate(OWN, eta=1.3, periods=5)
-    unit = Structure.nondimensional(mu=OWN.mu, kappa=OWN.kappa, D1=OWN.D1, D2=OWN.D2, e=OWN.e)
-    same = simulate(unit, eta=1.3, periods=5)
-    np.testing.assert_allclose(own.x1, same.x1, atol=1e-10)
-    np.testing.assert_allclose(own.tau, same.time, rtol=1e-14)
-    np.testing.assert_allclose(own.a2, OWN.omega**2 * same.a2, rtol=1e-6, atol=1e-6)
-    np.testing.assert_allclose(own.impulse, OWN.m1 * OWN.omega * same.impulse, rtol=1e-7)
 
 
 @pytest.mark.parametrize(

@@ -46,20 +46,6 @@ def test_lines_of_a_periodic_response(structure, eta):
 
 
 @pytest.mark.usefixtures("exported")
-def test_impulses_are_what_sampled_accelerations_lack():
-    found = spectra(PAPER, eta=1.047, transient=1200, periods=16).acceleration.isel(eta=0)
-    line = found.sel(mass=1, order=20.0)
-    assert line.sel(kind="sampled") < 0.02 * line.sel(kind="delaminated")
-    assert line.sel(kind="bonded") < 1e-6 * line.sel(kind="delaminated")
-
-
-@pytest.mark.usefixtures("exported")
-def test_in_contact_the_contact_force_is_part_of_the_acceleration():
-    sampled = spectra(PAPER, eta=0.4).acceleration.sel(kind="sampled", mass=1, order=5.0)
-    assert float(sampled[0]) == pytest.approx(0.00238, abs=5e-5)
-
-
-@pytest.mark.usefixtures("exported")
 def test_a_bonded_structure_has_one_line():
     structure = Structure.nondimensional(D=0.05)
     found = spectra(structure, eta=[0.5, 1.1], transient=300, periods=8, points=64, highest=20.0)

@@ -90,12 +90,6 @@ def test_a_response_is_what_the_fmu_says_step_by_step():
     assert found.sample.values.tolist() == list(range(21, 51))
 
 
-def test_more_samples_than_the_fmu_keeps_in_a_step():
-    long = sweep(PAPER, eta=1.13, transient=10, samples=450)
-    short = sweep(PAPER, eta=1.13, transient=10, samples=200)
-    np.testing.assert_array_equal(long.xi_rel[:, :200], short.xi_rel)
-
-
 @pytest.mark.parametrize("size", [1, 3])
 def test_chunks_change_no_bit(size):
     etas = np.linspace(1.1, 1.3, 7)
@@ -123,17 +117,6 @@ def test_over_a_parameter_of_the_structure(name, values):
     assert found[name].attrs["units"]
 
 
-def test_over_the_amplitude_all_is_proportional():
-    found = sweep(
-        PAPER, over="amplitude", values=[1.0, 2.0], frequency=1.1, direction="given", **SHORT
-    )
-    rest = sweep(PAPER, frequency=1.1, amplitude=2.0, **SHORT)
-    assert found.sizes["amplitude"] == 2
-    assert found.x1_max.values[1] != found.x1_max.values[0]
-    np.testing.assert_allclose(rest.a1_max, 2.0 * found.a1_max[:1], rtol=1e-12)
-    np.testing.assert_allclose(rest.xi1_max, found.xi1_max[:1], rtol=1e-12)
-
-
 @given(
     st.integers(-8, 8),
     st.integers(-4, 4),
@@ -159,14 +142,6 @@ def test_the_unit_of_mass_and_time_does_not_matter(mass, time, eta, kappa, e):
     np.testing.assert_allclose(two.a1_max, omega**2 * one.a1_max, rtol=1e-12)
 
 
-def test_any_unit_gives_the_same_but_for_rounding():
-    own = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=0.9, e=0.6)
-    unit = Structure.nondimensional(mu=own.mu, kappa=own.kappa, D1=own.D1, D2=own.D2, e=own.e)
-    one, two = (sweep(s, eta=[0.7, 1.6], transient=50, samples=10) for s in (own, unit))
-    np.testing.assert_allclose(one.xi_rel, two.xi_rel, rtol=1e-8)
-    np.testing.assert_allclose(one.end_state, two.end_state, rtol=1e-7)
-
-
 def test_the_physical_form_is_the_same_motion():
     one = sweep(PAPER, eta=1.6, transient=50, samples=10)
     two = sweep(PAPER, frequency=1.6, amplitude=0.02, transient=50, samples=10)
@@ -184,12 +159,6 @@ def test_a_bonded_structure_has_the_linear_amplitude():
         assert a == pytest.approx(abs(1.0 + eta**2 / reach), rel=1e-6)
     assert (found.xi_rel_max == 0.0).all()
     assert found.permanent_contact.values.tolist() == [1, 1, 1]
-
-
-def test_a_mass_that_passes_zero_at_phase_zero_doubles_no_period():
-    found = sweep(Structure.nondimensional(e=0.35), eta=[1.921])  # x2 is 1e-4 of the motion there
-    assert found.multiplicity.values.tolist() == [1]
-    assert found.multiplicity_decided.values.tolist() == [REPEATED]
 
 
 def test_it_is_told_how_the_multiplicity_was_decided():

@@ -44,28 +44,3 @@ def test_answers_through_the_fmu_keep_the_gap(clearance):
     )
     assert motion.sizes["impact"] > 3
     assert touching.any() == (clearance < 0.0)
-
-
-def test_a_sweep_over_the_clearance_goes_on_from_the_last_state():
-    """A preload that just holds, then one that does not: the response is that of the value alone,
-    and a sweep in both directions agrees where nothing is bistable.
-    """
-    structure = Structure(d1=0.4, d2=0.5, e=0.2)
-    values = np.linspace(-0.6, 0.6, 7)
-    found = orchestrate.sweep(
-        structure,
-        **{"over": "clearance", "values": values, "frequency": 0.6, "amplitude": 1.0},
-        **{"direction": "both", "transient": 60, "samples": 8},
-    )
-    up, down = found.sel(direction="up"), found.sel(direction="down")
-    assert up.xi_rel_max.values == pytest.approx(down.xi_rel_max.values, rel=1e-9, abs=1e-12)
-    alone = orchestrate.simulate(
-        structure.replace(clearance=values[4]),
-        frequency=0.6,
-        amplitude=1.0,
-        transient=60,
-        periods=1,
-    )
-    scale = 1.0 * 0.6**2
-    assert float(up.xi_rel_max[4]) == pytest.approx(float(alone.x_rel.max()) / scale, rel=1e-3)
-    assert up.xi_rel_max[0] == 0.0 and up.x1_max[0] > 0.3  # pressed shut, about x1 = -F/k1

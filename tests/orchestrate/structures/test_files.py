@@ -64,11 +64,6 @@ def test_what_is_written_is_read(tmp_path, structure, excitation, drive):
     assert Drive.from_file(path) == drive
 
 
-def test_one_thing_alone(tmp_path):
-    drive = Drive.from_file("beam")
-    assert read(write(tmp_path / "drive.toml", drive=drive)) == {"drive": drive}
-
-
 def test_nothing_is_half_written(tmp_path):
     (tmp_path / "folder").mkdir()
     with pytest.raises(StoreError, match="folder"):
@@ -80,22 +75,6 @@ def test_nothing_is_half_written(tmp_path):
 def test_shipped_sets_to_the_last_bit(name, expected):
     found = read(name)
     assert {key: value.parameters() for key, value in found.items()} == expected
-
-
-def test_the_paper_s_set():
-    assert Structure.from_file("paper") == Structure.nondimensional(1.0, 1.2, 0.005, e=0.7)
-    assert read("paper").keys() == {"structure"}
-
-
-@pytest.mark.parametrize(("name", "damping", "b"), [("quick", 0.02, 0.02), ("beam", 0.005, 0.08)])
-def test_the_numbers_in_the_sets_comments(name, damping, b):
-    structure, drive = Structure.from_file(name), Drive.from_file(name)
-    ratios = (structure.mu, structure.kappa, structure.D1, structure.D2)
-    assert ratios == (1.0, 1.2, damping, damping)
-    assert (drive.Omega_b(structure), drive.D_b(structure)) == (0.1, 0.005)
-    assert math.isclose(drive.beta(structure), 3.0 / 11.0, rel_tol=1e-15)
-    assert math.isclose(drive.epsilon, 1.0 / 1100.0, rel_tol=1e-15)
-    assert math.isclose(drive.b(structure), b, rel_tol=1e-15)
 
 
 def test_resolve(tmp_path):

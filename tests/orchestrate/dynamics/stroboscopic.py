@@ -1,0 +1,27 @@
+"""The FMU's own stroboscopic map, and its derivative by differences: no equation of ours."""
+
+import numpy as np
+
+from orchestrate.access import OSCILLATOR, EventInstance, begin, find
+
+
+def flown(structure, excitation, states, periods=1):
+    """States of the FMU some periods after states at phase 0."""
+    ends = []
+    with EventInstance(find(OSCILLATOR).path) as instance:
+        for state in np.atleast_2d(states):
+            begin(instance, structure, excitation, state)
+            instance.advance(0.0, periods * excitation.period)
+            ends.append(instance.read("x1", "x2", "v1", "v2").copy())
+    return np.array(ends)
+
+
+def assert_multipliers(found, structure, excitation, periods=1, within=1e-5):
+    """An orbit's multipliers are eigenvalues of the map's derivative there."""
+    omega, state = structure.omega, found.state.values[0]
+    scale = np.array([1.0, 1.0, omega, omega]) * excitation.amplitude
+    steps = 1e-6 * np.diag(scale)
+    ends = [flown(structure, excitation, state + sign * steps, periods) for sign in (1.0, -1.0)]
+    seen = np.linalg.eigvals((ends[0] - ends[1]).T / scale[:, None] / 2e-6)
+    for multiplier in found.multipliers.values @ [1.0, 1.0j]:
+        assert np.abs(seen - multiplier).min() < within * max(1.0, np.abs(seen).max())
