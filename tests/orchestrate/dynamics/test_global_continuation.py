@@ -13,7 +13,10 @@ from orchestrate.dynamics.attractors import attractors
 from orchestrate.dynamics.clusters import AttractorSettings
 from orchestrate.dynamics.decision import MotionDecider
 from orchestrate.dynamics.global_continuation import (
+    BY_NEWTON,
+    BY_SIMULATION,
     instance_pair,
+    match_neighbours,
 )
 from orchestrate.outcomes import ORBIT
 from orchestrate.response.questions import Point
