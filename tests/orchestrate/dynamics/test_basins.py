@@ -94,14 +94,6 @@ def test_a_start_at_another_phase_is_run_on_to_phase_zero(phase):
 
 
 @pytest.mark.usefixtures("exported")
-def test_a_plane_over_the_phase_leads_where_its_starts_lead():
-    plane = {"x": ("phase", 0.0, 5.0, 3), "y": ("x_rel", 0.2, 0.9, 3)}
-    found = basin(PAPER, eta=ETA, **plane, at=AT)
-    fixed = basin(PAPER, eta=ETA, phase=2.5, x=("v_rel", -0.4, 0.0, 2), y=plane["y"], at=AT)
-    assert fixed.attractor_of.values[:, 0].tolist() == found.attractor_of.values[:, 1].tolist()
-
-
-@pytest.mark.usefixtures("exported")
 def test_responses_of_a_plane_at_another_phase_are_those_of_its_starts():
     """Labels and states were those of another excitation at any phase but 0."""
     plane = {"x": ("x_rel", 0.0, 1.3, 4), "y": ("v_rel", -1.3, 1.3, 4)}

@@ -232,18 +232,6 @@ def test_the_table_in_the_documentation_is_this(period):
     assert values_own == pytest.approx(values_printed, abs=1.1e-8)
 
 
-@pytest.mark.parametrize("period", PERIODS)
-def test_no_bifurcation_is_missed(period):
-    """The number of multipliers outside the unit circle changes at bifurcations alone."""
-    found = windows(period)
-    outside = (np.hypot(*np.moveaxis(found.multipliers.values, -1, 0)) > 1.0).sum(axis=1)
-    for i in np.flatnonzero(np.diff(outside)):
-        place = found.bifurcation_place.values
-        inside = found.bifurcation_kind.values[(place > i) & (place < i + 1)]
-        steps = [1 if kind == FLIP else 2 for kind in inside]
-        assert abs(np.diff(outside)[i]) <= sum(steps)
-
-
 @pytest.mark.parametrize("longest", ordinary([1.0, 0.2, 0.03]))
 def test_two_bifurcations_of_a_kind_within_a_step_are_found(longest):
     """Two period doublings that damping has all but merged: no step ends between them."""

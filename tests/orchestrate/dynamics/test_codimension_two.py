@@ -55,12 +55,6 @@ def points(period, kind, over, limits):
     return table
 
 
-def polynomial(*multipliers):
-    """D of some multipliers and its slope, as their closed form has them."""
-    coefficients = np.poly(np.array(multipliers))
-    return np.polyval(coefficients, -1.0), np.polyval(np.polyder(coefficients), -1.0)
-
-
 def test_a_resonance_1_3_is_where_the_closed_form_has_it():
     (eta, kappa), at = points(1, "Neimark-Sacker", "kappa", (1.05, 2.2))["resonance 1:3"]
     truth = SingleImpact(eta, 1, kappa=kappa).multipliers
@@ -78,21 +72,6 @@ def test_a_flip_neimark_sacker_point_is_on_both_curves():
     truth = SingleImpact(both[0][0], 1, kappa=both[0][1]).multipliers
     pair = truth[truth.imag > 0.0]
     assert np.abs(truth + 1.0).min() < 1e-8 and abs(np.abs(pair) - 1.0).min() < 1e-8
-
-
-@pytest.mark.slow
-def test_a_resonance_1_2_is_the_end_of_one_curve_and_on_the_other():
-    limits = (0.69, 0.99)
-    both = [
-        points(3, kind, "e", limits)["resonance 1:2"]
-        for kind in ("Neimark-Sacker", "period doubling")
-    ]
-    (eta, e), at = both[0]
-    assert both[0][0] == pytest.approx(both[1][0], abs=1e-9)
-    truth = SingleImpact(eta, 3, e=e).multipliers
-    assert polynomial(*truth) == pytest.approx((0.0, 0.0), abs=1e-8)
-    multipliers = at.codimension_two_multipliers.sel(part="real").values
-    assert (np.abs(multipliers + 1.0) < 1e-4).sum() == 2
 
 
 def test_a_period_doubling_ends_where_a_flight_grazes():

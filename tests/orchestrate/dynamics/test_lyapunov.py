@@ -148,23 +148,6 @@ def test_a_sweep_s_responses_are_followed_on():
         lyapunov(PAPER, eta=etas, start=swept.end_state.values[:2])
 
 
-@pytest.mark.usefixtures("exported")
-def test_units_do_not_matter():
-    own = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=6.0, e=0.6)
-    unit = make(mu=own.mu, kappa=own.kappa, D1=own.D1, D2=own.D2, e=own.e)
-    asked = {"transient": 300, "periods": 200}
-    one, two = (lyapunov(s, eta=1.5, **asked).exponent.item() for s in (own, unit))
-    assert one == pytest.approx(two, rel=1e-6)
-    box = {"frequency": 1.5 * own.omega, "amplitude": 1e-3}
-    assert lyapunov(own, **box, **asked).exponent.item() == pytest.approx(two, rel=1e-6)
-    swept = sweep(own, **box, transient=300, samples=5)
-    on = lyapunov(own, **box, start=swept, transient=0, periods=200)
-    assert on.exponent.item() == pytest.approx(two, rel=1e-3)
-    states = swept.end_state.values * [*(1e-3 * 1.5**2,) * 2, *(1e-3 * 1.5**2 * own.omega,) * 2]
-    same = lyapunov(own, **box, start=states, transient=0, periods=200)
-    assert on.exponent.item() == pytest.approx(same.exponent.item(), rel=1e-9)
-
-
 def test_products_of_matrices():
     matrices = np.random.default_rng(3).normal(size=(23, 4, 4))
     found, logs = scaled_products(matrices, 5)

@@ -44,7 +44,7 @@ def test_one_impact_in_n_periods_is_that_of_the_closed_form(period, eta):
     assert found.fmu_return < 1e-13 * max(1.0, truth.largest)
 
 
-@pytest.mark.parametrize(("eta", "V"), [(1.7, 2.013768092), (2.2, 1.898748738), (2.5, 0.645352178)])
+@pytest.mark.parametrize(("eta", "V"), [(1.7, 2.013768092), (2.5, 0.645352178)])
 def test_a_heavy_stiff_mass_2_is_a_wall(eta, V):
     """The oscillator x'' + x = cos(eta t) with a wall at 0 and restitution 0.8, in closed form."""
     away = []

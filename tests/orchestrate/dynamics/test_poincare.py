@@ -9,8 +9,6 @@ import pytest
 
 import orchestrate
 from orchestrate import InputError, Structure
-from orchestrate.access import OSCILLATOR, STATE, Instance, begin, find
-from orchestrate.structures import Excitation
 
 PAPER = Structure.nondimensional()
 BEAM = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=0.9, e=0.6)
@@ -56,43 +54,6 @@ def test_at_releases_the_masses_part(exported):
     ]
     np.testing.assert_allclose(pull[0], pull[1], atol=1e-12 * float(abs(pull[0]).max()))
     assert float(abs(section.v_rel).max()) < 1e-12 * float(abs(section.v1).max())
-
-
-PRESSED = Structure.nondimensional(mu=1.0, kappa=1.5, D=0.01, e=0.5).replace(clearance=-1.0)
-
-
-@pytest.mark.parametrize("above", [1e-5, 1e-4, 5e-4])
-@pytest.mark.parametrize("frequency", [0.7, 1.4])
-def test_a_contact_that_opens_for_a_moment_is_released(exported, frequency, above):
-    """Just above the level at which it opens, for less than a sample of the contact force."""
-    level = orchestrate.contact_threshold(PRESSED, frequency=frequency).threshold_amplitude
-    box = {"frequency": frequency, "amplitude": float(level[0]) * (1.0 + above)}
-    asked = {**box, "transient": 2000, "periods": 20, **QUIET}
-    impacts = orchestrate.poincare(PRESSED, at="impacts", **asked)
-    section = orchestrate.poincare(PRESSED, at="releases", **asked)
-    begins = impacts.time.values[impacts.sticks.values == 1]
-    assert len(begins) >= 20
-    released = np.searchsorted(section.time.values, begins, side="right")
-    assert released.tolist() == list(range(released[0], released[0] + len(begins)))
-    assert section.sizes["point"] - released[-1] <= 1  # the last contact may outlast the run
-    found = orchestrate.impact_statistics(PRESSED, **asked)
-    assert float(found.contact_share[0]) == pytest.approx(share_of_contact(box), abs=4e-4)
-
-
-def share_of_contact(box, points=5000):
-    """Share of a period at whose points the FMU says the halves touch, within two points."""
-    excitation = Excitation(**box)
-    period = excitation.period
-    with Instance(find(OSCILLATOR).path) as instance:
-        begin(instance, PRESSED, excitation)
-        instance.step(0.0, 2000.0 * period)
-        state = instance.get(*STATE)
-        begin(instance, PRESSED, excitation, state)
-        touching = 0
-        for i in range(points):
-            instance.step(i * period / points, (i + 1) * period / points)
-            touching += bool(instance.get("in_contact")[0])
-    return touching / points
 
 
 def test_a_motion_without_impacts_has_no_section_at_them(exported):

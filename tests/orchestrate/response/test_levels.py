@@ -31,26 +31,6 @@ def test_a_sweep_over_the_level_is_one_over_the_amplitude(exported):
     assert gaps[0] == 0.0 and (gaps[1:] > 0.0).all()  # it opens between the first two
 
 
-def test_a_map_over_frequency_and_level(exported):
-    """A point is the response at that frequency and level."""
-    frequency = np.array([0.98, 1.0]) * HERTZ
-    found = orchestrate.map(
-        PRESSED, frequency=frequency, level=LEVELS, transient=60, samples=8, progress=False
-    )
-    assert found.xi_rel_max.dims == ("frequency", "level")
-    alone = orchestrate.map(
-        PRESSED,
-        frequency=frequency,
-        amplitude=LEVELS[2] / frequency[1] ** 2,
-        e=[0.5, PRESSED.e],
-        transient=60,
-        samples=8,
-        progress=False,
-    )
-    assert float(found.xi_rel_max[1, 2]) == float(alone.xi_rel_max.sel(e=PRESSED.e)[1])
-    assert orchestrate.plot(found).axes[0].get_ylabel() == "peak acceleration of the box in g"
-
-
 @pytest.mark.parametrize("direction", ["up", "both"])
 def test_resonance_at_levels_is_resonance_at_each(exported, direction):
     frequency = math.tau * np.arange(44.0, 52.0, 1.0)

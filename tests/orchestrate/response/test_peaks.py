@@ -16,7 +16,6 @@ from orchestrate.response.peaks import (
 )
 from orchestrate.response.questions import Point
 from orchestrate.response.response_loop import LoopSettings, periods_to_sample, response_loop
-from orchestrate.response.sweep import sweep
 from orchestrate.structures import Excitation, Structure
 
 PAPER = Structure.nondimensional()
@@ -112,21 +111,3 @@ def test_structures_of_a_chunk_do_not_mix():
     together = peaks(points, spans, np.array(orbits))
     for name in PEAKS:
         np.testing.assert_array_equal(together[name], [one[name][0] for one in alone])
-
-
-@pytest.mark.usefixtures("exported")
-@pytest.mark.parametrize(
-    ("clearance", "numbers", "eta"),
-    [
-        (0.339351, {"mu": 1.23, "kappa": 1.74, "D": 0.031, "e": 0.5}, 0.2878),
-        (0.457814, {"mu": 1.618, "kappa": 1.202, "D": 0.006, "e": 0.65}, 0.3336),
-    ],
-)
-def test_grazing_impacts_that_the_samples_do_not_show(clearance, numbers, eta):
-    """The gap just closes, between samples: the motion is nearly the linear one."""
-    structure = Structure.nondimensional(**numbers).replace(clearance=clearance)
-    found = sweep(structure, eta=[eta], transient=300, samples=60, progress=False)
-    amplitude = Excitation.nondimensional(eta, structure).amplitude
-    damping = 2.0j * structure.D1 * eta
-    linear = abs((1.0 + damping) / (1.0 - eta**2 + damping)) * amplitude * eta**2
-    assert found.a1_max.values == pytest.approx(linear, rel=3e-3)

@@ -8,7 +8,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from orchestrate.errors import InputError
-from orchestrate.outcomes import IRREGULAR
 from orchestrate.response.resonance import resonance
 from orchestrate.response.sweep import sweep
 from orchestrate.response.turns_and_jumps import inside_irregular
@@ -54,23 +53,6 @@ def test_where_two_motions_exist_both_jumps_are_told():
     one_way = resonance(Structure(), eta=np.arange(1.2, 1.45, 0.01), transient=400, direction="up")
     assert one_way.direction.values.tolist() == ["up"]
     np.testing.assert_array_equal(one_way.x1_max[:, 0], found.x1_max.sel(direction="up"))
-
-
-def test_maxima_inside_irregular_ranges_are_marked():
-    structure = Structure.nondimensional(mu=0.5, kappa=1.9, D=0.02, e=0.8)
-    found = resonance(structure, eta=np.arange(1.3, 4.6, 0.01), direction="up")
-    curve = found.sel(structure="delaminated", direction="up")
-    irregular = (curve.multiplicity_decided == IRREGULAR).values
-    peaks = found.isel(peak=found.peak_structure.values == "delaminated")
-    there = np.searchsorted(curve.eta.values, peaks.peak_eta.values - 1e-9)
-    marked = peaks.peak_irregular.values == 1
-    assert marked.sum() > 10 and marked[irregular[there]].all()
-    assert np.abs(peaks.peak_eta.values[~marked] - 2.93).min() < 0.011  # inside a window
-    for index in there[~marked]:  # in a range of three responses at least that are no chance
-        assert not irregular[index]
-        near = [irregular[index - k : index - k + 3] for k in range(3)]
-        assert any(not part.any() for part in near)
-    assert not found.peak_irregular[found.peak_structure == "bonded"].any()
 
 
 @given(st.lists(st.booleans(), min_size=1, max_size=40))

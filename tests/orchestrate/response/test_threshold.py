@@ -186,15 +186,3 @@ def test_a_range_without_a_valley_has_its_lowest_threshold_at_an_end():
         orchestrate.contact_threshold(Structure(k2=1.0, clearance=-1.0), frequency=[1.2, 1.3]),
     ):
         assert "lowest_threshold" not in none
-
-
-def test_its_picture_has_hertz_and_g():
-    pressed = Structure.from_halves(m1=1.0, m2=1.2, f1=42.0, f2=55.0, clearance=-2e-5)
-    hertz = np.array([30.0, 40.0, 50.0])
-    found = orchestrate.contact_threshold(pressed, frequency=2.0 * np.pi * hertz)
-    line, lowest = orchestrate.plot(found).axes[0].lines
-    np.testing.assert_allclose(line.get_xdata(), hertz)
-    np.testing.assert_allclose(line.get_ydata(), found.threshold_acceleration / 9.80665)
-    place = float(found.lowest_threshold_frequency) / (2.0 * np.pi)
-    expected = [[place, float(found.lowest_threshold) / 9.80665]]
-    np.testing.assert_allclose(lowest.get_xydata(), expected)

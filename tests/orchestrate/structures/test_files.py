@@ -150,62 +150,6 @@ motor_constant = 0.06
 armature_resistance = 12.0
 """
 BOX = "[box]\nbox_mass = 5.5\nbox_stiffness = 309.375\nbox_damping = 4.125\n"
-WRONG = [
-    ("e = 0.7", ["e = 0.7: outside of a section", "below one of [structure], [excitation]"]),
-    ("[struct]\ne = 0.7", ["struct: no section", "expected one of structure", "mean structure?"]),
-    ("structure = 3", ["structure = 3: expected a section [structure]"]),
-    ("[[structure]]\ne = 0.7", ["structure = [{'e': 0.7}]: expected a section [structure]"]),
-    ("[structure\ne = 1", ["not readable as TOML", "line 1"]),
-    (f"{S}e = 0.7\ne = 0.3\n", ["not readable as TOML", "Cannot overwrite", "line 3"]),
-    (f"{S}e = \nk1 = 1.0", ["not readable as TOML", "line 2"]),
-    (f"{S}e = 0.7\n{S}gamma = 1e-4", ["not readable as TOML", "line 3"]),
-    (f"{S}kapa = 1.2", ["structure.kapa = 1.2: no key", "did you mean kappa?"]),
-    (f"{S}M1 = 1.2", ["structure.M1 = 1.2: no key", "did you mean m1?"]),
-    (f"{S}zebra = 1", ["structure.zebra = 1: no key", "expected one of e, gamma"]),
-    (f"{S}e = 1.2", ["structure.e = 1.2: expected 0 <= e <= 1"]),
-    (f"{S}e = nan", ["structure.e = nan: expected 0 <= e <= 1"]),
-    (f"{S}m1 = inf", ["structure.m1 = inf kg: expected 1e-30 <= m1 <= 1e+30 kg"]),
-    (f"{S}m1 = 0", ["structure.m1 = 0.0 kg: expected"]),
-    (f"{S}d2 = -1e-9", ["structure.d2 = -1e-09 N.s/m: expected 0 <= d2"]),
-    (f'{S}e = "0.7"', ["structure.e = '0.7': expected a number, 0 <= e <= 1"]),
-    (f"{S}e = true", ["structure.e = True: expected a number"]),
-    (f"{S}e = [0.7]", ["structure.e = [0.7]: expected a number"]),
-    (f"{S}e = 2024-01-01", ["structure.e = ", "expected a number"]),
-    (f"{S}e.value = 0.7", ["structure.e = {'value': 0.7}: expected a number"]),
-    (f"{S}bonded = 1", ["structure.bonded = 1: expected true or false"]),
-    (f'{S}bonded = "yes"', ["structure.bonded = 'yes': expected true or false"]),
-    (f"{S}mu = 1.0\nm2 = 1.0", ["structure.mu = 1.0: beside m2", "one kind", "kappa"]),
-    (f"{S}k1 = 1.0\nomega_hz = 1.0", ["structure.omega_hz = 1.0: beside k1", "one kind"]),
-    (f"{S}D = 0.1\nD1 = 0.1", ["structure.D1 = 0.1: beside D", "one kind: D, or D1, D2"]),
-    (f"{S}D1 = 0.1", ["structure.D2: missing", "expected all of D1, D2"]),
-    (f"{S}omega_hz = 1\nomega_rpm = 60", ["structure.omega_rpm = 60: beside omega_hz"]),
-    (f"{S}omega_hz = 0", ["structure.omega_hz = 0.0: expected 1e-30 <= omega_hz"]),
-    (f"{S}omega_hz = 1e20", ["[structure]:", "omega = 6.28", "k1 = 3.9", "expected 1e-30 <= k1"]),
-    (f"{S}mu = 1e20\nD = 1e20", ["[structure]:", "mu = 1e+20", "D = 1e+20", "d2 = 2e+40"]),
-    (f"{X}amplitude = 1", ["[excitation]: expected one of frequency_hz", "eta"]),
-    (f"{X}frequency_hz = 1", ["[excitation]: expected one of amplitude, acceleration_g"]),
-    (f"{X}frequency = 1\namplitude = 1", ["excitation.frequency = 1: no key", "frequency_"]),
-    (f"{X}frequency_hz = 1\neta = 1", ["excitation.eta = 1: beside frequency_hz"]),
-    (f"{X}frequency_hz = -1\namplitude = 1", ["excitation.frequency_hz = -1.0: expected"]),
-    (f"{X}frequency_hz = 1\namplitude = -1", ["excitation.amplitude = -1.0 m: expected 0 <="]),
-    (
-        f"{X}frequency_hz = 1\namplitude = 1\nacceleration_g = 1",
-        ["excitation.acceleration_g = 1: beside amplitude"],
-    ),
-    (f"{X}frequency_hz = 1\nacceleration_g = -1", ["excitation.acceleration_g = -1.0: expected"]),
-    (f"{S}{X}eta = 0", ["excitation.eta = 0.0: expected 1e-06 <= eta <= 1e+06"]),
-    (f"{M}{MOTOR}", ["no section [box]; expected [motor] and [box] together"]),
-    (BOX, ["no section [motor]"]),
-    (f"{M}{BOX}", ["motor.unbalance_mass: missing; expected all of unbalance_mass"]),
-    (f"{M}{MOTOR}[box]\nbox_mass = 1.0", ["box.box_stiffness: missing; expected all of box_mass"]),
-    (f"{M}{MOTOR}[box]\nOmega_b = 1\nD_b = 0", ["[box] beside a SI [motor]: expected box_mass"]),
-    (f"{M}{MOTOR}b = 1\n{BOX}", ["motor.b = 1: beside unbalance_mass", "beta, epsilon, b"]),
-    (f"{M}{MOTOR}mass = 1\n{BOX}", ["motor.mass = 1: no key of [motor]"]),
-    (f"{M}beta = 1\nepsilon = 1\nb = 1\n{BOX}", ["[box] beside a non-dimensional [motor]"]),
-    (f"{M}beta = 1\n[box]\nOmega_b = 1\nD_b = 0", ["motor.epsilon: missing"]),
-]
-
-
 SHEET = """
 [motor]
 rated_voltage = 12.0
@@ -219,6 +163,69 @@ box_mass = 5.5
 box_stiffness = 309.375
 box_damping = 4.125
 """
+HALVES = """
+[structure]
+m1 = 1.5
+m2 = 1.2
+f1_hz = 42.0
+f2_hz = 55.0
+zeta1 = 0.007
+zeta2 = 0.01
+e = 0.6
+"""
+WRONG = [
+    ("e = 0.7", ["e = 0.7: outside of a section", "below one of [structure], [excitation]"]),
+    ("[struct]\ne = 0.7", ["struct: no section", "expected one of structure", "mean structure?"]),
+    ("structure = 3", ["structure = 3: expected a section [structure]"]),
+    ("[[structure]]\ne = 0.7", ["structure = [{'e': 0.7}]: expected a section [structure]"]),
+    ("[structure\ne = 1", ["not readable as TOML", "line 1"]),
+    (f"{S}e = 0.7\ne = 0.3\n", ["not readable as TOML", "Cannot overwrite", "line 3"]),
+    (f"{S}e = \nk1 = 1.0", ["not readable as TOML", "line 2"]),
+    (f"{S}e = 0.7\n{S}gamma = 1e-4", ["not readable as TOML", "line 3"]),
+    (f"{S}kapa = 1.2", ["structure.kapa = 1.2: no key", "did you mean kappa?"]),
+    (f"{S}zebra = 1", ["structure.zebra = 1: no key", "expected one of e, gamma"]),
+    (f"{S}e = 1.2", ["structure.e = 1.2: expected 0 <= e <= 1"]),
+    (f"{S}e = nan", ["structure.e = nan: expected 0 <= e <= 1"]),
+    (f"{S}m1 = inf", ["structure.m1 = inf kg: expected 1e-30 <= m1 <= 1e+30 kg"]),
+    (f"{S}d2 = -1e-9", ["structure.d2 = -1e-09 N.s/m: expected 0 <= d2"]),
+    (f'{S}e = "0.7"', ["structure.e = '0.7': expected a number, 0 <= e <= 1"]),
+    (f"{S}e = true", ["structure.e = True: expected a number"]),
+    (f'{S}bonded = "yes"', ["structure.bonded = 'yes': expected true or false"]),
+    (f"{S}mu = 1.0\nm2 = 1.0", ["structure.mu = 1.0: beside m2", "one kind", "kappa"]),
+    (f"{S}k1 = 1.0\nomega_hz = 1.0", ["structure.omega_hz = 1.0: beside k1", "one kind"]),
+    (f"{S}D = 0.1\nD1 = 0.1", ["structure.D1 = 0.1: beside D", "one kind: D, or D1, D2"]),
+    (f"{S}D1 = 0.1", ["structure.D2: missing", "expected all of D1, D2"]),
+    (f"{S}omega_hz = 1\nomega_rpm = 60", ["structure.omega_rpm = 60: beside omega_hz"]),
+    (f"{S}omega_hz = 1e20", ["[structure]:", "omega = 6.28", "k1 = 3.9", "expected 1e-30 <= k1"]),
+    (f"{S}mu = 1e20\nD = 1e20", ["[structure]:", "mu = 1e+20", "D = 1e+20", "d2 = 2e+40"]),
+    (f"{X}amplitude = 1", ["[excitation]: expected one of frequency_hz", "eta"]),
+    (f"{X}frequency_hz = 1", ["[excitation]: expected one of amplitude, acceleration_g"]),
+    (f"{X}frequency = 1\namplitude = 1", ["excitation.frequency = 1: no key", "frequency_"]),
+    (f"{X}frequency_hz = 1\neta = 1", ["excitation.eta = 1: beside frequency_hz"]),
+    (f"{X}frequency_hz = 1\namplitude = -1", ["excitation.amplitude = -1.0 m: expected 0 <="]),
+    (
+        f"{X}frequency_hz = 1\namplitude = 1\nacceleration_g = 1",
+        ["excitation.acceleration_g = 1: beside amplitude"],
+    ),
+    (f"{S}{X}eta = 0", ["excitation.eta = 0.0: expected 1e-06 <= eta <= 1e+06"]),
+    (f"{M}{MOTOR}", ["no section [box]; expected [motor] and [box] together"]),
+    (BOX, ["no section [motor]"]),
+    (f"{M}{BOX}", ["motor.unbalance_mass: missing; expected all of unbalance_mass"]),
+    (f"{M}{MOTOR}[box]\nbox_mass = 1.0", ["box.box_stiffness: missing; expected all of box_mass"]),
+    (f"{M}{MOTOR}[box]\nOmega_b = 1\nD_b = 0", ["[box] beside a SI [motor]: expected box_mass"]),
+    (f"{M}{MOTOR}b = 1\n{BOX}", ["motor.b = 1: beside unbalance_mass", "beta, epsilon, b"]),
+    (f"{M}beta = 1\nepsilon = 1\nb = 1\n{BOX}", ["[box] beside a non-dimensional [motor]"]),
+    (f"{M}beta = 1\n[box]\nOmega_b = 1\nD_b = 0", ["motor.epsilon: missing"]),
+    (SHEET.format(more="rotor_inertia = 1"), ["[motor]", "expected one of no_load_speed_hz"]),
+    (SHEET.format(more="no_load_speed_rpm = 1"), ["expected one of rotor_inertia, mechanical"]),
+    (
+        SHEET.format(more="no_load_speed_rpm = 1\nrotor_inertia = 1\nmotor_constant = 1"),
+        ["motor.rated_voltage = 12.0", "beside motor_constant"],
+    ),
+    (HALVES.replace("f2_hz = 55.0", ""), ["structure.f2_hz", "missing", "m1, m2, f1_hz, f2_hz"]),
+    (HALVES.replace("f2_hz = 55.0", "k2 = 5.0"), ["structure.k2 = 5.0: beside f1_hz"]),
+    (HALVES.replace("zeta2 = 0.01", "D2 = 0.01"), ["structure.D2 = 0.01: beside f1_hz"]),
+]
 
 
 @pytest.mark.parametrize("speed", ["rad_s = 200.0", "hz = 31.830988618379067"])
@@ -232,64 +239,9 @@ def test_a_motor_by_its_datasheet(file, speed, rotor):
     assert drive.parameters() == pytest.approx(expected, rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("more", "words"),
-    [
-        ("rotor_inertia = 4e-5", ["[motor]", "expected one of no_load_speed_hz"]),
-        ("no_load_speed_rpm = 0\nrotor_inertia = 4e-5", ["no_load_speed_rpm = 0"]),
-        ("no_load_speed_rpm = 1900", ["expected one of rotor_inertia, mechanical_time_constant"]),
-        (
-            "no_load_speed_rpm = 1900\nrotor_inertia = 4e-5\nmotor_constant = 0.06",
-            ["motor.rated_voltage = 12.0", "beside motor_constant"],
-        ),
-        (
-            "no_load_speed_rpm = 1900\nrotor_inertia = 4e-5\nmechanical_time_constant = 0.1",
-            ["mechanical_time_constant = 0.1", "beside rotor_inertia"],
-        ),
-        ("no_load_speed = 200.0", ["no_load_speed = 200.0", "no key", "did you mean"]),
-    ],
-)
-def test_mistakes_in_a_datasheet(file, more, words):
-    with pytest.raises(InputError) as error:
-        read(file(SHEET.format(more=more)))
-    line = str(error.value)
-    assert "\n" not in line and "expected" in line
-    assert all(word in line for word in words), line
-
-
-HALVES = """
-[structure]
-m1 = 1.5
-m2 = 1.2
-f1_hz = 42.0
-f2_hz = 55.0
-zeta1 = 0.007
-zeta2 = 0.01
-e = 0.6
-"""
-
-
 def test_halves_by_frequency_and_damping_ratio(file):
     numbers = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0, "zeta1": 0.007, "zeta2": 0.01}
     assert read(file(HALVES))["structure"] == Structure.from_halves(**numbers, e=0.6)
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "words"),
-    [
-        ("f2_hz = 55.0", "", ["structure.f2_hz", "missing", "m1, m2, f1_hz, f2_hz, zeta1, zeta2"]),
-        ("f2_hz = 55.0", "k2 = 5.0", ["structure.k2 = 5.0", "beside f1_hz", "one kind"]),
-        ("zeta2 = 0.01", "D2 = 0.01", ["structure.D2 = 0.01", "beside f1_hz"]),
-        ("f1_hz = 42.0", "f1 = 42.0", ["structure.f1 = 42.0", "no key", "did you mean f1_hz"]),
-        ("f1_hz = 42.0", "f1_hz = -1", ["structure.f1_hz = -1.0 Hz", "expected 1e-30 <="]),
-    ],
-)
-def test_mistakes_in_halves(file, old, new, words):
-    with pytest.raises(InputError) as error:
-        read(file(HALVES.replace(old, new)))
-    line = str(error.value)
-    assert "\n" not in line and "expected" in line
-    assert all(word in line for word in words), line
 
 
 @pytest.mark.parametrize(("text", "words"), WRONG, ids=[repr(text) for text, _ in WRONG])
@@ -301,13 +253,6 @@ def test_mistakes_are_one_line(file, text, words):
     assert line.startswith(f"{path}: ") and "\n" not in line
     assert "expected" in line
     assert all(word in line for word in words), line
-
-
-def test_bytes_that_are_no_text(tmp_path):
-    path = tmp_path / "bytes.toml"
-    path.write_bytes(b"[structure]\ne = \xff\n")
-    with pytest.raises(InputError, match="bytes.toml: not readable as TOML"):
-        read(path)
 
 
 @pytest.mark.parametrize("kind", [Structure, Excitation, Drive])
