@@ -35,12 +35,11 @@ from .continuation import SOLVER_ERRORS, Root, newton_correct, unit_vector
 from .families import ACCELERATION, Family, Setting, check_parameters, require_delaminated
 from .orbit_point import OrbitPoint
 from .orbit_records import (
-    OrbitRecord,
     branch_dataset,
     located_table,
     located_variables,
+    orbit_row,
     orbit_table,
-    record_with_check,
     split_located,
 )
 from .orbits import FirstGuess, call_from_start, excitation_arguments
@@ -85,8 +84,8 @@ class BorderJob(Question):
         roots = [*reversed(back.points[1:]), *forth.points]
         points = locate_points(curve, roots, (back.end, forth.end))
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            rows = [record_at(instance, curve, root.unknowns, root.residual) for root in roots]
-            at = [record_at(instance, curve, each.unknowns, each.residual) for each in points]
+            rows = [row_at(instance, curve, root.unknowns, root.residual) for root in roots]
+            at = [row_at(instance, curve, each.unknowns, each.residual) for each in points]
         angles = [root.unknowns[-1] if self.kind == TORUS else np.nan for root in roots]
         ends = np.array([back.end, forth.end])
         return {
@@ -140,12 +139,11 @@ def trace_curve(job: BorderJob, curve: BifurcationCurve, start: Root) -> BranchS
     return BifurcationTracer(curve, start, settings).trace(start)
 
 
-def record_at(
+def row_at(
     instance: EventInstance, curve: BifurcationCurve, unknowns: Floats, residual: float
-) -> OrbitRecord:
-    """Return the record of the orbit at a curve's unknowns, checked by a run in the FMU."""
-    without_extra = unknowns[: curve.family.size + 2]
-    return record_with_check(instance, curve.family, without_extra, residual)
+) -> Table:
+    """Return the row of the orbit at a curve's unknowns, checked by a run in the FMU."""
+    return orbit_row(instance, curve.family, unknowns[: curve.family.size + 2], residual)
 
 
 def border(

@@ -25,12 +25,11 @@ from .continuation import SOLVER_ERRORS
 from .families import ACCELERATION, Setting, check_parameters, require_delaminated
 from .orbit_point import OrbitPoint
 from .orbit_records import (
-    OrbitRecord,
     branch_dataset,
     located_table,
     located_variables,
+    orbit_row,
     orbit_table,
-    record_with_check,
     split_located,
 )
 from .orbit_search import solve_orbit
@@ -120,15 +119,11 @@ def branch_table(instance: EventInstance, segments: list[OrbitSegment]) -> Table
     """Return arrays of a branch's orbits and of its bifurcations, each checked by the FMU."""
     points, bifurcations = join_segments(segments)
     ends = [segments[0].end if len(segments) > 1 else "start", segments[-1].end]
-    along = orbit_table([record_of_point(instance, point) for point in points])
-    at = [record_of_point(instance, each.point) for each in bifurcations]
+    every = [*points, *(each.point for each in bifurcations)]
+    rows = [orbit_row(instance, p.family, p.root.unknowns, p.root.residual) for p in every]
+    along, at = orbit_table(rows[: len(points)]), rows[len(points) :]
     located = located_table(BIFURCATION, at, bifurcations)
     return {**along, **located, "ends": np.array(ends)}
-
-
-def record_of_point(instance: EventInstance, point: OrbitPoint) -> OrbitRecord:
-    """Return the record of a branch point's orbit, checked by a run in the FMU."""
-    return record_with_check(instance, point.family, point.root.unknowns, point.root.residual)
 
 
 def join_segments(

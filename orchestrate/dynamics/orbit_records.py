@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,13 +16,12 @@ from ..response.labels import (
     nondimensional_state_coordinate,
     parameter_variable,
     variable,
-    yes_or_no,
 )
 from ..response.questions import Point
 from ..running.job import Table
 from .closed_form import Floats
 from .families import ACCELERATION, Family, Setting
-from .orbit_search import FmuCheck, check_orbit_in_fmu
+from .orbit_search import check_orbit_in_fmu
 from .periodic_orbit import CLOSING, ON_CIRCLE, PHASE, POSITION, RELEASE, VELOCITY
 from .turning_points import (
     Amplitudes,
@@ -38,55 +36,80 @@ if TYPE_CHECKING:
 
 STABILITY = {0: "unstable", 1: "stable", UNDECIDED: "undecided"}
 KINDS = {-1: "none", 0: "impact", 1: "impact_into_contact", 2: "release"}
+NO_YES = {0: "no", 1: "yes"}
 PARTS = np.array(["real", "imaginary"])
+TURNS_AWAY = "smallest gap at which the masses turn away from each other without an impact"
+STATES, NODES, MULTIPLIERS = ("sample", "coordinate"), ("node",), ("multiplier", "part")
+# of each orbit: further dimensions, units, long name; and what flags mean
+VARIABLES: dict[str, tuple[tuple[str, ...], str, str, Mapping[int, str]]] = {
+    "state": (STATES, "SI", "states at phase 0: x1, x2 in m, v1, v2 in m/s", {}),
+    "xi": (STATES, "1", "states at phase 0 (3)", {}),
+    "xi_rel": (("sample",), "1", "gap at phase 0 (21)", {}),
+    "impact_time": (NODES, "s", "impacts after the first phase 0", {}),
+    "impact_velocity": (NODES, "m/s", "their closing speeds", {}),
+    "impacts_per_period": ((), "1", "impacts per excitation period", {}),
+    "permanent_contact": ((), "1", "whether permanent contact occurs", NO_YES),
+    "multipliers": (MULTIPLIERS, "1", "Floquet multipliers, the largest first", {}),
+    "multiplier_product": ((), "1", "their product as dampers and impacts dictate it", {}),
+    "stable": (
+        (),
+        "1",
+        "whether all multipliers lie in the unit circle, with the FMU's own impacts",
+        NO_YES,
+    ),
+    "stability": (
+        (),
+        "1",
+        "stability, undecided where stable by its multipliers with other impacts",
+        STABILITY,
+    ),
+    "exponent": ((), "1", "largest Lyapunov exponent, per unit of tau, from the multipliers", {}),
+    "xi1_max": ((), "1", "largest distance of mass 1 from the box's middle over a eta^2", {}),
+    "xi2_max": ((), "1", "largest distance of mass 2 from the box's middle over a eta^2", {}),
+    "xi_rel_max": ((), "1", "largest gap over a eta^2", {}),
+    "nearest_miss": ((), "1", f"{TURNS_AWAY}; infinite: none", {}),
+    "residual": ((), "1", "what Newton's method leaves of the equations", {}),
+    "fmu_same_impacts": (
+        (),
+        "1",
+        "whether the FMU runs through the same impacts and contacts",
+        NO_YES,
+    ),
+    "fmu_return": (
+        (),
+        "1",
+        "how far from its first state the FMU returns, over a eta^2",
+        {},
+    ),
+    "node_kind": (NODES, "1", "what happens", KINDS),
+    "node_phase": (NODES, "rad", "phase of the box, where it happens", {}),
+    "node_position": (NODES, "1", "displacement of mass 1 there over a eta^2", {}),
+    "node_velocity": (NODES, "1", "velocity of their centre over omega a eta^2", {}),
+    "node_closing": (NODES, "1", "closing speed before the impact over omega a eta^2", {}),
+}
 
 
-@dataclass(frozen=True)
-class OrbitRecord:
-    """All stored numbers of one orbit: nodes, states, multipliers, amplitudes, FMU check."""
-
-    values: Floats  # of the parameters that vary
-    kinds: Floats
-    nodes: Floats  # from phase 0 on
-    zero: Floats  # states at phase 0
-    multipliers: Floats
-    product: float  # of the multipliers, as dampers and impacts dictate it
-    amplitudes: Amplitudes
-    # smallest gap at which the masses turn away from each other without an impact
-    nearest_miss: float
-    residual: float
-    fmu: FmuCheck
-
-    @classmethod
-    def from_root(
-        cls, family: Family, unknowns: Floats, residual: float, fmu: FmuCheck
-    ) -> OrbitRecord:
-        """Return the record of an orbit from Newton's root and its check by the FMU."""
-        orbit = family.orbit(unknowns)
-        turns = turning_points(orbit)
-        nodes, first = rotate_to_phase_zero(orbit.nodes, orbit.sequence.periods)
-        multipliers = orbit.multipliers()
-        return cls(
-            values=unknowns[family.size :],
-            kinds=np.roll(np.array(orbit.sequence.kinds, dtype=int), -first),
-            nodes=nodes,
-            zero=stroboscopic_states(orbit),
-            multipliers=np.stack([multipliers.real, multipliers.imag], axis=1),
-            product=orbit.multiplier_product(),
-            amplitudes=Amplitudes.from_orbit(orbit, turns),
-            nearest_miss=nearest_miss(orbit, turns)[0],
-            residual=residual,
-            fmu=fmu,
-        )
-
-
-def record_with_check(
-    instance: EventInstance, family: Family, unknowns: Floats, residual: float
-) -> OrbitRecord:
-    """Run the FMU through the orbit of a root; return its record with the FMU's check."""
+def orbit_row(instance: EventInstance, family: Family, unknowns: Floats, residual: float) -> Table:
+    """Return all stored numbers of a root's orbit, checked by a run in the FMU."""
     orbit, values = family.orbit(unknowns), unknowns[family.size :]
     check = check_orbit_in_fmu(instance, family.setting, values, orbit)
-    return OrbitRecord.from_root(family, unknowns, residual, check)
+    turns = turning_points(orbit)
+    nodes, first = rotate_to_phase_zero(orbit.nodes, orbit.sequence.periods)
+    multipliers, amplitudes = orbit.multipliers(), Amplitudes.from_orbit(orbit, turns)
+    row = {
+        "values": values,
+        "kinds": np.roll(np.array(orbit.sequence.kinds, dtype=int), -first),
+        "nodes": nodes,  # from phase 0 on
+        "zero": stroboscopic_states(orbit),
+        "multipliers": np.stack([multipliers.real, multipliers.imag], axis=1),
+        "product": orbit.multiplier_product(),
+        "amplitudes": (amplitudes.xi_1, amplitudes.xi_2, amplitudes.gap),
+        "nearest_miss": nearest_miss(orbit, turns)[0],
+        "residual": residual,
+        "same": check.same,
+        "away": check.away,
+    }
+    return {name: np.asarray(number) for name, number in row.items()}
 
 
 def pad_rows(rows: Sequence[Floats], fill: float) -> Floats:
@@ -98,28 +121,17 @@ def pad_rows(rows: Sequence[Floats], fill: float) -> Floats:
     return table
 
 
-def orbit_table(records: Sequence[OrbitRecord]) -> Table:
-    """Return the records of orbits as a dict of arrays, one row per orbit."""
-    return {
-        "values": np.array([r.values for r in records]),
-        "kinds": pad_rows([r.kinds for r in records], -1).astype(int),
-        "nodes": pad_rows([r.nodes for r in records], np.nan),
-        "zero": np.array([r.zero for r in records]),
-        "multipliers": np.array([r.multipliers for r in records]),
-        "product": np.array([r.product for r in records]),
-        "amplitudes": np.array(
-            [(r.amplitudes.xi_1, r.amplitudes.xi_2, r.amplitudes.gap) for r in records]
-        ),
-        "nearest_miss": np.array([r.nearest_miss for r in records]),
-        "residual": np.array([r.residual for r in records]),
-        "same": np.array([r.fmu.same for r in records]),
-        "away": np.array([r.fmu.away for r in records]),
-    }
+def orbit_table(rows: Sequence[Table]) -> Table:
+    """Return the numbers of orbits as a dict of arrays, one row per orbit."""
+    columns = {name: [row[name] for row in rows] for name in rows[0]}
+    padded = {"kinds": pad_rows(columns.pop("kinds"), -1).astype(int)}
+    padded["nodes"] = pad_rows(columns.pop("nodes"), np.nan)
+    return {**padded, **{name: np.array(column) for name, column in columns.items()}}
 
 
-def located_table(prefix: str, records: Sequence[OrbitRecord], located: Sequence[Any]) -> Table:
+def located_table(prefix: str, orbits: Sequence[Table], located: Sequence[Any]) -> Table:
     """Return points located on a branch as arrays: their orbits, kinds and positions."""
-    rows = orbit_table(records) if records else {}
+    rows = orbit_table(orbits) if orbits else {}
     rows["kind"] = np.array([each.kind for each in located], dtype=int)
     rows["place"] = np.array([each.position for each in located], dtype=float)
     return {f"{prefix}_{name}": column for name, column in rows.items()}
@@ -164,17 +176,26 @@ def orbit_coordinates(setting: Setting, table: Table, row: str) -> dict[str, Var
 def orbit_variables(setting: Setting, table: Table, row: str) -> dict[str, Variable]:
     """Return all dataset variables of a table of orbits: states, impacts, stability, checks."""
     points = [setting.point(values) for values in table["values"]]
-    scale = np.array([point.scale for point in points])
     frequency = np.array([point.excitation.frequency for point in points])
     omega = np.array([point.structure.omega for point in points])
     closed = np.array([setting.form(values).rests_in_contact for values in table["values"]])
+    nodes, kinds = table["nodes"], table["kinds"]
+    columns = {
+        **state_columns(table["zero"], points),
+        **impact_columns(table, points, frequency, closed),
+        **stability_columns(table, frequency / omega),
+        **dict(zip(("xi1_max", "xi2_max", "xi_rel_max"), table["amplitudes"].T, strict=True)),
+        **{"nearest_miss": table["nearest_miss"], "residual": table["residual"]},
+        **{"fmu_same_impacts": table["same"], "fmu_return": table["away"]},
+        **{"node_kind": kinds, "node_phase": nodes[..., PHASE]},
+        **{"node_position": nodes[..., POSITION], "node_velocity": nodes[..., VELOCITY]},
+        "node_closing": nodes[..., CLOSING],
+    }
     return {
-        **state_variables(table, points, row),
-        **impact_variables(table, scale, frequency, closed, row),
-        **stability_variables(table, frequency / omega, row),
-        **amplitude_variables(table, row),
-        **check_variables(table, row),
-        **node_variables(table, row),
+        name: flags((row, *dims), columns[name], text, meanings)
+        if meanings
+        else variable((row, *dims), columns[name], units, text)
+        for name, (dims, units, text, meanings) in VARIABLES.items()
     }
 
 
@@ -200,8 +221,7 @@ def located_variables(
     data |= {f"{prefix}_{label}": values[name] for name, label in parameters.items()}
     for name, (dims, column, attributes) in orbit_variables(setting, rows, prefix).items():
         if name in kept:
-            each = (dims,) if isinstance(dims, str) else dims
-            own = tuple(f"{prefix}_node" if dim == "node" else dim for dim in each)
+            own = tuple(f"{prefix}_node" if dim == "node" else dim for dim in dims)
             data[f"{prefix}_{name}"] = own, column, attributes
     return data
 
@@ -217,44 +237,33 @@ def branch_dataset(
     return xr.Dataset(data, attrs=attributes).set_coords(list(names))
 
 
-def state_variables(table: Table, points: Sequence[Point], row: str) -> dict[str, Variable]:
-    """Return dataset variables of the orbits' stroboscopic states at phase 0, SI and xi."""
-    zero, along = table["zero"], (row, "sample", "coordinate")
-    text = "states at phase 0: x1, x2 in m, v1, v2 in m/s"
-    gap, xi = zero[:, :, 1] - zero[:, :, 0], zero.copy()
+def state_columns(zero: Floats, points: Sequence[Point]) -> dict[str, Floats]:
+    """Return the orbits' stroboscopic states at phase 0, SI and xi, and their gap."""
+    xi = zero.copy()
     xi[:, :, 1] -= np.array([[p.structure.gap_offset / p.length] for p in points])
     state = [point.from_faces(faces) for point, faces in zip(points, zero, strict=True)]
-    return {
-        "state": variable(along, np.array(state), "SI", text),
-        "xi": variable(along, xi, "1", "states at phase 0 (3)"),
-        "xi_rel": variable((row, "sample"), gap, "1", "gap at phase 0 (21)"),
-    }
+    return {"state": np.array(state), "xi": xi, "xi_rel": zero[:, :, 1] - zero[:, :, 0]}
 
 
-def impact_variables(
-    table: Table, scale: Floats, frequency: Floats, closed: NDArray[np.bool_], row: str
-) -> dict[str, Variable]:
-    """Return dataset variables of the orbits' impacts: times, speeds, rate; NaN for releases.
+def impact_columns(
+    table: Table, points: Sequence[Point], frequency: Floats, closed: NDArray[np.bool_]
+) -> dict[str, NDArray[Any]]:
+    """Return the orbits' impacts: times, speeds, rate; NaN for releases.
 
     Without any node the masses are in contact all the time where they rest so (``closed``).
     """
-    nodes, along, periods = table["nodes"], (row, "node"), table["zero"].shape[1]
-    there = (table["kinds"] >= 0) & (table["kinds"] != RELEASE)
-    times = np.where(there, nodes[:, :, PHASE] / frequency[:, None], np.nan)
-    speeds = np.where(there, nodes[:, :, CLOSING] * scale[:, 2:3], np.nan)
-    contact = (table["kinds"] == RELEASE).any(axis=1)
-    contact |= closed & (table["kinds"] < 0).all(axis=1)
-    rate = there.sum(axis=1) / periods
+    nodes, kinds, speed = table["nodes"], table["kinds"], np.array([[p.speed] for p in points])
+    there = (kinds >= 0) & (kinds != RELEASE)
     return {
-        "impact_time": variable(along, times, "s", "impacts after the first phase 0"),
-        "impact_velocity": variable(along, speeds, "m/s", "their closing speeds"),
-        "impacts_per_period": variable(row, rate, "1", "impacts per excitation period"),
-        "permanent_contact": yes_or_no(row, contact, "whether permanent contact occurs"),
+        "impact_time": np.where(there, nodes[:, :, PHASE] / frequency[:, None], np.nan),
+        "impact_velocity": np.where(there, nodes[:, :, CLOSING] * speed, np.nan),
+        "impacts_per_period": there.sum(axis=1) / table["zero"].shape[1],
+        "permanent_contact": (kinds == RELEASE).any(axis=1) | (closed & (kinds < 0).all(axis=1)),
     }
 
 
-def stability_variables(table: Table, eta: Floats, row: str) -> dict[str, Variable]:
-    """Return dataset variables of multipliers, their product, stability and exponents.
+def stability_columns(table: Table, eta: Floats) -> dict[str, NDArray[Any]]:
+    """Return the orbits' multipliers, their product, stability and exponents.
 
     Multipliers inside the unit circle decide nothing where the FMU has other impacts.
     """
@@ -263,72 +272,8 @@ def stability_variables(table: Table, eta: Floats, row: str) -> dict[str, Variab
     with np.errstate(divide="ignore"):
         exponent = np.log(size[:, 0]) / time
     inside, same = size[:, 0] < 1.0 - ON_CIRCLE, table["same"]
-    texts = {
-        "multipliers": "Floquet multipliers, the largest first",
-        "multiplier_product": "their product as dampers and impacts dictate it",
-        "stable": "whether all multipliers lie in the unit circle, with the FMU's own impacts",
-        "stability": "stability, undecided where stable by its multipliers with other impacts",
-        "exponent": "largest Lyapunov exponent, per unit of tau, from the multipliers",
-    }
-    along = (row, "multiplier", "part")
-    product = table["product"]
     return {
-        "multipliers": variable(along, multipliers, "1", texts["multipliers"]),
-        "multiplier_product": variable(row, product, "1", texts["multiplier_product"]),
-        "stable": yes_or_no(row, inside & same, texts["stable"]),
-        "stability": flags(
-            row, np.where(inside & ~same, UNDECIDED, inside), texts["stability"], STABILITY
-        ),
-        "exponent": variable(row, exponent, "1", texts["exponent"]),
-    }
-
-
-def amplitude_variables(table: Table, row: str) -> dict[str, Variable]:
-    """Return dataset variables of the largest displacements and gap, and the nearest miss."""
-    texts = {
-        "xi1_max": "largest distance of mass 1 from the box's middle over a eta^2",
-        "xi2_max": "largest distance of mass 2 from the box's middle over a eta^2",
-        "xi_rel_max": "largest gap over a eta^2",
-    }
-    data = {
-        name: variable(row, table["amplitudes"][:, i], "1", text)
-        for i, (name, text) in enumerate(texts.items())
-    }
-    text = "smallest gap at which the masses turn away from each other without an impact"
-    data["nearest_miss"] = variable(row, table["nearest_miss"], "1", f"{text}; infinite: none")
-    return data
-
-
-def check_variables(table: Table, row: str) -> dict[str, Variable]:
-    """Return dataset variables of Newton's residual and of the check by the FMU."""
-    return {
-        "residual": variable(
-            row, table["residual"], "1", "what Newton's method leaves of the equations"
-        ),
-        "fmu_same_impacts": yes_or_no(
-            row, table["same"], "whether the FMU runs through the same impacts and contacts"
-        ),
-        "fmu_return": variable(
-            row, table["away"], "1", "how far from its first state the FMU returns, over a eta^2"
-        ),
-    }
-
-
-def node_variables(table: Table, row: str) -> dict[str, Variable]:
-    """Return dataset variables of the orbits' nodes: kind, phase, position, velocities."""
-    nodes = table["nodes"]
-    along = (row, "node")
-    text = "closing speed before the impact over omega a eta^2"
-    return {
-        "node_kind": flags(along, table["kinds"], "what happens", KINDS),
-        "node_phase": variable(
-            along, nodes[:, :, PHASE], "rad", "phase of the box, where it happens"
-        ),
-        "node_position": variable(
-            along, nodes[:, :, POSITION], "1", "displacement of mass 1 there over a eta^2"
-        ),
-        "node_velocity": variable(
-            along, nodes[:, :, VELOCITY], "1", "velocity of their centre over omega a eta^2"
-        ),
-        "node_closing": variable(along, nodes[:, :, CLOSING], "1", text),
+        **{"multipliers": multipliers, "multiplier_product": table["product"]},
+        **{"stable": inside & same, "stability": np.where(inside & ~same, UNDECIDED, inside)},
+        "exponent": exponent,
     }

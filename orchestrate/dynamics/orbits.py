@@ -24,8 +24,8 @@ from .closed_form import Floats
 from .continuation import SOLVER_ERRORS
 from .families import ACCELERATION, Setting, require_delaminated
 from .guesses import Guess, close_returns, guess_from_phases, guess_from_state
-from .orbit_records import OrbitRecord, orbit_coordinates, orbit_table, orbit_variables
-from .orbit_search import check_orbit_in_fmu, first_possible_orbit, single_impact_guesses
+from .orbit_records import orbit_coordinates, orbit_row, orbit_table, orbit_variables
+from .orbit_search import first_possible_orbit, single_impact_guesses
 from .periodic_orbit import IMPACT, PHASE, RELEASE, ImpactSequence
 
 if TYPE_CHECKING:
@@ -129,12 +129,9 @@ class OrbitJob(SingleOrbitQuestion):
         )
 
 
-def find_orbit(instance: EventInstance, job: OrbitJob) -> OrbitRecord:
-    """Solve for a job's orbit from its guesses, check it in the FMU; return its record, or
-    raise.
-    """
-    setting = job.setting
-    values = job.values
+def find_orbit(instance: EventInstance, job: OrbitJob) -> Table:
+    """Solve for a job's orbit from its guesses, checked in the FMU; return its row, or raise."""
+    setting, values = job.setting, job.values
     try:
         tried = orbit_guesses(instance, job, setting, values)
         family, root = first_possible_orbit(setting, tried, values, stable=job.guess is None)
@@ -143,8 +140,7 @@ def find_orbit(instance: EventInstance, job: OrbitJob) -> OrbitRecord:
         raise InputError(
             f"period = {job.period}: no orbit found ({reason}); expected {expected}"
         ) from None
-    check = check_orbit_in_fmu(instance, setting, values, family.orbit(root.unknowns))
-    return OrbitRecord.from_root(family, root.unknowns, root.residual, check)
+    return orbit_row(instance, family, root.unknowns, root.residual)
 
 
 def orbit_guesses(

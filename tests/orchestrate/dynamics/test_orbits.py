@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from orchestrate.dynamics import orbits
+from orchestrate.dynamics import orbit_records
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.errors import InputError
 from orchestrate.flags import flag_words
@@ -202,9 +202,9 @@ class OneImpactMore:
 @pytest.mark.parametrize(("part", "same"), [(1e-8, True), (1e-4, False)])
 def test_an_impact_that_grazes_by_rounding_decides_nothing(monkeypatch, part, same):
     """Where a flight just grazes, the FMU has an impact there or none by the last bits."""
-    check = orbits.check_orbit_in_fmu
+    check = orbit_records.check_orbit_in_fmu
     monkeypatch.setattr(
-        orbits,
+        orbit_records,
         "check_orbit_in_fmu",
         lambda instance, *rest: check(OneImpactMore(instance, part), *rest),
     )
