@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arguments import checked_word
+from ..arguments import checked_integer, checked_word
 from ..errors import InputError
 from ..structures import Structure
 from ..structures.ranges import ADDED, STRUCTURE, Quantity, plain
@@ -83,8 +83,8 @@ class Sensor:
         rate = 2.56 * self.bandwidth if self.sample_rate is None else self.sample_rate
         put(self, "sample_rate", checked(HERTZ, "sample_rate", rate))
         checked_word("kind", self.kind, FILTERS)
-        put(self, "order", checked_whole("order", self.order, 1, 10))
-        put(self, "seed", checked_whole("seed", self.seed, 0, 2**63))
+        put(self, "order", checked_integer("order", self.order, 1, 10))
+        put(self, "seed", checked_integer("seed", self.seed, 0, 2**63))
         smallest, largest = 5e-324, math.inf
         density = Quantity("noise", "(m/s2)/sqrt(Hz)", "", 0.0, 1e12)
         put(self, "noise", density.check(self.noise))
@@ -139,15 +139,6 @@ class Sensor:
         if self.resolution:
             values = np.round(values / self.resolution) * self.resolution
         return values
-
-
-def checked_whole(name: str, value: object, minimum: int, maximum: int) -> int:
-    """Return a whole number; raise if it is outside its range."""
-    number = plain(value)
-    whole = isinstance(number, (int, np.integer)) and not isinstance(number, bool)
-    if not whole or not minimum <= number <= maximum:
-        raise InputError(f"{name} = {value!r}: expected a whole number of {minimum} to {maximum}")
-    return int(number)
 
 
 def measure(

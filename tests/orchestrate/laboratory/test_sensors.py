@@ -271,7 +271,7 @@ def test_sensors_of_their_own():
     [
         ({"bandwidth": 0.0}, "bandwidth = 0.0 Hz: expected 1e-09 <= bandwidth"),
         ({"bandwidth": math.nan}, "bandwidth = nan"),
-        ({"order": 11}, "order = 11: expected a whole number of 1 to 10"),
+        ({"order": 11}, "order = 11: expected a whole number from 1 to 10"),
         ({"order": 2.5}, "order = 2.5: expected a whole number"),
         ({"kind": "chebyshev"}, "kind = 'chebyshev': expected one of butterworth, bessel"),
         ({"noise": -1.0}, "noise = -1.0 (m/s2)/sqrt(Hz): expected 0 <= noise"),

@@ -21,7 +21,7 @@ RANGES = [(0, 0), (100, 140), (55, 200), (0, 240), (119, 121)]
 
 def sequential(job):
     """The values, one chunk after the other."""
-    return job.work({}, job.items({}), None)["value"]
+    return job.work({}, job.items(), None)["value"]
 
 
 @pytest.fixture
