@@ -131,7 +131,7 @@ def test_a_border_above_the_fold_is_said_to_be(low, flag):
     )
     outcomes = np.array([[Outcome(CONVERGED), Outcome(CONVERGED, True, 5.0, 1.6)]], dtype=float)
     borders = np.array([[low, 1.25, low + 1e-4, 1.6]])
-    found = job.dataset({"outcomes": outcomes, "borders": borders}, {})
+    found = job.dataset({"outcomes": outcomes, "borders": borders})
     assert float(found.fold) == pytest.approx(1.58306, abs=1e-5)
     assert float(found.above_fold) == flag
 

@@ -137,7 +137,7 @@ def test_it_goes_on_with_the_same_bits():
         *QUICK, Ramp(1.4, 1.41, 2e-4, 50.0), Scheme("rollback", 0.4, tolerance=1e-8), 1.25
     )
     fmus = {model: find(model).path for model in (OSCILLATOR, SHAKER)}
-    steps = job.items({})
+    steps = job.items()
     expected, parts, carry = job.work(fmus, steps, None), [], None
     for first in (0, 1, 70, 71, len(steps)):
         begin = sum(len(part) for _, part in parts)
