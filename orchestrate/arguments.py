@@ -18,7 +18,6 @@ from numpy.typing import ArrayLike
 from .errors import InputError
 
 MAX_COUNT = 1_000_000  # periods, samples, values: more is a typing error
-REQUIRES_DELAMINATED = "bonded = True: expected a delaminated structure (bonded = false)"
 CHECK = "check"  # key of a field's check in its metadata
 Numbers = float | tuple[float, ...]
 
@@ -37,14 +36,6 @@ def checked_word(name: str, value: Any, known: Iterable[str]) -> str:
     if value not in words:
         raise InputError(f"{name} = {value!r}: expected one of {', '.join(words)}")
     return str(value)
-
-
-def checked_flag(name: str, value: Any) -> bool:
-    """Return ``value`` as True or False; raise ``InputError`` naming it if it is neither."""
-    flag = value.item() if getattr(value, "shape", None) == () else value
-    if not isinstance(flag, bool):
-        raise InputError(f"{name} = {value!r}: expected true or false")
-    return flag
 
 
 def checked_numbers(

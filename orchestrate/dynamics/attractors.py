@@ -13,7 +13,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..access import OSCILLATOR, REST, EventInstance, Instance, begin, sampled
 from ..arguments import (
-    REQUIRES_DELAMINATED,
     Numbers,
     checked,
     checked_integer,
@@ -25,7 +24,7 @@ from ..arguments import (
 from ..errors import InputError
 from ..outcomes import ABSENT, WORDS
 from ..response.labels import Variable, flags, make_dataset, si_state_coordinate, variable
-from ..response.questions import Point, SeriesQuestion, ask
+from ..response.questions import Point, SeriesQuestion, ask, require_delaminated
 from ..running.job import Table
 from ..structures import Structure
 from .clusters import ABOUT, FEATURES, AttractorSettings, run_until_settled
@@ -81,8 +80,8 @@ class AttractorsJob(SeriesQuestion):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if any(point.structure.bonded for point in self.series.points):
-            raise InputError(REQUIRES_DELAMINATED)
+        for point in self.series.points:
+            require_delaminated(point.structure)
         if isinstance(self.scale, tuple) and len(self.scale) != len(self.series.values):
             raise InputError(
                 f"scale: {len(self.scale)} values for {len(self.series.values)} of "

@@ -12,12 +12,20 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..access import OSCILLATOR, STATE, EventInstance, Instance, begin, finder, gap_between
-from ..arguments import REQUIRES_DELAMINATED, checked_integer
+from ..arguments import checked_integer
 from ..constants import TURN
 from ..errors import InputError
 from ..outcomes import ABSENT
 from ..response.labels import make_dataset, si_state_coordinate, variable
-from ..response.questions import Point, Question, State, ask, checked_point, checked_state
+from ..response.questions import (
+    Point,
+    Question,
+    State,
+    ask,
+    checked_point,
+    checked_state,
+    require_delaminated,
+)
 from ..response.response_loop import stroboscopic_samples
 from ..running.job import Table
 from ..structures import Excitation, Structure
@@ -130,8 +138,7 @@ class BasinJob(Question):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.structure.bonded:
-            raise InputError(REQUIRES_DELAMINATED)
+        require_delaminated(self.structure)
         gaps = gap_between(self.plane().starts()[0], self.structure.gap_offset)
         if not (gaps >= 0.0).any():
             raise InputError(
@@ -316,45 +323,33 @@ def basin(
 class KnownAttractors(NamedTuple):
     """Attractors found beforehand, from which the default plane of starts is laid out."""
 
-    point: Point
-    states: tuple[tuple[float, ...], ...]  # A state on each at phase 0
+    states: tuple[State, ...]  # a state on each at phase 0
     samples: Floats  # states of all of them at phase 0
-    gap: float  # largest gap of their motions, m
+    gap: float  # largest gap of their motions, m, or the unit of length where that is 0
+    frequency: float  # of the box, rad/s
 
     def default_axis(self, name: str) -> PlaneAxis:
         """Return a default axis for gap or gap velocity, twice as wide as the attractors."""
-        gap = self.gap or self.point.length
-        if name == "x_rel":
-            return PlaneAxis(name, 0.0, round_to_two_digits(BEYOND * gap), COUNT)
         rates = np.abs(self.samples[:, 3] - self.samples[:, 2])
-        high = round_to_two_digits(
-            BEYOND * max(float(rates.max()), self.point.excitation.frequency * gap)
-        )
-        return PlaneAxis(name, -high, high, COUNT)
+        largest = {"x_rel": self.gap, "v_rel": max(float(rates.max()), self.frequency * self.gap)}
+        high = float(f"{BEYOND * largest[name]:.1e}")
+        return PlaneAxis(name, 0.0 if name == "x_rel" else -high, high, COUNT)
 
 
 def find_known_attractors(
     point: Point, settings: AttractorSettings, running: Mapping[str, Any]
 ) -> KnownAttractors:
     """Find attractors from a few random starts, to lay the default plane around them."""
-    excitation = {"frequency": point.excitation.frequency, "amplitude": point.excitation.amplitude}
-    kept = {name: value for name, value in running.items() if name in ("fmu", "build_folder")}
-    asked = {name: getattr(settings, name) for name in KEYWORDS}
-    search: Any = {**excitation, **asked, **kept, "jobs": 1, "progress": False}
-    known = attractors(point.structure, starts=SEARCH, **search).isel(frequency=0)
-    states = tuple(map(tuple, known.state.values.tolist()))
-    samples = []
+    structure, excitation = point
+    search: Any = {name: getattr(settings, name) for name in KEYWORDS}
+    search |= {name: running[name] for name in running.keys() & {"fmu", "build_folder"}}
+    search |= {"frequency": excitation.frequency, "amplitude": excitation.amplitude}
+    known = attractors(structure, starts=SEARCH, **search, jobs=1, progress=False).isel(frequency=0)
+    states, samples = tuple(map(tuple, known.state.values.tolist())), []
     with Instance(finder(running)(OSCILLATOR).path) as instance:
         for state, n in zip(states, known.multiplicity.values, strict=True):
             begin(instance, *point, state)
             periods = int(n) or settings.irregular_samples
-            samples.append(
-                stroboscopic_samples(instance, point.excitation.period, 0, periods)[0].copy()
-            )
-    gap = float(known.xi_rel_max.max()) * point.length
-    return KnownAttractors(point, states, np.concatenate(samples), gap)
-
-
-def round_to_two_digits(value: float) -> float:
-    """Round a positive number to two significant digits, for the end of an axis."""
-    return float(f"{value:.1e}")
+            samples.append(stroboscopic_samples(instance, excitation.period, 0, periods)[0].copy())
+    gap = float(known.xi_rel_max.max()) * point.length or point.length
+    return KnownAttractors(states, np.concatenate(samples), gap, excitation.frequency)

@@ -14,7 +14,7 @@ from ..access import OSCILLATOR, EventInstance
 from ..arguments import checked, checked_number, whole
 from ..errors import InputError
 from ..response.labels import variable
-from ..response.questions import EXCITATION_PARAMETERS, Question, ask, checked_structure
+from ..response.questions import EXCITATION_PARAMETERS, Question, ask, require_delaminated
 from ..running.job import Table
 from ..structures import Structure
 from .bifurcation_curve import BifurcationCurve, BifurcationTracer
@@ -32,7 +32,7 @@ from .branches import (
 from .closed_form import Floats
 from .codimension_two import POINT_KINDS, locate_points
 from .continuation import SOLVER_ERRORS, Root, newton_correct, unit_vector
-from .families import ACCELERATION, Family, Setting, check_parameters, require_delaminated
+from .families import ACCELERATION, Family, Setting, check_parameters
 from .orbit_point import OrbitPoint
 from .orbit_records import (
     branch_dataset,
@@ -215,7 +215,7 @@ def border(
     >>> curve.attrs["kind"], curve.e.values[[0, -1]]
     ('Neimark-Sacker', array([0.69, 0.71]))
     """
-    require_delaminated(checked_structure(structure))
+    require_delaminated(structure)
     require_orbit_dataset(start, several=True)
     names = tuple(over)
     check_parameters(names)

@@ -15,14 +15,14 @@ from ..access import OSCILLATOR, EventInstance
 from ..arguments import checked, checked_integer, checked_number, whole
 from ..constants import TURN
 from ..errors import InputError
-from ..response.questions import Question, ask, checked_structure, excitation_numbers
+from ..response.questions import Question, ask, excitation_numbers, require_delaminated
 from ..running.job import Table
 from ..structures import Structure
 from ..structures.ranges import OF_LENGTH
 from .bifurcations import KINDS
 from .branch_switching import leaving_branch
 from .continuation import SOLVER_ERRORS
-from .families import ACCELERATION, Setting, check_parameters, require_delaminated
+from .families import ACCELERATION, Setting, check_parameters
 from .orbit_point import OrbitPoint
 from .orbit_records import (
     branch_dataset,
@@ -216,7 +216,7 @@ def branch(
     array([2.64796105, 2.7855415 ])
     """
     check_parameters((over,))
-    require_delaminated(checked_structure(structure))
+    require_delaminated(structure)
     if start is not None:
         require_orbit_dataset(start, several=switch is not None)
         require_same_parameter(start, over, switch)
@@ -323,17 +323,13 @@ def complete_excitation(
                     "expected over='frequency' where the amplitude matters"
                 )
             wanted = ("frequency", "amplitude")
-        if "eta" in wanted and not OF_OMEGA.isdisjoint(varied) and is_by_frequency(start):
+        asked_by_frequency = "frequency" in str(start.attrs.get("excitation", ""))
+        if "eta" in wanted and not OF_OMEGA.isdisjoint(varied) and asked_by_frequency:
             wanted = ("frequency", "amplitude")
         return tuple((name, float(start[name].values.flat[0])) for name in wanted)
     if over in ("eta", "frequency", "amplitude") and over not in names:
         return (*arguments, (over, limits[0]))
     return arguments
-
-
-def is_by_frequency(start: xr.Dataset) -> bool:
-    """Return whether an orbit or a branch was asked for by the frequency, not by eta."""
-    return "frequency" in str(start.attrs.get("excitation", ""))
 
 
 def find_first_orbit(

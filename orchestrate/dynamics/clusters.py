@@ -69,9 +69,10 @@ def run_until_settled(
     while True:
         response = respond(instance, *point, start, dropped, settings.samples, settings.converged)
         done, start = done + dropped + settings.samples, response.end
-        if response.multiplicity and repeats_first(response, settings):
-            return SettledResponse(response, done)
         nearly = response.repetition(settings.apart * settings.converged)
+        # a deviation that dies while it turns round is smaller after some periods than after one
+        if response.multiplicity and nearly.multiplicity == response.multiplicity:
+            return SettledResponse(response, done)
         if done >= settings.longest:
             break
         before, dropped = nearly, min(done, settings.longest - done)
@@ -82,15 +83,6 @@ def run_until_settled(
         )
     response = respond(instance, *point, start, 0, settings.irregular_samples, settings.converged)
     return SettledResponse(response, done + settings.irregular_samples)
-
-
-def repeats_first(response: Response, settings: AttractorSettings) -> bool:
-    """Return whether the response's period is its least one, also under a looser tolerance.
-
-    A deviation that dies while it turns round is smaller after some periods than after one.
-    """
-    nearly = response.repetition(settings.apart * settings.converged)
-    return nearly.multiplicity == response.multiplicity
 
 
 def irregular_clusters(rows: ArrayLike, settings: AttractorSettings) -> NDArray[np.intp]:

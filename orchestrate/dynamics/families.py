@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..arguments import REQUIRES_DELAMINATED
 from ..errors import InputError
 from ..response.questions import EXCITATION_PARAMETERS, Point, make_point
 from ..structures import PARAMETERS, Structure
@@ -75,13 +74,6 @@ class Setting:
         return ClosedForm.from_structure(*point, self.acceleration(values))
 
 
-def require_delaminated(structure: Structure) -> Structure:
-    """Return the structure unchanged; raise ``InputError`` if it is bonded."""
-    if structure.bonded:
-        raise InputError(REQUIRES_DELAMINATED)
-    return structure
-
-
 def check_parameters(over: tuple[str, ...]) -> None:
     """Raise ``InputError`` unless all names are parameters that can vary."""
     box = (
@@ -106,7 +98,8 @@ class Family:
         """Return the equations, scaled by the nodes of one of their orbits."""
         size = max(float(np.abs(nodes[:, 1:]).max(initial=0.0)), SMALLEST)
         spans = [high - low for low, high in setting.limits]
-        return cls(setting, sequence, np.append(node_scales(size, len(nodes)), spans))
+        each = np.tile([1.0, size, size, size], len(nodes)) * np.sqrt(max(len(nodes), 1))
+        return cls(setting, sequence, np.append(each, spans))
 
     @property
     def size(self) -> int:
@@ -136,11 +129,6 @@ class Family:
             for i, limits in enumerate(self.setting.limits)
         ]
         return np.hstack([self.orbit(unknowns).jacobian().real, *columns])
-
-
-def node_scales(size: float, count: int) -> Floats:
-    """Return the scales of ``count`` nodes' unknowns (phase, position, velocities)."""
-    return np.tile([1.0, size, size, size], count) * np.sqrt(max(count, 1))
 
 
 def central_difference(

@@ -17,13 +17,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..access import Impacts
-from ..arguments import checked, checked_flag, positive, whole
+from ..arguments import checked, positive, whole
 from ..errors import InputError
 from ..response.labels import Variable, flags, make_dataset, variable
 from ..response.questions import Point, ask
 from ..response.threshold import exceeds_threshold
 from ..running.job import Table
 from ..structures import Structure
+from ..structures.ranges import checked_flag
 from .following import FollowedResponse, ImpactsQuestion
 from .lyapunov_spectrum import (
     STATES,

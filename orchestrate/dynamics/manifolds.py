@@ -15,7 +15,7 @@ from ..access import OSCILLATOR, Instance, begin
 from ..arguments import positive, whole
 from ..errors import InputError
 from ..response.labels import flags, make_dataset, nondimensional_state_coordinate, variable
-from ..response.questions import ask, checked_structure
+from ..response.questions import ask, require_delaminated
 from ..running.job import Table
 from ..structures import Structure
 from .branches import acceleration_at_start, complete_excitation, orbit_at, require_orbit_dataset
@@ -31,7 +31,7 @@ from .curve_growth import (
     GrownCurve,
     GrowthSettings,
 )
-from .families import ACCELERATION, require_delaminated
+from .families import ACCELERATION
 from .orbit_records import pad_rows
 from .orbit_search import solve_orbit
 from .orbits import (
@@ -383,7 +383,7 @@ def manifold(
     >>> float(curve.multiplier.round(4)), curve.sizes["side"]
     (-3.3595, 2)
     """
-    require_delaminated(checked_structure(structure))
+    require_delaminated(structure)
     arguments = excitation_arguments(eta, frequency, amplitude)
     if start is not None:
         require_orbit_dataset(start, several=False)

@@ -136,7 +136,9 @@ def first_possible_orbit(
             reason = reason or str(error)
             continue
         orbit = family.orbit(root.unknowns)
-        why = why_no_motion(orbit) or why_shorter_period(orbit, guess[0].periods)
+        why = why_no_motion(orbit)
+        if not why and least_periods(orbit) < guess[0].periods:
+            why = f"the orbit found repeats after {least_periods(orbit)} already"
         if not why and (not stable or orbit.stable):
             return family, root
         unstable = unstable or (None if why else (family, root))
@@ -144,12 +146,6 @@ def first_possible_orbit(
     if unstable:
         return unstable
     raise NoConvergenceError(reason or "there is no impact to begin with")
-
-
-def why_shorter_period(orbit: PeriodicOrbit, periods: int) -> str:
-    """Return a message if an orbit repeats in fewer periods than asked; empty if not."""
-    shorter = least_periods(orbit)
-    return f"the orbit found repeats after {shorter} already" if shorter < periods else ""
 
 
 def single_impact_guesses(form: ClosedForm, periods: int) -> Iterator[Guess]:

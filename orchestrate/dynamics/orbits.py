@@ -17,12 +17,12 @@ from ..arguments import checked, checked_integer, checked_number, checked_number
 from ..constants import TURN
 from ..errors import InputError
 from ..response.labels import make_dataset
-from ..response.questions import Question, ask, checked_point, checked_state
+from ..response.questions import Question, ask, checked_point, checked_state, require_delaminated
 from ..running.job import Table
 from ..structures import Structure
 from .closed_form import Floats
 from .continuation import SOLVER_ERRORS
-from .families import ACCELERATION, Setting, require_delaminated
+from .families import ACCELERATION, Setting
 from .guesses import Guess, close_returns, guess_from_phases, guess_from_state
 from .orbit_records import orbit_coordinates, orbit_row, orbit_table, orbit_variables
 from .orbit_search import first_possible_orbit, single_impact_guesses

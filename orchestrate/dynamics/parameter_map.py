@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..access import OSCILLATOR, EventInstance, Instance
-from ..arguments import Numbers, checked, checked_flag, positive, whole
+from ..arguments import Numbers, checked, positive, whole
 from ..errors import InputError
 from ..outcomes import UNDECIDED
 from ..response.labels import column_variables, flags, make_dataset, parameter_variable
@@ -38,7 +38,7 @@ from ..response.sweep import HOW_DECIDED
 from ..running.job import Table, plain
 from ..running.options import Running, RunOptions
 from ..structures import PARAMETERS, Structure
-from ..structures.ranges import expected_one_of
+from ..structures.ranges import checked_flag, expected_one_of
 from ..structures.structure import ValueListKeywords
 from .clusters import transient_periods
 from .following import follow_impacts

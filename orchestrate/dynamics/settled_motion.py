@@ -70,10 +70,10 @@ class SettledMotion:
 
     def nearest(self, state: ArrayLike) -> tuple[int, float]:
         """Return the period whose state at phase 0 is nearest to a state, and its distance."""
-        return self._scaled_states.nearest(state)
+        return self.scaled_states.nearest(state)
 
     @cached_property
-    def _scaled_states(self) -> ScaledStates:
+    def scaled_states(self) -> ScaledStates:
         """Return the states at phase 0, scaled for comparison with others."""
         return ScaledStates.from_states(self.states, self.point.excitation.frequency, self.gap)
 

@@ -236,6 +236,13 @@ def checked_structure(structure: object) -> Structure:
     return structure
 
 
+def require_delaminated(structure: object) -> Structure:
+    """Return the argument unchanged; raise ``InputError`` unless it is a delaminated structure."""
+    if checked_structure(structure).bonded:
+        raise InputError("bonded = True: expected a delaminated structure (bonded = false)")
+    return structure  # type: ignore[return-value]
+
+
 def excitation_numbers(name: str, value: ArrayLike | None) -> Numbers | None:
     """Return numbers, an excitation's checked for their range; None if not given."""
     quantity = EXCITATION_PARAMETERS.get(name)

@@ -9,17 +9,16 @@ threshold.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arguments import REQUIRES_DELAMINATED
 from ..errors import InputError
 from ..running.job import brief
 from ..structures import Excitation, Structure
 from .labels import Variable, make_dataset, parameter_variable, variable
-from .questions import checked_structure, excitation_numbers
+from .questions import excitation_numbers, require_delaminated
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -66,41 +65,25 @@ def exceeds_threshold(structure: Structure, excitation: Excitation) -> bool:
 
 
 def threshold_variables(structure: Structure, along: str, frequency: Floats) -> dict[str, Variable]:
-    """Return dataset variables of the threshold over frequencies: amplitude, acceleration."""
+    """Return dataset variables of the threshold over frequencies, and of its minimum, if any."""
+    frequency = np.asarray(frequency, dtype=float)
     amplitudes = threshold_amplitudes(structure, frequency)
     event = threshold_event(structure)
-    where = f"at which the structure first {event}"
-    levels = {
-        "threshold_amplitude": (amplitudes, "m", f"amplitude of the box {where}"),
+    where, peak = f"at which the structure first {event}", "peak acceleration"
+    columns: dict[str, tuple[Any, ...]] = {
+        "threshold_amplitude": (along, amplitudes, "m", f"amplitude of the box {where}"),
         "threshold_acceleration": (
-            amplitudes * np.asarray(frequency) ** 2,
-            "m/s2",
-            f"peak acceleration of the box {where}",
+            *(along, amplitudes * frequency**2, "m/s2"),
+            f"{peak} of the box {where}",
         ),
     }
-    variables = {name: variable(along, *attributes) for name, attributes in levels.items()}
-    variables |= lowest_variables(structure, np.asarray(frequency, dtype=float), amplitudes)
-    return {
-        name: (dims, values, {**attributes, "event": event})
-        for name, (dims, values, attributes) in variables.items()
-    }
-
-
-def lowest_variables(
-    structure: Structure, frequency: Floats, amplitudes: Floats
-) -> dict[str, Variable]:
-    """Return dataset variables of the lowest threshold in a range; empty if there is none."""
     low, high = float(frequency.min()), float(frequency.max())
-    if not (low < high and np.isfinite(amplitudes).all() and (amplitudes > 0.0).all()):
-        return {}
-    frequency_at_lowest, level = lowest_threshold(structure, low, high)
-    where = f"at which the structure first {threshold_event(structure)}"
-    return {
-        "lowest_threshold": variable((), level, "m/s2", f"lowest peak acceleration {where}"),
-        "lowest_threshold_frequency": variable(
-            (), frequency_at_lowest, "rad/s", f"frequency of the lowest peak acceleration {where}"
-        ),
-    }
+    if low < high and np.isfinite(amplitudes).all() and (amplitudes > 0.0).all():
+        at, level = lowest_threshold(structure, low, high)
+        text = f"frequency of the lowest {peak} {where}"
+        columns["lowest_threshold"] = (), level, "m/s2", f"lowest {peak} {where}"
+        columns["lowest_threshold_frequency"] = (), at, "rad/s", text
+    return {name: variable(*column, event=event) for name, column in columns.items()}
 
 
 def lowest_threshold(structure: Structure, low: float, high: float) -> tuple[float, float]:
@@ -191,8 +174,7 @@ def contact_threshold(
     >>> level.event, (level.threshold_acceleration / 9.80665).values.round(3)
     ('opens', array([0.209, 0.006]))
     """
-    if checked_structure(structure).bonded:
-        raise InputError(REQUIRES_DELAMINATED)
+    require_delaminated(structure)
     given = {"eta": eta, "frequency": frequency}
     checked = {name: excitation_numbers(name, values) for name, values in given.items()}
     arguments = {name: values for name, values in checked.items() if values is not None}

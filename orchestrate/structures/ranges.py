@@ -64,6 +64,14 @@ def plain(value: Any) -> Any:
     return value.item() if getattr(value, "shape", None) == () else value
 
 
+def checked_flag(name: str, value: Any) -> bool:
+    """Return ``value`` as True or False; raise ``InputError`` naming it if it is neither."""
+    flag = plain(value)
+    if not isinstance(flag, bool):
+        raise InputError(f"{name} = {value!r}: expected true or false")
+    return flag
+
+
 def quantities_of(variables: Iterable[Any], names: Iterable[str]) -> dict[str, Quantity]:
     """Return a dict of quantities for the named variables of an FMU's variable table."""
     known = {variable.name: variable for variable in variables}

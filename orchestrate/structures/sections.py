@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
-from ..arguments import checked_flag
 from ..constants import GRAVITY, TURN
 from ..errors import InputError
 from .drive import Drive
@@ -24,6 +23,7 @@ from .ranges import (
     SMALLEST,
     STRUCTURE,
     Quantity,
+    checked_flag,
     expected_one_of,
 )
 from .shaker import Shaker

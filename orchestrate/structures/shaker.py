@@ -7,11 +7,10 @@ import math
 from dataclasses import dataclass
 from os import PathLike
 
-from ..arguments import checked_flag
 from ..constants import TURN
 from ..errors import InputError
 from .described import Described
-from .ranges import DATASHEET, SHAKER
+from .ranges import DATASHEET, SHAKER, checked_flag
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from os import PathLike
 from typing import TYPE_CHECKING, Any, TypedDict, TypeVar
 
-from ..arguments import checked_flag
 from ..errors import InputError
 from .described import Described
 from .plausible import warn_of_per_cent
@@ -18,6 +17,7 @@ from .ranges import (
     OF_LENGTH,
     RATIO_QUANTITIES,
     STRUCTURE,
+    checked_flag,
     construct_or_explain,
     exact_inverse,
     expected_one_of,

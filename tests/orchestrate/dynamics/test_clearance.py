@@ -80,12 +80,12 @@ def test_branches_over_clearance_and_amplitude():
     and the clearance alike gives the same bifurcations.
     """
     structure = DAMPED.replace(clearance=-0.05)
-    found = orchestrate.branch(structure, **BOX, over="clearance", limits=(-0.2, 0.4))
+    found = orchestrate.branch(structure, **BOX, over="clearance", limits=(-0.2, 0.4), longest=0.1)
     assert found.sizes["point"] > 10 and found.fmu_same_impacts.all()
     assert float(found.residual.max()) < 1e-9
     assert float(found.fmu_return.max()) < 1e-6
     limits = tuple(-0.05 / np.array([-0.2, -0.01]))
-    level = orchestrate.branch(structure, **BOX, over="amplitude", limits=limits)
+    level = orchestrate.branch(structure, **BOX, over="amplitude", limits=limits, longest=0.1)
     ratios = sorted(-0.05 / level.bifurcation_value.values)
     values = [v for v in found.bifurcation_value.values if -0.2 < v < -0.01]
     assert len(values) > 0
@@ -113,6 +113,7 @@ def test_a_border_begins_where_an_open_structure_touches():
         bifurcation=0,
         over=("clearance", "amplitude"),
         limits=[(0.5 * touching, 1.4 * touching), (0.6, 1.3)],
+        longest=0.1,
     )
     assert curve.sizes["point"] > 3
     assert curve.clearance.values / curve.amplitude.values == pytest.approx(touching, rel=1e-8)
@@ -132,7 +133,9 @@ def test_a_border_follows_the_opening_of_a_pressed_structure():
     assert found.bifurcation_value.values == pytest.approx([opening], rel=1e-9)
     names = ("amplitude", "frequency")
     box = [(0.01, 5.0), (0.7, 1.6)]
-    curve = orchestrate.border(pressed, start=found, bifurcation=0, over=names, limits=box)
+    curve = orchestrate.border(
+        pressed, start=found, bifurcation=0, over=names, limits=box, longest=0.1
+    )
     assert curve.attrs["kind"] == found.attrs["last_end"] == "earlier release"
     assert curve.frequency.values[[0, -1]].tolist() == [0.7, 1.6]
     expected = orchestrate.contact_threshold(pressed, frequency=curve.frequency.values)

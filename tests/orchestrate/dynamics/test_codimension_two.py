@@ -43,7 +43,7 @@ def points(period, kind, over, limits):
         bifurcation=numbers[0],
         over=("eta", over),
         limits=[(1.0, 7.0), limits],
-        longest=0.08,
+        longest=0.15,
         **QUIET,
     )
     words = flag_words(found.codimension_two_kind.attrs)

@@ -50,7 +50,7 @@ def test_the_product_of_the_multipliers_is_what_dampers_and_impacts_leave(struct
 def test_a_branch_over_the_slope_ends_where_its_limits_are_and_is_run_through():
     """From e at all speeds on, point by point as the orbits that are computed alone."""
     structure = SLOWER.replace(e_slope=0.0)
-    found = orchestrate.branch(structure, **BOX, over="e_slope", limits=(0.0, 0.2))
+    found = orchestrate.branch(structure, **BOX, over="e_slope", limits=(0.0, 0.2), longest=0.2)
     along = found.e_slope.values
     assert along.min() == 0.0 and along.max() == 0.2
     for point in (0, len(along) // 2, -1):

@@ -53,7 +53,7 @@ def file(tmp_path):
     return put
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=25)
 @given(STRUCTURES, EXCITATIONS, DRIVES)
 def test_what_is_written_is_read(tmp_path, structure, excitation, drive):
     path = tmp_path / "all.toml"
@@ -262,7 +262,7 @@ def test_what_is_not_described(file, kind):
 
 
 @given(st.text(max_size=40))
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=25)
 def test_any_text_is_read_or_refused_in_one_line(file, text):
     path = file("")
     path.write_text(f"[structure]\n{text}", encoding="utf-8", errors="ignore")
