@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from orchestrate.access import OSCILLATOR, REST, find
-from orchestrate.dynamics import attractors as module
 from orchestrate.dynamics.attractors import attractors
 from orchestrate.dynamics.clusters import AttractorSettings
 from orchestrate.dynamics.decision import MotionDecider
@@ -20,7 +19,6 @@ from orchestrate.dynamics.global_continuation import (
 )
 from orchestrate.outcomes import ORBIT
 from orchestrate.response.questions import Point
-from orchestrate.running import runner
 from orchestrate.structures import Excitation, Structure
 
 PAPER = Structure.nondimensional()
@@ -61,35 +59,6 @@ def test_the_order_of_the_values_does_not_matter(line):
     again = attractors(PAPER, eta=line.eta.values[order], starts=8, seed=2)
     assert again.number.values.tolist() == line.number.values[order].tolist()
     np.testing.assert_allclose(again.first_found.values.min(), 1.31)
-
-
-def test_any_number_of_workers_gives_the_same_bytes(monkeypatch, tmp_path):
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
-    asked = {"eta": [1.3, 1.32, 1.34], "starts": 120, "transient": 200}
-    attractors(PAPER, **asked, jobs=1, store=tmp_path / "one.nc")
-    monkeypatch.setattr(runner, "MIN_PARALLEL_SECONDS", 0.0)
-    attractors(PAPER, **asked, jobs=2, store=tmp_path / "two.nc")
-    assert (tmp_path / "one.nc").read_bytes() == (tmp_path / "two.nc").read_bytes()
-
-
-def test_a_run_that_was_interrupted_goes_on_to_the_same_bytes(monkeypatch, tmp_path):
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
-    monkeypatch.setattr(module.AttractorsJob, "chunk_size", 20)
-    asked = {"eta": [1.3, 1.32], "starts": 30, "transient": 200, "jobs": 1}
-    attractors(PAPER, **asked, store=tmp_path / "whole.nc")
-    with monkeypatch.context() as broken:
-        broken.setattr(module, "continue_attractors", interrupted)
-        with pytest.raises(KeyboardInterrupt):
-            attractors(PAPER, **asked, store=tmp_path / "again.nc")
-    calls = []
-    monkeypatch.setattr(module, "starts_in_both_boxes", lambda *_: calls.append(1))
-    attractors(PAPER, **asked, store=tmp_path / "again.nc")
-    assert not calls  # all starts were kept
-    assert (tmp_path / "again.nc").read_bytes() == (tmp_path / "whole.nc").read_bytes()
-
-
-def interrupted(*_):
-    raise KeyboardInterrupt
 
 
 def value(*motions):

@@ -27,7 +27,6 @@ from orchestrate.dynamics.lyapunov import (
     lyapunov,
     min_impacts,
 )
-from orchestrate.dynamics.lyapunov_spectrum import scaled_products
 from orchestrate.dynamics.variational import monodromy, period_in_tau
 from orchestrate.errors import InputError
 from orchestrate.response.questions import Point
@@ -146,13 +145,3 @@ def test_a_sweep_s_responses_are_followed_on():
         lyapunov(PAPER, eta=0.9, start=swept)
     with pytest.raises(InputError, match="2 states; expected one, or one for each of 3"):
         lyapunov(PAPER, eta=etas, start=swept.end_state.values[:2])
-
-
-def test_products_of_matrices():
-    matrices = np.random.default_rng(3).normal(size=(23, 4, 4))
-    found, logs = scaled_products(matrices, 5)
-    for i in range(5):
-        expected = np.eye(4)
-        for matrix in matrices[5 * i : 5 * i + 5]:
-            expected = matrix @ expected
-        np.testing.assert_allclose(found[i] * np.exp(logs[i]), expected, rtol=1e-10, atol=1e-12)

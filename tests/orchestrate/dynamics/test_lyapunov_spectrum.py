@@ -17,7 +17,7 @@ from orchestrate.dynamics.lyapunov_spectrum import (
     kaplan_yorke_dimension,
     lyapunov_spectrum,
 )
-from orchestrate.dynamics.variational import impact_matrices, monodromy, period_in_tau
+from orchestrate.dynamics.variational import impact_matrices, period_in_tau
 from orchestrate.response.questions import Point
 from orchestrate.structures import Excitation, Structure
 
@@ -74,16 +74,6 @@ def test_a_qr_method_gives_the_same(followed):
         sums += np.log(np.abs(np.diag(upper)))
     np.testing.assert_allclose(found.exponents, sums / end, atol=4e-3)
     assert 3.0 < found.dimension < 3.2
-
-
-def test_of_a_periodic_response_they_are_those_of_its_multipliers(followed):
-    impacts, point = followed(make(), 1.047, 1500, 1)
-    multipliers = np.abs(np.linalg.eigvals(monodromy(impacts, point)))
-    long, _ = followed(make(), 1.047, 1500, 600)
-    found = lyapunov_spectrum(long, 600 * period_in_tau(1.047), point, 40, 8)
-    expected = np.sort(np.log(multipliers))[::-1] / period_in_tau(1.047)
-    np.testing.assert_allclose(found.exponents, expected, atol=1e-3)
-    assert found.dimension == 0.0
 
 
 def test_permanent_contact_forgets_the_gap(exported):

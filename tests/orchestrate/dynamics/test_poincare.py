@@ -58,10 +58,8 @@ def test_at_releases_the_masses_part(exported):
 
 def test_a_motion_without_impacts_has_no_section_at_them(exported):
     bonded = PAPER.as_bonded()
-    for at in ("impacts", "releases"):
-        section = orchestrate.poincare(bonded, eta=0.8, at=at, periods=3, transient=3, **QUIET)
-        assert section.sizes["point"] == 0
-        assert orchestrate.plot(section).axes
+    section = orchestrate.poincare(bonded, eta=0.8, at="releases", periods=3, transient=3, **QUIET)
+    assert section.sizes["point"] == 0
 
 
 @pytest.mark.parametrize(

@@ -48,15 +48,6 @@ def test_resonance_at_levels_is_resonance_at_each(exported, direction):
     assert "0.102 g" in [text.get_text() for text in figure.legends[0].get_texts()]
 
 
-def test_without_a_clearance_levels_are_in_proportion(exported):
-    frequency = math.tau * np.arange(46.0, 49.0, 1.0)
-    open_ = PRESSED.replace(clearance=0.0)
-    found = orchestrate.resonance_levels(
-        open_, frequency=frequency, level=[1.0, 4.0], direction="up", **SHORT
-    )
-    np.testing.assert_array_equal(found.x_rel_max[1].values, 4.0 * found.x_rel_max[0].values)
-
-
 @pytest.mark.parametrize(
     ("given", "named"),
     [

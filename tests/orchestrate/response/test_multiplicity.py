@@ -78,14 +78,6 @@ def test_the_earlier_half_does_not_count(orbit, seed):
     assert multiplicity(samples, TOLERANCE) == len(orbit)
 
 
-@pytest.mark.parametrize(("half_life", "expected"), [(3.0, 1), (1000.0, 0)])
-def test_decaying_transient(half_life, expected):
-    # seen from period to period at an irrational angle, so that no n repeats before it has decayed
-    n = np.arange(200)
-    rest = 0.5 ** (n / half_life) * np.cos(2.0 * np.pi * GOLDEN * n)
-    assert multiplicity(four(1.0 + rest, 2.0 - rest), TOLERANCE) == expected
-
-
 @given(st.integers(2, 10))
 def test_nothing_beyond_a_quarter_of_the_samples(n):
     orbit = four(np.arange(1.0, n + 1.0))

@@ -11,6 +11,8 @@ from orchestrate.access import OSCILLATOR, Instance, begin, find
 from orchestrate.figures import plot
 from orchestrate.structures import Excitation
 
+from ...sparing import ordinary
+
 BISECTIONS = 60
 
 
@@ -68,23 +70,14 @@ def bisected(instance, structure, frequency):
     return 0.5 * (low + high)
 
 
-def check(seeds):
+@pytest.mark.parametrize("seed", ordinary(range(50), 6))
+def test_the_fmu_opens_and_touches_at_the_threshold(exported, seed):
+    structure, frequency = structure_and_frequency(seed)
+    level = orchestrate.contact_threshold(structure, frequency=frequency)
     with Instance(find(OSCILLATOR).path) as instance:
-        for seed in seeds:
-            structure, frequency = structure_and_frequency(seed)
-            level = orchestrate.contact_threshold(structure, frequency=frequency)
-            expected = float(level.threshold_amplitude[0])
-            assert bisected(instance, structure, frequency) == pytest.approx(expected, rel=1e-9)
-            assert level.event == ("opens" if structure.clearance < 0.0 else "touches")
-
-
-def test_the_fmu_opens_and_touches_at_the_threshold(exported):
-    check(range(6))
-
-
-@pytest.mark.slow
-def test_the_fmu_opens_and_touches_at_fifty_thresholds(exported):
-    check(range(50))
+        found = bisected(instance, structure, frequency)
+    assert found == pytest.approx(float(level.threshold_amplitude[0]), rel=1e-9)
+    assert level.event == ("opens" if structure.clearance < 0.0 else "touches")
 
 
 def test_forms_units_and_limits():

@@ -5,13 +5,10 @@ import typing
 
 import numpy as np
 import pytest
-import xarray as xr
 
 import orchestrate
 from orchestrate import InputError, Structure
 from orchestrate.cli.grammar import parse_changes
-from orchestrate.cli.options import QUANTITIES
-from orchestrate.figures.labels import symbol, title_from_attributes
 from orchestrate.structures import PARAMETERS, write
 from orchestrate.structures.ranges import ADDED, OF_LENGTH, STRUCTURE
 from orchestrate.structures.structure import LaterKeywords, ValueListKeywords
@@ -83,23 +80,6 @@ def test_an_older_file_without_it_has_its_default(name):
     assert Structure.from_attributes(attributes) == Structure(e=0.4)
     with pytest.raises(KeyError, match="m1"):
         Structure.from_attributes({"e": 0.4})
-
-
-@pytest.mark.parametrize("name", ADDED)
-def test_help_and_axes_describe_it(name):
-    unit = STRUCTURE[name].unit
-    assert f"  {name} " in QUANTITIES and symbol(name).endswith(f" in {unit}")
-    found = orchestrate.sweep(
-        Structure(), over=name, values=[0.1, 0.2], eta=1.1, transient=5, samples=2
-    )
-    assert found[name].attrs["units"] == unit
-    titles = [
-        title_from_attributes(xr.Dataset(attrs=Structure(**{name: value}).parameters()))
-        for value in (0.0, 0.3, 0.6)
-    ]
-    assert len({*titles}) == 3
-    other = xr.Dataset(attrs=Structure(**{name: 0.3}).parameters())
-    assert title_from_attributes(other, [name]) == titles[0]
 
 
 @pytest.mark.parametrize("name", sorted({*ADDED} & {*OF_LENGTH}))

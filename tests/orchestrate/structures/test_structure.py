@@ -23,17 +23,6 @@ def near(value, expected):
     return math.isclose(value, expected, rel_tol=1e-12)
 
 
-@given(STRUCTURES)
-def test_si_to_numbers_and_back(structure):
-    names = ("mu", "kappa", "D1", "D2", "e", "gamma", *ADDED)
-    numbers = {name: structure.get(name) for name in names}
-    scale = {"m1": structure.m1, "omega": structure.omega, "bonded": structure.bonded}
-    back = Structure.nondimensional(**numbers, **scale)
-    for name in STRUCTURE:
-        assert near(getattr(back, name), getattr(structure, name)), name
-    assert back.bonded == structure.bonded
-
-
 @given(NUMBERS, SCALE, SCALE)
 def test_numbers_to_si_and_back_at_any_scale(numbers, m1, omega):
     structure = Structure.nondimensional(**numbers, m1=m1, omega=omega)
@@ -106,11 +95,6 @@ def test_replacing_is_building_anew():
         assert base.replace(mu=mu) == Structure.nondimensional(D=0.013, mu=mu, kappa=1.3)
     for damping in (0.0, 0.02, 0.05):
         assert base.replace(D=damping) == Structure.nondimensional(D=damping, mu=0.7, kappa=1.3)
-
-
-def test_replacing_both_kinds_takes_si_first():
-    after = Structure().replace(m1=2.0, mu=1.5, d2=0.5)
-    assert (after.m1, after.m2, after.d2, after.k1) == (2.0, 3.0, 0.5, 1.0)
 
 
 @pytest.mark.parametrize(
