@@ -1,4 +1,4 @@
-"""Write docs/bifurcation_tables.md: each bifurcation checked by direct simulation.
+"""Write docs/bifurcations.md: each bifurcation checked by direct simulation.
 
     python -m tools.bifurcation_table
 
@@ -207,7 +207,7 @@ def main() -> None:
         label: branch(PAPER, start=orbit(PAPER, eta=eta, period=period), limits=limits)
         for label, (eta, period, limits) in STARTS.items()
     }
-    page = DOCS / "bifurcation_tables.md"
+    page = DOCS / "bifurcations.md"
     text = replace_part(page.read_text("utf-8"), "table", branch_table(answer))
     text = replace_part(text, "windows", window_table())
     write_whole(page, lambda path: path.write_text(text, "utf-8"))
