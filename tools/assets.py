@@ -43,16 +43,20 @@ def table_marks(reference: Reference) -> tuple[str, str]:
 
 
 def variable_table(path: str | PathLike[str]) -> str:
-    """Return an FMU's variables as a Markdown table, from its model description."""
-    lines = ["| name | causality | unit | start | meaning |", "|---|---|---|---|---|"]
-    for v in describe(path).variables.values():
-        if SERIES.search(v.name):
-            continue
-        parameter = v.causality == "parameter"
-        kind = f"parameter, {v.variability}" if parameter else v.causality
-        start = "" if v.start is None else v.start
-        lines.append(f"| `{v.name}` | {kind} | {v.unit or v.type} | {start} | {v.description} |")
-    return "\n".join(lines) + "\n"
+    """Return an FMU's variables as Markdown tables by causality, from its model description."""
+    variables = [v for v in describe(path).variables.values() if not SERIES.search(v.name)]
+    lines = []
+    for causality in dict.fromkeys(v.causality for v in variables):
+        lines += [f"**{causality.capitalize()}**", ""]
+        lines += ["| name | unit | start | meaning |", "|---|---|---|---|"]
+        for v in variables:
+            if v.causality == causality:
+                start = "" if v.start is None else v.start
+                tunable = " (tunable)" if v.variability == "tunable" else ""
+                name = f"`{v.name}`{tunable}"
+                lines.append(f"| {name} | {v.unit or v.type} | {start} | {v.description} |")
+        lines.append("")
+    return "\n".join(lines[:-1]) + "\n"
 
 
 def replace_table(page: str, reference: Reference, table: str) -> str:

@@ -47,21 +47,31 @@ def escape_cell(text: str) -> str:
 
 
 def claim_table(rows: Sequence[Mapping[str, str]]) -> list[str]:
-    """Return the Markdown table of all claims with their verdicts."""
-    names = ("section", "text", "printed", "found")
-    lines = ["| section | the paper | its value | found | |", "|---|---|---|---|---|"]
-    for row in rows:
-        cells = [escape_cell(row[name]) for name in names]
-        lines.append(f"| {' | '.join(cells)} | {WORDS[row['verdict']]} |")
-    return lines
+    """Return Markdown tables, one for each section, of all claims with their verdicts."""
+    lines = []
+    for section in dict.fromkeys(row["section"] for row in rows):
+        lines += [f"Section {section}:", "", "| the paper | its value | computed | |"]
+        lines.append("|---|---|---|---|")
+        for row in rows:
+            if row["section"] == section:
+                cells = [escape_cell(row[name]) for name in ("text", "printed", "found")]
+                lines.append(f"| {' | '.join(cells)} | {WORDS[row['verdict']]} |")
+        lines.append("")
+    return lines[:-1]
 
 
 def region_table(rows: Sequence[Mapping[str, str]]) -> list[str]:
-    """Return the Markdown table of frequency regions."""
-    names = ("case", "region", "count", "chaotic", "neutral", "largest")
-    heads = ("case", "from, to", "frequencies", "chaotic", "neutral", "largest exponent")
-    lines = [f"| {' | '.join(heads)} |", f"|{'---|' * len(heads)}"]
-    return lines + [f"| {' | '.join(row[name] for name in names)} |" for row in rows]
+    """Return Markdown tables, one for each case, of the regions with irregular responses."""
+    names = ("region", "count", "chaotic", "neutral", "largest")
+    heads = ("from, to", "frequencies", "chaotic", "neutral", "largest exponent")
+    lines = []
+    for case in dict.fromkeys(row["case"] for row in rows):
+        lines += [f"{case}:", "", f"| {' | '.join(heads)} |", f"|{'---|' * len(heads)}"]
+        for row in rows:
+            if row["case"] == case and (row["chaotic"], row["neutral"]) != ("0 %", "0 %"):
+                lines.append(f"| {' | '.join(row[name] for name in names)} |")
+        lines.append("")
+    return lines[:-1]
 
 
 def fill_page(text: str, found: Mapping[str, Any]) -> str:
