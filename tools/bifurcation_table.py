@@ -18,7 +18,7 @@ from orchestrate.access import OSCILLATOR, EventInstance, begin, find
 from orchestrate.dynamics.borders import border
 from orchestrate.dynamics.branches import branch
 from orchestrate.dynamics.orbits import orbit
-from orchestrate.dynamics.stable_windows import StableWindow, kind_names, stable_windows
+from orchestrate.dynamics.stable_windows import kind_names
 from orchestrate.errors import InputError
 from orchestrate.figures import borders as borders_figure
 from orchestrate.figures import orbit_diagram
@@ -46,17 +46,6 @@ NUDGE = 1e-7  # of a state, over a eta^2
 FARTHEST = 2e-3  # from a bifurcation, in eta,
 NEAREST = 1e-5  # and from the loss of contact
 GROWTH = 5.0  # a deviation that is this much larger or smaller has grown or died
-CASES = {"section 3": PAPER, "4.1": PAPER.replace(D=0.05), "4.2": PAPER.replace(e=0.3)}
-WINDOWS = {  # the same branches, where all three cases have orbits on them
-    "T, contact": (0.4, 1, (0.3, 1.3)),
-    "T/2": (1.06, 1, (0.42, 1.37)),
-    "T/1": (1.6, 1, (0.9, 9.5)),
-    "2T/1": (4.2, 2, (1.37, 9.5)),
-    "3T/1": (6.3, 3, (1.37, 9.5)),
-    "4T/1": (8.3, 4, (1.37, 9.5)),
-}
-
-
 NODES = ("node_kind", "node_phase", "node_position", "node_velocity", "node_closing")
 
 
@@ -176,28 +165,6 @@ def border_curves(answer: dict[str, xr.Dataset]) -> list[xr.Dataset]:
     return curves
 
 
-def window_row(case: str, label: str, window: StableWindow) -> str:
-    """Return a row of the table of windows; digits depend on the kind of limit."""
-    ends = [
-        f"{value:g}, limit"
-        if kind == "limit"
-        else f"{value:.{6 if 'contact' in kind else 8}f}, {kind}"
-        for value, kind in ((window.low, window.below), (window.high, window.above))
-    ]
-    return f"| {case} | {label} | {ends[0]} | {ends[1]} |"
-
-
-def window_table() -> list[str]:
-    """Return the Markdown table of stable windows of the paper's three cases."""
-    lines = ["| case | orbit | stable from | to |", "|---|---|---|---|"]
-    for case, structure in CASES.items():
-        for label, (eta, period, limits) in WINDOWS.items():
-            start = orbit(structure, eta=eta, period=period)
-            answer = branch(structure, start=start, limits=limits)
-            lines += [window_row(case, label, window) for window in stable_windows(answer)]
-    return lines
-
-
 def main() -> None:
     """Compute the branches; write the tables and pictures of their bifurcations."""
     answer = {
@@ -206,7 +173,6 @@ def main() -> None:
     }
     page = DOCS / "bifurcations.md"
     text = replace_part(page.read_text("utf-8"), "table", branch_table(answer))
-    text = replace_part(text, "windows", window_table())
     write_whole(page, lambda path: path.write_text(text, "utf-8"))
     responses = sweep(PAPER, eta=FIGURE_6)
     save_small(orbit_diagram.draw(responses, overlay=list(answer.values())), DOCS / "branches.png")
