@@ -47,14 +47,16 @@ def variable_table(path: str | PathLike[str]) -> str:
     variables = [v for v in describe(path).variables.values() if not SERIES.search(v.name)]
     lines = []
     for causality in dict.fromkeys(v.causality for v in variables):
-        lines += [f"**{causality.capitalize()}**", ""]
-        lines += ["| name | unit | start | meaning |", "|---|---|---|---|"]
-        for v in variables:
-            if v.causality == causality:
-                start = "" if v.start is None else v.start
-                tunable = " (tunable)" if v.variability == "tunable" else ""
-                name = f"`{v.name}`{tunable}"
-                lines.append(f"| {name} | {v.unit or v.type} | {start} | {v.description} |")
+        rows = [v for v in variables if v.causality == causality]
+        with_start = any(v.start is not None for v in rows)
+        heads = ["name", "unit", *["start"] * with_start, "meaning"]
+        lines += [f"**{causality.capitalize()}**", "", f"| {' | '.join(heads)} |"]
+        lines.append(f"|{'---|' * len(heads)}")
+        for v in rows:
+            tunable = " (tunable)" if v.variability == "tunable" else ""
+            start = ["" if v.start is None else str(v.start)] * with_start
+            cells = [f"`{v.name}`{tunable}", v.unit or v.type, *start, v.description]
+            lines.append(f"| {' | '.join(cells)} |")
         lines.append("")
     return "\n".join(lines[:-1]) + "\n"
 
