@@ -35,11 +35,12 @@ def count_verdicts(rows: Sequence[Mapping[str, str]]) -> list[str]:
 
 def section_table(rows: Sequence[Mapping[str, str]]) -> list[str]:
     """Return a Markdown table of counts of verdicts by section."""
-    heads = [*WORDS.values()]
-    lines = [f"| section | {' | '.join(heads)} |", f"|{'---|' * (1 + len(heads))}"]
+    words = [word for word in WORDS if any(row["verdict"] == word for row in rows)]
+    lines = [f"| section | {' | '.join(WORDS[word] for word in words)} |"]
+    lines.append(f"|{'---|' * (1 + len(words))}")
     for section in dict.fromkeys(row["section"] for row in rows):
         own = [row["verdict"] for row in rows if row["section"] == section]
-        lines.append(f"| {section} | {' | '.join(str(own.count(word)) for word in WORDS)} |")
+        lines.append(f"| {section} | {' | '.join(str(own.count(word)) for word in words)} |")
     return lines
 
 
