@@ -59,8 +59,6 @@ class Response:
         (n, decided), mean = decision, self.impacts_per_period
         if decided != REPEATED:
             return decision, mean
-        if self.lacks_impacts(mean, n):
-            return Decision(n, UNDECIDED), mean
         impacts = count(n)
         if self.lacks_impacts(impacts, n) or not self.repeats(impacts, n):
             decided = UNDECIDED
