@@ -37,11 +37,6 @@ class BoxEntropies(NamedTuple):
         return self.entropies[self.entropies > 0.0]
 
     @property
-    def boundary_mean(self) -> float:
-        """Boundary basin entropy: mean entropy over boxes with several attractors, or NaN."""
-        return float(self.on_boundary.mean()) if self.on_boundary.size else math.nan
-
-    @property
     def uncertain_fraction(self) -> float:
         """Share of boxes whose starts lead to more than one attractor."""
         return self.on_boundary.size / self.entropies.size
@@ -60,12 +55,6 @@ def box_entropies(labels: Labels, size: int) -> BoxEntropies:
     shares = np.stack([(boxes == label).mean(axis=1) for label in range(max(1, labels.max() + 1))])
     terms = np.where(shares > 0.0, -shares * np.log(np.where(shares > 0.0, shares, 1.0)), 0.0)
     return BoxEntropies(np.asarray(terms.sum(axis=0)))
-
-
-def box_sizes(labels: Labels) -> list[int]:
-    """Return box sizes, powers of two, for which a plane of labels has enough boxes a side."""
-    longest = min(labels.shape) // LEAST_BOXES
-    return [2**power for power in range(1, longest.bit_length()) if 2**power <= longest]
 
 
 def uncertainty_exponent(sizes: Floats, fractions: Floats) -> tuple[float, float]:
@@ -131,13 +120,14 @@ def basin_entropy(basins: xr.Dataset, *, box: int = 5) -> xr.Dataset:
     entropies = box_entropies(labels, size)
     if not entropies.entropies.size:
         raise InputError(f"box = {size}: the masses overlap in each box; expected a smaller one")
-    sizes = np.array(box_sizes(labels))
+    longest = min(labels.shape) // LEAST_BOXES
+    sizes = 2 ** np.arange(1, longest.bit_length())
     fractions = np.array([box_entropies(labels, each).uncertain_fraction for each in sizes])
     exponent, error = uncertainty_exponent(sizes - 1.0, fractions)  # sides from start to start
     texts = {
         "basin_entropy": (entropies.mean, "mean entropy of boxes of starts"),
         "boundary_basin_entropy": (
-            entropies.boundary_mean,
+            float(inside.mean()) if (inside := entropies.on_boundary).size else math.nan,
             "mean entropy of boxes with more than one attractor",
         ),
         "uncertainty_exponent": (exponent, "exponent of the uncertain fraction over the box size"),

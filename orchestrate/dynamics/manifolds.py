@@ -232,7 +232,11 @@ class ManifoldJob(SingleOrbitQuestion):
 
 def curves_table(curves: Sequence[GrownCurve], saddle: Saddle) -> Table:
     """Return both sides' points, breaks and ends as arrays, padded with NaN to equal length."""
-    sides = [curve_rows(curve) for curve in curves]
+    sides = []
+    for curve in curves:  # state, arclength and s of each point, a row of NaN at each break
+        states, numbers = zip(*((point.state, point.s) for point in curve.points), strict=True)
+        rows = np.column_stack([np.array(states), curve.arclength, np.array(numbers)])
+        sides.append(np.insert(rows, list(curve.breaks), np.nan, axis=0))
     breaks = [
         [side, change.low.s, curve.arclength[number], change.distance, change.power]
         + [float(b - a) for a, b in zip(change.low.itinerary, change.high.itinerary, strict=True)]
@@ -247,14 +251,6 @@ def curves_table(curves: Sequence[GrownCurve], saddle: Saddle) -> Table:
         "multiplier": np.array([saddle.multiplier]),
         "size": np.array([saddle.size]),
     }
-
-
-def curve_rows(curve: GrownCurve) -> Floats:
-    """Return rows of state, arclength and parameter s by point, a row of NaN at each break."""
-    numbers = np.array([point.s for point in curve.points])
-    states = np.array([point.state for point in curve.points])
-    rows = np.column_stack([states, curve.arclength, numbers])
-    return np.insert(rows, list(curve.breaks), np.nan, axis=0)
 
 
 def curve_variables(table: Table, point: Any) -> dict[str, Any]:

@@ -56,10 +56,6 @@ class BoxMotion(NamedTuple):
     frequency: Floats
     amplitude: Floats
 
-    def forcing_at(self, angle: Floats) -> tuple[Floats, Floats]:
-        """Return the inertial forcing (minus box acceleration) and its rate, at phases in rad."""
-        return self.forcing(np.sin(angle), np.cos(angle))
-
     def forcing(self, sine: Floats, cosine: Floats) -> tuple[Floats, Floats]:
         """Return the inertial forcing and its time derivative from the phase's sine and cosine."""
         return self.amplitude * sine, self.amplitude * self.frequency * cosine
@@ -177,7 +173,8 @@ def update_maxima_from_impacts(
     cut, time = cut.at_index(touches), time[touches]
     effective_rates = rates.in_flight(cut.row)
     drive = BoxMotion(drive.frequency[cut.row, 0], drive.amplitude[cut.row, 0])
-    forcing = drive.forcing_at(cut.angle + drive.frequency * time)
+    angle = cut.angle + drive.frequency * time
+    forcing = drive.forcing(np.sin(angle), np.cos(angle))
     before = taylor_step(cut.left, time)
     after = states_after_impacts(before, [points[row] for row in cut.row])
     ends = [Motion.from_states(states, effective_rates, forcing) for states in (before, after)]
