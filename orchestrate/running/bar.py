@@ -50,7 +50,7 @@ def progress_bar(label: str, shown: bool, *, total: int, initial: int, unit: str
 
 def relabel(bar: Any, label: str) -> None:
     """Change a bar's label; it is shown from now on, or tqdm would not end its line."""
-    if bar.desc != f"{shortened(label)}: ":
+    if not bar.disable and bar.desc != f"{shortened(label)}: ":
         bar.delay = 0.0
         bar.set_description(shortened(label))
 
