@@ -41,7 +41,7 @@ def resend_interrupt(lost: sys.UnraisableHookArgs) -> None:
         sys.__unraisablehook__(lost)
         return
     number = signal.SIGINT if lost.exc_type is KeyboardInterrupt else signal.SIGTERM
-    threading.Timer(0.05, signal.raise_signal, (number,)).start()
+    threading.Timer(0.05, os.kill, (os.getpid(), number)).start()
 
 
 def open_missing_streams() -> None:

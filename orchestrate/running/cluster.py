@@ -9,10 +9,11 @@ from concurrent.futures import BrokenExecutor, CancelledError, Executor, ThreadP
 from contextlib import contextmanager, suppress
 from typing import Any
 
-from ..errors import InputError, WorkerError
+from ..errors import InputError, VibroimpactError, WorkerError
 from .executors import RESUMES, Workers, format_end
 
 CONNECT_TIMEOUT = "5s"
+CONNECTION_ERRORS = (OSError, CancelledError, asyncio.CancelledError)
 RETRIES = 3  # a chunk whose worker is lost is computed by others
 NO_DASK = 'cluster: needs Dask; pip install "vibroimpact[cluster]" brings it'
 
@@ -47,8 +48,8 @@ def dask_workers(client: Any) -> Iterator[Workers]:
     except BaseException as error:
         with suppress(Exception):
             executor.shutdown(wait=False)
-        lost = isinstance(error, Exception) and client.status != "running"
-        if lost or isinstance(error, CancelledError):
+        lost = isinstance(error, CONNECTION_ERRORS) or client.status != "running"
+        if lost and not isinstance(error, (VibroimpactError, KeyboardInterrupt)):
             raise WorkerError(f"the scheduler of the cluster has ended; {RESUMES}") from None
         if type(error).__name__ == "KilledWorker":
             raise WorkerError(

@@ -126,11 +126,12 @@ def run_child(
 
 def run_command(arguments: list[str]) -> int:
     """Run a command; return its exit code, print uncaught errors as Python does."""
-    from orchestrate.cli import main
+    from orchestrate.__main__ import main
 
     try:
         signal.signal(signal.SIGINT, signal.default_int_handler)  # not before its own life begins
-        return main(arguments)
+        sys.argv[1:] = arguments
+        return main()
     except SystemExit as ended:
         return int(ended.code or 0)
     except BaseException:

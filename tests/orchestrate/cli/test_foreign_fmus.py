@@ -1,4 +1,4 @@
-"""An FMU of somebody else that crashes, exits or hangs ends a command in a line and an exit code."""
+"""FMUs of somebody else that crash, exit or hang end a command in a line and an exit code."""
 
 from __future__ import annotations
 

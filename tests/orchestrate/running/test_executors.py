@@ -113,8 +113,8 @@ class Lost:
         self.when, self.error = when, error
 
     def asked(self, name):
-        if name == self.when:
-            self.status = "connecting"
+        if name == self.when:  # the client itself may not know yet
+            self.status = self.status if name == "ncores" else "connecting"
             raise OSError(f"in <TCP (closed)> {name}")
 
     def ncores(self):
