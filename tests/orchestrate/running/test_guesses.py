@@ -16,7 +16,7 @@ from orchestrate.running.executors import compute
 from orchestrate.running.journal import Journal, journal_path
 from orchestrate.running.options import RunOptions
 from orchestrate.running.progress import Progress
-from orchestrate.running.store import Memory, open_store
+from orchestrate.running.store import Store, open_store
 from orchestrate.structures import Structure
 from tests.sparing import ordinary
 
@@ -48,7 +48,7 @@ def test_guesses_never_change_a_bit(stubborn, workers):
     job = Forgetful("job", stubborn=stubborn)
     alone = job.work({}, job.items({}), None)["value"]
     for seed in range(3):
-        progress = Progress(job, Memory(), {}, MODELS)
+        progress = Progress(job, Store(), {}, MODELS)
         play(progress, workers, seed)
         assert np.array_equal(progress.result.value, alone)
         assert progress.wasted == 0 or (workers > 1 and stubborn != (0, 0))
@@ -90,7 +90,7 @@ def job(figure: str, direction: str, low: float = 0.1, high: float = 8.0, step: 
 
 def played(sweep: SweepJob, workers: int, store=None):
     """The result, and how many values were guessed in vain."""
-    progress = Progress(sweep, store or Memory(), {}, {OSCILLATOR: find(OSCILLATOR)})
+    progress = Progress(sweep, store or Store(), {}, {OSCILLATOR: find(OSCILLATOR)})
     with patch.object(SweepJob, "chunk_size", 10):
         progress.chunks = sweep.chunks()
         play(progress, workers, 1)

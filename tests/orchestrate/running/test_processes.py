@@ -14,7 +14,7 @@ import pytest
 
 from orchestrate.running.journal import journal_path
 
-from ..cli.commands import all_end, below
+from ..cli.commands import all_end, below, chunks_in, wait_for
 
 ROOT = Path(__file__).resolve().parents[3]
 HEAD = """
@@ -63,19 +63,19 @@ def test_a_plain_script_needs_no_guard(tmp_path):
     assert out.splitlines() == ["begun", f"{119**2}.0"]  # once: no worker ran the script
 
 
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])
-def test_workers_end_with_the_process_they_work_for(tmp_path, number):
-    process = start(SQUARES, tmp_path / "result.nc", 2)
-    stop = time.monotonic() + 30
-    while len(list(below(process.pid))) < 3 and time.monotonic() < stop:
-        time.sleep(0.05)
+@pytest.mark.parametrize(("number", "at_work"), [(signal.SIGKILL, True), (signal.SIGINT, False)])
+def test_workers_end_with_the_process_they_work_for(tmp_path, number, at_work):
+    """At work: they have computed a chunk; else they begin."""
+    process, journal = start(SQUARES, tmp_path / "result.nc", 2), tmp_path / "result.nc.journal"
+    wait_for(lambda: len(list(below(process.pid))) >= 3, process, "workers were there")
+    wait_for(lambda: not at_work or chunks_in(journal) > 3, process, "they have computed")
     workers = list(below(process.pid))
     begun = time.monotonic()
     os.killpg(process.pid, number) if number == signal.SIGINT else process.kill()
     _, err = process.communicate(timeout=20)
     assert all_end(workers) and time.monotonic() - begun < 10
     assert err.count("KeyboardInterrupt") == (number == signal.SIGINT), err  # none of a worker
-    assert journal_path(tmp_path / "result.nc").exists()
+    assert journal.exists()
 
 
 FIGURES = {"6": (0.7, 0.005), "10": (0.7, 0.05), "11": (0.3, 0.005)}  # e and D
