@@ -19,7 +19,7 @@ from .commands import all_end, below, end, kill, wait_for
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="binaries of Linux, /proc")
 SLOW = pytest.mark.slow
 SWEEP = ("sweep", "--eta", "1,1.1", "--transient", "5", "--samples", "3", "--plot", "none")
-ENDS = {"aborts": "by SIGABRT", "crashes": "by SIGSEGV", "exits with 3": "with exit code 3"}
+ENDS = {"aborts": "by SIGABRT", "exits with 3": "with exit code 3"}
 BEGINS_ANEW = "nothing was stored, the same command begins anew"
 
 

@@ -18,7 +18,7 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="process groups 
 INTERRUPTED = "interrupted: what was stored is kept, the same command goes on from there"
 BEGINS_ANEW = "interrupted: nothing was stored, the same command begins anew"
 RUNS = {  # long enough to be ended by force, chaotic, so that a wrong start is seen
-    "sweep": ("sweep", "--eta", "1.1:1.4:0.0005", "--transient", "2000", "--samples", "20"),
+    "sweep": ("sweep", "--eta", "1.1:1.4:0.0005", "--transient", "700", "--plot", "none"),
     "couple": (
         "couple",
         "--only",
