@@ -23,6 +23,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import resource_tracker
 from pathlib import Path
+from queue import SimpleQueue
 from typing import Any
 
 from ..errors import WorkerError
@@ -97,29 +98,42 @@ class ThreadExecutor(Executor):
     """Executor of daemon threads, which an interrupted process does not wait for at its end."""
 
     def __init__(self, count: int) -> None:
-        self.free = threading.Semaphore(count)
+        self.count = count
+        self.calls: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
+        for _ in range(count):
+            threading.Thread(target=self._work, daemon=True).start()
+
+    def _work(self) -> None:
+        """Run calls until there is a None in place of one."""
+        for call in iter(self.calls.get, None):
+            call()
 
     def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Run a call in a thread as soon as less than ``count`` others run; return its future."""
+        """Run a call as soon as a thread is free; return its future."""
         future: Future[Any] = Future()
 
-        def run() -> None:
+        def call() -> None:
             """Run the call unless it was cancelled."""
-            with self.free:
-                if future.set_running_or_notify_cancel():
-                    try:
-                        future.set_result(fn(*args, **kwargs))
-                    except BaseException as error:
-                        future.set_exception(error)
+            if future.set_running_or_notify_cancel():
+                try:
+                    future.set_result(fn(*args, **kwargs))
+                except BaseException as error:
+                    future.set_exception(error)
 
-        threading.Thread(target=run, daemon=True).start()
+        self.calls.put(call)
         return future
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """Let the threads end after what was submitted; nobody waits for them."""
+        for _ in range(self.count):
+            self.calls.put(None)
 
 
 @contextmanager
 def threads(count: int) -> Iterator[Workers]:
     """Provide threads of this process."""
-    yield Workers(ThreadExecutor(count), lambda: count + (count > 1))
+    with ThreadExecutor(count) as executor:
+        yield Workers(executor, lambda: count + (count > 1))
 
 
 @contextmanager
