@@ -25,8 +25,15 @@ class Motion:
         Times.
     """
 
-    def __init__(self, values):
-        self.p = p = values
+    def __init__(self, values, acceleration=None):
+        self.p = p = {
+            "clearance": 0.0,
+            "phase_start": 0.0,
+            "v1_start": 0.0,
+            "v2_start": 0.0,
+            **values,
+        }
+        self.acceleration = acceleration or (lambda _: 0.0)  # of the box, beside the harmonic one
         self.omega = np.sqrt(p["k1"] / p["m1"])
         self.total = p["m1"] + p["m2"]
         preload = max(0.0, -p["clearance"]) * p["k1"] * p["k2"] / (p["k1"] + p["k2"])
@@ -58,7 +65,8 @@ class Motion:
     def drive(self, t):
         p = self.p
         phase = p["box_frequency"] * t + p["phase_start"]
-        return p["box_amplitude"] * p["box_frequency"] ** 2 * np.sin(phase)
+        harmonic = p["box_amplitude"] * p["box_frequency"] ** 2 * np.sin(phase)
+        return harmonic - self.acceleration(t)
 
     def flight(self, t, y):
         one, two = self.accelerations(y)
