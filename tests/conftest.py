@@ -7,6 +7,7 @@ import pytest
 from hypothesis import settings
 
 from .exports import BUILD, refresh
+from .fmu.programs.driver import Fmu2
 
 settings.register_profile("the same everywhere", deadline=None, derandomize=True, database=None)
 settings.load_profile("the same everywhere")
@@ -19,9 +20,10 @@ def pytest_addoption(parser):
 
 
 @pytest.fixture(scope="session")
-def exported():
+def exported(tmp_path_factory):
     """The build folder, with all FMUs that can be made here, of the present sources."""
     refresh(BUILD)
+    Fmu2.home = tmp_path_factory.mktemp("extracted")
     return BUILD
 
 

@@ -8,15 +8,14 @@ import pytest
 from ..exports import once
 from .copies import export_copy
 from .driver import FMUS
-from .programs.driver import Fmu2, free_all
+from .programs.driver import free_all
 
 FORMS = list(FMUS)
 
 
 @pytest.fixture(scope="session", autouse=True)
-def forms(exported, tmp_path_factory):
-    """All tests here need the FMUs, and a place to extract them to."""
-    Fmu2.home = tmp_path_factory.mktemp("extracted")
+def forms(exported):
+    """All tests here need the FMUs."""
     return exported
 
 

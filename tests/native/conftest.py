@@ -14,6 +14,7 @@ from fmu_src.export.source_code import kernel_source
 from tools import importers
 
 from ..exports import guid_inside, once, refresh
+from ..fmu.programs.driver import free_all
 
 VERSIONS = ("fmi2", "fmi3")
 
@@ -105,3 +106,10 @@ def importer(request, importer_of):
 def native_fmu(request, fmus):
     """Path of the native FMU of each FMI version."""
     return fmus[request.param]
+
+
+@pytest.fixture(autouse=True)
+def instances():
+    """No instance outlives its test."""
+    yield
+    free_all()

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from ..fmu.programs.driver import COMMON, STATE, harmonic, open_fmu
 from ..fresh import run_fresh
-from .slave import COMMON, STATE, Slave, harmonic
 
 PROGRAMS = Path(__file__).with_name("programs")
 
@@ -47,17 +47,11 @@ def test_same_bits_in_every_form(fmus, tmp_path, eta, end):
 
 
 def test_a_state_saved_by_one_native_form_goes_on_in_the_other(fmus):
-    second, third = Slave(fmus["fmi2"]), Slave(fmus["fmi3"])
+    second, third = open_fmu(fmus["fmi2"]), open_fmu(fmus["fmi3"])
     for one in (second, third):
         one.start(**harmonic(1.13))
     second.step(512.0)
-    state = second.fmu.getFMUstate()
-    saved = second.fmu.serializeFMUstate(state)
-    second.fmu.freeFMUstate(state)
-    state = third.fmu.deserializeFMUState(saved)
-    third.fmu.setFMUState(state)
-    third.fmu.freeFMUState(state)
-    third.time = 512.0
+    third.restore(*second.save())
     assert third.get(*STATE) == second.get(*STATE)
     for one in (second, third):
         one.step(1024.0)

@@ -12,7 +12,7 @@ from fmu_src.export.forms import FORMS, export
 from fmu_src.export.source_code import kernel_source
 from tools import importers
 
-from .slave import COMMON, harmonic
+from ..fmu.programs.driver import COMMON, harmonic
 from .test_bit_identity import run
 
 MODEL = "TwoMassImpactOscillator"
@@ -79,7 +79,6 @@ def test_without_ziglang_the_own_compiler_makes_fmus_for_its_platform(
         own = importers.Importer(importer_of(version).program, binary, version)
         expected = importer_of(version).simulate(COMMON, times, **harmonic(1.13))
         assert own.simulate(COMMON, times, **harmonic(1.13)) == expected
-        assert "FAILURES 0" in own.run("hostile").stdout
 
 
 @pytest.mark.slow  # compiles for 4 s

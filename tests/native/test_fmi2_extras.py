@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from .slave import COMMON, harmonic, slave
+from ..fmu.programs.driver import COMMON, harmonic, open_fmu
 
 OSCILLATOR, SHAKER = "TwoMassImpactOscillator", "MotorShaker"
 INTEGRALS = ["box_impulse", "box_impulse_moment"]
@@ -38,7 +38,7 @@ def set_derivatives(fmu, values):
 )
 def test_input_derivatives_are_the_variables_for_them(fmus, used):
     """Through impacts, over steps of changing length."""
-    with slave(fmus["fmi2"]) as fmu, slave(fmus["fmi2"]) as twin:
+    with open_fmu(fmus["fmi2"]) as fmu, open_fmu(fmus["fmi2"]) as twin:
         for one in (fmu, twin):
             one.start(**harmonic(1.13))
         for k in range(400):
@@ -56,7 +56,7 @@ def test_input_derivatives_are_the_variables_for_them(fmus, used):
 
 @pytest.mark.parametrize("phase", ["instantiated", "initialisation"])
 def test_input_derivatives_before_the_first_step(fmus, phase):
-    with slave(fmus["fmi2"]) as fmu, slave(fmus["fmi2"]) as twin:
+    with open_fmu(fmus["fmi2"]) as fmu, open_fmu(fmus["fmi2"]) as twin:
         for one in (fmu, twin):
             if phase == "initialisation":
                 one.fmu.setupExperiment(startTime=0.0)
@@ -90,7 +90,7 @@ def start_in_contact(fmu, setter):
 
 def test_input_derivatives_in_initialisation_mode_after_outputs_were_read(fmus):
     """A jerk that opens the contact at once; without it the start is one of contact."""
-    with slave(fmus["fmi2"]) as fmu, slave(fmus["fmi2"]) as twin:
+    with open_fmu(fmus["fmi2"]) as fmu, open_fmu(fmus["fmi2"]) as twin:
         found = start_in_contact(
             fmu,
             lambda one: one.fmu.setRealInputDerivatives(
@@ -105,7 +105,7 @@ def test_input_derivatives_in_initialisation_mode_after_outputs_were_read(fmus):
     "name", ["x1", "m1", "box_amplitude", "box_jerk", "box_crackle", "impact_time"]
 )
 def test_only_box_acceleration_has_input_derivatives(fmus, name):
-    with slave(fmus["fmi2"]) as fmu:
+    with open_fmu(fmus["fmi2"]) as fmu:
         fmu.start()
         assert "box_acceleration" in fmu.refused(
             "setRealInputDerivatives", [fmu.variables[name].valueReference], [1], [0.5]
@@ -115,7 +115,7 @@ def test_only_box_acceleration_has_input_derivatives(fmus, name):
 def test_two_inputs_have_derivatives(exported, fmus):
     """Each input's cubic begins where its own derivatives are set; the refusal names both."""
     path = exported / "fmi2" / "ElectrodynamicShaker.fmu"
-    with slave(path) as fmu, slave(path) as twin:
+    with open_fmu(path) as fmu, open_fmu(path) as twin:
         for one in (fmu, twin):
             one.start(command=1.0, command_1=4.0, coil_inductance=0.01)
             one.step(0.25)
@@ -127,7 +127,7 @@ def test_two_inputs_have_derivatives(exported, fmus):
         names = ("voltage", "current", "box_position", "box_force_work")
         assert fmu.get(*names) == twin.get(*names)
         assert fmu.one("voltage") == pytest.approx(3.0)  # the command runs on
-    with slave(path) as fmu:
+    with open_fmu(path) as fmu:
         fmu.start()
         reference = fmu.variables["voltage"].valueReference
         told = fmu.refused("setRealInputDerivatives", [reference], [1], [0.5])
@@ -136,7 +136,7 @@ def test_two_inputs_have_derivatives(exported, fmus):
 
 @pytest.mark.parametrize("order", [0, 4, -1, 2**31 - 1, -(2**31)])
 def test_only_three_orders_of_input_derivatives(fmus, order):
-    with slave(fmus["fmi2"]) as fmu:
+    with open_fmu(fmus["fmi2"]) as fmu:
         fmu.start()
         reference = fmu.variables["box_acceleration"].valueReference
         assert "orders 1 to 3" in fmu.refused(
@@ -148,7 +148,7 @@ def test_only_three_orders_of_input_derivatives(fmus, order):
 @pytest.mark.parametrize("value", [math.nan, math.inf, -1e101])
 @pytest.mark.parametrize(("name", "order"), list(ORDERS.items()))
 def test_input_derivatives_out_of_range(fmus, name, order, value):
-    with slave(fmus["fmi2"]) as fmu:
+    with open_fmu(fmus["fmi2"]) as fmu:
         fmu.start()
         reference = fmu.variables["box_acceleration"].valueReference
         assert f"{name} = " in fmu.refused("setRealInputDerivatives", [reference], [order], [value])
@@ -157,7 +157,7 @@ def test_input_derivatives_out_of_range(fmus, name, order, value):
 
 @pytest.mark.parametrize("form", ["fmi2", "fmi3"])
 def test_output_derivatives_are_the_velocities(fmus, form):
-    with slave(fmus[form]) as fmu:
+    with open_fmu(fmus[form]) as fmu:
         get = fmu.fmu.getOutputDerivatives if fmu.third else fmu.fmu.getRealOutputDerivatives
         references = [fmu.variables[name].valueReference for name in ("x1", "x2", "x_rel")]
         fmu.start(**harmonic(1.13))
@@ -205,7 +205,7 @@ def rates(fmu, names):
 def test_every_continuous_output_has_its_derivative(exported, form, motion):
     """As ``maxOutputDerivativeOrder`` promises: against difference quotients of order 4."""
     model, values, time = MOTIONS[motion]
-    with slave(exported / form / f"{model}.fmu") as fmu:
+    with open_fmu(exported / form / f"{model}.fmu") as fmu:
         names = [v.name for v in fmu.variables.values() if is_continuous(v) and not v.dimensions]
         fmu.start(**values)
         # sums over the last step begin anew with each: they have their own test
@@ -223,7 +223,7 @@ def test_every_continuous_output_has_its_derivative(exported, form, motion):
 
 def test_derivatives_of_what_a_step_sums_up(fmus):
     """Integrals grow by the force that acts now, the largest gap with the gap that exceeds it."""
-    with slave(fmus["fmi2"]) as fmu:
+    with open_fmu(fmus["fmi2"]) as fmu:
         fmu.start(**harmonic(1.13), x2_start=0.5)
         for time in np.arange(0.25, 20.0, 0.25):
             fmu.step(time)
@@ -233,7 +233,7 @@ def test_derivatives_of_what_a_step_sums_up(fmus):
 
 
 def test_derivatives_of_arrays(fmus):
-    with slave(fmus["fmi3"]) as fmu:
+    with open_fmu(fmus["fmi3"]) as fmu:
         fmu.start(**harmonic(1.13)).step(20.0)
         single = rates(fmu, ["x1", "x2", "v1", "v2"])
         references = [fmu.variables[name].valueReference for name in ("positions", "velocities")]

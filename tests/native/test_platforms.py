@@ -16,8 +16,8 @@ from fmu_src.export.platforms import ALL, chosen, this_machine, universal_binary
 from fmu_src.export.source_code import kernel_source
 from tools import importers
 
+from ..fmu.programs.driver import COMMON, harmonic
 from ..sparing import ordinary
-from .slave import COMMON, harmonic
 
 MULTIPLY_ADD = b"""
 int kernel_advance(double *memory, double time) {
@@ -173,7 +173,7 @@ def test_every_platform_has_its_binary(everywhere, form, name):
 @pytest.mark.parametrize("name", forms.MODELS)
 @pytest.mark.parametrize("version", ["fmi2", "fmi3"])
 def test_the_arm_binary_has_the_same_bits(everywhere, version, name, tmp_path):
-    """Through chaos, for as long as the Windows binary under wine; and every hostile call."""
+    """Through chaos, for as long as the Windows binary under wine; and calls in any order."""
     path = everywhere / version / f"{name}.fmu"
     own = importers.Importer(
         importers.compile_importer(version, path, tmp_path / "own"),
@@ -191,6 +191,5 @@ def test_the_arm_binary_has_the_same_bits(everywhere, version, name, tmp_path):
     found = arm.simulate(names, times, under=under, **values)
     assert found == own.simulate(names, times, **values)
     assert found[-1][names.index(going_on)] > enough
-    assert "FAILURES 0" in arm.run("hostile", under=under, timeout=900).stdout
     arm.run("many", 50, 40, 400, under=under)
-    arm.run("million", 20_000, under=under)
+    assert "FAILURES 0" in arm.run("random", 7, 300, under=under, timeout=900).stdout

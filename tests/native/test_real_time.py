@@ -9,7 +9,7 @@ import pytest
 
 from tools.real_time import footprint, sources, targets
 
-from .slave import slave
+from ..fmu.programs.driver import open_fmu
 
 HERE = Path(__file__).parent
 MANUAL = HERE.parents[1] / "docs" / "real_time.md"
@@ -216,7 +216,7 @@ def test_sources_of_several_fmus_are_linked_into_one_program(folders, fmus, tmp_
         "gcc", "-std=c99", HERE / "linked_together.c", *objects, "-lm", "-o", program
     )
     second, third, speed = sources.run_command(program, *tokens).split()
-    with slave(fmus["fmi3"]) as fmu:
+    with open_fmu(fmus["fmi3"]) as fmu:
         fmu.start()
         for time in range(1, 101):
             fmu.step(float(time))

@@ -14,9 +14,9 @@ from fmpy.validation import validate_fmu
 
 from fmu_src.export import compiler, forms
 
+from ..fmu.programs.driver import COMMON, harmonic
 from ..fresh import run_fresh
 from ..sparing import ordinary
-from .slave import COMMON, harmonic
 from .test_bit_identity import PROGRAMS
 
 GCC = shutil.which("gcc")

@@ -40,13 +40,21 @@ def hear(*given):
     messages.append(given[-1].decode())
 
 
+LOGGER = fmi2.fmi2CallbackLoggerTYPE(hear)  # FMPy's proxy calls the last one that it was given
+
+
+def allocation():
+    return (
+        fmi2.fmi2CallbackAllocateMemoryTYPE(fmpy.calloc),
+        fmi2.fmi2CallbackFreeMemoryTYPE(fmpy.free),
+    )
+
+
 def callbacks():
     """FMI 2.0's, with a logger that fills a printf format in, as importers written in C do."""
     made = fmi2.fmi2CallbackFunctions()
-    made.logger = fmi2.fmi2CallbackLoggerTYPE(hear)
-    made.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
-    made.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(fmpy.free)
-    addLoggerProxy(ctypes.byref(made))  # FMPy's proxy knows one logger a process: the last
+    made.logger, made.allocateMemory, made.freeMemory = LOGGER, *allocation()
+    addLoggerProxy(ctypes.byref(made))
     return made
 
 
