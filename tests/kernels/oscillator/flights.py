@@ -1,7 +1,6 @@
 """Adversarial states by the seed, the kernel's ends of them, and a dense search of its own.
 
-As a program (``python -m tests.kernels.oscillator.flights SEED COUNT``) it runs on all cores, and
-a million states take some minutes. Nothing in the search comes from the kernel: each mass is a sum
+Nothing in the search comes from the kernel: each mass is a sum
 of complex exponentials by Newton's law, in SI units, omega = 1.
 """
 
@@ -9,8 +8,6 @@ from __future__ import annotations
 
 import cmath
 import math
-import sys
-from concurrent.futures import ProcessPoolExecutor
 
 import numpy as np
 
@@ -28,7 +25,6 @@ NAMES = (
     *("x1_start", "v1_start", "x2_start", "v2_start"),
 )
 HORIZON = 12.0
-SHARE = 7 * 2000  # states of a campaign, when there are many
 HORIZONS = (HORIZON, HORIZON, HORIZON, 6.0, HORIZON, 3.0, 60.0)  # of each class
 OK, MISSED, NOT_A_ROOT, UNFINISHED, NOT_BEGUN = 0, 1, 2, 3, 4
 
@@ -271,24 +267,3 @@ def campaign(seed: int, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]
     verdicts, ends = np.zeros(count, np.int64), np.zeros(count)
     judge(np.zeros(at.SIZE), rows, depths, verdicts, ends)
     return rows, verdicts, ends
-
-
-def count_verdicts(seed: int, count: int) -> np.ndarray:
-    """How many states of each class have each verdict."""
-    _, verdicts, _ = campaign(seed, count)
-    return np.stack(
-        [np.bincount(verdicts[i :: len(CLASSES)], minlength=5) for i in range(len(CLASSES))]
-    )
-
-
-def main(seed: int, count: int) -> None:
-    """Print a line a class, of campaigns of some thousand states in processes of their own."""
-    shares = -(-count // SHARE)
-    with ProcessPoolExecutor() as processes:
-        counted = processes.map(count_verdicts, range(seed, seed + shares), [SHARE] * shares)
-        for row, label in zip(sum(counted), CLASSES, strict=True):
-            print(*row, label)
-
-
-if __name__ == "__main__":
-    main(int(sys.argv[1]), int(sys.argv[2]))

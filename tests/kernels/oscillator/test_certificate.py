@@ -1,12 +1,9 @@
 """No root is missed: adversarial states against a dense search, and in high precision."""
 
-import subprocess
-import sys
 from pathlib import Path
 
 import mpmath as mp
 import numpy as np
-import pytest
 
 from tools import exact_motion as truth
 
@@ -52,13 +49,3 @@ def test_a_sample_in_high_precision():
             terms = sum(abs(complex(c)) for c, _ in gap.terms)
             terms += sum(abs(float(q)) * float(end) ** k for k, q in enumerate(gap.polynomial))
             assert abs(float(root) - end) <= 1e-14 * (1.0 + end) * (1.0 + terms / slope), i
-
-
-@pytest.mark.slow
-def test_a_million_states():
-    command = [sys.executable, "-m", flights.__name__, "3", "1000000"]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
-    for line in done.stdout.splitlines():
-        ok, missed, wrong, unfinished, _ = map(int, line.split()[:5])
-        assert missed == wrong == unfinished == 0, line
-        assert ok > 50_000, line  # half of those pressed together part at once

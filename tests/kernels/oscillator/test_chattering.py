@@ -8,7 +8,7 @@ import pytest
 
 from fmu_src.kernels.oscillator import memory as at
 
-from .kernel import advanced, least_work, outputs, started
+from .kernel import advanced, least_work, started
 
 # f = -0.2, closing with 1 mm/s
 PRESSED = {
@@ -64,21 +64,3 @@ def test_parted_by_damping_and_pressed_by_stiffness_from_rest(values):
     m = advanced(started(box_frequency=0.8, **values), 0.5)
     assert m[at.IMPACT_COUNT] < 150.0
     assert m[at.IN_CONTACT] == 1.0
-
-
-@pytest.mark.parametrize(
-    "values",
-    [
-        {"e": 0.3, "gamma": 1e-8},
-        {"e": 0.7, "gamma": 1e-6},
-        {"e": 0.5, "gamma": 1e-7, "box_frequency": 0.3},
-    ],
-)
-def test_stopping_at_the_shortest_flights_leaves_no_trace(values):
-    free, stopped = advanced(started(**values), 200.0), started(**values)
-    stopped[at.STOP_AT_IMPACT] = 1.0
-    stops = 0
-    while stopped[at.TIME] < 200.0 and stops < 1000:
-        advanced(stopped, 200.0)
-        stops += 1
-    assert outputs(stopped) == outputs(free)

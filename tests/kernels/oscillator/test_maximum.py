@@ -11,7 +11,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
-from fmu_src.kernels.oscillator.motion import state_at
 from tools import exact_motion as truth
 
 from .kernel import (
@@ -19,7 +18,6 @@ from .kernel import (
     advanced,
     examples,
     least_work,
-    pieces,
     sizes,
     started,
     structures,
@@ -59,59 +57,12 @@ def test_over_a_piece_of_flight(values, state, start, length):
     assert m[at.X_REL_MAX] == pytest.approx(highest, rel=1e-12, abs=1e-14 * terms)
 
 
-@pytest.mark.parametrize(
-    "values",
-    [
-        {"box_frequency": 0.7},
-        {"e": 0.3},
-        {"box_frequency": 1.045, "d1": 0.1, "d2": 0.1},
-        {"k2": 3.0, "d1": 1.5},
-    ],
-)
-def test_over_steps_with_impacts_and_contact(values):
-    m = started(**values)
-    time = 0.0
-    for step in (0.05, 1.0, 0.3, 7.0, 20.0, 0.01, 2.5, 40.0):
-        time += step
-        passed = pieces(m, time)
-        samples = [0.0]
-        for state, entry, end in passed:
-            if state[at.MODE] == at.FLIGHT:
-                samples.append(of_piece(state, entry, end))
-        assert m[at.X_REL_MAX] == pytest.approx(max(samples), rel=1e-12, abs=1e-14)
-        assert m[at.X_REL_MAX] >= m[at.X_REL]
-
-
-def of_piece(state, entry, end):
-    """Largest gap on part of a flight, from its initial conditions by Newton's law."""
-    x1, v1, x2, v2 = state_at(state, 0.0)
-    values = {name: state[getattr(at, name.upper())] for name in DEFAULTS}
-    phase = 2 * mp.pi * mp.mpf(state[at.TURN])
-    first, second = truth.free_motion(values, (x1, v1, x2, v2), phase)
-    return summit(second - first, entry, end)[0] if end > entry else 0.0
-
-
-def test_the_maximum_of_parts_is_the_maximum_of_the_whole():
-    whole, parts = started(box_frequency=0.7), started(box_frequency=0.7)
-    advanced(whole, 30.0)
-    highest = 0.0
-    for i in range(1, 301):
-        highest = max(highest, advanced(parts, 0.1 * i if i < 300 else 30.0)[at.X_REL_MAX])
-    assert highest == pytest.approx(whole[at.X_REL_MAX], rel=1e-13)
-
-
 def test_at_the_very_end_of_a_step():
     m = started(x1_start=0.0, x2_start=0.1, v2_start=1.0, box_amplitude=0.0)
     advanced(m, 0.3)
     assert m[at.X_REL_MAX] == m[at.X_REL]
     advanced(m, 0.3)  # no time passes
     assert m[at.X_REL_MAX] == m[at.X_REL]
-
-
-def test_switched_off_it_stays_zero():
-    m = started(x_rel_max_on=0.0, x2_start=1.0)
-    assert m[at.X_REL_MAX] == 0.0
-    assert advanced(m, math.pi)[at.X_REL_MAX] == 0.0
 
 
 @least_work
