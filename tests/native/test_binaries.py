@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 
-from fmu_src.export import native_form
 from tools import importers
 
 from ..fmu.programs.driver import COMMON, harmonic
@@ -62,28 +61,6 @@ def test_windows_binary_exports_fmi_and_imports_the_system(fmus, version, tmp_pa
             r"(?i)kernel32\.dll|api-ms-win-crt-[a-z]+-l1-1-0\.dll|ucrtbase\.dll", library
         )
     assert not [name for names in pe.imports.values() for name in names if "fma" in name.lower()]
-
-
-def test_there_is_no_global_state_to_share(version, kernel_objects, tmp_path):
-    """No object file has data that could be written: instances and threads cannot meet."""
-    if importers.c_compiler() is None:
-        pytest.skip("there is no C compiler")
-    importers.rebuild_shim(version, tmp_path, kernel_objects, options=())
-    units = importers.shim_files(version)
-    for unit in units:
-        importers.run_compiler([*importers.c_compiler(), "-fPIC", "-O2", "-c", unit], tmp_path)
-    for name in [unit.replace(".c", ".o") for unit in units] + ["kernel.o"]:
-        writable = Elf((tmp_path / name).read_bytes()).writable
-        assert sum(writable.values()) == 0, (name, writable)
-
-
-@pytest.mark.slow  # in ordinary runs test_fallbacks builds all forms again
-def test_two_builds_have_the_same_bytes(fmus, version, hide, tmp_path):
-    """The other build is made now: its own compilation, its own scratch folders."""
-    hide()
-    made = native_form.export("oscillator", version, tmp_path)
-    same = made.read_bytes() == fmus[version].read_bytes()
-    assert same  # a difference of archives shown byte by byte would take hours
 
 
 @pytest.mark.slow

@@ -12,7 +12,7 @@ import pytest
 
 from fmu_src.export import compiler, forms
 from fmu_src.export.errors import CannotExport
-from fmu_src.export.platforms import ALL, chosen, this_machine, universal_binary, usual
+from fmu_src.export.platforms import ALL, chosen, this_machine, usual
 from fmu_src.export.source_code import kernel_source
 from tools import importers
 
@@ -79,12 +79,6 @@ def slices(data):
     rows = [struct.unpack_from(">5I", data, 8 + 20 * i) for i in range(count)]
     assert all(start % (1 << align) == 0 for _, _, start, _, align in rows)
     return {cpu: data[start : start + size] for cpu, _, start, size, _ in rows}
-
-
-def test_a_universal_library_holds_both():
-    one = struct.pack("<III", 0xFEEDFACF, 0x01000007, 3) + b"x" * 20_000
-    other = struct.pack("<III", 0xFEEDFACF, 0x0100000C, 0) + b"y" * 100
-    assert slices(universal_binary([one, other])) == {0x01000007: one, 0x0100000C: other}
 
 
 def load_commands(library):

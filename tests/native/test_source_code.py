@@ -86,19 +86,6 @@ def test_fast_options_change_no_bit(fmus, flags, tmp_path, reference):
     assert rows(fmu, tmp_path / "run") == reference
 
 
-@pytest.mark.slow  # compiles for 5 s; gcc's are compared always
-@pytest.mark.parametrize("flags", ordinary([("-O3", "-march=x86_64_v3"), ("-O2",)]))
-def test_clang_makes_the_same_bits(fmus, flags, tmp_path, reference):
-    """The one of ziglang."""
-    pytest.importorskip("ziglang")
-    folder, clang = (
-        unpacked(fmus["fmi2"], tmp_path / "fmu"),
-        (sys.executable, "-m", "ziglang", "cc"),
-    )
-    fmu, _ = compiled(folder, "fmi2", "TwoMassImpactOscillator", *flags, compiler=clang)
-    assert rows(fmu, tmp_path / "run") == reference
-
-
 @pytest.mark.parametrize("version", ordinary(FOLDERS))
 def test_other_bits_are_refused_at_instantiation(fmus, version, tmp_path):
     """A compiler that is asked to be fast, and does not know what the sources say to gcc."""
