@@ -9,11 +9,13 @@ import pytest
 from tools.real_time import footprint, sources, targets
 
 from ..fmu.programs.driver import open_fmu
+from ..sparing import ordinary
 
 HERE = Path(__file__).parent
 MANUAL = HERE.parents[1] / "docs" / "real_time.md"
 MODELS = ("TwoMassImpactOscillator", "MotorShaker", "ElectrodynamicShaker")
 VERSIONS = ("fmi2", "fmi3")
+PAIRS = [(version, model) for version in VERSIONS for model in MODELS]
 WARNINGS = ("-std=c99", "-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Wvla", "-Werror")
 # what C's library has to have: nothing of it is a file, a lock or a clock
 LIBRARY = {"calloc", "malloc", "free", "sqrt", "fabs", "snprintf", "strtod", "strtol"} | {
@@ -45,7 +47,7 @@ def folders(exported, fmus, tmp_path_factory):
 
 
 @needs("gcc")
-@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("version", ordinary(VERSIONS, ["fmi3"]))
 def test_nothing_is_allocated_after_instantiation(folders, version, tmp_path):
     """Ten thousand steps of chattering: event mode and early return in FMI 3.0; inputs set, one
     of them refused with a message; rates of outputs.
@@ -62,28 +64,14 @@ def test_nothing_is_allocated_after_instantiation(folders, version, tmp_path):
     assert events > 1000
 
 
-@pytest.fixture(scope="module")
-def graphs(folders):
-    """Call graphs by FMI version and model."""
-    if sources.missing_programs("gcc"):
-        pytest.skip("expected gcc")
-    return {key: footprint.call_graph(folder, "gcc", "-O0") for key, folder in folders.items()}
-
-
-@pytest.mark.parametrize("model", MODELS)
-@pytest.mark.parametrize("version", VERSIONS)
-def test_no_function_calls_itself(graphs, version, model):
-    graph = graphs[version, model]
+@needs("gcc")
+@pytest.mark.parametrize("pair", ordinary(PAIRS, PAIRS[2:4]), ids="-".join)
+def test_no_function_calls_itself_and_a_step_nothing_that_allocates_waits_or_writes(folders, pair):
+    graph, version = footprint.call_graph(folders[pair], "gcc", "-O0"), pair[0]
     called = [name for name in graph.sizes if re.search(rf"\b{version}\w+$", name)]
     assert f"{version}DoStep" in called
     for name in graph.sizes:
         assert graph.stack_bytes(name) < 32768
-
-
-@pytest.mark.parametrize("model", MODELS)
-@pytest.mark.parametrize("version", VERSIONS)
-def test_a_step_calls_nothing_that_allocates_waits_or_writes(graphs, version, model):
-    graph = graphs[version, model]
     assert graph.library_functions(f"{version}DoStep", footprint.MESSAGES) <= OF_A_STEP
     everything = set().union(*(graph.library_functions(name) for name in graph.sizes))
     assert {name.removeprefix("__builtin_") for name in everything} <= {
@@ -171,7 +159,7 @@ def test_microsofts_dialect_is_held_to(folders, version, model):
 
 
 @needs("gcc", "nm")
-@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("version", ordinary(VERSIONS, ["fmi3"]))
 def test_no_global_variable_changes(folders, version, tmp_path):
     """All that is global can lie in read-only memory."""
     for file in sources.c_files(folders[version, MODELS[0]]):
