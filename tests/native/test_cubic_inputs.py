@@ -61,16 +61,6 @@ def test_five_splits_event_mode_and_early_return_are_one_step(ways, motion):
             assert run(way, values, grid) == expected
 
 
-def test_early_return_with_a_jerk_is_the_plain_motion(ways):
-    """Where an importer noticed that the cubic began again at each early return."""
-    values = {**harmonic(2.9), "box_jerk": 0.05}
-    grid = [2.5 * k for k in range(1, 9)]
-    plain = run(ways[0], values, [20.0])
-    assert plain[STATE.index("impact_count")] > 2
-    for way in ways:
-        assert run(way, values, grid) == plain
-
-
 def at_end(fmu, *times):
     """Outputs after steps without a touch of the inputs."""
     for time in times:
@@ -116,20 +106,6 @@ def test_a_cubic_runs_on_where_other_inputs_are_set(fmus, form):
     for name in ("x1", "v1", "box_force"):
         place = STATE.index(name)
         assert found[place] == pytest.approx(expected[place], rel=1e-13)
-
-
-def test_a_reset_forgets_when_inputs_were_set(fmus):
-    values = {**harmonic(1.13), "box_jerk": -0.03}
-    with open_fmu(fmus["fmi3"]) as fmu:
-        found = []
-        for _ in range(2):
-            fmu.start(**values)
-            fmu.step(2.0)
-            fmu.set(box_snap=0.01)
-            found.append(at_end(fmu, 3.0, 7.0))
-            fmu.set(box_crackle=0.1)  # pending, and forgotten
-            fmu.fmu.reset()
-    assert found[0] == found[1]
 
 
 def test_input_derivatives_of_fmi2_begin_a_cubic(fmus):

@@ -119,21 +119,6 @@ def test_energy_to_the_rounding_of_what_the_motion_is_made_of(values, state, sto
     assert abs(energy(m) - exact) <= 1e-14 * terms
 
 
-@pytest.mark.parametrize("values", RUNS)
-@pytest.mark.parametrize("more, stop", [({}, 40.0), (CUBIC, 8.0)])
-def test_impulse_and_its_moment_over_a_long_step(values, more, stop):
-    m = started(**{**values, **more}, x1_start=-0.4, x2_start=0.3, v1_start=0.5)
-    passed = pieces(m, stop)
-
-    def moment(*state):
-        return state[1] * box_force(*state)
-
-    found, size = integrals(passed, [box_force, moment])
-    assert m[at.IMPACT_COUNT] >= 1
-    assert m[at.BOX_IMPULSE] == pytest.approx(found[0], abs=1e-11 * size[0])
-    assert m[at.BOX_IMPULSE_MOMENT] == pytest.approx(found[1], abs=1e-11 * size[1])
-
-
 @examples(25)
 @given(
     st.sampled_from(RUNS),
