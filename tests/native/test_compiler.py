@@ -10,7 +10,6 @@ from fmu_src.export import compiler
 from fmu_src.export.compiler import kernel_object
 from fmu_src.export.errors import CannotExport
 from fmu_src.export.platforms import usual
-from fmu_src.export.source_code import kernel_source
 
 from .object_files import Pe
 
@@ -58,13 +57,6 @@ def test_the_compiler_s_first_error_is_one_line():
     ) as e:
         kernel_object("x86_64-linux", b"int kernel_advance(void) { return nothing; }")
     assert "\n" not in str(e.value)
-
-
-def test_forms_share_what_is_compiled(monkeypatch):
-    """The kernel is translated and compiled once in a process for each platform."""
-    first = kernel_object("x86_64-linux", kernel_source("motor_shaker"))
-    monkeypatch.setattr(compiler, "run", None)
-    assert kernel_object("x86_64-linux", kernel_source("motor_shaker")) is first
 
 
 @pytest.mark.skipif(find_spec("ziglang") is None, reason="ziglang is not installed")

@@ -2,8 +2,6 @@
 optimisation finds.
 """
 
-import math
-
 import mpmath as mp
 import numpy as np
 import pytest
@@ -17,7 +15,6 @@ from .kernel import (
     DEFAULTS,
     advanced,
     examples,
-    least_work,
     sizes,
     started,
     structures,
@@ -63,52 +60,6 @@ def test_at_the_very_end_of_a_step():
     assert m[at.X_REL_MAX] == m[at.X_REL]
     advanced(m, 0.3)  # no time passes
     assert m[at.X_REL_MAX] == m[at.X_REL]
-
-
-@least_work
-def test_right_after_a_start_from_rest():
-    values = {
-        "m2": 0.13382651145246977,
-        "k2": 0.159505453032413,
-        "d1": 0.0,
-        "d2": 0.0,
-        "box_frequency": 1.2476410867983083,
-    }
-    m = advanced(started(phase_start=math.pi, **values), 0.2)
-    assert m[at.X_REL_MAX] == pytest.approx(m[at.X_REL], abs=1e-15)
-
-
-STALLS = {
-    "a gap far below the rounding of its terms, drawn apart": {
-        **{"m2": 1000.0, "k2": 125.587, "d1": 0.0292, "d2": 0.0703, "e": 0.5, "gamma": 1.0},
-        **{"x1_start": -7.5e-90, "x2_start": 1.77e-80, "box_frequency": 0.425},
-        **{"phase_start": 2.211, "box_amplitude": 0.455},
-    },
-    "equal oscillators that part by 1e-75 m/s": {
-        **{"m2": 0.28, "k2": 0.28, "d1": 0.0046, "d2": 0.28 * 0.0046, "e": 1.0},
-        **{"x1_start": -2193.92, "x2_start": -2193.92, "v2_start": 8e-76, "box_frequency": 1.16},
-    },
-    "a start of 1e-132 m beside dampers": {
-        **{"m2": 0.3334, "k2": 3.5155, "d1": 0.9626, "d2": 0.0, "e": 0.1857, "gamma": 2e-6},
-        **{"x2_start": 1e-132, "v1_start": -7e-85, "v2_start": 2.7e-91, "box_amplitude": 1.317},
-        **{"box_frequency": 0.5878, "phase_start": 1.318},
-    },
-    "a start of 1e54 m/s": {
-        **{"m2": 10.69, "k2": 0.3044, "d1": 0.00263, "d2": 0.0, "e": 0.327, "gamma": 0.413},
-        **{"x1_start": -4.27e7, "v1_start": -4.47e54, "x2_start": 1e-61, "v2_start": -2e-33},
-        **{"box_amplitude": 1.894, "box_frequency": 0.1958, "phase_start": 4.43},
-    },
-}
-
-
-@least_work
-@pytest.mark.parametrize("values", STALLS.values(), ids=STALLS)
-@pytest.mark.parametrize("length", [2e-3, 2.0])
-def test_no_rounding_holds_the_search_up(values, length):
-    """Where nothing but rounding tells one gap from another, the search went on by rounding."""
-    m = advanced(started(**values), length)
-    assert m[at.X_REL] <= m[at.X_REL_MAX]
-    m = advanced(started(**values), *(length * i / 16.0 for i in range(1, 17)))
 
 
 @examples(60)

@@ -153,15 +153,6 @@ def part_from_rest(kappa, frequency):
     return m, float((second - first)(0.5 / frequency))
 
 
-@pytest.mark.parametrize("frequency", [0.01, 0.4, 3.0])
-@pytest.mark.parametrize("kappa", [0.9, 0.97, 0.99])
-@least_work
-def test_from_rest_nearly_equal_oscillators_part(kappa, frequency):
-    m, gap = part_from_rest(kappa, frequency)
-    assert m[at.IMPACT_COUNT] == 0.0
-    assert m[at.X_REL] == pytest.approx(gap, abs=1e-15)
-
-
 @pytest.mark.parametrize("frequency", [0.15, 0.11, 1.3])
 def test_a_contact_of_a_trillionth_of_a_radian_from_rest_ends(frequency):
     """Dampers that differ by 1e-13 press together what the springs part at once."""

@@ -22,7 +22,6 @@ from tools import exact_motion as truth
 
 from .kernel import (
     DEFAULTS,
-    advanced,
     examples,
     rest_together,
     sizes,
@@ -264,18 +263,3 @@ def test_a_near_miss_and_a_graze(values, depth, sign):
     expected = truth.first_root(gap, 20.0)
     assert (expected < bottom) == (sign < 0)
     assert agree(first_end(m, 20.0), expected, gap, 20.0)
-
-
-@pytest.mark.parametrize(
-    "ratio", [0.9, 1 - 1e-4, 1 - 1e-8, 1 - 1e-13, 1.0, 1 + 1e-13, 1 + 1e-8, 1 + 1e-4, 1.1, 20.0]
-)
-def test_the_walk_is_short_around_critical_damping(ratio):
-    m = started(
-        d1=2.0 * ratio,
-        d2=2.0 * ratio * math.sqrt(1.2),
-        x2_start=1.0,
-        v2_start=0.5,
-        x_rel_max_on=0.0,
-    )
-    advanced(m, 40.0)
-    assert m[at.WORK] < 1000.0
