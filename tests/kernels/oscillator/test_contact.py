@@ -99,12 +99,13 @@ def test_released_masses_part(values):
     m = started(**values)
     passed = pieces(m, 120.0)
     released = [
-        after
+        (before, after)
         for before, after in zip(passed, passed[1:], strict=False)
         if before[0][at.MODE] == at.CONTACT
     ]
     assert len(released) >= 4
-    for state, _, end in released:
+    for (before, *_), (state, _, end) in released:
+        assert state[at.IMPACT_COUNT] == before[at.IMPACT_COUNT]
         assert state[at.MODE] == at.FLIGHT
         x1, v1, x2, v2 = state_at(state, min(end, 0.05) / 2)
         assert x2 > x1
