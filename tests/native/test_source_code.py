@@ -20,7 +20,7 @@ from ..sparing import ordinary
 from .test_bit_identity import PROGRAMS
 
 GCC = shutil.which("gcc")
-BARE = ("-O2", "-std=c99", "-ffp-contract=off")
+BARE = ("-std=c99", "-ffp-contract=off")
 FOLDERS = {"fmi2": "linux64", "fmi3": "x86_64-linux"}
 pytestmark = pytest.mark.skipif(
     GCC is None or (sys.platform, platform.machine()) != ("linux", "x86_64"),
