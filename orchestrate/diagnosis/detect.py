@@ -19,7 +19,7 @@ from .bootstrap import Bootstrap, bootstrap
 from .bursts import burst_excess
 from .decision_rule import DELAMINATED, NOT_SEEN, Findings, resampled_share
 from .even_orders import smallest_openings, thresholds
-from .evidence import Evidence
+from .evidence import Evidence, Participation
 from .fit import Results, checked_data, checked_free, delaminated_guess, text_coordinate
 from .hypotheses import FREE
 from .search_job import SearchJob, cached_coarse_evidence, cached_orders
@@ -42,6 +42,7 @@ ASSUMED = (
     "the masses of both halves have the ratio of the guess",
     "each half has one mode in the range of the sweep",
     "the accelerometer of the base measures all that excites the structure",
+    "each sensor's participation factor is the one that was given, or from 0.2 to 1.7",
     "gains of the sensors agree within 12 % and their delays within 1 ms",
     "restitution does not depend on the speed",
 )
@@ -52,6 +53,7 @@ def detect(
     guess: Structure,
     *,
     free: Sequence[str] = FREE,
+    participation: Participation = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Decide whether a record is that of a delaminated structure.
@@ -67,6 +69,8 @@ def detect(
         alone acts.
     free : sequence of str
         What is fitted of the delaminated structure, as for :func:`fit`.
+    participation : float or mapping of str to float, optional
+        Participation factors of the sensors that are known, as for :func:`fit`.
     **running
         ``jobs``, ``progress``, ``store`` and others, see
         :class:`orchestrate.running.options.Running`.
@@ -90,8 +94,9 @@ def detect(
         ``frequency_low``, ``frequency_high`` in Hz); of the whole record ``sample_rate``,
         ``record_duration``, ``sweep_low`` and ``sweep_high``; ``order2`` and its
         ``order2_threshold`` over ``window``. Over ``hypothesis``: ``misfit``, ``evaluations``,
-        ``minima``, ``value`` and ``standard_error`` of its parameters (NaN but of the hypotheses
-        that the verdict is about and that describe the record), ``misfit_at`` and the ``fitted``
+        ``minima``, ``value`` and ``standard_error`` of its parameters, ``participation`` and
+        ``participation_error`` over ``channel`` (NaN but of the hypotheses that the verdict is
+        about and that describe the record), ``misfit_at`` and the ``fitted``
         orders over ``window``, beside what is ``measured``. Attributes ``reason``, ``settle``,
         ``simulated``, ``seen_up_to``, ``assumed`` and ``direction`` of the sweep.
 
@@ -133,7 +138,7 @@ def detect(
     structure = delaminated_guess(guess)
     job = DetectJob(
         name=f"detect_{checked_structure(guess).label()}",
-        data=checked_data(record, structure),
+        data=checked_data(record, structure, participation),
         guess=structure,
         free=checked_free(free),
     )

@@ -119,18 +119,22 @@ def average_over_windows(values: Floats) -> Floats:
 def sensor_difference(evidence: Evidence, threshold: Floats) -> Floats:
     """Return the difference of two sensors over its threshold, the larger of orders 1 and 2.
 
-    Two faces of one body in one mode move alike, whatever it does. The best gain and delay between
-    the sensors are taken out, as order 1 tells them.
+    Two faces of one body in one mode move alike, whatever it does. The best gain, delay and ratio
+    of participation factors between the sensors are taken out, as order 1 tells them.
     """
     if len(evidence.measured) < 2:
         return np.full(threshold.shape[1], np.nan)
     one, other = evidence.measured
     slope = -1j * TURN * evidence.frequency
-    basis = np.stack([other[0], slope * other[0]], axis=1)
+    base = evidence.base[:2]
+    basis = np.stack([other[0], slope * other[0], base[0]], axis=1)
     real = np.concatenate([basis.real, basis.imag])
-    gain, delay = np.linalg.lstsq(real, np.concatenate([one[0].real, one[0].imag]), rcond=None)[0]
+    gain, delay, share = np.linalg.lstsq(
+        real, np.concatenate([one[0].real, one[0].imag]), rcond=None
+    )[0]
     size, seen = size_of_order_1(evidence)[0], np.fmax.reduce(threshold, axis=0)
-    both = np.nan_to_num(one[:2] - (gain + np.outer((1.0, 2.0), slope) * delay) * other[:2])
+    alike = (gain + np.outer((1.0, 2.0), slope) * delay) * other[:2] + share * base
+    both = np.nan_to_num(one[:2] - alike)
     first, second = np.sqrt(average_over_windows(np.abs(both) ** 2)) / size
     order2 = np.sqrt(average_over_windows(np.nan_to_num(np.abs(evidence.measured[:, 1])) ** 2)).max(
         axis=0

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from ..access import finder
 from ..checks import checked_word
 from ..errors import InputError
+from ..laboratory.analysis.channels import BOX
 from ..response.labels import Variable, variable
 from ..response.questions import checked_structure
 from ..running.job import Inputs, Table
@@ -22,7 +23,7 @@ from ..structures import Structure
 from .curve_evidence import CurveData
 from .decision_rule import SETTINGS, factor_outside
 from .even_orders import EvenOrders, even_orders
-from .evidence import FITTED_ORDERS, Evidence
+from .evidence import FITTED_ORDERS, Evidence, Participation, checked_participation
 from .hypotheses import FREE, REPORTED, Hypothesis
 from .orders import channel_orders, checked_channels
 from .search_job import RecordData, SearchJob
@@ -53,6 +54,7 @@ def fit(
     *,
     free: Sequence[str] = DEFAULT_FREE,
     hypothesis: str = DELAMINATED,
+    participation: Participation = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Fit a structure to a record of a swept or stepped sine, or to a resonance curve.
@@ -71,6 +73,10 @@ def fit(
     hypothesis : str
         ``"delaminated"``; or one mass, that is ``"bonded"``, ``"curved"`` (a spring that hardens or
         softens), ``"friction"`` (dry), ``"stop"`` or ``"stop on the other side"``.
+    participation : float or mapping of str to float, optional
+        Participation factor of the sensors, or by sensor (``acceleration1``, ``acceleration2``): a
+        sensor on a beam reads ``base + participation (mass - base)``, by its place. Those that are
+        not given are fitted, from 0.2 to 1.7.
     **running
         ``jobs``, ``progress``, ``store`` and others, see
         :class:`orchestrate.running.options.Running`.
@@ -82,7 +88,8 @@ def fit(
         does not hold it: both halves' frequencies where no opening is seen. Over ``parameter`` and
         ``other_parameter``: ``correlation``. ``misfit``, 1 where the model misses 3 % of order 1 or
         the noise, and ``evaluations``; ``minima`` over ``minimum``: misfits of those that differ;
-        ``misfit_at`` over ``window``. Over ``channel``, ``order`` and ``window``: the amplitudes
+        ``misfit_at`` over ``window``; ``participation`` and ``participation_error`` over
+        ``channel``. Over ``channel``, ``order`` and ``window``: the amplitudes
         ``measured``, ``fitted`` and their ``floor`` in m/s2.
 
     Raises
@@ -96,7 +103,8 @@ def fit(
     The measured acceleration of the base is the FMU's input, as the cubic spline through its
     samples. Compared are order 1 (as a complex number) and the sizes of orders 2 and 3 in windows
     of about 0.25 s, over errors that have a relative part: 3 % of order 1 and what is between the
-    orders. A gain and a delay of each sensor against that of the base are found in closed form.
+    orders. A participation factor, a gain and a delay of each sensor against that of the base are
+    found in closed form.
     The standard errors add what simulated noise does and what blocks of windows show; see
     :mod:`orchestrate.diagnosis.errors`.
 
@@ -129,9 +137,9 @@ def fit(
     kind = checked_word("hypothesis", hypothesis, (DELAMINATED, *SHORT_NAMES))
     structure = delaminated_guess(guess)
     data = (
-        CurveData.from_curve(record, structure)
+        CurveData.from_curve(record, structure, participation)
         if is_curve(record)
-        else checked_data(record, structure)
+        else checked_data(record, structure, participation)
     )
     job = FitJob(
         name=f"fit_{checked_structure(guess).label()}",
@@ -158,9 +166,12 @@ def checked_free(free: Sequence[str]) -> tuple[str, ...]:
     return names
 
 
-def checked_data(record: xr.Dataset, guess: Structure | None = None) -> RecordData:
+def checked_data(
+    record: xr.Dataset, guess: Structure | None = None, participation: Participation = None
+) -> RecordData:
     """Check that a record's base moves as a sine, and return its channels for a job."""
     channels = checked_channels(record)
+    factors = checked_participation(participation, [one for one in channels.names if one != BOX])
     resonance = channel_orders(channels).resonance
     if guess is not None:
         low, high = sorted((guess.f1, guess.f2))
@@ -169,7 +180,7 @@ def checked_data(record: xr.Dataset, guess: Structure | None = None) -> RecordDa
             text = f"a factor of {factor:.3g} from the guess's {low:.3g} to {high:.3g} Hz"
             text = f"record: the response is largest at {resonance:.3g} Hz, {text}: are the times"
             warnings.warn(f"{text} in s, and is the guess one of this beam?", stacklevel=3)
-    return RecordData.from_channels(channels)
+    return RecordData.from_channels(channels, factors)
 
 
 def check_tones(job: FitJob) -> None:
@@ -244,6 +255,7 @@ class Results:
     misfit: Floats
     residuals: Floats
     fitted: NDArray[np.complex128]
+    participation: Floats  # and standard error of each sensor, shape (hypotheses, 2, sensors)
     evaluations: Floats
 
     @classmethod
@@ -305,7 +317,11 @@ class Results:
                     value[row, column], error[row, column] = number, deviation
                 asked[row, column] = 1.0
         over = ("hypothesis", "parameter")
+        factor, doubt = np.where(stated[:, None, None], self.participation, np.nan).swapaxes(0, 1)
+        place, words = ("hypothesis", "channel"), "participation factor of the sensor"
         return {
+            "participation": variable(place, factor, "1", words),
+            "participation_error": variable(place, doubt, "1", f"standard error of the {words}"),
             "value": variable(over, value, "", "fitted value, in the parameter's unit"),
             "standard_error": variable(over, error, "", "standard error, in the parameter's unit"),
             "asked": variable(over, asked, "1", "1 where the hypothesis has the parameter"),
@@ -385,7 +401,10 @@ def reported_derivatives(
     return np.stack(columns, axis=1)
 
 
-END_COLUMNS = ("values", "covariance", "minima", "misfit", "residuals", "fitted", "evaluations")
+END_COLUMNS = (
+    *("values", "covariance", "minima", "misfit", "residuals", "fitted"),
+    *("participation", "evaluations"),
+)
 
 
 def text_coordinate(dimension: str, values: Sequence[str], words: str) -> Variable:

@@ -228,17 +228,20 @@ class SweepComputation:
             warnings.simplefilter("ignore", UserWarning)  # of a low level: it is no other unit
             channels = Channels.from_record(measure(history, quiet, excitation=sine), (BOX,))
         names, responses = channels.responses()
-        linear = self.sound.acceleration(channels)
-        rows = np.concatenate([channels.values[:1], responses, linear[None]])
-        both = Channels(channels.time, rate, (BOX, *names, "sound"), rows, channels.title)
+        shares = np.array([[self.sensors[name].participation] for name in names])
+        linear = channels.box + shares * (self.sound.acceleration(channels) - channels.box)
+        rows = np.concatenate([channels.values[:1], responses, linear])
+        sound_names = (f"sound {name}" for name in names)
+        both = Channels(channels.time, rate, (BOX, *names, *sound_names), rows, channels.title)
         windows, amplitudes, _ = fit_windows(both, ORDERS, None, self.noise.periods, 0.5)
         at = np.array([window.frequency for window in windows])
         found = interpolate_amplitudes(f, at, amplitudes[1:])
-        sound = np.zeros_like(found[:-1])
-        sound[:, 0] = found[-1, 0]
+        measured, linear_orders = np.split(found, 2)
+        sound = np.zeros_like(measured)
+        sound[:, 0] = linear_orders[:, 0]
         gaps = [largest_gap(history, both.time[one.part]) for one in windows]
         peak = float(np.abs(responses).max())
-        return Sweep(found[:-1], sound, np.interp(f, at, gaps), peak, level)
+        return Sweep(measured, sound, np.interp(f, at, gaps), peak, level)
 
 
 def interpolate_amplitudes(frequency: Floats, at: Floats, amplitudes: Floats) -> Floats:

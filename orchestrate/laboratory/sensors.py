@@ -13,7 +13,7 @@ from ..checks import checked_word
 from ..errors import InputError
 from ..structures import Structure
 from ..structures.ranges import ADDED, STRUCTURE, Quantity, plain
-from .analog_filter import AnalogFilter, Floats, anti_aliasing, in_series, low_pass
+from .analog_filter import AnalogFilter, Cells, Floats, anti_aliasing, in_series, low_pass
 from .pieces import Pieces
 from .reconstruction import Motion, SmoothParts, smooth_parts
 from .record import CHANNELS, record
@@ -56,6 +56,10 @@ class Sensor:
     antialiasing : bool
         Whether an elliptic filter stands before the converter: flat to 0.01 dB up to
         ``sample_rate/2.56``, 80 dB down where frequencies would come back there.
+    participation : float
+        Of the mass at the sensor's place, which reads ``base + participation (mass - base)``: on
+        a uniform cantilever 1.57 at the tip, 0.53 in the middle and 1 at 0.73 of the length. Has
+        no effect on the box.
 
     Raises
     ------
@@ -76,6 +80,7 @@ class Sensor:
     resolution: float = 0.0
     seed: int = 0
     antialiasing: bool = True
+    participation: float = 1.0
 
     def __post_init__(self) -> None:
         put = object.__setattr__
@@ -92,6 +97,8 @@ class Sensor:
         put(
             self, "resolution", Quantity("resolution", "m/s2", "", 0.0, 1e12).check(self.resolution)
         )
+        factor = Quantity("participation", "1", "", -10.0, 10.0)
+        put(self, "participation", factor.check(self.participation))
         if not isinstance(plain(self.antialiasing), (bool, np.bool_)):
             text = "expected true or false"
             raise InputError(f"antialiasing = {self.antialiasing!r}: {text}")
@@ -112,6 +119,8 @@ class Sensor:
             parts.append(f"range {self.range:g} m/s2")
         if self.resolution:
             parts.append(f"resolution {self.resolution:g} m/s2")
+        if self.participation != 1.0:
+            parts.append(f"participation {self.participation:g}")
         return ", ".join([*parts, *([] if self.antialiasing else ["no filter against aliasing"])])
 
     def analog_filter(self) -> AnalogFilter:
@@ -227,13 +236,23 @@ def measure(
 
 def sensor_reading(parts: SmoothParts, motion: Motion, name: str, sensor: Sensor) -> Floats:
     """Compute what a sensor's filter reads on the box or on a mass, m/s2."""
-    structure = motion.structure
-    cells, jumps = {
-        "box_acceleration": (parts.box, 0.0 * motion.impulses),
-        "acceleration1": (parts.mass1, -motion.impulses / structure.m1),
-        "acceleration2": (parts.mass2, motion.impulses / structure.m2),
-    }[name]
-    return sensor.analog_filter().respond(cells, motion.impact_times, jumps, parts.times)
+    structure, share = motion.structure, sensor.participation
+    if name == "box_acceleration":
+        cells, jumps = parts.box, 0.0 * motion.impulses
+    elif name == "acceleration1":
+        cells, jumps = at_place(parts.mass1, parts.box, share), -motion.impulses / structure.m1
+    else:
+        cells, jumps = at_place(parts.mass2, parts.box, share), motion.impulses / structure.m2
+    return sensor.analog_filter().respond(cells, motion.impact_times, share * jumps, parts.times)
+
+
+def at_place(mass: Cells, box: Cells, participation: float) -> Cells:
+    """Return the acceleration at a sensor's place: that of the box and a part of the mass's."""
+    if participation == 1.0:
+        return mass
+    found = participation * mass.derivatives
+    found[:, : box.derivatives.shape[1]] += (1.0 - participation) * box.derivatives
+    return Cells(mass.starts, mass.ends, found)
 
 
 def pieces_for(history: xr.Dataset, excitation: ExcitationSignal | None) -> Pieces:
