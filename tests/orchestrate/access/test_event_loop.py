@@ -25,6 +25,7 @@ from orchestrate.access.play import CUBIC
 from orchestrate.errors import FmuError
 from orchestrate.structures import Excitation, Structure
 
+from ...sparing import ordinary
 from .misbehaving import misbehaving
 
 STRUCTURE = Structure.nondimensional(mu=0.7, kappa=1.3, D=0.013, e=0.6)
@@ -140,7 +141,7 @@ def test_a_refusal_is_passed_on(words, arguments, event_fmu):
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the bad FMU is made for Linux")
-@pytest.mark.parametrize("first", [0, 40, 41, 42, 43])
+@pytest.mark.parametrize("first", ordinary([0, 40, 41, 42, 43], [0, 42]))
 def test_numbers_that_are_not_finite_are_refused(first, event_fmu, tmp_path):
     """At a time of reading or at an impact, whichever comes first."""
     if shutil.which("cc") is None and shutil.which("gcc") is None:

@@ -72,13 +72,6 @@ def test_the_direction_of_a_sweep(frequency, direction):
     assert sweep_direction(np.array(frequency)) == direction
 
 
-def test_a_fit_of_one_mass_finds_its_frequency():
-    answer = orchestrate.fit(record(BEAM.as_bonded()), guess(), hypothesis="bonded", **LIMIT)
-    assert list(answer.parameter.values) == ["f", "zeta"]
-    assert float(answer.value.sel(parameter="f")) == pytest.approx(33.79, rel=0.002)
-    assert float(answer.value.sel(parameter="zeta")) == pytest.approx(0.0200, rel=0.05)
-
-
 @pytest.mark.parametrize(
     ("arguments", "text"),
     [

@@ -148,17 +148,6 @@ def test_random_vibration_within_its_bound(duration, seed, accuracy):
     assert pieces.error <= 30.0 * accuracy * shaking.rms * math.sqrt(3.0)
 
 
-@pytest.mark.slow
-def test_random_vibration_within_its_bound_a_thousand_times():
-    for seed in range(1000):
-        shaking = Random(psd=PROFILE, duration=2.0, seed=seed)
-        amplitudes, omega, phases = sines(shaking)
-        times = times_within(2.0, seed, 500)
-        exact = np.cos(np.outer(times, omega) + phases) @ amplitudes
-        pieces = shaking.pieces(1e-5)
-        assert np.abs(pieces(times) - exact).max() <= pieces.error
-
-
 def test_random_vibration_has_its_density():
     shaking = Random(psd=PROFILE, duration=64.0, seed=3)
     rate = 1024.0

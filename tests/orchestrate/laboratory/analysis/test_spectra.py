@@ -37,15 +37,6 @@ def test_response_of_a_bonded_structure_is_its_transfer_function(seed, estimator
         assert np.abs(found / expected - 1.0).max() < 0.01
 
 
-@pytest.mark.parametrize("seed", range(2))
-def test_coherence_away_from_leakage(seed):
-    answer = frf(random_record(HEAVILY.as_bonded(), seed, 80.0), resolution=0.2)
-    coherence = answer.coherence.sel(frequency=BAND)
-    away = abs(coherence.frequency - 48.0) > 4.0
-    assert float(coherence.where(away).min()) > 0.999
-    assert float(coherence.min()) > 0.998
-
-
 def probabilities(seeds, duration):
     """Of a smaller error than each one found, where noise is on the response (Goodman's F)."""
     chances = []
@@ -66,14 +57,6 @@ def probabilities(seeds, duration):
 def test_random_error_is_the_one_stated():
     chances = probabilities(range(3), 22.0)
     assert stats.kstest(chances, "uniform").pvalue > 1e-3
-
-
-@pytest.mark.slow
-def test_random_error_over_fifty_seeds():
-    chances = probabilities(range(50), 62.0)
-    counts = np.histogram(chances, 20, (0.0, 1.0))[0]
-    assert len(chances) == 7000
-    assert stats.chisquare(counts).pvalue > 1e-3
 
 
 def test_estimators_where_the_noise_is():
