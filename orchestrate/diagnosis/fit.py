@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from ..access import finder
 from ..checks import checked_word
 from ..errors import InputError
+from ..laboratory.pieces import Floats
 from ..response.labels import Variable, variable
 from ..response.questions import checked_structure
 from ..running.job import Inputs, Table
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
 
     from ..running.options import Running
 
-Floats = NDArray[np.float64]
 DEFAULT_FREE = ("f1", "f2", "zeta1", "zeta2", "e")
 DELAMINATED = "delaminated"
 SHORT_NAMES = {  # names of the hypotheses as arguments
@@ -326,10 +326,7 @@ class Results:
     def comparison(self) -> tuple[dict[str, Variable], dict[str, Variable]]:
         """Return measured and fitted orders with the misfits, and their coordinates."""
         evidence = self.job.evidence
-        rows = [evidence.orders.channels.names.index(name) for name in evidence.orders.sensors]
-        floor = evidence.orders.floor[rows][:, None, evidence.used_windows].repeat(
-            len(FITTED_ORDERS), axis=1
-        )
+        floor = evidence.floor[:, None].repeat(len(FITTED_ORDERS), axis=1)
         by_window = np.sqrt(np.mean(self.residuals**2, axis=(1, 2)))
         over = ("channel", "order", "window")
         variables = {

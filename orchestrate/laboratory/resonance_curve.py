@@ -14,11 +14,11 @@ from ..constants import TURN
 from ..errors import InputError
 from ..response.labels import variable
 from .columns import ACCELERATIONS, LENGTHS, RATIOS, SPEEDS, plain_unit
+from .pieces import Floats
 
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 FACES = ("acceleration1", "acceleration2")
 CURVE_ORDERS = (1.0, 2.0, 3.0)
 FEWEST_POINTS = 10
