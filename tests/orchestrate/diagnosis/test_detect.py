@@ -16,6 +16,7 @@ from tools.benches.excitation import Swept
 from tools.benches.lumped import Faces, Halves, Torsion
 from tools.benches.sensors import Sensor
 
+from ...sparing import ordinary
 from .records import BEAM, RATE, SWEEP, guess, record
 
 LIMIT = {"jobs": 1, "progress": False}
@@ -116,6 +117,7 @@ def test_a_history_without_its_impacts_spikes_is_refused():
         orchestrate.signs(history)
 
 
+@pytest.mark.slow
 def test_of_a_structure_that_friction_locks_no_resonance_is_seen_and_nothing_is_decided():
     """Faces pressed together rub: on a bench of its own, whose contact is no model of ours."""
     faces = Faces(law="linear", frequency=900.0, clearance=-4e-3, friction=0.3)
@@ -131,6 +133,7 @@ def test_of_a_structure_that_friction_locks_no_resonance_is_seen_and_nothing_is_
     assert "does not pass the resonance" in answer.attrs["reason"]
 
 
+@pytest.mark.slow
 def test_a_sound_beam_that_twists_between_two_sensors_is_not_delaminated():
     """A torsion mode 8 % above bending, and sensors that are not exactly opposite."""
     halves = Halves(f1=46.0, f2=46.0)
@@ -154,7 +157,7 @@ QUIET_CASES = {  # of a bonded beam at 33.8 Hz: clip, end of the sweep in s, fac
 }
 
 
-@pytest.mark.parametrize("name", QUIET_CASES)
+@pytest.mark.parametrize("name", ordinary(QUIET_CASES, ["too short"]))
 def test_no_opening_is_seen_only_in_a_record_that_can_show_one(name):
     share, end, factor, reason = QUIET_CASES[name]
     whole = record(BEAM.as_bonded(), noise=0.02)

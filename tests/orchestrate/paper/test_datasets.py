@@ -58,6 +58,7 @@ def test_what_does_not_repeat_is_run_on_and_irregular_in_the_end(data):
     assert found.periods.values[0] == 4596 and np.isfinite(found.end_state).all()
 
 
+@pytest.mark.slow
 def test_exact_limits_of_a_branch_through_a_sweep(data):
     """The period doubling that ends T/2 at D = 0.05, eight digits as in the manual's table."""
     data.sweep = lambda *_: swept([1.05, 1.06])

@@ -10,6 +10,7 @@ from orchestrate import Structure, frf, psd, spectrogram
 from orchestrate.laboratory.analysis.averaging import averaging
 from orchestrate.laboratory.analysis.channels import Channels
 
+from ....sparing import ordinary
 from .records import DAMPED, LIGHT, make, random_record, transfer
 
 HEAVILY = Structure.from_halves(m1=1.5, m2=1.2, f1=42.0, f2=55.0, zeta1=0.1, zeta2=0.1, e=0.6)
@@ -25,7 +26,7 @@ def complex_response(answer, estimator="H1", channel="acceleration1"):
 
 
 @pytest.mark.parametrize("estimator", ["H1", "H2", "Hv"])
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", ordinary(range(2)))
 def test_response_of_a_bonded_structure_is_its_transfer_function(seed, estimator):
     """Without noise all that is left is leakage, which the coherence and its error know."""
     answer = frf(random_record(HEAVILY.as_bonded(), seed, 80.0), resolution=0.2)
@@ -95,7 +96,10 @@ def test_opening_lowers_the_coherence():
 # -- averages -------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("window", "overlap"), [("hann", 0.5), ("boxcar", 0.5), ("hann", 0.75)])
+@pytest.mark.parametrize(
+    ("window", "overlap"),
+    ordinary([("hann", 0.5), ("boxcar", 0.5), ("hann", 0.75)], 2, several_names=True),
+)
 def test_independent_averages_are_those_of_the_scatter(window, overlap):
     """Of white noise: the relative variance of a line is one over their number."""
     values = np.random.default_rng(5).normal(size=(120, 64 * 12))
