@@ -20,7 +20,6 @@ from orchestrate.paper.claims import (
 )
 from orchestrate.paper.curves import CONTACT, FLIGHT
 from orchestrate.paper.measures import check_claims, equations, find_measure, limits, setup
-from orchestrate.paper.reading import impacts_in_turn
 from orchestrate.paper.resolution import QUICK
 
 from .known import along_eta, known, measured, responses, verdict
@@ -214,16 +213,6 @@ def test_chattering_is_endless_or_not(restitutions, change, expected):
 # -- section 3 -------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("impacts", "expected"),
-    [((0, 0, 9), PARTLY), ((0, 9, 9), YES), ((9, 0, 9), PARTLY), ((9, 0, 0), NO)],
-)
-def test_masses_that_never_influence_each_other_are_no_exception(impacts, expected):
-    rows = {"mu": [1.0, 2.0, 2.0], "kappa": [1.0, 2.0, 2.2], "impacts": list(impacts)}
-    data = xr.Dataset({name: ("motion", np.array(row)) for name, row in rows.items()})
-    assert verdict("only_equal", known(slow_impacts=data)) == expected
-
-
 def loops(count, last=0.0):
     """Flights and impacts in turn; the last impact parts with ``last``, contact follows."""
     rows = []
@@ -291,16 +280,3 @@ def one_period(impacts):
 def test_impacts_that_rise_in_between_do_not_decrease(impacts, expected):
     """A number that had been there before was dropped before the numbers were compared."""
     assert verdict("impacts_decrease", known(sweep=one_period(impacts))) == expected
-
-
-def test_numbers_of_impacts_in_turn():
-    assert impacts_in_turn(one_period(TO_AND_FRO)) == [5, 4, 5, 7, 8, 7, 3, 2]
-    assert verdict("seven_to_two", known(sweep=one_period([7, 7, 5, 3, 2]))) == YES
-    assert verdict("seven_to_two", known(sweep=one_period([7, 5, 6, 3, 2]))) == PARTLY
-
-
-def test_each_number_of_impacts_has_its_own_frequencies():
-    """A window of several numbers had been called by its first one."""
-    data = one_period(TO_AND_FRO)
-    text = measured("interchange", known(settled=data, exponent=data)).found
-    assert "5 (0.500 to 0.511), 4 (0.522 to 0.522), 5 (0.533 to 0.533), 7 (0.556" in text
