@@ -47,9 +47,9 @@ order 2, one mass explains it better: misfit=0.2 other=1.2 -> undecided
 order 2, and nothing explains it: other=3.5 misfit=6 -> not described
 better, but not in most parts of the record: share=0.6 -> undecided
 no order 2, but the faces move apart and impacts are heard: excess=0.2 apart=4 -> delaminated
-the faces differ, as by a sound beam's torsion: excess=0.25 bursts=0.8 apart=40 misfit=1.4 -> undecided
+the faces differ as by a torsion mode: excess=0.25 bursts=0.8 apart=40 misfit=1.4 -> undecided
 the same, and nothing hears impacts: excess=0.25 bursts=nan apart=40 misfit=1.4 -> undecided
-faces alone differ, the halves explain it far better: excess=0.25 bursts=0.8 apart=40 misfit=9 -> delaminated
+faces alone differ, halves are far better: excess=0.25 bursts=0.8 apart=40 misfit=9 -> delaminated
 the odds speak against it: simulated_odds=0.68 -> undecided
 a channel is saturated: clipped=0.01 -> undecided
 the sweep does not pass the resonance: end_response=0.98 -> undecided
