@@ -50,14 +50,9 @@ class Sweep:
 
     def scaled_to(self, level: float) -> Sweep:
         """Scale the sweep to another level; valid for structures without clearance."""
-        scale = level / self.level
-        return Sweep(
-            scale * self.delaminated,
-            scale * self.sound,
-            scale * self.opening,
-            scale * self.peak,
-            level,
-        )
+        names = ("delaminated", "sound", "opening", "peak")
+        parts = (level / self.level * getattr(self, name) for name in names)
+        return Sweep(*parts, level)
 
 
 @dataclass(frozen=True)

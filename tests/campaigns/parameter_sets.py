@@ -149,10 +149,6 @@ def make_resonant(rng: Chance, values: Values) -> None:
         values["x2_start"], values["v2_start"] = values["x1_start"], values["v1_start"]
 
 
-def make_late_start(rng: Chance, values: Values) -> None:
-    """Change the start time to a late one."""
-
-
 def make_cubic_input(rng: Chance, values: Values) -> None:
     """Change the box accelerations to cubics of many scales."""
     for name in ("box_acceleration", "box_jerk", "box_snap", "box_crackle"):
@@ -230,7 +226,7 @@ KINDS: dict[str, Callable[[Chance, Values], None]] = {
     "heavy": make_large_gamma,
     "steep": make_overdamped,
     "resonant": make_resonant,
-    "late": make_late_start,
+    "late": lambda rng, values: None,
     "cubic": make_cubic_input,
     "pressed": make_long_chattering,
     "fast or slow": make_far_drive,

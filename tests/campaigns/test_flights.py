@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import atexit
 import dataclasses
+import functools
 import itertools
+import shutil
+import subprocess
 import sys
+import tempfile
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -13,9 +18,10 @@ from pathlib import Path
 import pytest
 from mpmath import mp
 
-from tools import exact_motion
+from orchestrate.access import describe
+from orchestrate.access.unpacked import unpacked
+from tools import exact_motion, importers
 
-from . import programs
 from .findings import expect_none
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="programs for Linux")
@@ -25,6 +31,7 @@ NAMES = (
     "clearance",
 )
 WRONG = ("", "a root is missed", "no root at its end", "it does not end")
+OPTIONS = ("-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-fcx-limited-range")
 CONTACT = 6  # the kind that is no flight
 BOUND = 1e-12  # of the balances, in parts of the motion's terms
 
@@ -47,9 +54,25 @@ class Flight:
         return cls(int(kind), int(verdict), impact == "1", float.fromhex(end), values)
 
 
+@functools.cache
+def compile_roots(fmu: Path) -> tuple[str, str]:
+    """Compile ``native/roots.c`` against an FMU; return its path and that of the binary."""
+    folder = Path(tempfile.mkdtemp(prefix="vibroimpact-campaign-"))
+    atexit.register(shutil.rmtree, folder)
+    source = Path(__file__).parent / "native" / "roots.c"
+    program, found = importers.compile_against(fmu, folder, [source], OPTIONS), describe(fmu)
+    return str(program), str(unpacked(found) / f"binaries/x86_64-linux/{found.identifier}.so")
+
+
+def run_roots(fmu: Path, *arguments: object) -> str:
+    """Run the program on an FMU; return what it prints."""
+    command = [*compile_roots(fmu), *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+
+
 def iterate_flights(fmu: Path, seed: int, count: int) -> Iterator[Flight]:
     """Yield the flights of a seed, without contacts."""
-    lines = programs.run_program(fmu, "roots", seed, 2 * count, "show").splitlines()
+    lines = run_roots(fmu, seed, 2 * count, "show").splitlines()
     flights = map(Flight.read, (line for line in lines if line.startswith("FLIGHT")))
     return itertools.islice((one for one in flights if one.kind != CONTACT), count)
 
@@ -93,7 +116,7 @@ def test_no_root_is_missed_and_none_made_up(fmu, seed, budget):
     of impacts: speeds before one by the closed form, those after it by the FMU; e may slope.
     """
     counts, findings = Counter[str](), []
-    *lines, last = programs.run_program(fmu, "roots", seed, budget).splitlines()
+    *lines, last = run_roots(fmu, seed, budget).splitlines()
     for line in lines:
         if line.startswith("FLIGHT"):
             flight = Flight.read(line)
@@ -122,7 +145,7 @@ def test_impacts_against_50_digits(fmu, seed, budget):
 @pytest.mark.slow
 def test_what_is_wrong_is_found(fmu):
     """A structure, a restitution and an end that differ by a billionth from the FMU's."""
-    *lines, last = programs.run_program(fmu, "roots", 1, 2000, "wrong").splitlines()
+    *lines, last = run_roots(fmu, 1, 2000, "wrong").splitlines()
     wrong = [sum(map(int, line.split()[1:3])) for line in lines if not line.startswith("FLIGHT")]
     assert sum(wrong) > 500 and all(number > 20 for number in wrong[:6]), wrong
     assert float(last.split()[2]) > 10.0 * BOUND
