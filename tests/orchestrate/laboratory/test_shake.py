@@ -167,7 +167,8 @@ def test_impacts_of_a_swept_sine_are_those_of_an_independent_integration(seed):
     first = structure.f1 * np.random.default_rng(seed + 1000).uniform(0.7, 1.0)
     signal = SweptSine(first=first, last=1.4 * first, duration=0.4, acceleration=5.0)
     data = shake(structure, signal, start=OPEN, accuracy=1e-10, progress=False)
-    impacts, _ = event_driven(structure, signal, data.time.values, 1e-3)
+    longest = 1e-3 if seed < 3 else 1e-4  # of a step: these three have no hop that is shorter
+    impacts, _ = event_driven(structure, signal, data.time.values, longest)
     times = data.impact_time.values
     times = times[times <= float(data.time[-1])]  # the excitation goes on to its end
     alike = min(len(times), len(impacts))
