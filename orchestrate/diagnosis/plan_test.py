@@ -51,8 +51,8 @@ class Sweep:
     def scaled_to(self, level: float) -> Sweep:
         """Scale the sweep to another level; valid for structures without clearance."""
         names = ("delaminated", "sound", "opening", "peak")
-        parts = (level / self.level * getattr(self, name) for name in names)
-        return Sweep(*parts, level)
+        scaled = {name: level / self.level * getattr(self, name) for name in names}
+        return replace(self, level=level, **scaled)
 
 
 @dataclass(frozen=True)
