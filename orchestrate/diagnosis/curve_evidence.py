@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..laboratory.analysis.channels import BOX, Channels
 from ..laboratory.analysis.orders import dwells
+from ..laboratory.pieces import Floats
 from ..laboratory.resonance_curve import CURVE_ORDERS, FACES, FEWEST_POINTS
 from ..laboratory.sampled import Sampled
 from ..laboratory.stepped_sine import SteppedSine
@@ -39,7 +40,6 @@ if TYPE_CHECKING:
 
     from ..structures import Structure
 
-Floats = NDArray[np.float64]
 Numbers = tuple[float | None, ...]
 Kind = TypeVar("Kind")
 MEASURED_CYCLES = 10  # at each frequency: they separate the orders 0.5, 1 and 1.37

@@ -38,6 +38,16 @@ if TYPE_CHECKING:
 TRUTHS = ("sound", "delaminated")  # of simulated records
 ONE_DIRECTION = 0.5  # of the range of frequencies, from first to last: a sweep in one direction
 ODDS_FROM = {0: "blocks of the record", 1: "simulated records"}
+STATED = {  # numbers of the rule: their names there, units and long names
+    "ratio": ("ratio", "1", "misfit of sound over that of delaminated"),
+    "faces_apart": ("apart", "1", "difference of two sensors over its threshold"),
+    "bursts": ("bursts", "1", "power of bursts once a period over its threshold"),
+    "smallest_opening": ("smallest", "m", "smallest opening at a sensor that would be detected"),
+    "level_low": ("low", "m/s2", "lowest level of the base"),
+    "level_high": ("high", "m/s2", "highest level of the base"),
+    "frequency_low": ("first", "Hz", "lowest frequency"),
+    "frequency_high": ("last", "Hz", "highest frequency"),
+}
 ASSUMED = (
     "the masses of both halves have the ratio of the guess",
     "each half has one mode in the range of the sweep",
@@ -175,20 +185,9 @@ class DetectJob(SearchJob):
         scalars = {
             "verdict": ((), findings.verdict(), {"long_name": "verdict"}),
             **odds_variables(findings, simulated, table["end_bootstrap"][0]),
-            "ratio": variable((), findings.ratio, "1", "misfit of sound over that of delaminated"),
-            "faces_apart": variable(
-                (), findings.apart, "1", "difference of two sensors over its threshold"
-            ),
-            "bursts": variable(
-                (), findings.bursts, "1", "power of bursts once a period over its threshold"
-            ),
-            "smallest_opening": variable(
-                (), findings.smallest, "m", "smallest opening at a sensor that would be detected"
-            ),
-            "level_low": variable((), findings.low, "m/s2", "lowest level of the base"),
-            "level_high": variable((), findings.high, "m/s2", "highest level of the base"),
-            "frequency_low": variable((), findings.first, "Hz", "lowest frequency"),
-            "frequency_high": variable((), findings.last, "Hz", "highest frequency"),
+            **{
+                name: variable((), getattr(findings, of), *at) for name, (of, *at) in STATED.items()
+            },
             **record_variables(whole),
             "order2": variable("window", even.ratio, "1", "order 2 over order 1"),
             "order2_threshold": variable("window", even.threshold, "1", "size that counts as seen"),

@@ -5,13 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..constants import TURN
+from ..laboratory.pieces import Floats
 from .evidence import Evidence
 from .orders import Complexes, moving_average
 
-Floats = NDArray[np.float64]
 AVERAGED_WINDOWS = 5  # neighbouring windows that are taken together
 MIN_RESPONSE = 0.1  # of the largest order 1: windows where less moves are not taken
 # Threshold over the noise, and over the floor between the orders, which impacts raise too
@@ -64,10 +63,7 @@ def even_orders(evidence: Evidence, bonded: Complexes) -> EvenOrders:
     """Compute order 2 of a record beyond that of a bonded structure, and its threshold."""
     power = average_over_windows(np.nan_to_num(np.abs(evidence.measured[:, 1] - bonded[:, 1]) ** 2))
     size, threshold = size_of_order_1(evidence), thresholds(evidence)
-    excess = (
-        np.sqrt(np.maximum(power - average_over_windows(floor_of_orders(evidence) ** 2), 0.0))
-        / size
-    )
+    excess = np.sqrt(np.maximum(power - average_over_windows(evidence.floor**2), 0.0)) / size
     quiet = np.isnan(threshold)
     excess[quiet] = np.nan
     chosen = np.argmax(np.nan_to_num(excess / threshold), axis=0)
@@ -80,7 +76,7 @@ def thresholds(evidence: Evidence) -> Floats:
 
     NaN where little moves.
     """
-    size, floor = size_of_order_1(evidence), floor_of_orders(evidence)
+    size, floor = size_of_order_1(evidence), evidence.floor
     noise = NOISE_FACTOR * evidence.noise[:, np.newaxis] / size
     between = FLOOR_FACTOR * np.sqrt(average_over_windows(floor**2)) / size
     found = np.maximum(np.maximum(noise, between), MIN_RATIO)
@@ -103,12 +99,6 @@ def smallest_openings(evidence: Evidence, m1: float, m2: float) -> Floats:
 def size_of_order_1(evidence: Evidence) -> Floats:
     """Return the root mean square of order 1 over neighbouring windows, by sensor, m/s2."""
     return np.sqrt(average_over_windows(np.abs(evidence.measured[:, 0]) ** 2))
-
-
-def floor_of_orders(evidence: Evidence) -> Floats:
-    """Return the amplitude between the orders in the fitted windows, by sensor, m/s2."""
-    rows = [evidence.orders.channels.names.index(name) for name in evidence.orders.sensors]
-    return np.asarray(evidence.orders.floor[rows][:, evidence.used_windows])
 
 
 def average_over_windows(values: Floats) -> Floats:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..constants import TURN
 from ..errors import InputError
 from ..laboratory.analysis.channels import Channels
-from ..laboratory.pieces import Pieces
+from ..laboratory.pieces import Floats, Pieces
 from ..laboratory.sampled import Sampled
 from ..structures.ranges import Quantity
 from .orders import (
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     import xarray as xr
     from scipy.sparse import csr_array
 
-Floats = NDArray[np.float64]
 FITTED_ORDERS = (1.0, 2.0, 3.0)
 MODEL_ERROR = (0.03, 0.03, 0.03)  # errors of a model's orders 1, 2, 3 over the size of order 1
 NEIGHBOURS = 2  # windows on each side over which that size is the largest
@@ -182,9 +181,8 @@ class Evidence:
     @cached_property
     def measured(self) -> Complexes:
         """Measured orders 1, 2, 3 of the sensors, shape (sensors, 3, windows), m/s2."""
-        rows = [self.orders.channels.names.index(name) for name in self.orders.sensors]
         numbers = [ORDERS.index(order) for order in FITTED_ORDERS]
-        return self.orders.amplitude[rows][:, numbers][:, :, self.used_windows]
+        return self.orders.amplitude[self.orders.rows][:, numbers][:, :, self.used_windows]
 
     @cached_property
     def size(self) -> Floats:
@@ -197,16 +195,17 @@ class Evidence:
     @cached_property
     def noise(self) -> Floats:
         """Standard deviation of the orders' amplitudes by noise, shape (sensors,), m/s2."""
-        rows = [self.orders.channels.names.index(name) for name in self.orders.sensors]
-        return np.maximum(self.orders.noise[rows], 1e-9 * self.size.max())
+        return np.maximum(self.orders.noise[self.orders.rows], 1e-9 * self.size.max())
+
+    @property
+    def floor(self) -> Floats:
+        """Amplitude between the orders, shape (sensors, windows), m/s2."""
+        return self.orders.floor[self.orders.rows][:, self.used_windows]
 
     @cached_property
     def error(self) -> Floats:
         """Standard deviations (model error and noise), shape (sensors, 3, windows), m/s2."""
-        rows = [self.orders.channels.names.index(name) for name in self.orders.sensors]
-        floor = np.maximum(
-            IRREGULAR * self.orders.floor[rows][:, self.used_windows], self.noise[:, None]
-        )
+        floor = np.maximum(IRREGULAR * self.floor, self.noise[:, None])
         model = np.array(self.relative)[:, None] * self.size[:, None, :]
         return np.sqrt(floor[:, None, :] ** 2 + model**2)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -15,6 +14,7 @@ from ..access import finder
 from ..checks import checked_word
 from ..errors import InputError
 from ..laboratory.analysis.channels import BOX
+from ..laboratory.pieces import Floats
 from ..response.labels import Variable, variable
 from ..response.questions import checked_structure
 from ..running.job import Inputs, Table
@@ -34,7 +34,6 @@ if TYPE_CHECKING:
 
     from ..running.options import Running
 
-Floats = NDArray[np.float64]
 DEFAULT_FREE = ("f1", "f2", "zeta1", "zeta2", "e")
 DELAMINATED = "delaminated"
 SHORT_NAMES = {  # names of the hypotheses as arguments
@@ -286,36 +285,30 @@ class Results:
             return f"{size}, {even.excess:.2g} times the size from which it counts as seen"
         return f"no opening is seen ({size}): the record does not hold f1 and f2"
 
-    def reported_values(self, position: int) -> dict[str, tuple[float, float]]:
-        """Return the reported parameters of a hypothesis, by name, as (value, standard error)."""
+    def reported_values(self, position: int) -> tuple[dict[str, float], Floats]:
+        """Return the reported parameters of a hypothesis by name, and their covariance."""
         hypothesis, evidence = self.job.hypotheses[position], self.job.evidence
         names = list(hypothesis.bounds(evidence))
         here = dict(zip(names, self.values[position].tolist(), strict=False))
-        reported = hypothesis.reported(here, evidence)
         slopes = reported_derivatives(hypothesis, here, evidence)
         covariance = self.covariance[position][: len(names), : len(names)]
-        errors = np.sqrt(np.maximum(np.diag(slopes @ covariance @ slopes.T), 0.0))
-        known = dict(
-            zip(reported, zip(reported.values(), errors.tolist(), strict=True), strict=True)
-        )
-        if not self.is_opening_seen():
-            known.update(dict.fromkeys(known.keys() & set(FREE), (math.nan, math.nan)))
-        return known
+        return hypothesis.reported(here, evidence), slopes @ covariance @ slopes.T
 
     def parameters(self, stated: NDArray[np.bool_]) -> dict[str, Variable]:
         """Return values and errors of the hypotheses that are ``stated``, NaN of the others.
 
         ``asked`` is 1 where one has the parameter.
         """
-        every = [self.reported_values(position) for position in range(len(self.values))]
-        shape = (len(every), len(REPORTED))
-        value, error, asked = np.full(shape, np.nan), np.full(shape, np.nan), np.full(shape, np.nan)
-        for row, known in enumerate(every):
-            for name, (number, deviation) in known.items():
+        shape = (len(self.values), len(REPORTED))
+        value, error, asked = np.full((3, *shape), np.nan)
+        for row in range(len(self.values)):
+            known, covariance = self.reported_values(row)
+            errors = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+            for (name, number), deviation in zip(known.items(), errors, strict=True):
                 column = list(REPORTED).index(name)
-                if stated[row]:
-                    value[row, column], error[row, column] = number, deviation
                 asked[row, column] = 1.0
+                if stated[row] and (self.is_opening_seen() or name not in FREE):
+                    value[row, column], error[row, column] = number, deviation
         over = ("hypothesis", "parameter")
         factor, doubt = np.where(stated[:, None, None], self.participation, np.nan).swapaxes(0, 1)
         place, words = ("hypothesis", "channel"), "participation factor of the sensor"
@@ -329,23 +322,16 @@ class Results:
 
     def correlation(self, position: int, names: list[str]) -> tuple[Any, ...]:
         """Return the correlation matrix of the errors of a hypothesis's reported parameters."""
-        hypothesis, evidence = self.job.hypotheses[position], self.job.evidence
-        fitted = list(hypothesis.bounds(evidence))
-        here = dict(zip(fitted, self.values[position].tolist(), strict=False))
-        slopes = reported_derivatives(hypothesis, here, evidence)
-        covariance = slopes @ self.covariance[position][: len(fitted), : len(fitted)] @ slopes.T
+        reported, covariance = self.reported_values(position)
         size = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
-        order = [list(hypothesis.reported(here, evidence)).index(name) for name in names]
+        order = [list(reported).index(name) for name in names]
         known = (covariance / np.outer(size, size))[np.ix_(order, order)]
         return variable(("parameter", "other_parameter"), known, "1", "correlation of errors")
 
     def comparison(self) -> tuple[dict[str, Variable], dict[str, Variable]]:
         """Return measured and fitted orders with the misfits, and their coordinates."""
         evidence = self.job.evidence
-        rows = [evidence.orders.channels.names.index(name) for name in evidence.orders.sensors]
-        floor = evidence.orders.floor[rows][:, None, evidence.used_windows].repeat(
-            len(FITTED_ORDERS), axis=1
-        )
+        floor = evidence.floor[:, None].repeat(len(FITTED_ORDERS), axis=1)
         by_window = np.sqrt(np.mean(self.residuals**2, axis=(1, 2)))
         over = ("channel", "order", "window")
         variables = {

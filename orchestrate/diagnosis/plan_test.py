@@ -9,11 +9,12 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..errors import InputError
 from ..laboratory.analysis.channels import Channels, attributes, checked_number
 from ..laboratory.analysis.orders import fit_windows
+from ..laboratory.pieces import Floats
 from ..laboratory.sensors import Sensor, measure, sensor_by_channel
 from ..laboratory.shake import shake
 from ..laboratory.swept_sine import SweptSine
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
     import xarray as xr
     from typing_extensions import Unpack
 
-Floats = NDArray[np.float64]
 ORDERS = (1.0, 2.0, 3.0)
 SPLITS = (1.0, 0.2)  # parts of the guess's difference between its halves that are computed
 SAMPLES_PER_PERIOD = 20.0  # of the computed records, in a period of the highest frequency
@@ -50,14 +50,9 @@ class Sweep:
 
     def scaled_to(self, level: float) -> Sweep:
         """Scale the sweep to another level; valid for structures without clearance."""
-        scale = level / self.level
-        return Sweep(
-            scale * self.delaminated,
-            scale * self.sound,
-            scale * self.opening,
-            scale * self.peak,
-            level,
-        )
+        names = ("delaminated", "sound", "opening", "peak")
+        scaled = {name: level / self.level * getattr(self, name) for name in names}
+        return replace(self, level=level, **scaled)
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..access import Player
+from ..laboratory.pieces import Floats
 from .evidence import GAIN_DEVIATION, PARTICIPATION_DEVIATION, PRIOR_WEIGHT, Evidence
 from .fitting import Search, Solution, difference_step
 from .hypotheses import Delaminated
@@ -17,7 +17,6 @@ from .misfit import soft_squares, soft_weights
 from .orders import Complexes
 from .simulation import Fitted, Simulation, rounded
 
-Floats = NDArray[np.float64]
 Values = Mapping[str, float]
 ROUNDS = 6  # of reweighted least squares
 REACH = 3.0  # standard deviations of the cloud within which its regression is used

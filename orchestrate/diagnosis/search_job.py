@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..access import OSCILLATOR, Player
 from ..laboratory.analysis.channels import Channels
+from ..laboratory.pieces import Floats
 from ..running.job import Inputs, Job, Table
 from ..structures import Structure
 from .curve_evidence import CurveData
@@ -26,7 +26,6 @@ from .hypotheses import SOUND, STARTING_SPLITS, Delaminated, DelaminatedWithClea
 from .misfit import misfit
 from .orders import RecordOrders, channel_orders
 
-Floats = NDArray[np.float64]
 BONDED_STEPS = 15  # steps downhill from the bonded solution
 SCAN_STARTS = 1  # starts of each part of the scan from which to go downhill
 # Steps downhill from each start of the scan where a delamination is possible, and elsewhere

@@ -18,7 +18,7 @@ from .pieces import Pieces
 from .reconstruction import Motion, SmoothParts, smooth_parts
 from .record import CHANNELS, record
 from .sampled import Sampled
-from .signals import HERTZ, ExcitationSignal, checked
+from .signals import HERTZ, ExcitationSignal, check_fields
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -84,18 +84,18 @@ class Sensor:
 
     def __post_init__(self) -> None:
         put = object.__setattr__
-        put(self, "bandwidth", checked(HERTZ, "bandwidth", self.bandwidth))
+        check_fields(self, bandwidth=HERTZ)
         rate = 2.56 * self.bandwidth if self.sample_rate is None else self.sample_rate
-        put(self, "sample_rate", checked(HERTZ, "sample_rate", rate))
+        put(self, "sample_rate", rate)
+        check_fields(self, sample_rate=HERTZ)
         checked_word("kind", self.kind, FILTERS)
         put(self, "order", checked_whole("order", self.order, 1, 10))
         put(self, "seed", checked_whole("seed", self.seed, 0, 2**63))
-        smallest, largest = 5e-324, math.inf
-        density = Quantity("noise", "(m/s2)/sqrt(Hz)", "", 0.0, 1e12)
-        put(self, "noise", density.check(self.noise))
-        put(self, "range", Quantity("range", "m/s2", "", smallest, largest).check(self.range))
-        put(
-            self, "resolution", Quantity("resolution", "m/s2", "", 0.0, 1e12).check(self.resolution)
+        check_fields(
+            self,
+            noise=Quantity("noise", "(m/s2)/sqrt(Hz)", "", 0.0, 1e12),
+            range=Quantity("range", "m/s2", "", 5e-324, math.inf),
+            resolution=Quantity("resolution", "m/s2", "", 0.0, 1e12),
         )
         factor = Quantity("participation", "1", "", -10.0, 10.0)
         put(self, "participation", factor.check(self.participation))
@@ -131,15 +131,7 @@ class Sensor:
         return in_series(parts)
 
     def digitised(self, values: Floats, channel: int) -> Floats:
-        """Add noise to filtered values, limit them and round them to the converter's digits.
-
-        Parameters
-        ----------
-        values : ndarray
-            m/s2.
-        channel : int
-            Each has noise of its own.
-        """
+        """Add a channel's own noise to filtered values, m/s2; limit and round them."""
         if self.noise:
             rms = self.noise * math.sqrt(0.5 * self.rate)
             generator = np.random.default_rng([self.seed, channel])
