@@ -26,7 +26,7 @@ PARTED, BONDED = "delaminated", "bonded"  # names of hypotheses begin so
 LIMIT = 2.0  # times what noise and a sound structure show, from which a sign stands out
 FEWEST_DECADES = (0.2, 10.0)  # of the signs' axis, at least
 HEIGHT = 0.8  # of all bars of a sign
-LINE = 90  # letters of a line below the bars
+LINE = 100  # letters of a line above the legend
 
 
 @styled
@@ -57,12 +57,9 @@ def draw_signs(data: xr.Dataset, title: str = "") -> Figure:
     axes.set_yticks(signs, [str(text) for text in data.meaning.values])
     axes.invert_yaxis()
     axes.grid(visible=False, axis="y")
-    words = "sign over what noise and a sound structure show of it"
-    if left_out:
-        lacking = textwrap.fill(f"not in this record: {', '.join(left_out)}", LINE)
-        words = f"{words}\n{lacking}"
-    axes.set_xlabel(words)
-    legend_below(figure, [axes], 4)
+    axes.set_xlabel("sign over what noise and a sound structure show of it")
+    lacking = textwrap.fill(f"not in this record: {', '.join(left_out)}", LINE)
+    legend_below(figure, [axes], 4, title=lacking if left_out else None)
     return figure
 
 
@@ -105,7 +102,8 @@ def draw_distance_map(figure: Figure, plane: Axes, data: xr.Dataset) -> None:
     top = max(float(values.max()), 10.0 * float(data.threshold))
     colours: Any = {"norm": LogNorm(1e-4 * top, top), "shading": "nearest", "rasterized": True}
     mesh = plane.pcolormesh(data.frequency, data.level, np.maximum(values, 1e-4 * top), **colours)
-    if bool((data.smallest_level <= data.level.max()).any()):
+    ends = float(data.level.min()) / 1.3, float(data.level.max()) * 1.3
+    if bool(((data.smallest_level >= ends[0]) & (data.smallest_level <= ends[1])).any()):
         draw_line(plane, data.frequency, data.smallest_level, "-", RED, 1.6, "level that counts")
     first, last = float(data.recommended_first), float(data.recommended_last)
     level = float(data.recommended_level)
@@ -113,7 +111,7 @@ def draw_distance_map(figure: Figure, plane: Axes, data: xr.Dataset) -> None:
     corner, height = (first, level / 1.12), level * (1.12 - 1.0 / 1.12)
     box = Rectangle(corner, last - first, height, label="recommended sweep", **frame)
     plane.add_patch(box)
-    plane.set_ylim(float(data.level.min()) / 1.3, float(data.level.max()) * 1.3)
+    plane.set_ylim(ends)
     use_plain_log(plane)
     plane.set_ylabel(label_with_unit("level of the box", data.level))
     plane.grid(visible=False)

@@ -210,12 +210,11 @@ def draw_border(*curves: xr.Dataset, title: str = "") -> Figure:
         shown[kind] = None
     for curve in (curve for curve in curves if curve.sizes.get("codimension_two")):
         words = flag_words(curve.codimension_two_kind.attrs)
-        x, y = (curve[f"codimension_two_{name}"].values for name in over)
-        for number, kind in enumerate(curve.codimension_two_kind.values):
+        points = zip(*(curve[f"codimension_two_{name}"].values for name in over), strict=True)
+        for kind, (right, up) in zip(curve.codimension_two_kind.values, points, strict=True):
             word, marker = words[int(kind)], MARKERS[int(kind) % len(MARKERS)]
             label = None if word in shown else word
-            place = x[number] / x_unit, y[number] / y_unit
-            plane.plot(*place, marker, color=BLACK, label=label)
+            plane.plot(right / x_unit, up / y_unit, marker, color=BLACK, label=label)
             shown[word] = None
     plane.set(xlabel=x_label, ylabel=y_label)
     figure.legend(loc="outside lower right", ncols=min(4, len(shown)))

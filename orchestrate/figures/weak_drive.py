@@ -193,8 +193,8 @@ def draw_impacts(axes: Axes, data: xr.Dataset, direction: str) -> None:
     axes.plot(speed, count, ".", markersize=2.0, color=colour, alpha=0.3)
     if len(count) > IMPACT_REVOLUTIONS:
         label = f"delaminated, {direction}, mean of {IMPACT_REVOLUTIONS}"
-        means = (running_mean(values, IMPACT_REVOLUTIONS) for values in (speed, count))
-        draw_line(axes, *means, style, colour, 1.2, label)
+        x, y = (running_mean(values, IMPACT_REVOLUTIONS) for values in (speed, count))
+        draw_line(axes, x, y, style, colour, 1.2, label)
     if count.size and count.max() > 10.0:
         use_plain_log(axes)
 
