@@ -35,7 +35,7 @@ def picture(name, **kinds):
 def texts(figure):
     legends = [*figure.legends, *(axes.get_legend() for axes in figure.axes)]
     words = [text.get_text() for legend in legends if legend for text in legend.get_texts()]
-    words += [axes.get_title("left") for axes in figure.axes]
+    words += [axes.get_title(side) for axes in figure.axes for side in ("left", "right")]
     return words + [text.get_text() for axes in figure.axes for text in axes.texts]
 
 

@@ -8,9 +8,9 @@ import pytest
 from orchestrate.constants import GRAVITY
 from orchestrate.dynamics.branches import branch
 from orchestrate.errors import InputError
-from orchestrate.figures import orbit_diagram, resonance
+from orchestrate.figures import resonance
+from orchestrate.figures.colours import GREY
 from orchestrate.figures.plot import plot
-from orchestrate.figures.style import GREY
 from orchestrate.response import resonance as curves
 from orchestrate.response.sweep import sweep
 from orchestrate.structures import Structure
@@ -62,9 +62,9 @@ def test_branches_lie_over_the_samples_of_a_sweep():
 
 def test_responses_in_both_directions_lie_below_a_branch():
     both = sweep(PAPER, eta=[2.45, 2.5], direction="both", transient=20, samples=7)
-    drawn = grey(orbit_diagram.draw(both, overlay=[window()]))
+    drawn = grey(plot(both, window()))
     parts = [both.sel(direction=d) for d in ("up", "down")]
-    apart = [grey(orbit_diagram.draw(part, overlay=[window()])) for part in parts]
+    apart = [grey(plot(part, window())) for part in parts]
     assert len(both.xi_rel.values.ravel()) == 28 and drawn == apart[0] | apart[1]
 
 
