@@ -46,10 +46,9 @@ def draw_motion(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = N
     figure = Figure(figsize=(10.4, 6.8), layout="constrained")
     axes = figure.subplot_mosaic(LAYOUT, width_ratios=(2.2, 1))
     set_title(figure, title or title_from_attributes(data))
-    (factor, letter), (pace, speed_letter) = (
-        length_scale(data, max(float(np.abs(data[name]).max()) for name in names))
-        for names in (("x1", "x2"), ("v1", "v2"))
-    )
+    largest = {name: float(np.abs(data[name]).max()) for name in ("x1", "x2", "v1", "v2")}
+    factor, letter = length_scale(data, max(largest["x1"], largest["x2"]))
+    pace, speed_letter = length_scale(data, max(largest["v1"], largest["v2"]))
     turns, instants = time_axis(data, data)
     time, gap, rate = relative_motion(data)
     for number, style in MASSES:
@@ -128,9 +127,8 @@ def draw_spectrum(
         lines = frequency * (TURN / turn if has_frequency_unit(data) else 1.0 / base)
         stem = {name: style[name] for name in ("color", "alpha", "zorder") if name in style}
         floor = 1e-3 * SPECTRUM_FLOOR * highest  # unseen
-        draw_stems(
-            axes, lines[peaks], felt_amplitude[peaks], floor, STEM_WIDTHS[style["color"]], **stem
-        )
+        width = STEM_WIDTHS[style["color"]]
+        draw_stems(axes, lines[peaks], felt_amplitude[peaks], floor, width, **stem)
     unit = f"in {word}" if has_frequency_unit(data) else r"over $\Omega/2\pi$"
     axes.set(xlabel=f"frequency {unit}", ylabel=f"acceleration in {unit_felt}")
     return top

@@ -17,21 +17,12 @@ from .colours import BLACK, BLUE, GREY, STRUCTURES
 from .scales import acceleration_scale, label_with_unit
 from .style import draw_line, make_panels, styled
 
-ROWS = {
-    "speed": "mean speed",
-    "voltage": "voltage",
-    "amplitude": "amplitude of $x_1$",
-    "impacts": "impacts in a revolution",
-}
-SINKS = {
-    "dampers": "dampers of the masses",
-    "box_damper": "damper of the box",
-    "impact_loss": "impacts",
-}
+HISTORIES = {"speed": "mean speed", "amplitude": "amplitude of $x_1$"}
+ROWS = {**HISTORIES, "voltage": "voltage", "impacts": "impacts in a revolution"}
+SINKS = {"dampers": "dampers of the masses", "box_damper": "damper of the box"}
+SINKS |= {"impact_loss": "impacts"}
 ACCOUNTS = ("motor", *SINKS, "stored")
 POWER_REVOLUTIONS = 2  # that powers are averaged over: a motion may repeat after two
-MAX_REPETITION = 4  # revolutions after which a motion is seen to repeat
-CALM_SHARE = 0.9  # of the revolutions: the others belong to the jump
 FLOOR = 1e-4  # of the largest line: the lower end of the colours
 
 
@@ -76,21 +67,21 @@ def draw(
     for column, (name, shown) in enumerate(runs.items()):
         data, panels = as_shown(shown), axes[column::count]
         begin, words = time_origin(data)
-        period, time = repeats_after(data), data.time.values - begin
-        means = revolution_means(data, period)
+        time = data.time.values - begin
         instant: Any = {"alpha": 0.6, "label": "at the instant"}
         panels[0].plot(time, np.abs(data.speed), color=BLUE, linewidth=0.4, **instant)
-        mean_speed = means["speed"] / scale_of(data, "rad/s")[0]
+        mean_speed = mean_rate(data, np.abs(data.angle.values), 1) / scale_of(data, "rad/s")[0]
         draw_line(panels[0], time, mean_speed, "-", BLACK, 1.2, "mean of a revolution")
         draw_line(panels[1], time, data.voltage, "-", BLACK, 1.0)
         draw_line(panels[2], time, data.x1, "-", STRUCTURES.get(name, BLUE), 0.3)
+        totals = {account: data[account].values for account in ACCOUNTS}
+        means = {of: mean_rate(data, total, POWER_REVOLUTIONS, 2) for of, total in totals.items()}
         draw_powers(panels[3], time, means)
         mesh = draw_waterfall(panels[4], spectra[name], begin, felt, top)
         for panel in panels[:4]:
             panel.axvline(0.0, color=GREY, linewidth=0.8, zorder=0)
         panels[0].set_title(f"{name}: {format_jumps(data)}")
-        turns = "a revolution" if period == 1 else f"{period} revolutions"
-        panels[3].set_title(f"averaged over {turns}, twice")
+        panels[3].set_title(f"means of {POWER_REVOLUTIONS} revolutions, taken twice")
         panels[4].set(xlabel=f"time {words} in s", xlim=(time[0], time[-1]))
     speed, displacement = label_with_unit("speed", data.speed), label_with_unit("$x_1$", data.x1)
     labels = (speed, "voltage in V", displacement, "power in W", "multiple of the speed")
@@ -127,12 +118,9 @@ def undecided_directions(data: xr.Dataset) -> list[str]:
 
 def jump_texts(data: xr.Dataset) -> list[str]:
     """Return a text for each jump of a run, and for each undecided direction."""
-    jumps = [
-        f"{direction} at {float(data.jumps.sel(jump=direction)):.4f} V"
-        for direction in map(str, data.jump.values)
-        if has_jump(data, direction)
-    ]
-    return jumps + [f"{direction} undecided" for direction in undecided_directions(data)]
+    known = [way for way in map(str, data.jump.values) if has_jump(data, way)]
+    jumps = [f"{way} at {float(data.jumps.sel(jump=way)):.4f} V" for way in known]
+    return jumps + [f"{way} undecided" for way in undecided_directions(data)]
 
 
 def format_jumps(data: xr.Dataset) -> str:
@@ -174,61 +162,23 @@ def mean_powers(revolutions: xr.Dataset) -> dict[str, np.ndarray]:
     time = revolutions.time.values
     span = time[POWER_REVOLUTIONS:] - time[:-POWER_REVOLUTIONS]
     energies = {account: revolutions[account].values for account in ACCOUNTS}
-    return {
-        account: (values[POWER_REVOLUTIONS:] - values[:-POWER_REVOLUTIONS]) / span
-        for account, values in energies.items()
-    }
+    lag = POWER_REVOLUTIONS
+    return {account: (total[lag:] - total[:-lag]) / span for account, total in energies.items()}
 
 
-def repeats_after(data: xr.Dataset) -> int:
-    """Return the number of revolutions after which impact losses repeat best; 1 without any."""
-    angle = np.maximum.accumulate(np.abs(data.angle.values))
-    turns = ((angle - angle[0]) // TURN).astype(int)
-    first = np.unique(turns, return_index=True)[1]
-    lost = np.diff(data.impact_loss.values[first])
-    if len(lost) < 4 * MAX_REPETITION or not lost.any():
-        return 1
-    changes = [np.sort(np.abs(lost[lag:] - lost[:-lag])) for lag in range(1, MAX_REPETITION + 1)]
-    sizes = np.array([change[: int(CALM_SHARE * len(change))].mean() for change in changes])
-    return 1 + int(np.flatnonzero(sizes <= 2.0 * sizes.min())[0])
+def mean_rate(data: xr.Dataset, total: np.ndarray, count: int, times: int = 1) -> np.ndarray:
+    """Return the rate of a total, averaged over ``count`` revolutions; NaN at the ends.
 
-
-def revolution_means(data: xr.Dataset, count: int = 1) -> dict[str, np.ndarray]:
-    """Return running means: speed over one revolution, powers over ``count``; NaN at ends.
-
-    Means of powers are averaged twice: single ones would jump when an impact enters a little late.
+    Powers are averaged twice: single means would jump when an impact enters a little late.
     """
-    angle, powers = np.abs(data.angle.values), means_over(data, count)
-    twice = {name: smooth_edges(angle, values, count) for name, values in powers.items()}
-    return {**twice, "speed": means_over(data, 1)["speed"]}
-
-
-def smooth_edges(angle: np.ndarray, means: np.ndarray, count: int) -> np.ndarray:
-    """Return means over ``count`` revolutions, averaged once more; NaN at the ends."""
     from scipy.integrate import cumulative_trapezoid
 
-    distance, half = np.maximum.accumulate(angle), 0.5 * count * TURN
-    known = np.flatnonzero(np.isfinite(means))
-    if not known.size:
-        return means
-    inner = slice(known[0], known[-1] + 1)
-    total = cumulative_trapezoid(means[inner], distance[inner], initial=0.0)
-    before, after = (np.interp(angle + side, distance[inner], total) for side in (-half, half))
-    complete = (angle - half >= distance[known[0]]) & (angle + half <= distance[known[-1]])
-    return np.where(complete, (after - before) / (2.0 * half), np.nan)
-
-
-def means_over(data: xr.Dataset, count: int) -> dict[str, np.ndarray]:
-    """Return moving means of motor speed and powers over ``count`` revolutions, NaN at ends."""
     angle, time, half = np.abs(data.angle.values), data.time.values, 0.5 * count * TURN
     distance = np.maximum.accumulate(angle)
     before, after = (np.interp(angle + side, distance, time) for side in (-half, half))
-    complete = (angle - half > distance[0]) & (angle + half < distance[-1])
-    integrals = {"speed": angle, **{account: data[account].values for account in ACCOUNTS}}
-    ends = {
-        of: (np.interp(after, time, v), np.interp(before, time, v)) for of, v in integrals.items()
-    }
-    return {
-        of: np.where(complete, (last - first) / (after - before), np.nan)
-        for of, (last, first) in ends.items()
-    }
+    for done in range(1, times + 1):
+        known = (angle - done * half > distance[0]) & (angle + done * half < distance[-1])
+        gained = np.interp(after, time, total) - np.interp(before, time, total)
+        rate = np.where(known, gained / (after - before), np.nan)
+        total = cumulative_trapezoid(np.nan_to_num(rate), time, initial=0.0)
+    return rate

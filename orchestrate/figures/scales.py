@@ -12,12 +12,8 @@ from .labels import gap_name, has_frequency_unit, si_prefix, symbol, typeset_uni
 from .style import XI_REL
 
 ETA = symbol("eta")
-FREQUENCIES = {
-    "Hz": r"frequency $\Omega/2\pi$ in Hz",
-    "rpm": "frequency of the box in rpm",
-    "rad/s": r"$\Omega$ in rad/s",
-    "eta": ETA,
-}
+FREQUENCIES = {"Hz": r"frequency $\Omega/2\pi$ in Hz", "rpm": "frequency of the box in rpm"}
+FREQUENCIES |= {"rad/s": r"$\Omega$ in rad/s", "eta": ETA}
 MAX_LISTED = 6  # numbers that a list of values has before it says how many more there are
 
 

@@ -15,16 +15,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..units import as_shown, omega_of
+from . import passage
 from .colours import BLACK, GREEN, GREY, ORANGE, STRUCTURES
 from .labels import format_voltage, typeset_unit
-from .passage import (
-    POWER_REVOLUTIONS,
-    draw_powers,
-    has_jump,
-    jump_texts,
-    mean_powers,
-    undecided_directions,
-)
+from .passage import HISTORIES, POWER_REVOLUTIONS, has_jump, jump_texts, undecided_directions
 from .scales import label_with_unit
 from .style import (
     draw_line,
@@ -43,7 +37,6 @@ MARKS = {  # of bifurcations
     **{"fold": "o", "Neimark-Sacker": "s", "period doubling": "^"},
     **{"grazing of a flight": "x", "grazing of an impact": "+"},
 }
-HISTORIES = {"speed": "mean speed", "amplitude": "amplitude of $x_1$"}
 FOLD: Any = {"color": GREY, "linewidth": 1.0, "linestyle": ":", "label": "fold, averaged theory"}
 DOUBT: Any = {"color": ORANGE, "alpha": 0.3, "linewidth": 0.0, "label": "undecided between"}
 
@@ -218,9 +211,9 @@ def draw_outward_powers(axes: Axes, data: xr.Dataset, name: str) -> None:
         return
     part = data.isel(revolution=outward)
     speed = running_mean(part.speed.values[1:], POWER_REVOLUTIONS)
-    powers = {"speed": speed, **mean_powers(part)}
+    powers = {"speed": speed, **passage.mean_powers(part)}
     twice = {of: running_mean(values, POWER_REVOLUTIONS) for of, values in powers.items()}
-    draw_powers(axes, twice["speed"], twice)
+    passage.draw_powers(axes, twice["speed"], twice)
     means = f"means of {POWER_REVOLUTIONS} revolutions, taken twice"
     axes.set_title(f"power on the way there, {name}\n{means}")
 

@@ -20,6 +20,10 @@ if TYPE_CHECKING:
 
 WORDS = {-1: "not in this record", 0: "no", 1: "yes"}
 MOST_ROWS = 60
+MOVED = "{0.meaning.values}: {0.formula.values} ({0.source.values}). Also moved by: "
+MOVED += "{0.moved_by.values}."
+MOVED = "{0.meaning.values}: {0.formula.values} ({0.source.values}). Also moved by: "
+MOVED += "{0.moved_by.values}."
 PACKAGES = ("numpy", "scipy", "xarray", "fmpy", "lmfit", "matplotlib")
 BY_RECORD = ("detect", "fit")  # their question is the record, which has a digest
 LONGEST = 160  # letters of an attribute
@@ -92,11 +96,7 @@ def signs_section(answer: xr.Dataset) -> Section:
     ]
     marked = [number for number, one in enumerate(known) if bool((one.exceeds == 1).any())]
     columns = ("sign", "value", "noise alone", "sound structure", "stands out")
-    moved = [
-        f"{one.meaning.values}: {one.formula.values} ({one.source.values}). "
-        f"Also moved by: {one.moved_by.values}."
-        for one in (known[number] for number in marked)
-    ]
+    moved = [MOVED.format(known[number]) for number in marked]
     both = ", for sensor 1 and sensor 2" if answer.sizes["channel"] > 1 else ""
     text = (
         "A sign stands out where it is above twice what noise and a sound structure with the same "
@@ -105,14 +105,9 @@ def signs_section(answer: xr.Dataset) -> Section:
         f"Noise from {answer.attrs.get('noise_from', 'the record')}; sound structure: "
         f"{answer.attrs.get('sound_from', '')}, seeds {answer.attrs.get('seeds', '')}."
     )
-    return Section(
-        "Signs that need no model",
-        [text],
-        moved,
-        plot(answer),
-        "Signs of the record over what noise and a sound structure show",
-        [Table(columns, rows, frozenset(marked))],
-    )
+    caption = "Signs of the record over what noise and a sound structure show"
+    table = Table(columns, rows, frozenset(marked))
+    return Section("Signs that need no model", [text], moved, plot(answer), caption, [table])
 
 
 def format_sensors(values: Iterable[float]) -> str:

@@ -16,11 +16,6 @@ from ..figures.files import Figure, png_bytes, png_size
 from ..running.store import now
 from ..version import __version__
 
-WORTH = (  # above the signature
-    "This page is the result of a calculation on one record. It is no certificate, for flight or "
-    "for anything else. Faces that are pressed together, or glued in part, may be delaminated and "
-    "not open in a test."
-)
 MISSING = "–"  # in place of a number
 PLACES = ("front", "second", "appendix")  # on paper: first page, pages that follow, end
 TONES = ("bad", "good", "unclear", "open")  # of a verdict, for its colour
@@ -50,6 +45,8 @@ class Section:
     @property
     def image(self) -> dict[str, Any]:
         """Address, width and height of the picture, which is a PNG file inside the page."""
+        if self.picture is None:
+            return {}
         png = png_bytes(self.picture)
         return {"src": f"data:image/png;base64,{base64.b64encode(png).decode()}", **png_size(png)}
 
@@ -88,7 +85,6 @@ class Page:
         style = environment.get_template("report.css").render()
         return environment.get_template("report.html.j2").render(
             page=self,
-            worth=WORTH,
             style=Markup(style),
             policy=content_security_policy(style),
             version=__version__,

@@ -43,9 +43,7 @@ def make_verdict(answer: xr.Dataset) -> Verdict:
         ),
         "undecided": lambda _: "This record does not tell a delaminated beam from a sound one.",
     }
-    return Verdict(
-        f"{word[:1].upper()}{word[1:]}.", sentences[word](answer), TONES.get(word, "open")
-    )
+    return Verdict(make_sentence(word), sentences[word](answer), TONES.get(word, "open"))
 
 
 def delaminated_statement(answer: xr.Dataset) -> str:
@@ -84,14 +82,9 @@ def scalar(answer: xr.Dataset, name: str) -> float:
 
 def verdict_sections(answer: xr.Dataset) -> list[Section]:
     """Return all report sections on which a verdict rests."""
-    made = [
-        decision_section(answer),
-        fits_section(answer),
-        measured_record(answer),
-        parameter_section(answer),
-        misfit_section(answer),
-        assumption_section(answer),
-    ]
+    front = (decision_section, fits_section, measured_record)
+    appendix = (parameter_section, misfit_section, assumption_section)
+    made = [section_of(answer) for section_of in (*front, *appendix)]
     return [section for section in made if section is not None]
 
 

@@ -12,7 +12,6 @@ import orchestrate
 from orchestrate import cli
 from orchestrate.errors import InputError
 from orchestrate.explorer import figure6
-from orchestrate.explorer.branches import split_by_stability
 from orchestrate.explorer.bundle import IMPORT, bundle
 from orchestrate.explorer.page import explore, read_modules
 from orchestrate.explorer.sweep_data import read_sweep
@@ -100,17 +99,6 @@ def test_starts_are_the_ends_of_the_responses_before():
     assert np.array_equal(down, [*ends[1][1:], [0.0] * 4])
 
 
-def test_starts_in_metres_where_the_excitation_is():
-    beam = orchestrate.Structure.from_file("beam")
-    data = orchestrate.sweep(
-        beam, frequency=[78.0, 79.0], amplitude=1e-3, transient=20, samples=5, direction="up"
-    )
-    start = read_sweep(data).numbers[6:].reshape(2, 4)[1]
-    motion = orchestrate.simulate(beam, frequency=78.0, amplitude=1e-3, transient=25, periods=1)
-    state = [float(motion[name][0]) for name in ("x1", "x2", "v1", "v2")]
-    assert start == pytest.approx(state, rel=1e-9)
-
-
 def test_what_is_no_sweep_along_the_frequency_is_refused(tmp_path):
     structure = orchestrate.Structure()
     over = orchestrate.sweep(
@@ -196,14 +184,6 @@ def test_the_command_writes_a_page(tmp_path, capsys, swept):
     for arguments in ([str(tmp_path / "none.nc")], [*asked[1:2], "--set", "e=0.3"]):
         assert cli.main(["explore", *arguments, "--no-open", "--output", str(page)]) == 2
         assert "expected" in capsys.readouterr().err
-
-
-def test_a_branch_is_cut_where_its_stability_changes():
-    along = np.arange(5.0)
-    gaps = np.array([1.0, 2.0, 3.0, 0.0, 5.0])
-    stable = np.array([True, True, False, False, False])
-    parts = [(list(x), list(y), flag) for x, y, flag in split_by_stability(along, gaps, stable)]
-    assert parts == [([0, 1, 2], [1, 2, 3], True), ([2, 4], [3, 5], False)]
 
 
 ANEW = "the kernel has changed: make Figure 6 of the explorer anew, python -m tools.figure6_states"

@@ -68,24 +68,6 @@ def test_six_tasks_are_done_by_the_page_alone(first):
     first.until("return document.getElementById('sentence').textContent.includes('4 impacts')")
 
 
-def test_a_level_at_which_the_beam_shuts_shows_the_motion_there(browser):
-    """It goes on from an open motion, made smaller: its faces touch then, and do not overlap."""
-    browser.run(WORDS, "a", "6 Pressed shut")
-    browser.until(MOVED)
-    for level, sentence in (("1.2", "impacts a period"), ("0.9", "stay closed: no impact")):
-        typed(browser, "level", level)
-        browser.until(MOVED)
-        assert sentence in browser.text("sentence")
-        assert f"acceleration of the box, g{level}" in browser.text("numbers")
-    typed(browser, "gap-number", "-0.1")  # pressed harder: from closed it stays closed
-    browser.until(MOVED)
-    assert "stay closed" in browser.text("sentence")
-    for gap in ("0.001", "-0.001"):  # open at rest, then pressed: the faces may not overlap
-        typed(browser, "gap-number", gap)
-        browser.until(MOVED)
-        assert "impacts a period" in browser.text("sentence")
-
-
 def test_from_which_level_on_a_pressed_beam_opens_is_the_closed_forms(browser):
     browser.run(WORDS, "a", "6 Pressed shut")
     browser.until(MOVED)

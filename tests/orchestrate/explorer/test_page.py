@@ -98,29 +98,6 @@ def test_a_dragged_region_is_computed_anew_and_there_is_a_way_back(browser, swep
     assert np.array_equal(etas(browser), region)
 
 
-def test_sliders_change_the_structure_and_the_command_says_so(browser):
-    browser.open(page_of(browser), "#from=1.1&to=1.3&direction=up")
-    browser.click("e")  # its middle
-    browser.until("return explorer.regions.complete && !explorer.regions.quick")
-    assert abs(browser.run("return explorer.structure.e") - 0.5) < 0.02
-    command = shlex.split(browser.text("command"))
-    arguments = cli.make_parser().parse_args(command[3:])
-    assert arguments.set == [f"e={browser.run('return explorer.structure.e')}"]
-    first, last, step = map(float, arguments.eta.split(":"))
-    region = etas(browser)
-    assert (first, last) == (region[0], region[-1]) and step > 0.0
-    structure = orchestrate.Structure().replace(e=browser.run("return explorer.structure.e"))
-    found = orchestrate.sweep(structure, eta=region[:60], direction="up", progress=False)
-    assert gaps(browser)[:60].tobytes() == found.xi_rel.values.tobytes()
-    browser.run(
-        "const box = document.getElementById('m2'); box.value = 0.5;"
-        "box.dispatchEvent(new Event('change'))"
-    )
-    assert float(browser.run("return document.getElementById('mu').value")) == 0.5
-    browser.click("reset")
-    assert browser.run("return explorer.structure.e") == 0.7
-
-
 def page_of(browser):
     """The file that is open."""
     return Path(browser.run("return location.pathname"))

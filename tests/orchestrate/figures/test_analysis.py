@@ -83,8 +83,3 @@ def test_results_of_different_analyses_do_not_mix():
     one, other = orchestrate.psd(record()), orchestrate.frf(record())
     with pytest.raises(ValueError, match=r"others\['b'\]: result of frf; expected one of psd"):
         analysis.draw(one, label="a", others={"b": other})
-
-
-def test_an_axis_of_densities_says_so():
-    (_, plane, *_) = picture("psd", one=record()).axes
-    assert plane.get_ylabel() == "spectral density\nin (m/s$^2$)$^2$/Hz"

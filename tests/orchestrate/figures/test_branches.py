@@ -8,7 +8,7 @@ import xarray as xr
 
 from orchestrate.dynamics.borders import border
 from orchestrate.dynamics.branches import branch
-from orchestrate.figures import labels, scales
+from orchestrate.figures import labels
 from orchestrate.figures.lines import draw_branch
 from orchestrate.figures.planes import draw_border
 from orchestrate.structures import Structure
@@ -32,14 +32,6 @@ def test_stable_is_solid_and_unstable_dashed():
     assert (solid.get_xdata()[shown] < border_at).all()
     assert np.isfinite(dashed.get_ydata()).sum() > 3
     assert dashed.get_xdata()[np.isfinite(dashed.get_ydata())].max() == pytest.approx(2.8)
-
-
-def test_a_branch_of_a_structure_in_si_is_drawn_in_hertz():
-    told = {**window().attrs, "over": "frequency", "m1": 2.0, "m2": 2.0}
-    figure = draw_branch(window().assign_attrs(told))
-    solid = figure.axes[0].get_lines()[0]
-    assert solid.get_xdata() == pytest.approx(window().frequency.values / (2.0 * np.pi))
-    assert figure.axes[0].get_xlabel() == scales.FREQUENCIES["Hz"]
 
 
 def test_bifurcations_are_marked_each_kind_once_in_the_legend():

@@ -9,7 +9,6 @@ from orchestrate.constants import GRAVITY
 from orchestrate.dynamics.branches import branch
 from orchestrate.errors import InputError
 from orchestrate.figures import resonance
-from orchestrate.figures.colours import GREY
 from orchestrate.figures.plot import plot
 from orchestrate.response import resonance as curves
 from orchestrate.response.sweep import sweep
@@ -43,12 +42,6 @@ def blue(plane):
     return next(line for line in plane.get_lines() if line.get_label() in ("stable", "unstable"))
 
 
-def grey(figure):
-    """Samples of responses in a picture."""
-    lines = [line for line in figure.axes[0].get_lines() if line.get_color() == GREY]
-    return {point for line in lines for point in map(tuple, line.get_xydata())}
-
-
 def test_branches_lie_over_the_samples_of_a_sweep():
     responses = sweep(PAPER, eta=[2.45, 2.5, 2.55], **SHORT)
     top, _ = plot(responses, window()).axes
@@ -58,14 +51,6 @@ def test_branches_lie_over_the_samples_of_a_sweep():
     assert top.get_xlim() == (2.45, 2.55)
     marks = [line for line in top.get_lines() if line.get_markerfacecolor() == "white"]
     assert [float(mark.get_xdata()[0]) for mark in marks] == list(window().bifurcation_value)
-
-
-def test_responses_in_both_directions_lie_below_a_branch():
-    both = sweep(PAPER, eta=[2.45, 2.5], direction="both", transient=20, samples=7)
-    drawn = grey(plot(both, window()))
-    parts = [both.sel(direction=d) for d in ("up", "down")]
-    apart = [grey(plot(part, window())) for part in parts]
-    assert len(both.xi_rel.values.ravel()) == 28 and drawn == apart[0] | apart[1]
 
 
 def test_a_branch_is_in_hertz_and_metres_where_the_responses_are():
@@ -129,9 +114,3 @@ def test_what_does_not_belong_together_is_refused(structure, box, name, words):
     with pytest.raises(InputError, match=f"overlay: .*{words}") as caught:
         plot(responses, window() if name == "eta" else over(name))
     assert "\n" not in str(caught.value)
-
-
-def test_what_a_parameter_moves_may_differ():
-    """Both structures vary in it."""
-    responses = sweep(PAPER.replace(e=0.5), eta=2.5, over="e", values=[0.66, 0.7], **SHORT)
-    assert plot(responses, over("e")).axes

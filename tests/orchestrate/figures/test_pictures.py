@@ -396,18 +396,6 @@ def test_titles_tell_what_is_not_usual():
     assert labels.title_from_attributes(held).endswith(r"$a\,\Omega^2$ = 3 m/s$^2$ (0.306 g)")
 
 
-def test_titles_of_a_real_beam_tell_hertz_and_per_cent():
-    halves = {"f1": 42.0, "f2": 55.0, "zeta1": 0.007, "zeta2": 0.007}
-    beam = orchestrate.Structure.from_halves(m1=1.5, m2=1.2, **halves)
-    data = xr.Dataset(attrs=beam.parameters())
-    told = r"$f_1$ = 42 Hz, $f_2$ = 55 Hz, $\zeta_1$ = 0.7 %, $\zeta_2$ = 0.7 %, $\mu$ = 0.8"
-    assert labels.title_from_attributes(data) == f"{told}, $e$ = 0.7"
-    swept = data.assign_coords(kappa=[1.0, 2.0])  # what varies is no half's
-    assert r"\zeta" not in labels.title_from_attributes(
-        swept
-    ) and "$D_1$ = 0.007" in labels.title_from_attributes(swept)
-
-
 def test_a_title_of_a_file_is_written_out_for_a_reader():
     beam = orchestrate.Structure.from_halves(**HALVES, e=0.6, clearance=-2e-5)
     halves = r"$f_1$ = 42 Hz, $f_2$ = 55 Hz, $\zeta_1$ = 0.7 %, $\zeta_2$ = 0.7 %"

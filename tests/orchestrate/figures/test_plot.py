@@ -75,13 +75,6 @@ def test_runs_of_both_structures(driven, drawn):
     assert runs == {"delaminated": delaminated, "bonded": bonded}
 
 
-def test_the_second_picture_of_runs(driven):
-    ramp, jumps = plot(*driven, title="mine"), plot(*driven, title="mine", part="jumps")
-    assert [figure.get_suptitle() for figure in (ramp, jumps)] == ["mine", "mine"]
-    assert [axes.get_title(loc="left") for axes in jumps.axes] == ["", ""]
-    assert [text.get_text() for axes in jumps.axes for text in axes.texts] == ["no jump"] * 2
-
-
 @pytest.mark.parametrize(("which", "part"), [(slice(None), "ramps"), (slice(0), "jumps")])
 def test_a_part_that_there_is_not_is_refused(driven, simulated, which, part):
     answers = driven[which] or simulated

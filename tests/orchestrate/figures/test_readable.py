@@ -22,7 +22,6 @@ from orchestrate.figures import (
     weak_drive,
 )
 from orchestrate.figures import spectra as spectra_pictures
-from orchestrate.weak_drive.drive_spectra import drive_spectra as ask_drive_spectra
 
 from . import made
 
@@ -189,13 +188,6 @@ def test_a_passage_has_both_structures_side_by_side(exported):
     revolution = (found["bonded"].motor[-1] - found["bonded"].motor[-300]) / 29.9
     assert np.nanmean(power[-300:]) == pytest.approx(float(revolution), rel=0.05)
     all_is_readable(figure)
-
-
-def test_spectra_of_the_weak_drive(exported):
-    asked = {"voltage": 1.3, "begin": 1.29, "hold": 10.0, "revolutions": 4, "points": 64, **HERE}
-    upper, lower = orchestrate.plot(ask_drive_spectra(*QUICK, **asked)).axes
-    assert upper.get_title(loc="left").startswith("bonded")
-    assert lower.get_title(loc="left").startswith("delaminated")
 
 
 DEUTERAN = np.array([[0.367, 0.861, -0.228], [0.280, 0.673, 0.047], [-0.012, 0.043, 0.969]])
