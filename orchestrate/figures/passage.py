@@ -18,7 +18,8 @@ from .scales import acceleration_scale, label_with_unit
 from .style import draw_line, make_panels, styled
 
 HISTORIES = {"speed": "mean speed", "amplitude": "amplitude of $x_1$"}
-ROWS = {**HISTORIES, "voltage": "voltage", "impacts": "impacts in a revolution"}
+ROWS = {"speed": HISTORIES["speed"], "voltage": "voltage", **HISTORIES}
+ROWS |= {"impacts": "impacts in a revolution"}
 SINKS = {"dampers": "dampers of the masses", "box_damper": "damper of the box"}
 SINKS |= {"impact_loss": "impacts"}
 ACCOUNTS = ("motor", *SINKS, "stored")

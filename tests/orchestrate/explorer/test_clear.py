@@ -52,36 +52,6 @@ def test_reset_brings_back_the_page_as_it_was_opened(browser):
         assert now == was
 
 
-def hinted(browser):
-    return browser.run(
-        "return document.getElementById('hint').checkVisibility({ checkVisibilityCSS: true })"
-    )
-
-
-@pytest.mark.parametrize(("eta", "others"), [(1.3, True), (1.7, False)])
-def test_where_another_motion_is_known_the_page_says_so(browser, eta, others):
-    browser.run("explorer.choose(arguments[0], true)", eta)
-    browser.until(READY)
-    browser.until("return explorer.basin.few.length")
-    browser.run("document.getElementById('others').click()")
-    browser.until("return document.getElementById('basins').dataset.complete === 'true'")
-    rows = browser.run(
-        "return [...document.querySelectorAll('#basins li')].map((row) => row.innerText)"
-    )
-    assert len(rows) == 1 + others
-    words = (
-        "Other motions: see the coloured map." if others else "No other motion from 4096 starts."
-    )
-    assert hinted(browser) and browser.text("hint") == words
-    assert sum("shown now" in row for row in rows) == 1
-    if others:
-        now = browser.run("return document.querySelector('#basins .now').parentElement.textContent")
-        browser.run("document.querySelector('#basins button').click()")
-        browser.until(READY)
-        marked = "return document.querySelector('#basins .now').parentElement.textContent"
-        assert browser.run(marked) != now and hinted(browser)
-
-
 EXPONENTS = {  # of a motion that has not repeated: value and error, headline, label
     "chaos": (0.05, 0.01, "Chaos: never repeats", "chaotic"),
     "converging": (-0.05, 0.01, "Has not repeated within 50 periods, but converges", "converges"),
@@ -117,20 +87,3 @@ def test_the_error_of_the_exponent_covers_the_careful_one(browser, eta):
     found = browser.run("return explorer.inspector.exponent")
     careful = orchestrate.lyapunov(orchestrate.Structure(), eta=eta, progress=False)
     assert abs(found["value"] - careful.exponent.item()) < found["error"] < abs(found["value"])
-
-
-LOUD = (
-    "return Boolean(explorer.inspector.sound.source?.buffer.getChannelData(0)"
-    ".some((value) => value !== 0))"
-)
-
-
-def test_halves_that_stay_shut_are_silent_until_they_knock_again(browser, page):
-    browser.open(page, "#tour=pressed")
-    browser.until(READY)
-    browser.run("document.getElementById('listen').click()")
-    browser.until("return document.getElementById('listen-word').textContent === 'Stop sound'")
-    browser.until(READY)
-    assert not browser.run(LOUD)
-    browser.run("document.querySelector('a[href=\"#tour=pressed-open\"]').click()")
-    browser.until(LOUD)

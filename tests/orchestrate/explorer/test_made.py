@@ -12,8 +12,7 @@ import orchestrate
 from orchestrate import cli
 from orchestrate.errors import InputError
 from orchestrate.explorer import figure6
-from orchestrate.explorer.bundle import IMPORT, bundle
-from orchestrate.explorer.page import explore, read_modules
+from orchestrate.explorer.page import explore
 from orchestrate.explorer.sweep_data import read_sweep
 from orchestrate.running.store import load
 
@@ -74,16 +73,6 @@ def test_no_script_of_a_file_runs_and_none_that_is_added_to_its_page(chromium, f
     chromium.until("return window.later")
     assert chromium.run("return window.forged ?? null") is None
     assert len(chromium.console()) >= 2  # what the policy has kept from running
-
-
-def test_each_module_imports_in_the_form_that_is_joined_and_is_used():
-    scripts = read_modules()
-    for name, text in scripts.items():
-        assert len(IMPORT.findall(text)) == text.count("\nimport ") + text.startswith("import ")
-        assert text.startswith("/** "), f"{name}.js: expected what it is for in the first line"
-        assert len(text.splitlines()) < 360, f"{name}.js is long"
-    reached = bundle(scripts, "main") + bundle(scripts, "worker")
-    assert all(f"const module_{name} = " in reached for name in scripts)
 
 
 def test_starts_are_the_ends_of_the_responses_before():

@@ -73,9 +73,8 @@ def test_from_which_level_on_a_pressed_beam_opens_is_the_closed_forms(browser):
     browser.until(MOVED)
     browser.until("return explorer.regions.complete && !explorer.regions.quick")
     assert "The halves open only from 36.2 to 47 Hz. A dot at 0" in browser.text("status")
-    for hertz in (30.0, 20.0, 55.0):
-        typed(browser, "hertz", f"{hertz:g}")
-        opened_from(browser, hertz)
+    typed(browser, "hertz", "30")
+    opened_from(browser, 30.0)
     # halves that differ: at the natural frequency of both together their dampers count
     changed = (
         "explorer.change({ ...explorer.structure, m2: 1.5, d2: 60 }, { unit: 'g', value: 1e-3 })"

@@ -12,10 +12,9 @@ import xarray as xr
 
 import orchestrate
 
-from .conftest import typed
+from .conftest import READY, typed
 
 DIAGRAM = "explorer.regions.diagram"
-READY = "return explorer.regions.complete && !explorer.regions.quick && explorer.inspector.found"
 FILE = """
 const [name, text] = arguments;
 const given = new DataTransfer();

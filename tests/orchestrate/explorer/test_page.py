@@ -23,11 +23,6 @@ from .test_own_beam import pasted
 PAPER = Structure()
 DIAGRAM = "explorer.regions.diagram"
 MOTION = "explorer.inspector.found.motion"
-DRAWN = """(() => {
-  const canvas = document.getElementById(arguments[0]);
-  const seen = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
-  return seen.data.some((value) => value);
-})()"""
 
 
 def gaps(browser, lane=0):
@@ -174,25 +169,6 @@ def test_keys_alone_do_it(browser):
     assert browser.run(f"return {DIAGRAM}.high - {DIAGRAM}.low") < 0.4 * whole
     browser.keys("b")
     assert browser.run(f"return {DIAGRAM}.high - {DIAGRAM}.low") == whole
-
-
-def test_the_page_opens_with_a_motion_that_moves_and_sound_is_a_key_away(browser):
-    eta = browser.chosen()
-    assert eta == pytest.approx(0.7, abs=0.03) and f"eta={eta}" in browser.run(
-        "return location.hash"
-    )
-    turn = browser.run("return explorer.inspector.animation.turn")
-    browser.until(f"return explorer.inspector.animation.turn !== {turn}")
-    assert browser.text("play") == "Pause"
-    assert browser.text("sentence").startswith("Repeats every shaking period: 3 impacts")
-    for name in ("history", "phase", "section", "spectrum"):
-        browser.until("return " + DRAWN.replace("arguments[0]", repr(name)))
-    assert browser.run("return explorer.inspector.sound.context === null")
-    browser.keys("s")
-    browser.until("return explorer.inspector.sound.playing")
-    assert browser.text("listen") == "Stop sound (S)"
-    browser.keys("s")
-    assert browser.run("return !explorer.inspector.sound.playing")
 
 
 @pytest.mark.parametrize("clearance", [0.0, 3.0, -1.0])

@@ -6,10 +6,10 @@ import orchestrate
 from orchestrate.constants import GRAVITY, TURN
 from orchestrate.explorer.page import explore
 
-from .conftest import typed
+from ...sparing import ordinary
+from .conftest import READY, typed
 
 BEAM = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0, "zeta1": 0.007, "zeta2": 0.007}
-READY = "return explorer.regions.complete && !explorer.regions.quick && explorer.inspector.found"
 SHOWN = """
 const kept = {};
 const { inspector, regions } = explorer;
@@ -41,13 +41,7 @@ def beam(exported):
     return orchestrate.Structure.from_halves(**BEAM)
 
 
-@pytest.mark.parametrize(
-    "units",
-    [
-        units if i == 0 else pytest.param(units, marks=pytest.mark.slow)
-        for i, units in enumerate(ASKED)
-    ],
-)
+@pytest.mark.parametrize("units", ordinary(ASKED))
 def test_the_page_follows_the_units_asked_for(chromium, beam, units, tmp_path):
     turns, lengths, pushes, times, turn, length, push = ASKED[units]
     browser = chromium

@@ -67,12 +67,6 @@ def test_what_lies_below_an_axis_is_named():
     assert "below this axis: bonded" in texts(figure)
 
 
-def test_a_sweep_down_is_dashed():
-    figure = picture("track_orders", up=record(0.6), down=record(0.6, down=True))
-    styles = {line.get_linestyle() for line in figure.axes[0].lines if len(line.get_xdata())}
-    assert styles == {"-", "--"}
-
-
 def test_phases_turn_without_a_vertical_line():
     phase = xr.DataArray(np.radians([80.0, -170.0, 170.0, 100.0, 85.0, -10.0]))
     degrees = analysis.phase_in_degrees(phase)

@@ -71,11 +71,6 @@ def test_a_plan_shows_map_recommended_sweep_and_preload(plan):
     assert len(figure.axes[1].lines) == 2
 
 
-def test_a_plan_at_one_level_shows_curves(plan):
-    figure = orchestrate.plot(plan.isel(level=[1]))
-    assert {"orders 2 and 3", "order 1"} <= set(texts(figure))
-
-
 def test_curves_below_an_axis_are_named():
     over = ("hypothesis", "order", "channel", "frequency")
     fitted = np.ones((2, 1, 1, 5)) * np.array([1.0, 1e-6]).reshape(2, 1, 1, 1)

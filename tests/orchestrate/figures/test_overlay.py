@@ -65,14 +65,6 @@ def test_a_branch_is_in_hertz_and_metres_where_the_responses_are():
     assert there == pytest.approx(metres, rel=2e-3)
 
 
-def test_a_branch_over_the_amplitude_is_one_over_the_level():
-    levels = np.array([0.9, 1.1])
-    responses = sweep(PAPER, frequency=2.5, over="level", values=levels, **SHORT)
-    top, _ = plot(responses, over("amplitude")).axes
-    ends = 2.5**2 / GRAVITY * np.array([0.1, 0.2])
-    assert sorted(blue(top).get_xdata()[[0, -1]]) == pytest.approx(ends)
-
-
 def test_displacements_and_gaps_lie_over_resonance_curves():
     response = curves.resonance(PAPER, eta=[2.45, 2.5, 2.55], transient=2000, progress=False)
     axes = plot(response, window()).axes

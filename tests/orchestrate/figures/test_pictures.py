@@ -315,15 +315,6 @@ def test_a_motion():
     assert "no impacts" in [text.get_text() for legend in legends for text in legend.get_texts()]
 
 
-def test_a_motions_spectrum_has_its_amplitude():
-    time = np.arange(1, 1601) / 200.0
-    frequency, amplitude = spectra.acceleration_spectrum(
-        3.0 * np.sin(2.0 * np.pi * 5.0 * time), 1.0 / 200.0
-    )
-    assert amplitude.max() == pytest.approx(3.0 * (10.0 * np.pi) ** 2)
-    assert frequency[amplitude.argmax()] == pytest.approx(5.0)
-
-
 def test_two_structures_have_one_unit_on_an_axis(exported):
     """The bonded one's spectrum was in m/s2 on an axis in g."""
     turn = 2.0 * np.pi * 50.0
