@@ -53,10 +53,8 @@ def draw(
     figure, axes = make_panels(2, 2, (11, 9.4), title)
     for name, data in shown.items():
         for part, style, direction in split_directions(data):
-            voltage, speed, amplitude = data.voltage[part], data.speed[part], data.amplitude[part]
-            label = f"{name}, {direction}"
-            draw_line(axes[0], voltage, speed, style, STRUCTURES[name], 1.2, label)
-            draw_line(axes[1], speed, amplitude, style, STRUCTURES[name], 1.2, label)
+            line: Any = {"color": STRUCTURES[name], "linewidth": 1.2}
+            draw_motions(axes, data, part, style, **line, label=f"{name}, {direction}")
             if name == "delaminated":
                 draw_impacts(axes[2], data.isel(revolution=part), direction)
         mark_jumps(axes[0], data, name)
@@ -122,29 +120,36 @@ def draw_stationary(branches: xr.Dataset, title: str = "") -> Figure:
     return figure
 
 
+def draw_motions(
+    axes: Sequence[Axes], data: xr.Dataset, part: np.ndarray, style: str, **line: Any
+) -> None:
+    """Draw speed over voltage and amplitude over speed of a part of the motions."""
+    voltage, speed, amplitude = (data[of].values for of in ("voltage", "speed", "amplitude"))
+    if part.dtype == bool:
+        voltage, amplitude = (np.where(part, of, np.nan) for of in (voltage, amplitude))
+    else:
+        voltage, speed, amplitude = voltage[part], speed[part], amplitude[part]
+    axes[0].plot(voltage, speed, style, **line)
+    axes[1].plot(speed, amplitude, style, **line)
+
+
 def draw_theory(axes: Sequence[Axes], theory: xr.Dataset) -> None:
     """Draw the averaged theory: dash-dotted where stable, dotted where unstable."""
-    stable = theory.stable.values
-    for part, style, what in ((stable, "-.", "stable"), (~stable, ":", "unstable")):
-        voltage, amplitude = (theory[of].where(part) for of in ("voltage", "amplitude"))
-        label = f"{THEORY}, {what}"
-        draw_line(axes[0], voltage, theory.speed, style, BLACK, 1.0, label)
-        draw_line(axes[1], theory.speed, amplitude, style, BLACK, 1.0, label)
+    stable, line = theory.stable.values, {"color": BLACK, "linewidth": 1.0}
+    draw_motions(axes, theory, stable, "-.", **line, label=f"{THEORY}, stable")
+    draw_motions(axes, theory, ~stable, ":", **line, label=f"{THEORY}, unstable")
 
 
 def draw_branches(axes: Sequence[Axes], branches: xr.Dataset) -> None:
     """Draw stationary motions thick and pale under the ramps, dotted where unstable."""
     for name in branches.structure.values:
+        line: Any = {"color": STRUCTURES[name], "linewidth": 3.0, "alpha": 0.45, "zorder": 1}
         for i, leg in enumerate(branches.leg.values):
             branch = branches.sel(structure=name, leg=leg)
             stable, known = branch.stable.values, np.isfinite(branch.voltage.values)
             for part, style, what in ((stable, "-", "stable"), (known & ~stable, ":", "unstable")):
-                line: Any = {"color": STRUCTURES[name], "linewidth": 3.0, "alpha": 0.45}
-                line |= {"zorder": 1, "label": None if i else f"{name}, branch, {what}"}
-                quantities = (branch[of].values for of in ("voltage", "speed", "amplitude"))
-                voltage, speed, amplitude = (np.where(part, of, np.nan) for of in quantities)
-                axes[0].plot(voltage, speed, style, **line)
-                axes[1].plot(speed, amplitude, style, **line)
+                label = None if i else f"{name}, branch, {what}"
+                draw_motions(axes, branch, part, style, **line, label=label)
 
 
 def drop_spin_up(data: xr.Dataset) -> xr.Dataset:

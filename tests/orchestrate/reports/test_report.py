@@ -5,6 +5,8 @@ from __future__ import annotations
 import base64
 import hashlib
 import re
+import shutil
+import subprocess
 from html.parser import HTMLParser
 
 import numpy as np
@@ -143,8 +145,9 @@ def test_nothing_is_no_report(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-def test_a_verdict_says_what_was_guessed_and_what_each_parameter_is():
-    answer = xr.Dataset(
+@pytest.fixture(scope="module")
+def verdict():
+    return xr.Dataset(
         {
             "verdict": ((), "delaminated"),
             "odds": ((), 300.0),
@@ -160,7 +163,30 @@ def test_a_verdict_says_what_was_guessed_and_what_each_parameter_is():
         },
         {"m1": 1.5, "m2": 0.75, "k1": 1.5 * (2 * np.pi * 42.0) ** 2, "k2": 0.75e5},
     )
-    sections = {section.heading: section for section in verdict_sections(answer)}
+
+
+@pytest.mark.skipif(not shutil.which("chromium"), reason="no chromium here, which prints the page")
+def test_on_paper_one_page_is_signed_and_the_rest_is_short(verdict, signs, tmp_path):
+    """A page with the signature, one with the signs, one of an appendix."""
+    over, hertz = ("order", "channel", "frequency"), np.linspace(9.0, 16.0, 50)
+    wave = np.ones((3, 1, 50)) / (1.0 + (hertz - 12.0) ** 2)
+    shown = {"measured": (over, wave, {"units": "m/s2"}), "floor": (over, 1e-3 * wave)}
+    shown |= {"fitted": (("hypothesis", *over), np.stack([wave, 1.1 * wave]))}
+    shown |= {"misfit_at": (("hypothesis", "frequency"), np.ones((2, 50)))}
+    sides = {"order": [1.0, 2.0, 3.0], "channel": ["acceleration1"]}
+    sides["frequency"] = ("frequency", hertz, {"units": "Hz"})
+    told = {"analysis": "detect", "reason": "words " * 60, "settle": "words " * 30}
+    told |= {"record_file": "a.csv", "command": "diagnose " * 12, "assumed": "words; " * 8}
+    answer = verdict.assign(shown).assign_coords(sides).assign_attrs(told)
+    page = orchestrate.report(answer, signs, output=tmp_path / "r.html", notes="Beam 7.")
+    command = ["chromium", "--headless", "--no-sandbox", "--no-pdf-header-footer"]
+    printed = tmp_path / "r.pdf"
+    subprocess.run([*command, f"--print-to-pdf={printed}", page.as_uri()], capture_output=True)
+    assert len(re.findall(rb"/Type\s*/Page\b(?!s)", printed.read_bytes())) == 3
+
+
+def test_a_verdict_says_what_was_guessed_and_what_each_parameter_is(verdict):
+    sections = {section.heading: section for section in verdict_sections(verdict)}
     assert any("1.5 kg and 0.75 kg" in words for words in sections["What was assumed"].points)
     assert any("42 Hz and 50.3 Hz" in words for words in sections["What was assumed"].points)
     rows = dict(row[:1] + row[1:2] for row in sections["Parameters"].tables[0].rows)
@@ -168,7 +194,7 @@ def test_a_verdict_says_what_was_guessed_and_what_each_parameter_is():
     assert "stop, stiffness of a stop" in rows
     odds = [words for words in sections["Why"].points if words.startswith("The odds")]
     assert "300 to 1" in odds[0] and "blocks" in odds[0]
-    without = answer.assign_attrs(m1=float("nan"))
+    without = verdict.assign_attrs(m1=float("nan"))
     sections = {section.heading: section for section in verdict_sections(without)}
     assert not any("kg" in words for words in sections["What was assumed"].points)
 
