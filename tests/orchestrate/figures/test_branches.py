@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from orchestrate.dynamics.borders import border
 from orchestrate.dynamics.branches import branch
 from orchestrate.figures import labels
 from orchestrate.figures.lines import draw_branch
@@ -43,22 +42,28 @@ def test_bifurcations_are_marked_each_kind_once_in_the_legend():
     assert {float(mark.get_xdata()[0]) for mark in marks} == set(window().bifurcation_value.values)
 
 
-def test_a_border_is_a_line_over_both_parameters():
-    curve = border(PAPER, start=window(), bifurcation=1, limits=[(2.7, 2.9), (0.69, 0.71)])
-    figure = draw_border(curve)
-    (line,) = figure.axes[0].get_lines()
-    assert line.get_xdata() == pytest.approx(curve.eta.values)
-    assert line.get_ydata() == pytest.approx(curve.e.values)
+def test_a_border_is_a_line_over_both_parameters_with_its_points():
+    sides = {"eta": ("point", [2.7, 2.8, 2.9]), "e": ("point", [0.69, 0.7, 0.71])}
+    kinds = {"flag_values": [0, 1], "flag_meanings": "cusp fold_flip"}
+    made = {"codimension_two_kind": ("codimension_two", [1], kinds)}
+    made |= {"codimension_two_eta": ("codimension_two", [2.8])}
+    made |= {"codimension_two_e": ("codimension_two", [0.7])}
+    attributes = {**PAPER.parameters(), "over": ["eta", "e"], "kind": "period doubling"}
+    figure = draw_border(xr.Dataset(made, sides, attributes))
+    line, point = figure.axes[0].get_lines()
+    assert line.get_xdata() == pytest.approx([2.7, 2.8, 2.9])
+    assert line.get_ydata() == pytest.approx([0.69, 0.7, 0.71])
+    assert (point.get_xdata()[0], point.get_ydata()[0]) == (2.8, 0.7)
+    words = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert words == ["period doubling", "fold flip"]
 
 
-def test_gaps_of_a_branch_are_lengths_where_they_are_asked_for(exported):
-    beam = Structure.from_halves(m1=1, m2=1, f1=42, f2=55, zeta1=0.007, zeta2=0.007)
-    ends = (50.0 * 2.0 * np.pi, 52.0 * 2.0 * np.pi)
-    found = branch(beam, over="frequency", limits=ends, amplitude=5e-5, progress=False, jobs=1)
-    (plane,) = draw_branch(with_units(found, "Hz, mm")).axes
+def test_gaps_of_a_branch_are_lengths_where_they_are_asked_for():
+    found = with_units(window(), "Hz, mm")
+    (plane,) = draw_branch(found).axes
     assert plane.get_ylabel() == "gap $x_2 - x_1$ in mm, at $t = nT$"
     lengths = 1e3 * (found.xi_rel * found.amplitude * found.eta**2).values
-    drawn = np.concatenate([np.ravel(line.get_ydata()) for line in plane.lines])
+    drawn = np.concatenate([np.ravel(line.get_ydata()) for line in plane.lines[:2]])
     assert np.nanmax(drawn) == pytest.approx(lengths.max())
 
 

@@ -91,7 +91,6 @@ def test_displacements_and_gaps_lie_over_resonance_curves():
             "eta",
             "another structure, e = 0.7; .* e = 0.3",
         ),
-        (PAPER.replace(D=0.01), {"eta": 2.5, "over": "e", "values": [0.66, 0.7]}, "e", "d1 = 0.01"),
         (PAPER, {"eta": 2.6, "over": "e", "values": [0.66, 0.7]}, "e", "eta = 2.5; .* eta = 2.6"),
         (
             PAPER.replace(clearance=1e-3),
