@@ -14,7 +14,16 @@ import xarray as xr
 import orchestrate
 from orchestrate.constants import GRAVITY
 from orchestrate.errors import StoreError
-from orchestrate.figures import colours, histories, labels, lines, planes, resonance, scales
+from orchestrate.figures import (
+    colours,
+    histories,
+    labels,
+    lines,
+    planes,
+    resonance,
+    scales,
+    weak_drive,
+)
 from orchestrate.figures.files import save
 from orchestrate.figures.style import XI_REL, make_panels
 from orchestrate.units import with_units
@@ -184,26 +193,31 @@ def test_an_attractor_is_drawn_as_far_as_it_exists():
     np.testing.assert_array_equal(shares[1], [nan, nan, 0.7, 1.0])
 
 
-def test_jump_voltages():
-    """Made-up results: the lines to rate 0."""
-    rates = np.array([1e-4, 2e-4])
-    each = {"structure": ["bonded", "delaminated"], "jump": ["up", "down"]}
-    late = np.full((2, 2, 2), np.nan)
-    late[:, :, 0] = 1.5 + rates[:, np.newaxis] ** (2 / 3)
-    made = {"voltage": (("rate", *each), late), "jumps": (tuple(each), [[1.5, np.nan]] * 2)}
-    made["standard_error"] = (tuple(each), [[np.nan] * 2] * 2)
-    (panel,) = lines.draw_jump_voltages(xr.Dataset(made, {"rate": rates, **each}), "set").axes
-    assert "bonded: 1.5000 V" in legend_texts(panel)
-    made["jumps"] = (tuple(each), [[1.5, np.nan], [np.nan] * 2])
-    made["standard_error"] = (tuple(each), [[4e-4, np.nan], [np.nan] * 2])
-    (panel,) = lines.draw_jump_voltages(xr.Dataset(made, {"rate": rates, **each}), "set").axes
-    assert legend_texts(panel) == ["bonded: 1.50000 ± 0.00040 V", "delaminated: 2 rates"]
-    made["jumps"] = (tuple(each), [[np.nan, np.nan]] * 2)
-    (panel,) = lines.draw_jump_voltages(xr.Dataset(made, {"rate": rates, **each}), "set").axes
-    assert legend_texts(panel) == ["bonded: 2 rates", "delaminated: 2 rates"] and not panel.texts
-    made["voltage"] = (("rate", *each), np.full((2, 2, 2), np.nan))
-    (panel,) = lines.draw_jump_voltages(xr.Dataset(made, {"rate": rates, **each}), "set").axes
+def test_jump_voltages_end_at_rate_0_where_it_is_known():
+    nan = np.nan
+    for ends, errors, words in (
+        ([1.5, 1.5], [nan, nan], ["bonded: 1.5000 V", "delaminated: 1.5000 V"]),
+        ([1.5, nan], [4e-4, nan], ["bonded: 1.50000 ± 0.00040 V", "delaminated: 2 rates"]),
+        ([nan, nan], [nan, nan], ["bonded: 2 rates", "delaminated: 2 rates"]),
+    ):
+        (panel,) = lines.draw_jump_voltages(made.late_jumps(ends, errors)).axes
+        assert legend_texts(panel) == words and not panel.texts
+    (panel,) = lines.draw_jump_voltages(made.late_jumps([nan] * 2, [nan] * 2, jumps=False)).axes
     assert [text.get_text() for text in panel.texts] == ["no jump up"]
+
+
+def test_starts_from_rest_have_their_kind_the_border_and_how_sure_it_is():
+    data = made.capture()
+    (panel,) = weak_drive.draw_capture({"bonded": data}).axes
+    assert panel.get_ylabel() == "rotor inertia in kg m$^2$"
+    kinds = {"captured", "passes", "undecided", "border", "undecided between"}
+    assert kinds == {*legend_texts(panel)}
+    each = {name: data.isel(rotor_inertia=i) for i, name in enumerate(("bonded", "delaminated"))}
+    shown, doubtful = (set(legend_texts(one)) for one in weak_drive.draw_capture(each).axes)
+    assert {"border, 1.0500 ± 0.0030 V", "fold, averaged theory"} < shown
+    assert {"undecided", "undecided between"}.isdisjoint(shown)
+    assert {"undecided", "undecided between", "border, 1.150 ± 0.070 V"} < doubtful
+    assert "fold, averaged theory" not in doubtful  # it lies outside of what was tried
 
 
 # -- planes ---------------------------------------------------------------------------------------
