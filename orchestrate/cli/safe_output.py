@@ -1,0 +1,72 @@
+"""Standard streams of a command that may be closed, full or not read.
+
+What is computed is stored, so nothing that happens to the output may end a run.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from typing import Any
+
+
+class SafeStream:
+    """Text stream that never raises: errors of the stream below are kept, not raised."""
+
+    def __init__(self, stream: Any) -> None:
+        self._stream = stream
+        self.error: Exception | None = None
+
+    def write(self, text: str) -> int:
+        """Write a text, or drop it if the stream has failed; return its length."""
+        self._call_unless_failed("write", text)
+        return len(text)
+
+    def flush(self) -> None:
+        """Flush the stream; do nothing if it has failed."""
+        self._call_unless_failed("flush")
+
+    def _call_unless_failed(self, name: str, *arguments: object) -> None:
+        """Call a method of the stream below unless it has failed; keep its error."""
+        if self.error is None:
+            try:
+                getattr(self._stream, name)(*arguments)
+            except (OSError, ValueError) as error:  # full, nobody reads, or closed
+                self.error = error
+
+    def __getattr__(self, name: str) -> Any:
+        """Return all other attributes of the wrapped stream."""
+        return getattr(self._stream, name)
+
+    def detach(self) -> None:
+        """Flush; if the stream has failed, redirect its descriptor to ``/dev/null``."""
+        self.flush()
+        if self.error is not None:
+            with suppress(OSError, ValueError):
+                nowhere = os.open(os.devnull, os.O_WRONLY)
+                os.dup2(nowhere, self._stream.fileno())
+                os.close(nowhere)
+
+    def failure(self) -> str:
+        """Return why output was lost; empty if none was, or the reader closed the pipe."""
+        if self.error is None or isinstance(self.error, BrokenPipeError):
+            return ""
+        return str(getattr(self.error, "strerror", None) or self.error)
+
+
+@contextmanager
+def safe_outputs() -> Iterator[SafeStream]:
+    """Replace stdout and stderr by ``SafeStream`` in a ``with`` block; yield that of stdout."""
+    before = sys.stdout, sys.stderr
+    nowhere = io.StringIO()  # in place of one that was closed
+    streams = [SafeStream(stream or nowhere) for stream in before]
+    sys.stdout, sys.stderr = streams  # type: ignore[assignment]
+    try:
+        yield streams[0]
+    finally:
+        for stream in streams:
+            stream.detach()
+        sys.stdout, sys.stderr = before
