@@ -27,7 +27,6 @@ from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged, own_resonance
 from .couple import couple_job, scheme_from_arguments
-from .master import split_state
 from .run import Run, begin_run
 from .schedule import Ramp, check
 
@@ -82,7 +81,7 @@ class DriveSpectraJob(Job):
         self, fmus: Mapping[str, Path], structure: Structure
     ) -> tuple[np.ndarray, float]:
         """Hold the voltage; return displacements (2, samples), m, and speed, rad/s."""
-        scheme = scheme_from_arguments(structure, self.step, "rollback", 0.0)
+        scheme = scheme_from_arguments(structure, self.step, 0.0)
         job = couple_job(structure, self.drive, self.approach, scheme)
         steps = range(math.ceil((self.approach.duration + self.hold) / self.step))
         with begin_run(job, fmus) as run:
@@ -101,13 +100,10 @@ class DriveSpectraJob(Job):
         A preload's own displacements would leak into the lowest lines.
         """
         count = self.revolutions * self.points
-        kept = np.empty((count, len(run.master.get_state())))
-        run.master.revolution = None
-        run.master.run([self.approach.last] * count, h=interval, kept=kept)
-        _, motion, shaking, _ = split_state(kept.T)
+        found = run.master.run([self.approach.last] * count, h=interval).at_ends()
         rest_1, rest_2 = run.job.structure.at_rest
-        box = shaking.box_position
-        return np.array([motion.x1 - rest_1 + box, motion.x2 - rest_2 + box])
+        box = found["box_position"]
+        return np.array([found["x1"] - rest_1 + box, found["x2"] - rest_2 + box])
 
     def hangs_at_resonance(self, fmus: Mapping[str, Path]) -> bool:
         """Return whether the delaminated structure still hangs at the resonance."""

@@ -20,7 +20,8 @@ from ..running.job import Inputs, Job, Table
 from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
-from .couple import SLOTS, couple_job, require_motor, schedule_from_arguments, scheme_from_arguments
+from .couple import couple_job, require_motor, schedule_from_arguments, scheme_from_arguments
+from .hysteresis import Settings
 from .master import Scheme
 from .schedule import Ramp, Schedule
 
@@ -34,6 +35,7 @@ KINDS = ("bonded", "delaminated")
 DIRECTIONS = ("up", "down")
 USUAL_RATES = (1e-4, 5e-5, 2.5e-5)  # of eta0 in a time 1/omega
 COLUMNS = ("jumps", "jump_low", "jump_high")
+SLOTS = Settings().slots
 EARLY = 1e-3  # of the voltage at rate 0: a ramp shows its jump no earlier
 SHOWN = ("ramp_voltage", "jump_speed_before")
 

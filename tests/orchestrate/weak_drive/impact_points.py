@@ -150,9 +150,9 @@ def measured(case, state, kind, scheme, **options):
 def main():
     """Print the table."""
     schemes = {
-        "fixed steps of 0.2": Scheme("rollback", 0.2),
-        "`tolerance` 1e-6": Scheme("rollback", 0.4, tolerance=1e-6),
-        "`tolerance` 1e-8": Scheme("rollback", 0.4, tolerance=1e-8),
+        "fixed steps of 0.2": Scheme(0.2),
+        "`tolerance` 1e-6": Scheme(0.4, tolerance=1e-6),
+        "`tolerance` 1e-8": Scheme(0.4, tolerance=1e-8),
     }
     for name, case in CASES.items():
         state = settled(*case)

@@ -57,7 +57,7 @@ def impact_energies(case):
 def test_the_motion_is_that_of_the_whole_system(case):
     """Displacements, impacts, contact phases; speed, and the energies, of the springs too."""
     rows = [case.state]
-    with master(case.system, Scheme("rollback", 0.1), case.state) as m:
+    with master(case.system, Scheme(0.1), case.state) as m:
         for _ in range(round(TIME / GRID)):
             m.run([VOLTAGE] * round(GRID / m.scheme.h))
             rows.append(state_of(m))
@@ -75,7 +75,7 @@ def test_the_motion_is_that_of_the_whole_system(case):
 
 
 @pytest.mark.parametrize(
-    "scheme", [Scheme("rollback", 0.1), Scheme("iterated", 0.4, tolerance=1e-8)], ids=str
+    "scheme", [Scheme(0.1), Scheme("iterated", 0.4, tolerance=1e-8)], ids=str
 )
 def test_compiled_steps_have_the_bits_of_python(case, scheme):
     kept = []
@@ -89,7 +89,7 @@ def test_compiled_steps_have_the_bits_of_python(case, scheme):
 
 def test_amplitudes_between_communication_points(case):
     """In contact both masses swing about the position in which the springs balance."""
-    with master(case.system, Scheme("rollback", 0.17), case.state) as m:
+    with master(case.system, Scheme(0.17), case.state) as m:
         revolutions, begin = Revolutions(m, lambda: 0.0), 0.0
         seen = 0
         while m.time < TIME - 0.2:
@@ -118,13 +118,13 @@ def test_so_far_apart_that_they_never_touch_the_halves_swing_freely():
     assert run.impacts.max() == 0.0
     times = np.arange(0.0, 60.0 + GRID / 2, GRID)
     truth = Monolith(*APART, VOLTAGE).solve(rest(SPEED), times)[0]
-    rows, _ = history(APART, Scheme("rollback", 0.1), VOLTAGE, rest(SPEED), 60.0)
+    rows, _ = history(APART, Scheme(0.1), VOLTAGE, rest(SPEED), 60.0)
     assert np.abs(rows - truth)[:, [0, 2]].max() < 1e-6 * np.ptp(truth[:, 0])
     assert run.amplitude.max() == pytest.approx(np.ptp(truth[:, 0]) / 2, rel=0.2)
 
 
 def test_the_bonded_structure_ignores_it():
-    scheme, states = Scheme("rollback", 0.1), []
+    scheme, states = Scheme(0.1), []
     for system in (QUICK, OPEN, PRESSED):
         with master(system.as_bonded(), scheme, rest(SPEED)) as m:
             m.run([VOLTAGE] * 200)
@@ -187,7 +187,7 @@ def test_ramps_of_many_and_spectra_of_a_structure_pressed_shut_are_those_of_the_
 
 
 def test_a_run_goes_on_with_the_same_bits():
-    scheme = Scheme("rollback", 0.4, tolerance=1e-8)
+    scheme = Scheme(0.4, tolerance=1e-8)
     with master(PRESSED, scheme, rest(1.2, PRESSED.structure)) as m:
         m.run([VOLTAGE] * 41)
         kept = m.get_state(), m.oscillator.instance.save_state(), m.shaker.instance.save_state()

@@ -20,7 +20,7 @@ COUNT = 400
 SCHEMES = [
     *(Scheme(name, 0.1, matched) for name in ALGORITHMS for matched in (True, False)),
     *(Scheme(name, 0.4, tolerance=1e-8) for name in ("rollback", "iterated")),
-    Scheme("rollback", 0.4, matched=False, tolerance=1e-6, halvings=3, easy=0.1),
+    Scheme(0.4, matched=False, tolerance=1e-6, halvings=3, easy=0.1),
     Scheme("gauss-seidel", 0.1, beginning=(1, 3, 9)),
 ]
 
@@ -56,7 +56,7 @@ def test_the_same_bits(scheme):
 
 @pytest.mark.parametrize("system", [QUICK.as_bonded(), QUICK.with_lag(0.3)], ids=["bonded", "lag"])
 def test_the_same_bits_of_other_systems(system):
-    scheme = Scheme("rollback", 0.4, tolerance=1e-8)
+    scheme = Scheme(0.4, tolerance=1e-8)
     rows, *others = done(Master, system, scheme, -1.2)  # backward
     found = done(CompiledMaster, system, scheme, -1.2)
     assert np.array_equal(found[0], rows)

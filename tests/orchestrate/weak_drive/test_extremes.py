@@ -14,7 +14,7 @@ TIME, VOLTAGE = 45.0, 1.5
 
 def rows_of(system, state, h):
     """Revolutions of a run from a state, and the times between which the watch was kept."""
-    with master(system, Scheme("rollback", h), state) as m:
+    with master(system, Scheme(h), state) as m:
         revolutions = Revolutions(m, lambda: 0.0)
         rows, begins = [], [0.0]
         for _ in range(round(TIME / h)):

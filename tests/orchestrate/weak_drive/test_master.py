@@ -65,7 +65,7 @@ def test_inductance_of_the_armature(lag, bonded):
     case = Case(system.as_bonded() if bonded else system, 1.5, 1.25, 20.0)
     assert (case.impacts == 0) == bonded
     assert case.errors("rollback", 0.1)[0] < 1e-6
-    rows, _ = history(case.system, Scheme("rollback", 0.1), 1.5, case.state, case.time)
+    rows, _ = history(case.system, Scheme(0.1), 1.5, case.state, case.time)
     current = case.truth[:, 8]
     assert np.abs(rows[:, 8] - current).max() < 1e-5 * np.ptp(current)
 
@@ -119,7 +119,7 @@ class Recording(Master):
 
 def controlled(case, tolerance):
     """Error of the displacements over the amplitude with the step control, and the steps done."""
-    scheme = Scheme("rollback", 0.4, tolerance=tolerance)
+    scheme = Scheme(0.4, tolerance=tolerance)
     with master(case.system, scheme, case.state, kind=Recording) as m:
         rows = [case.state]
         for _ in range(round(case.time / 0.4)):
@@ -145,7 +145,7 @@ def test_the_control_keeps_the_error_by_the_tolerance(name, request):
 
 def test_the_control_goes_on_with_the_same_bits():
     """Its memory has the length of the next step."""
-    scheme = Scheme("rollback", 0.4, tolerance=1e-8)
+    scheme = Scheme(0.4, tolerance=1e-8)
     with master(QUICK, scheme, rest(1.2)) as m:
         for _ in range(41):
             m.step(1.5)
@@ -166,7 +166,7 @@ def test_the_control_goes_on_with_the_same_bits():
 @pytest.mark.parametrize("form", ["fmi2", "fmi3"])
 def test_all_forms_give_the_same_bits(form):
     """States are saved and restored by the native and by the pythonfmu form alike."""
-    scheme = Scheme("rollback", 0.1)
+    scheme = Scheme(0.1)
     expected, energies = history(QUICK, scheme, 1.5, rest(1.2), 30.0, "fmi2-python")
     found, others = history(QUICK, scheme, 1.5, rest(1.2), 30.0, form)
     assert np.array_equal(found, expected)
@@ -178,7 +178,7 @@ def test_losses_of_the_balance_are_those_of_the_dampers():
     """The structure's losses from the exchange, against the integral of d v^2."""
     system = QUICK.as_bonded()
     damping = system.structure.d1 + system.structure.d2
-    with master(system, Scheme("rollback", 0.05), rest(1.2)) as m:
+    with master(system, Scheme(0.05), rest(1.2)) as m:
         powers = [damping * m.motion.v1**2]
         for _ in range(400):
             m.step(1.5)
