@@ -220,7 +220,7 @@ def drive_spectra(
     points = checked_integer("points", points, 4)
     if not 0.0 < highest <= points / 2:
         raise InputError(f"highest = {highest}: expected 0 < highest <= points/2 = {points / 2:g}")
-    step = scheme_from_arguments(structure, step, "rollback", 0.0).h
+    step = scheme_from_arguments(structure, step, 0.0).h
     record = (revolutions, points, float(highest))
     tried = (
         [voltage_at_resonance(structure, drive, share) for share in SHARES]

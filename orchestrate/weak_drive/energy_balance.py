@@ -63,8 +63,9 @@ class EnergyBalance:
         if np.isnan(self.start[0]):
             self.start = accounts[:, 0].copy()
         self.sums = sums[:, -1].copy()
-        motor, *others = accounts - self.start[:, np.newaxis]
-        return Energies(motor, *others, motor - sum(others), sums[1], sums[2])
+        since = accounts - self.start[:, np.newaxis]
+        missing = since[0] - sum(since[1:])
+        return Energies._make([*since, missing, sums[1], sums[2]])
 
     def lost(self, record: Record) -> Floats:
         """Return the energy that the structure loses in each step, in dampers and impacts."""

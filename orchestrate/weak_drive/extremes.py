@@ -26,7 +26,7 @@ class Range(NamedTuple):
     low: Floats
     high: Floats
 
-    def widened(self, steps: Floats, places: Sequence[Floats]) -> Range:
+    def widened(self, steps: Any, places: Sequence[Floats]) -> Range:
         """Return the range with further positions in some steps; NaN counts as none."""
         for position in places:
             self.low[steps] = np.fmin(self.low[steps], position)
@@ -75,10 +75,14 @@ def extrema(series: Sequence[Any], first: Any, last: Any) -> list[Any]:
 
 def range_of_mass(structure: Structure, record: Record) -> Range:
     """Return the lowest and the highest x1 within each step, also with an impact."""
-    before, after, cubic = record.before.motion(), record.after.motion(), record.after.acceleration()
+    before, after, cubic = (
+        record.before.motion(),
+        record.after.motion(),
+        record.after.acceleration(),
+    )
     h = record.after["h"]
     hit = after.impact_time - record.before["time"]
-    impact = (after.impact_time != before.impact_time) & (0.0 <= hit) & (hit <= h)
+    impact = (after.impact_time != before.impact_time) & (hit >= 0.0) & (hit <= h)
     found = Range(np.minimum(before.x1, after.x1), np.maximum(before.x1, after.x1))
     turning = np.flatnonzero(impact | (before.v1 * after.v1 < 0.0))
     last = np.where(impact, hit, h)[turning]
@@ -93,9 +97,7 @@ def range_of_mass(structure: Structure, record: Record) -> Range:
 def range_of_box(record: Record) -> Range:
     """Return the lowest and the highest box position within each step."""
     position, velocity = record["box_position"], record["box_velocity"]
-    found = Range(
-        np.minimum(position[:-1], position[1:]), np.maximum(position[:-1], position[1:])
-    )
+    found = Range(np.minimum(position[:-1], position[1:]), np.maximum(position[:-1], position[1:]))
     turning = np.flatnonzero(velocity[:-1] * velocity[1:] < 0.0)
     cubic = at(record.after.acceleration(), turning)
     h = record.after["h"][turning]

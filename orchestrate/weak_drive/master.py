@@ -36,7 +36,7 @@ from .polynomials import (
     matched_cubic,
     matched_parabola,
 )
-from .record import BOX, LEADING, PLACE, Floats, OscillatorOutputs, Record
+from .record import BOX, LEADING, PLACE, OscillatorOutputs, Record
 
 CUBIC = ("box_acceleration", "box_jerk", "box_snap", "box_crackle")
 TIME, H, LEVEL, THEN, IMPACTS = (
@@ -147,9 +147,9 @@ class Master:
     def run(self, inputs: ArrayLike, h: float | None = None) -> Record:
         """Run an interval for each row of the drive's inputs, held constant; return the record."""
         rows, ends = [list(self.row)], []
-        count = len(self.names) - self.inputs.start
-        for values in np.reshape(np.asarray(inputs, dtype=float), (-1, count)).tolist():
-            rows += self._interval(values, h or self.scheme.h)
+        values = np.asarray(inputs, dtype=float)
+        for each in values.reshape(len(values), len(self.names) - self.inputs.start).tolist():
+            rows += self._interval(each, h or self.scheme.h)
             ends.append(len(rows) - 1)
         return Record(self.names, np.array(rows), np.array(ends, dtype=np.intp))
 
@@ -256,7 +256,9 @@ class Master:
         times = [*self.points[::2][-2 - from_position :], self.row[TIME] + h]
         values = [*self.points[1::2][-2 - from_position :], after[0 if from_position else 1]]
         return (
-            *derivatives([t - self.row[TIME] for t in times], values, 1 + from_position), 0.0, 0.0
+            *derivatives([t - self.row[TIME] for t in times], values, 1 + from_position),
+            0.0,
+            0.0,
         )
 
     def _remember(self) -> None:
@@ -289,12 +291,13 @@ class Master:
 
     def get_state(self) -> list[float]:
         """Return the master's own state as a list of floats, to be restored later."""
-        return [*self.row, *self.points]
+        missing = [math.nan] * (2 * PAST - len(self.points))
+        return [*self.row, *self.points, *missing]
 
     def set_state(self, numbers: Sequence[float]) -> None:
         """Restore the state that :meth:`get_state` returned."""
         count = len(self.names)
-        self.row, self.points = list(numbers[:count]), list(numbers[count:])
+        self.row, self.points = list(numbers[:count]), [x for x in numbers[count:] if x == x]
 
     def close(self) -> None:
         """Free the FMU states saved to go back."""

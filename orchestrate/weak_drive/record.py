@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,7 +47,7 @@ class Record:
 
     names: tuple[str, ...]  # of the columns
     rows: Floats
-    ends: NDArray[np.intp]  # rows at which communication intervals end
+    ends: NDArray[np.integer[Any]]  # rows at which communication intervals end
 
     @property
     def before(self) -> Record:

@@ -7,7 +7,6 @@ motions make a curve, which :mod:`orchestrate.dynamics.continuation` follows rou
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import NamedTuple
 

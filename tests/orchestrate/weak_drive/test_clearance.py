@@ -74,9 +74,7 @@ def test_the_motion_is_that_of_the_whole_system(case):
     assert ((np.abs(gaps) < 1e-12).mean() > 0.3) == (case.system is PRESSED)
 
 
-@pytest.mark.parametrize(
-    "scheme", [Scheme(0.1), Scheme("iterated", 0.4, tolerance=1e-8)], ids=str
-)
+@pytest.mark.parametrize("scheme", [Scheme(0.1), Scheme("iterated", 0.4, tolerance=1e-8)], ids=str)
 def test_compiled_steps_have_the_bits_of_python(case, scheme):
     kept = []
     for kind in (Master, CompiledMaster):

@@ -9,7 +9,8 @@ from scipy.integrate import solve_ivp
 import orchestrate
 from orchestrate.access.description import describe
 from orchestrate.errors import InputError
-from orchestrate.weak_drive.connection import derivatives, proposals
+from orchestrate.weak_drive.connection import proposals
+from orchestrate.weak_drive.polynomials import derivatives
 
 from .drives import table
 

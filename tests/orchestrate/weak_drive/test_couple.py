@@ -133,9 +133,7 @@ def test_a_motor_that_turns_backward():
 
 def test_it_goes_on_with_the_same_bits():
     """A run in one go, and one handed over from chunk to chunk with the states of both FMUs."""
-    job = couple_job(
-        *QUICK, Ramp(1.4, 1.41, 2e-4, 50.0), Scheme(0.4, tolerance=1e-8), 1.25
-    )
+    job = couple_job(*QUICK, Ramp(1.4, 1.41, 2e-4, 50.0), Scheme(0.4, tolerance=1e-8), 1.25)
     fmus = {model: find(model).path for model in (OSCILLATOR, SHAKER)}
     steps = job.items({})
     expected, parts, carry = job.work(fmus, steps, None), [], None
