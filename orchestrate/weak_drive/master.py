@@ -181,7 +181,7 @@ class Master:
                 level -= is_easy and done % (2 * size) == 0 and level > 0
             else:
                 level += 1
-            self.row[LEVEL] = level
+            self.row[LEVEL] = float(level)
         return rows
 
     def _attempt(self, h: float, may_refuse: bool) -> tuple[list[float] | None, float]:

@@ -255,7 +255,7 @@ def coupled_jump(system, state, voltages, rate):
         while m.time * omega * rate < last - first:
             m.step(volts * (first + rate * omega * (m.time + 0.5 * scheme.h)))
             times.append(m.time)
-            angles.append(m.shaking.angle)
+            angles.append(m["angle"])
     eta0 = lambda time: first + rate * omega * time  # noqa: E731
     return jump_of(system, np.array(times), np.array(angles), eta0)
 
