@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import ctypes
 import functools
+from array import array
+from collections.abc import Iterable, Sequence
 from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p, pointer
 from pathlib import Path
 from typing import Any
@@ -87,18 +89,35 @@ class CompiledMaster(Master):
     def run(self, inputs: ArrayLike, h: float | None = None) -> Record:
         """Run an interval for each row of the drive's inputs, held constant; return the record."""
         values = np.ascontiguousarray(inputs, dtype=float)
-        now = np.array(self.row)
-        rows = np.empty((1 + self.scheme.most_rows(len(values)), len(now)))
-        rows[0], ends = now, np.zeros(len(values), dtype=np.intc)
-        self.oscillator.begin()
-        self.drive.channel.begin()
-        pair = self._pair
-        buffers = (array.ctypes.data for array in (now, rows, ends, values))
-        if not load_step_function()(byref(pair), *buffers, len(values), h or self.scheme.h):
-            raise self._failure(pair)
-        self.row = now.tolist()
-        last = int(ends[-1]) if len(ends) else 0
-        return Record(self.names, rows[: last + 1], ends)
+        return self._run_pieces(iter([array("d", values.tobytes())]), len(values), len(values), h)
+
+    def run_controlled(
+        self, inputs: Iterable[Sequence[float]], count: int, h: float | None = None
+    ) -> Record:
+        """Run a number of intervals; the inputs of each are asked for when it begins."""
+        return self._run_pieces((array("d", values) for values in inputs), 1, count, h)
+
+    def _run_pieces(
+        self, pieces: Iterable[array[float]], size: int, count: int, h: float | None
+    ) -> Record:
+        """Run pieces of ``size`` intervals each, by the C function, into one record."""
+        now, width = array("d", self.row), len(self.row)
+        rows = np.empty((1 + self.scheme.most_rows(count), width))
+        rows[0], ends, at = self.row, np.zeros(count, dtype=np.intc), 0
+        addresses, pair = (rows.ctypes.data, ends.ctypes.data), self._pair
+        run, h = load_step_function(), h or self.scheme.h
+        for i, values in enumerate(pieces):
+            first, end = i * size, (i + 1) * size
+            self.oscillator.begin()
+            self.drive.channel.begin()
+            into = addresses[0] + at * width * rows.itemsize, addresses[1] + first * ends.itemsize
+            known = now.buffer_info()[0], *into, values.buffer_info()[0]
+            if not run(byref(pair), *known, size, h):
+                raise self._failure(pair)
+            ends[first:end] += at
+            at = int(ends[end - 1]) if size else 0
+            self.row = now.tolist()
+        return Record(self.names, rows[: at + 1], ends)
 
     @functools.cached_property
     def _pair(self) -> Pair:

@@ -18,7 +18,7 @@ is no algebraic loop, but what each side assumes of the other over a step decide
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -146,10 +146,17 @@ class Master:
 
     def run(self, inputs: ArrayLike, h: float | None = None) -> Record:
         """Run an interval for each row of the drive's inputs, held constant; return the record."""
-        rows, ends = [list(self.row)], []
         values = np.asarray(inputs, dtype=float)
-        for each in values.reshape(len(values), len(self.names) - self.inputs.start).tolist():
-            rows += self._interval(each, h or self.scheme.h)
+        rows = values.reshape(len(values), len(self.names) - self.inputs.start)
+        return self.run_controlled(rows.tolist(), len(values), h)
+
+    def run_controlled(
+        self, inputs: Iterable[Sequence[float]], count: int, h: float | None = None
+    ) -> Record:
+        """Run a number of intervals; the inputs of each are asked for when it begins."""
+        rows, ends = [list(self.row)], []
+        for values in inputs:
+            rows += self._interval(list(values), h or self.scheme.h)
             ends.append(len(rows) - 1)
         return Record(self.names, np.array(rows), np.array(ends, dtype=np.intp))
 

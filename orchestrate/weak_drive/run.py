@@ -19,7 +19,7 @@ from ..structures.structure import Structure
 from .compiled import create_master
 from .controllers import Controller, Measurement
 from .master import Scheme
-from .record import Record, joined
+from .record import Record
 from .revolutions import Revolutions
 from .schedule import Schedule
 
@@ -78,7 +78,7 @@ class Run:
         """Run some communication steps; return their record."""
         if self.job.control is None:
             return self.master.run([self.step_voltage(i) for i in steps])
-        return joined([self.master.step(self.step_voltage(i)) for i in steps])
+        return self.master.run_controlled(([self.step_voltage(i)] for i in steps), len(steps))
 
     def revolve(self, steps: Sequence[int]) -> Table:
         """Run some communication steps; return the table of completed revolutions."""
