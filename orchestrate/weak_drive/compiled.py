@@ -117,7 +117,7 @@ class CompiledMaster(Master):
             ends[first:end] += at
             at = int(ends[end - 1]) if size else 0
             self.row = now.tolist()
-        return Record(self.names, rows[: at + 1], ends)
+        return Record.of_rows(self.names, rows[: at + 1], ends)
 
     @functools.cached_property
     def _pair(self) -> Pair:

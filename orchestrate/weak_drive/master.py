@@ -158,7 +158,7 @@ class Master:
         for values in inputs:
             rows += self._interval(list(values), h or self.scheme.h)
             ends.append(len(rows) - 1)
-        return Record(self.names, np.array(rows), np.array(ends, dtype=np.intp))
+        return Record.of_rows(self.names, rows, ends)
 
     def _interval(self, inputs: list[float], h: float) -> list[list[float]]:
         """Run one communication interval; return the rows of its steps."""

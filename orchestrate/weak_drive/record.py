@@ -43,43 +43,49 @@ PLACE = {name: i for i, name in enumerate(LEADING)}
 
 @dataclass(frozen=True)
 class Record:
-    """Hold the rows of a run: the state before it, then one for the end of each step."""
+    """Hold the columns of a run: the state before it, then one value for the end of each step."""
 
-    names: tuple[str, ...]  # of the columns
-    rows: Floats
-    ends: NDArray[np.integer[Any]]  # rows at which communication intervals end
+    names: tuple[str, ...]
+    columns: Floats  # (names, 1 + steps)
+    ends: NDArray[np.integer[Any]]  # places in a column at which communication intervals end
+
+    @classmethod
+    def of_rows(cls, names: tuple[str, ...], rows: Any, ends: Any) -> Record:
+        """Make a record of rows, one for the state before and for each step."""
+        return cls(names, np.ascontiguousarray(np.transpose(rows)), np.asarray(ends, dtype=np.intp))
 
     @property
     def before(self) -> Record:
-        """Return the rows at which the steps begin."""
-        return replace(self, rows=self.rows[:-1])
+        """Return the states at which the steps begin."""
+        return replace(self, columns=self.columns[:, :-1])
 
     @property
     def after(self) -> Record:
-        """Return the rows at which the steps end."""
-        return replace(self, rows=self.rows[1:])
+        """Return the states at which the steps end."""
+        return replace(self, columns=self.columns[:, 1:])
 
     def at_ends(self) -> Record:
-        """Return the rows at the ends of communication intervals only."""
-        return replace(self, rows=self.rows[self.ends])
+        """Return the states at the ends of communication intervals only."""
+        return replace(self, columns=self.columns[:, self.ends])
 
     def __getitem__(self, name: str) -> Floats:
         """Return a column."""
-        return self.rows[:, self.names.index(name)]
+        return self.columns[self.names.index(name)]
 
     def motion(self) -> OscillatorOutputs:
         """Return the oscillator's outputs, an array for each."""
-        return OscillatorOutputs._make(self[name] for name in OscillatorOutputs._fields)  # type: ignore[arg-type]
+        first = PLACE["x1"]
+        return OscillatorOutputs._make(self.columns[first : first + len(OscillatorOutputs._fields)])
 
     def acceleration(self) -> Cubic:
-        """Return the box acceleration over the steps that end at the rows, as cubics."""
+        """Return the box acceleration over the steps that end here, as cubics."""
         first = PLACE["acceleration_then"]
-        return tuple(self.rows[:, first : first + 4].T)
+        return tuple(self.columns[first : first + 4])
 
 
 def joined(records: Sequence[Record]) -> Record:
     """Join the records of runs that follow each other."""
-    starts = np.cumsum([0, *(len(record.rows) - 1 for record in records)])
-    rows = [records[0].rows[:1], *(record.rows[1:] for record in records)]
+    starts = np.cumsum([0, *(record.columns.shape[1] - 1 for record in records)])
+    columns = [records[0].columns[:, :1], *(record.after.columns for record in records)]
     ends = [start + record.ends for start, record in zip(starts, records, strict=False)]
-    return Record(records[0].names, np.concatenate(rows), np.concatenate(ends))
+    return Record(records[0].names, np.concatenate(columns, axis=1), np.concatenate(ends))

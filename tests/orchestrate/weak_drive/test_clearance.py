@@ -106,7 +106,7 @@ def test_the_bonded_structure_ignores_it():
     scheme, states = Scheme(0.1), []
     for system in (QUICK, OPEN, PRESSED):
         with master(system.as_bonded(), scheme, rest(SPEED)) as m:
-            states.append(m.run([VOLTAGE] * 200).rows.tobytes())
+            states.append(m.run([VOLTAGE] * 200).columns.tobytes())
     assert states[0] == states[1] == states[2]
 
 

@@ -109,7 +109,7 @@ def done(kind, system, scheme, speed):
         record = m.run(voltages)
         m.run(voltages[:2], h=0.03)
         states = [one.save_state() for one in (m.oscillator.instance, m.drive.instance)]
-        return record.rows.tobytes(), record.ends.tolist(), str(m.get_state()), *states
+        return record.columns.tobytes(), record.ends.tolist(), str(m.get_state()), *states
 
 
 @pytest.mark.parametrize(
