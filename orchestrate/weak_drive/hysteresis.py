@@ -123,7 +123,7 @@ class VoltageHolder:
             try:
                 if last:
                     run.set_state(self.checkpoints[last])
-                run.revolve(range(last, step))
+                run.speeds(range(last, step))
                 self.checkpoints[step] = run.get_state()
             finally:
                 run.master.close()
@@ -162,10 +162,10 @@ class VoltageHolder:
         try:
             if state is not None:
                 run.set_state(state)
-            run.revolve(range(moves))
+            run.speeds(range(moves))
             for begin in range(moves, count, piece):
-                rows = run.revolve(range(begin, min(begin + piece, count)))
-                speeds = np.append(speeds, np.abs(rows["speed"]) / self.omega)
+                found = run.speeds(range(begin, min(begin + piece, count)))
+                speeds = np.append(speeds, np.abs(found) / self.omega)
                 speed, error = settled_speed(speeds, settings)
                 if math.isfinite(speed):
                     break

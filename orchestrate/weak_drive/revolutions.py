@@ -55,35 +55,38 @@ class Revolutions:
         """Return the revolutions that a record completes, and the energies at its rows."""
         energies = self.balance.add(record)
         largest = largest_in_steps(self.structure, record)
+        voltage, x1, y = record["voltage"], record["x1"], record["box_position"]
         rows, begin = [], 0
-        turns = (record["angle"][record.ends] / TURN).tolist()
-        for end, turned in zip(record.ends.tolist(), turns, strict=True):
-            if abs(turned - self.turn) < 1.0:
-                continue
+        for end, time, speed, impacts in self.completed(record):
             self._widen(largest[:, begin:end])
-            rows.append((*self._complete(record, end, turned), *(one[end] for one in energies)))
-            begin = end
+            x_high, x_low, y_high, y_low, acceleration = self.largest.tolist()
+            ranges = 0.5 * (x_high + x_low), 0.5 * (y_high + y_low)
+            row = (time, voltage[end], speed, *ranges, impacts, acceleration)
+            rows.append((*row, *(account[end] for account in energies)))
+            self.largest, begin = np.array([x1[end], -x1[end], y[end], -y[end], 0.0]), end
         self._widen(largest[:, begin:])
         table = np.array(rows, dtype=float).reshape(-1, len(COLUMNS))
         return dict(zip(COLUMNS, table.T.copy(), strict=True)), energies
 
+    def completed(self, record: Record) -> list[tuple[int, float, float, float]]:
+        """Return where a record completes revolutions: place, time, mean speed, and impacts."""
+        found = []
+        for end, angle in zip(
+            record.ends.tolist(), record["angle"][record.ends].tolist(), strict=True
+        ):
+            turns = angle / TURN
+            if abs(turns - self.turn) < 1.0:
+                continue
+            turn = math.floor(turns) if turns > self.turn else math.ceil(turns)
+            time = float(record["time"][end] - (angle - turn * TURN) / record["speed"][end])
+            mean, impacts = (turn - self.turn) * TURN / (time - self.time), record["impacts"][end]
+            found.append((end, time, mean, float(impacts - self.impacts)))
+            self.turn, self.time, self.impacts = turn, time, float(impacts)
+        return found
+
     def _widen(self, largest: Floats) -> None:
         """Add the largest values of some steps to the present revolution."""
         self.largest = np.maximum(self.largest, largest.max(axis=1, initial=NOTHING))
-
-    def _complete(self, record: Record, end: int, turns: float) -> tuple[float, ...]:
-        """Return the row of a revolution that ends at a row, but its energies; begin the next."""
-        turn = math.floor(turns) if turns > self.turn else math.ceil(turns)
-        names = ("time", "angle", "speed", "impacts", "voltage", "x1", "box_position")
-        time, angle, speed, impacts, voltage, x1, y = (float(record[name][end]) for name in names)
-        time -= (angle - turn * TURN) / speed
-        mean = (turn - self.turn) * TURN / (time - self.time)
-        x_high, x_low, y_high, y_low, acceleration = self.largest.tolist()
-        ranges = 0.5 * (x_high + x_low), 0.5 * (y_high + y_low)
-        row = (time, voltage, mean, *ranges, impacts - self.impacts, acceleration)
-        self.turn, self.time, self.impacts = turn, time, impacts
-        self.largest = np.array([x1, -x1, y, -y, 0.0])
-        return row
 
     def get_state(self) -> list[float]:
         """Return the unfinished revolution as a list of floats, to be restored later."""

@@ -84,6 +84,12 @@ class Run:
         """Run some communication steps; return the table of completed revolutions."""
         return self.revolutions.add(self.record(steps))[0]
 
+    def speeds(self, steps: Sequence[int]) -> np.ndarray:
+        """Run some steps; return the mean speeds of completed revolutions alone, rad/s."""
+        return np.array(
+            [speed for _, _, speed, _ in self.revolutions.completed(self.record(steps))]
+        )
+
     def get_state(self) -> Table:
         """Return the complete state of the run as a table of one row."""
         states = {
