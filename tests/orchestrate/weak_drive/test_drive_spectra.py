@@ -115,6 +115,7 @@ def test_the_default_voltage_is_at_the_resonance(system):
     assert np.all(Omega < up.Omega)
 
 
+@pytest.mark.slow
 def test_a_structure_that_jumps_earlier_is_still_at_the_resonance(tmp_path):
     """Delaminated this motor has jumped at 0.6 of the way between the bonded one's folds."""
     (tmp_path / "fan.toml").write_text(FAN)
