@@ -176,7 +176,6 @@ def test_a_finished_result_is_read(tmp_path):
         ({"settle": -1.0}, ["settle = -1.0", "0 <= settle"]),
         ({"hold": -1.0}, ["hold = -1.0 s", "0 <= hold"]),
         ({"speed_start": float("inf")}, ["speed_start = inf", "finite"]),
-        ({"algorithm": "euler"}, ["euler", "jacobi", "rollback"]),
         ({"tolerance": -1.0}, ["tolerance", ">= 0"]),
         ({"voltage": 1.5, "duration": 1e-10}, ["duration = 1e-10 s", "one communication step"]),
         ({"voltage": 1.5, "duration": 0.0}, ["duration = 0 s", "duration >= "]),
