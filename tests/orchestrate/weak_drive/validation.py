@@ -1,20 +1,20 @@
 """Random sets against one system of equations: trajectories, folds, Neimark-Sacker points, jumps.
 
-The truth is :class:`.monolithic.Monolith`, with shooting of its own: nothing of it knows the FMUs but
-the state that it starts from.
+The truth is :class:`.monolithic.Monolith`, with shooting of its own: nothing of it knows the FMUs
+but the state that it starts from.
 """
 
 import numpy as np
 
 from orchestrate import Drive, Structure, jump_voltages
 from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
-from orchestrate.dynamics.bifurcations import FLIP, FOLD, TORUS
+from orchestrate.dynamics.bifurcations import FLIP, FOLD
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple import scheme_from_arguments
 from orchestrate.weak_drive.drive_branch import DriveBranchJob
 from orchestrate.weak_drive.ramp_record import find_falls
 
-from .coupled import BEAM, QUICK, System, master, rest, state_of
+from .coupled import System, master, rest, state_of
 from .monolithic import Monolith
 
 SEED = 13
