@@ -205,7 +205,7 @@ class CoupleJob(CoupledRun):
         direction, rule = "rise" if record.up else "fall", self.hysteresis
         if not record.rows().size:
             return "", f"the voltage does not {direction}"
-        if any(record.suspects(leg, rule) for leg in record.legs()):
+        if any(record.suspects(leg, *rule.of_a_record) for leg in record.legs()):
             return "by held voltages", "no jump: held voltages lead back to the same speeds"
         return "by the record", "no jump: the speed follows the voltage"
 

@@ -68,6 +68,11 @@ class Settings(SettledSettings):
     left: float = 0.1  # of the way between two motions' speeds: with less to go, the first is left
     slots: int = 12  # jumps of a direction that are stored, by their voltages
 
+    @property
+    def of_a_record(self) -> tuple[float, float, float]:
+        """Return what of the rule concerns a ramp's record."""
+        return self.shown, self.share, self.apart
+
 
 class HeldPoint(NamedTuple):
     """Store the speed that settled at a held voltage, and the state reached."""
@@ -184,7 +189,7 @@ class HysteresisLoop(VoltageHolder):
         """Return all jumps of a run in one direction, by their voltages."""
         jumps = []
         for leg in record.legs():
-            suspects = record.suspects(leg, self.settings)
+            suspects = record.suspects(leg, *self.settings.of_a_record)
             if not self.longest:
                 ends = ((record.eta0(at.before), record.eta0(at.after), at) for at in suspects)
                 jumps += [Jump(UNDECIDED, *end) for end in ends]

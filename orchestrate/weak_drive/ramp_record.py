@@ -12,16 +12,13 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..response.labels import Variable, variable
 from ..running.job import Table
 from .run import CoupledRun
-
-if TYPE_CHECKING:
-    from .hysteresis import Settings
 
 COLUMNS_SHOWN = ("time", "voltage", "speed", "amplitude")
 
@@ -99,9 +96,8 @@ class RampRecord:
         row = float(np.interp(self.sign * eta0, self.sign * self.eta0(leg), leg))
         return Suspect(math.floor(row), row, math.ceil(row))
 
-    def suspects(self, leg: np.ndarray, rule: Settings) -> list[Suspect]:
+    def suspects(self, leg: np.ndarray, shown: float, share: float, apart: float) -> list[Suspect]:
         """Return the stretches of one ramp over which the slip falls by at least `shown`."""
-        share = rule.share
         b, omega = self.job.drive.b(self.job.structure), self.job.structure.omega
         turn = float(np.median(np.diff(self.table["time"][leg]))) if len(leg) > 1 else math.inf
         width = max(4, math.ceil(0.5 / (b * omega * turn)))
@@ -109,8 +105,8 @@ class RampRecord:
             return []
         slip = np.convolve(self.slip(leg), np.full(width, 1.0 / width), "valid")
         groups: list[list[tuple[int, int]]] = []
-        for fall in find_falls(slip, rule.shown):
-            if groups and fall[0] - groups[-1][-1][1] < rule.apart * width:
+        for fall in find_falls(slip, shown):
+            if groups and fall[0] - groups[-1][-1][1] < apart * width:
                 groups[-1].append(fall)
             else:
                 groups.append([fall])

@@ -220,9 +220,9 @@ def test_falls_close_to_each_other_are_one_stretch():
     )
     ramp = RampRecord(job, {"time": time, "voltage": eta0, "speed": eta0 - slip}, up=True)
     (leg,) = ramp.legs()
-    (suspect,) = ramp.suspects(leg, Settings())
+    (suspect,) = ramp.suspects(leg, 4e-3, 0.1, 12)
     assert time[suspect.before] < 830.0 and time[suspect.after] > 990.0
-    assert ramp.suspects(leg, Settings(shown=0.03)) == []
+    assert ramp.suspects(leg, 0.03, 0.1, 12) == []
 
 
 SETTLED = Settings()
