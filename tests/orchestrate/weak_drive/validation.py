@@ -277,3 +277,9 @@ def extrapolated_jumps(system, fold):
         progress=False,
     )
     return [float(value) / volts for value in found.jumps.sel(jump="up")]
+
+
+def first_fold(found):
+    """The fold that a run up meets first."""
+    folds = [row for row in found if row[0] == FOLD]
+    return folds[0] if folds else None
