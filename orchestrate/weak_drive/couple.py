@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -133,26 +133,21 @@ class CoupleJob(CoupledRun):
                 f"the motor completed no revolution in {self.schedule.duration:g} s: "
                 "raise the voltage or the duration"
             )
-        variables: dict[str, Any] = {
-            name: ("revolution", table[name], {"units": unit, "long_name": text})
-            for name, (unit, text) in COLUMNS.items()
+        variables = {
+            name: variable("revolution", table[name], *text) for name, text in COLUMNS.items()
         }
         eta0 = table["voltage"] / self.drive.volts(self.structure)
         Omega = table["speed"] / self.structure.omega
-        count = {"units": "1", "long_name": "revolution of the motor"}
-        coordinates = {
-            "revolution": ("revolution", np.arange(1, len(eta0) + 1), count),
-            "eta0": (
-                "revolution",
-                eta0,
-                {"units": "1", "long_name": "no-load speed over omega, U/(K omega)"},
-            ),
-            "Omega": ("revolution", Omega, {"units": "1", "long_name": "mean speed over omega"}),
+        texts = {
+            "revolution": (np.arange(1, len(eta0) + 1), "1", "revolution of the motor"),
+            "eta0": (eta0, "1", "no-load speed over omega, U/(K omega)"),
+            "Omega": (Omega, "1", "mean speed over omega"),
         }
+        coordinates = {name: variable("revolution", *text) for name, text in texts.items()}
         threshold = own_resonance.dividing_speed(self.structure, self.drive)
         text = "time from which the mean speed stays beyond the resonance; NaN where it does not"
         passed = time_beyond(table["time"], np.abs(Omega), threshold)
-        variables["passage_time"] = ((), passed, {"units": "s", "long_name": text})
+        variables["passage_time"] = variable((), passed, "s", text)
         labels, jump_columns = self.jump_variables(table)
         names = {"long_name": "direction in which the speed jumps; further jumps are numbered"}
         coordinates["jump"] = ("jump", np.array(labels), names)

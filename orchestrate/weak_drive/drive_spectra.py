@@ -20,6 +20,7 @@ from ..access.models import OSCILLATOR, SHAKER
 from ..checks import checked_integer
 from ..constants import TURN
 from ..errors import InputError
+from ..response.labels import variable
 from ..response.spectra import amplitude_spectrum
 from ..running.job import Inputs, Job, Table
 from ..running.runner import answer
@@ -116,23 +117,17 @@ class DriveSpectraJob(Job):
         import xarray as xr
 
         orders, speeds = self.orders(), table["speed"]
+        text, along = "amplitude of the absolute acceleration", ("kind", "mass", "order")
+        lines = np.outer(speeds, orders)
         variables = {
-            "acceleration": (
-                ("kind", "mass", "order"),
-                table["acceleration"],
-                {"units": "m/s2", "long_name": "amplitude of the absolute acceleration"},
-            ),
-            "speed": ("kind", speeds, {"units": "rad/s", "long_name": "mean speed of the motor"}),
+            "acceleration": variable(along, table["acceleration"], "m/s2", text),
+            "speed": variable("kind", speeds, "rad/s", "mean speed of the motor"),
         }
         coordinates = {
             "kind": ("kind", list(KINDS), {"long_name": "structure"}),
-            "mass": ("mass", [1, 2], {"units": "1", "long_name": "mass"}),
-            "order": ("order", orders, {"units": "1", "long_name": "multiple of the speed"}),
-            "line": (
-                ("kind", "order"),
-                np.outer(speeds, orders),
-                {"units": "rad/s", "long_name": "frequency of the line"},
-            ),
+            "mass": variable("mass", [1, 2], "1", "mass"),
+            "order": variable("order", orders, "1", "multiple of the speed"),
+            "line": variable(("kind", "order"), lines, "rad/s", "frequency of the line"),
         }
         title = f"Spectra of the weak drive at {self.approach.last:g} V"
         return xr.Dataset(variables, coordinates, {"title": title})

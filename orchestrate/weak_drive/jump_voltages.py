@@ -16,6 +16,7 @@ import numpy as np
 from ..access.exported import finder
 from ..access.models import OSCILLATOR, SHAKER
 from ..errors import InputError
+from ..response.labels import variable
 from ..running.job import Inputs, Job, Table
 from ..running.runner import answer
 from ..structures.drive import Drive
@@ -85,23 +86,17 @@ class JumpVoltagesJob(Job):
         late = "voltage at which the speed jumps on the ramp"
         before = "mean speed where it leaves its branch"
         error = "half of the bracket of that voltage, by held voltages"
+        halves = np.where(np.isfinite(jumps[0]), 0.5 * np.abs(high[0] - low[0]), np.nan)
+        how = "how jump or none was decided"
         variables = {
-            "voltage": (every, voltages, {"units": "V", "long_name": late}),
-            "speed_before": (every, speeds, {"units": "rad/s", "long_name": before}),
-            "jumps": (each, jumps[0], {"units": "V", "long_name": "the same at rate 0"}),
-            "standard_error": (
-                each,
-                np.where(np.isfinite(jumps[0]), 0.5 * np.abs(high[0] - low[0]), np.nan),
-                {"units": "V", "long_name": error},
-            ),
-            "decided": (
-                each,
-                table["decided"][: len(KINDS)],
-                {"long_name": "how jump or none was decided"},
-            ),
+            "voltage": variable(every, voltages, "V", late),
+            "speed_before": variable(every, speeds, "rad/s", before),
+            "jumps": variable(each, jumps[0], "V", "the same at rate 0"),
+            "standard_error": variable(each, halves, "V", error),
+            "decided": (each, table["decided"][: len(KINDS)], {"long_name": how}),
         }
         coordinates = {
-            "rate": ("rate", rates, {"units": "V/s", "long_name": "change of the voltage"}),
+            "rate": variable("rate", rates, "V/s", "change of the voltage"),
             "structure": ("structure", list(KINDS), {"long_name": "structure"}),
             "jump": ("jump", list(DIRECTIONS), {"long_name": "direction in which the speed jumps"}),
         }

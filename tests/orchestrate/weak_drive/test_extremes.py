@@ -37,7 +37,7 @@ def test_amplitudes(bonded, h):
 
 
 def test_a_mass_may_turn_before_and_after_an_impact_within_a_step():
-    """Steps with one impact each, against steps of a thousandth: these miss the corner by as much."""
+    """Steps with one impact each, against steps of a thousandth, which miss the corner itself."""
     rng, turns = np.random.default_rng(1), 0
     for _ in range(30):
         x1, v1, v2 = rng.uniform(-1.0, 1.0, 3)
