@@ -91,9 +91,9 @@ def excitation_arguments(
 
 def draw_result(data: xr.Dataset) -> Any:
     """Draw a branch over its parameter; return the figure."""
-    from ..figures.branches import draw
+    from ..figures.lines import draw_branch
 
-    return draw(data)
+    return draw_branch(data)
 
 
 def print_result(data: xr.Dataset) -> None:

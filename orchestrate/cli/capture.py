@@ -87,12 +87,12 @@ def run(arguments: argparse.Namespace) -> None:
 
 def draw_results(results: dict[str, xr.Dataset], name: str, question: dict[str, Any]) -> Any:
     """Draw capture maps of the bonded and the delaminated structure; return the figure."""
-    from ..figures.capture import draw
+    from ..figures.weak_drive import draw_capture
 
     control = question["control"]
     switched = f"controlled by {type(control).__name__}" if control else "switched on from rest"
     first, last = question["voltage"]
-    return draw(results, f"{name}: {switched}, {first:.4g} V to {last:.4g} V")
+    return draw_capture(results, f"{name}: {switched}, {first:.4g} V to {last:.4g} V")
 
 
 def print_result(state: str, data: xr.Dataset) -> None:

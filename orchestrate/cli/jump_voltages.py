@@ -64,11 +64,11 @@ def run(arguments: argparse.Namespace) -> None:
 
 def draw_result(data: xr.Dataset, name: str, ends: tuple[float, float]) -> Any:
     """Draw the jump voltages over the ramps' rate; return the figure."""
-    from ..figures.jump_voltages import draw
+    from ..figures.lines import draw_jump_voltages
 
     slowest, fastest = float(data.rate.min()), float(data.rate.max())
     ramps = f"{ends[0]:.4g} V to {ends[1]:.4g} V, {slowest:.2g} V/s to {fastest:.2g} V/s"
-    return draw(data, f"{name}: {ramps}, and at rate 0")
+    return draw_jump_voltages(data, f"{name}: {ramps}, and at rate 0")
 
 
 def print_result(data: xr.Dataset, directions: tuple[str, ...]) -> None:

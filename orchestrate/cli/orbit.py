@@ -39,14 +39,14 @@ def run(arguments: argparse.Namespace) -> None:
 
     def draw_orbit(data: xr.Dataset) -> Any:
         """Simulate one period from the orbit's state and draw the motion; return the figure."""
-        from ..figures.motion import draw
+        from ..figures.histories import draw_motion
 
         start = data.state.isel(sample=0).values
         motion = orchestrate.simulate(
             structure, **excitation, periods=arguments.period, start=start
         )
         shown = with_units(motion, units_of(data))
-        return draw(shown, orbit_title(data, shown))
+        return draw_motion(shown, orbit_title(data, shown))
 
     drawable = not arguments.box_acceleration
     answer_question(arguments, structure, question, print_result, draw_orbit if drawable else None)

@@ -79,7 +79,7 @@ def run_motor_spectra(arguments: argparse.Namespace) -> None:
     digits = digest(structure.parameters(), drive.parameters(), voltage)
     files = Files.from_options(arguments, f"spectra_{Path(arguments.drive).stem}_{digits}")
 
-    from ..figures import drive_spectra as figure
+    from ..figures.spectra import draw_motor_spectra
     from ..weak_drive.drive_spectra import drive_spectra
 
     data = drive_spectra(
@@ -93,7 +93,7 @@ def run_motor_spectra(arguments: argparse.Namespace) -> None:
     words = str(data.attrs["title"])
     question = f"{words[0].lower()}{words[1:]}, absolute acceleration of mass 1"
     title = f"{Path(arguments.drive).stem}: {question}"
-    files.write(data, lambda: figure.draw(data, title=title))
+    files.write(data, lambda: draw_motor_spectra(data, title=title))
 
 
 def run_harmonic_spectra(arguments: argparse.Namespace) -> None:
