@@ -79,15 +79,12 @@ def add_parser(commands: Commands) -> None:
 
 
 def add_master_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the co-simulation master: step, hold, tolerance and algorithm."""
+    """Add the options of the co-simulation master: step, hold and tolerance."""
     group = parser.add_argument_group("master")
     add_step_option(group)
     add_hold_option(group)
-    text = "step-size tolerance: largest defect over the work exchanged in a step (default: 1e-8)"
+    text = "step-size tolerance: largest defect over the work exchanged in a step (default: 1e-7)"
     group.add_argument("--tolerance", type=plain_float, help=text)
-    text = "co-simulation algorithm: jacobi, jacobi-derivative, gauss-seidel, rollback or iterated "
-    text += "(default: %(default)s)"
-    group.add_argument("--algorithm", default="rollback", help=text)
 
 
 def make_jobs(arguments: argparse.Namespace, structure: Structure, drive: Drive) -> list[CoupleJob]:
@@ -97,8 +94,7 @@ def make_jobs(arguments: argparse.Namespace, structure: Structure, drive: Drive)
     control = make_controller(arguments, structure, drive)
     schedule = make_schedule(arguments, structure, drive, control)
     step, hold = times_in_seconds(arguments, structure, "step", "hold").values()
-    settings = (arguments.algorithm, arguments.tolerance, control is not None)
-    scheme = scheme_from_arguments(structure, step, *settings)
+    scheme = scheme_from_arguments(structure, step, arguments.tolerance, control is not None)
     base_name = result_name(arguments, structure, drive, (schedule, scheme, control, hold))
     return [
         replace(

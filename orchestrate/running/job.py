@@ -43,7 +43,6 @@ class Job(ABC):
     models: ClassVar[tuple[str, ...]] = ("TwoMassImpactOscillator",)
     chunk_size: ClassVar[int] = 1
     sequential: ClassVar[bool] = False
-    has_final_chunk: ClassVar[bool] = False  # a sequential job's last one starts from all before
     gathers: ClassVar[bool] = False  # the last item starts from all others, in a chunk of its own
     warmup_items: ClassVar[int] = 0  # after which a sequential job has forgotten its beginning
     in_threads: ClassVar[bool] = False  # whether its work is in the FMU, past Python

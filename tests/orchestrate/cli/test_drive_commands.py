@@ -384,7 +384,6 @@ CONTROLS = [
 CASES = {
     "couple": [
         *(*OF_ALL, *DATASHEETS, *SCHEDULES, *CONTROLS),
-        (["--algorithm", "euler"], ["algorithm", "euler", "jacobi", "rollback"]),
         (["--tolerance", "-1"], ["tolerance", ">= 0"]),
         (["--hold", "-1"], ["hold = -1.0 s", "0 <= hold"]),
     ],
