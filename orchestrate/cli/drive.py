@@ -1,30 +1,27 @@
-"""Options and steps that the commands of the weak drive share: voltage, controller, files."""
+"""Options and steps of the commands on the weak drive: motor, voltage, controller, files."""
 
 from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Mapping
-from functools import partial
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from ..units import Units, with_readable_lengths, with_units
-from .grammar import parse_ends, parse_number_or_ends, parse_rates, plain_float
-from .output import (
-    Files,
-    digest,
-    draw_picture,
-    print_units_note,
-    read_running_options,
-    read_units,
-    units_ending,
+from .grammar import (
+    parse_changes,
+    parse_ends,
+    parse_number_or_ends,
+    parse_rate,
 )
+from .options import option_name, print_assumptions
+from .output import Files, digest, print_units_note, read_running_options, read_units
+from .table import Group, Question, Summary
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     import xarray as xr
 
     from ..structures import Drive, Structure
@@ -32,93 +29,139 @@ if TYPE_CHECKING:
     from ..weak_drive.schedule import Schedule
 
 USUAL = {"quick": ("1.2:1.65", 1e-4), "beam": ("1.25:1.6", 5e-6), "rig": ("0.95:1.24", 5e-5)}
+USUAL_RATES = ", ".join(f"{rate:g} for {name}" for name, (_, rate) in USUAL.items())
 RATE = 1e-4  # of eta0, in a time 1/omega
-
+ETA0 = "eta0 = U/(K omega) is the voltage as no-load speed over omega = sqrt(k1/m1)."
+RESUME = "Repeat the command to resume an interrupted run. A finished result is left as it is."
+DATASHEET = ("rated_voltage", "no_load_rpm", "stall_torque")
 
 # -- options --------------------------------------------------------------------------------------
 
 
-def add_only_option(parser: argparse.ArgumentParser) -> None:
-    """Add ``--only``: compute the bonded or the delaminated structure alone."""
-    only = "one of both (default: both)"
-    parser.add_argument("--only", choices=("bonded", "delaminated"), help=only)
+DRIVE = (
+    Group(
+        "structure, motor and box",
+        """
+        --drive SET|FILE = quick  TOML file with [motor], [box] and [structure], or a set: quick,
+            beam, rig
+        --structure SET|FILE  file or set with another [structure] than that of --drive
+        --set NAME=VALUE ...  a parameter of the structure, or of motor and box in SI; may be
+            repeated
+        """,
+    ),
+    Group(
+        "a motor by its datasheet",
+        """
+        --rated-voltage V  of the motor, V
+        --no-load-rpm RPM  its speed without load
+        --stall-torque N.M  its torque at rest, N m
+        """,
+        description="in place of motor_constant and armature_resistance: all three",
+    ),
+)
+ONLY = Group(options="--only {bonded,delaminated}  one of both (default: both)")
+STEP = """
+--step X  communication step, in 1/omega (default: controlled by its defect, at most 0.4; 0.1 where
+    a controller or a picture takes samples)
+"""
+HOLD = """
+--hold TIME  longest time for which a voltage is held where the record suggests a jump, 0 for none,
+    in 1/omega (default: 4000 and 200 times the rotor's own)
+"""
+SETTLE = "--settle X = 300.0  time at the first voltage, in 1/omega"
+VOLTAGE = """
+--eta0 FIRST:LAST  voltage as no-load speed over omega (default: about the jumps of the averaged
+    theory)
+--voltage FIRST:LAST  the same in V
+"""
+SCHEDULE = Group(
+    "voltage over time: a ramp, steps, one value, or a file",
+    (
+        VOLTAGE.replace("FIRST:LAST", "FIRST:LAST|VALUE"),
+        f"""
+    --duration S  time of a single VALUE, in s
+    --course FILE  CSV file with time in s and voltage in V, a row each: straight lines between,
+        instead
+    --rate RATE  change of eta0 in a time 1/omega (default: {USUAL_RATES}, else {RATE:g})
+    --volt-rate RATE  the same in V/s
+    --increment X = 0.0  change eta0 in steps of this height, at the same mean rate (default: a
+        ramp)
+    {SETTLE}
+    --one-way  do not come back
+    """,
+    ),
+)
+CONTROLLER = Group(
+    "controller: starts from rest, takes a part of the voltage at every communication step",
+    """
+    --speed-control SPEED  hold a speed in rad/s, by PI
+    --gain X  of the PI control, V s/rad (default: 5 K)
+    --reset-time S  of it, s (default: J R_a/K^2)
+    --speed-rise X  rate at which the wanted speed rises, rad/s2 (default: at once)
+    --speed-gradient  swing the rotor across the resonance by the speed-gradient method
+    --filter-time S  of it, s (default: 30/omega)
+    --low PART  part of the voltage while slower than the mean (default: 0.6)
+    """,
+)
+
+# -- structure and motor --------------------------------------------------------------------------
 
 
-def add_voltage_options(group: Any, form: str = "FIRST:LAST", usual: str = "") -> None:
-    """Add ``--eta0`` and ``--voltage``: the ends of a ramp, or one voltage."""
-    usual = usual or "about the jumps of the averaged theory"
-    text = f"voltage as no-load speed over omega (default: {usual})"
-    group.add_argument("--eta0", metavar=form, help=text)
-    group.add_argument("--voltage", metavar=form, help="the same in V")
+def read_drive_options(arguments: argparse.Namespace) -> tuple[Structure, Drive]:
+    """Return structure and drive of the options, with the changes of ``--set`` to either."""
+    from ..structures import Drive, Structure
+
+    drive = Drive.from_file(arguments.drive)
+    structure = Structure.from_file(arguments.structure or arguments.drive)
+    changes = parse_changes(arguments.set)
+    drive_names = {field.name for field in fields(Drive)}
+    of_drive = {name: float(value) for name, value in changes.items() if name in drive_names}
+    of_structure = {name: value for name, value in changes.items() if name not in drive_names}
+    of_drive |= read_datasheet(arguments, of_drive)
+    check_masses(arguments.structure or arguments.drive, of_structure)
+    changed = structure.replace(**of_structure)
+    print_assumptions(changed, arguments.structure or arguments.drive, of_structure)
+    return changed, drive.replace(**of_drive)
 
 
-def add_schedule_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the voltage over time: ramp, steps, one value, or a CSV file."""
-    group = parser.add_argument_group("voltage over time: a ramp, steps, one value, or a file")
-    option = group.add_argument
-    add_voltage_options(group, "FIRST:LAST or VALUE")
-    option("--duration", type=plain_float, metavar="S", help="time of a single VALUE, in s")
-    course = "CSV file with time in s and voltage in V, a row each: straight lines between, instead"
-    option("--course", type=Path, metavar="FILE", help=course)
-    add_rate_option(group, "RATE", "")
-    option("--volt-rate", metavar="RATE", help="the same in V/s")
-    steps = "change eta0 in steps of this height, at the same mean rate (default: a ramp)"
-    option("--increment", type=plain_float, default=0.0, help=steps)
-    add_settle_option(group)
-    option("--one-way", action="store_true", help="do not come back")
+def check_masses(source: str, changes: Mapping[str, Any]) -> None:
+    """Raise if a beam's frequencies are set but its masses are not: the motor feels them."""
+    unknown = {"m1", "m2"} - changes.keys() - ({"m2"} if "mu" in changes else set())
+    named = next((name for name in ("f1", "f2") if name in changes), None)
+    if named and unknown and source in ("paper", "quick"):
+        raise InputError(
+            f"--set {named}={changes[named]:g}: the motor feels the masses, and those of {source} "
+            "are no beam's; expected --set m1=KG --set m2=KG too, or a --structure with them"
+        )
 
 
-def add_rate_option(group: Any, form: str, more: str, default: str = "") -> None:
-    """Add ``--rate``: the change of eta0 in a time 1/omega."""
-    usual = ", ".join(f"{rate:g} for {name}" for name, (_, rate) in USUAL.items())
-    default = default or f"{usual}, else {RATE:g}"
-    text = f"change of eta0 in a time 1/omega{more} (default: {default})"
-    group.add_argument("--rate", metavar=form, help=text)
+def read_datasheet(arguments: argparse.Namespace, changes: Mapping[str, float]) -> dict[str, float]:
+    """Return motor constant and resistance from the datasheet's options; empty without them."""
+    from ..structures.drive import torque_line
+
+    names = DATASHEET
+    values = {name: getattr(arguments, name) for name in names}
+    options = {name: option_name(name) for name in names}
+    present = [name for name in names if values[name] is not None]
+    if not present:
+        return {}
+    if len(present) < len(names):
+        missing = next(name for name in names if name not in present)
+        text = f"{options[present[0]]} {values[present[0]]:g}: without {options[missing]}"
+        raise InputError(f"{text}; expected {', '.join(options.values())} together")
+    for name, option in options.items():
+        if not (math.isfinite(values[name]) and values[name] > 0.0):
+            raise InputError(f"{option} {values[name]:g}: expected a number > 0")
+    for name in ("motor_constant", "armature_resistance"):
+        if name in changes:
+            text = f"--set {name}={changes[name]:g}: beside {options['rated_voltage']}"
+            raise InputError(f"{text}; expected one of them")
+    speed = 2.0 * math.pi * values["no_load_rpm"] / 60.0
+    line = torque_line(values["rated_voltage"], speed, values["stall_torque"])
+    return dict(zip(("motor_constant", "armature_resistance"), line, strict=True))
 
 
-def add_settle_option(group: Any) -> None:
-    """Add ``--settle``: the time at the first voltage, in 1/omega."""
-    text = "time at the first voltage, in 1/omega (default: %(default)s)"
-    group.add_argument("--settle", type=plain_float, default=300.0, help=text)
-
-
-def add_step_option(group: Any) -> None:
-    """Add ``--step``: the communication step, in 1/omega."""
-    text = (
-        "communication step, in 1/omega (default: controlled by its defect, at most 0.4; 0.1 where "
-        "a controller or a picture takes samples)"
-    )
-    group.add_argument("--step", type=plain_float, help=text)
-
-
-def add_hold_option(group: Any) -> None:
-    """Add ``--hold``: the longest time for which a test holds a voltage, in 1/omega."""
-    text = (
-        "longest time for which a voltage is held where the record suggests a jump, 0 for none, in "
-        "1/omega (default: 4000 and 200 times the rotor's own)"
-    )
-    group.add_argument("--hold", type=plain_float, metavar="TIME", help=text)
-
-
-def add_controller_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of a speed controller: PI control or the speed-gradient method."""
-    title = "controller: starts from rest, takes a part of the voltage at every communication step"
-    option = parser.add_argument_group(title).add_argument
-    option(
-        "--speed-control", type=plain_float, metavar="SPEED", help="hold a speed in rad/s, by PI"
-    )
-    option("--gain", type=plain_float, help="of the PI control, V s/rad (default: 5 K)")
-    option("--reset-time", type=plain_float, metavar="S", help="of it, s (default: J R_a/K^2)")
-    rise = "rate at which the wanted speed rises, rad/s2 (default: at once)"
-    option("--speed-rise", type=plain_float, metavar="RATE", help=rise)
-    swing = "swing the rotor across the resonance by the speed-gradient method"
-    option("--speed-gradient", action="store_true", help=swing)
-    option("--filter-time", type=plain_float, metavar="S", help="of it, s (default: 30/omega)")
-    low = "part of the voltage while slower than the mean (default: 0.6)"
-    option("--low", type=plain_float, metavar="PART", help=low)
-
-
-# -- what they mean -------------------------------------------------------------------------------
+# -- voltages and controllers ----------------------------------------------------------------------
 
 
 def structures_by_name(arguments: argparse.Namespace, structure: Structure) -> dict[str, Structure]:
@@ -181,11 +224,11 @@ def ramp_rate(arguments: argparse.Namespace, structure: Structure, drive: Drive)
     if arguments.rate is not None and arguments.volt_rate is not None:
         raise InputError("--rate and --volt-rate: expected one of them")
     if arguments.volt_rate is not None:
-        return parse_rates("--volt-rate", arguments.volt_rate, one=True)[0]
+        return parse_rate("--volt-rate", arguments.volt_rate)
     unit = drive.volts(structure) * structure.omega
     if arguments.rate is None:
         return unit * USUAL.get(arguments.drive, ("", RATE))[1]
-    return unit * parse_rates("--rate", arguments.rate, one=True)[0]
+    return unit * parse_rate("--rate", arguments.rate)
 
 
 def times_in_seconds(
@@ -242,13 +285,18 @@ def make_controller(
     of_swing = {"filter_time": arguments.filter_time, "low": arguments.low}
     if arguments.speed_control is not None and arguments.speed_gradient:
         raise InputError("--speed-control and --speed-gradient: expected one of them")
-    lone = {} if arguments.speed_control is not None else {**of_pi}
-    lone |= {} if arguments.speed_gradient else of_swing
-    for name, value in lone.items():
-        if value is not None:
-            option = {"rise": "speed-rise"}.get(name, name.replace("_", "-"))
-            needed = "--speed-control" if name in of_pi else "--speed-gradient"
-            raise InputError(f"--{option} {value:g}: expected {needed} with it")
+    for needed, chosen, names in (
+        (
+            "--speed-control",
+            arguments.speed_control is not None,
+            ("gain", "reset_time", "speed_rise"),
+        ),
+        ("--speed-gradient", arguments.speed_gradient, ("filter_time", "low")),
+    ):
+        for name in names:
+            value = getattr(arguments, name)
+            if value is not None and not chosen:
+                raise InputError(f"{option_name(name)} {value:g}: expected {needed} with it")
     require_motor(drive)
     constant = drive.motor_constant
     if arguments.speed_control is not None:
@@ -276,84 +324,74 @@ def drive_units(arguments: argparse.Namespace) -> Units:
     return read_units(arguments).with_defaults(Units("rpm" if in_rpm else ""))
 
 
-def with_display_units(
+def display(
     arguments: argparse.Namespace, results: Mapping[str, xr.Dataset]
-) -> dict[str, xr.Dataset]:
-    """Return runs marked to be displayed in the units of ``--units``; the numbers stay in SI."""
-    return {state: with_units(data, drive_units(arguments)) for state, data in results.items()}
-
-
-def with_readable_units(asked: Mapping[str, xr.Dataset]) -> dict[str, xr.Dataset]:
-    """Return runs for print and picture: display lengths in m, mm or um, by their size."""
-    return dict(zip(asked, with_readable_lengths(*asked.values()), strict=True))
-
-
-def picture_path(arguments: argparse.Namespace, base_name: str) -> Path:
-    """Return the path of the picture of both structures, or of the one ``--only`` names."""
-    parts = [base_name, arguments.only or "", units_ending(arguments)]
-    return Path(arguments.output) / f"{'_'.join(filter(None, parts))}.nc"
+) -> tuple[dict[str, xr.Dataset], dict[str, xr.Dataset]]:
+    """Return runs in the units of ``--units``, and with readable lengths for print and picture."""
+    units = drive_units(arguments)
+    asked = {state: with_units(data, units) for state, data in results.items()}
+    return asked, dict(zip(asked, with_readable_lengths(*asked.values()), strict=True))
 
 
 def result_name(
     arguments: argparse.Namespace, structure: Structure, drive: Drive, question: Any
 ) -> str:
-    """Return a result's file name, unique for its command, structure, drive and arguments."""
+    """Return a result's file name: command, the drive's name, and a digest of all."""
     digits = digest(structure.as_delaminated().parameters(), drive.parameters(), question)
-    return f"{arguments.command.replace('-', '_')}_{Path(arguments.drive).stem}_{digits}"
+    return f"{arguments.row.function}_{Path(arguments.drive).stem}_{digits}"
 
 
-def answer_each_structure(
+def answer_each(
     arguments: argparse.Namespace,
     structure: Structure,
     drive: Drive,
-    question: Mapping[str, Any],
+    question: Question,
     draw: Callable[[dict[str, xr.Dataset]], Any],
-    print_result: Callable[[str, xr.Dataset], None],
+    summary: Callable[[dict[str, xr.Dataset]], Iterable[str]],
 ) -> None:
-    """Call a command's public function for each structure; print, write files, draw one picture."""
+    """Call the public function for each structure; print, write files, draw one picture."""
     import orchestrate
 
-    ask = getattr(orchestrate, arguments.command.replace("-", "_"))
-    base_name = result_name(arguments, structure, drive, question)
+    base = result_name(arguments, structure, drive, question)
     states = structures_by_name(arguments, structure)
-    files = {state: Files.from_options(arguments, f"{base_name}_{state}") for state in states}
+    files = {state: Files.from_options(arguments, f"{base}_{state}") for state in states}
     results = {}
     for state, chosen in states.items():
         running = read_running_options(arguments, files[state].result)
+        ask = getattr(orchestrate, arguments.row.function)
         results[state] = ask(chosen, drive, **question, **running)
-    asked = with_display_units(arguments, results)
-    shown = with_readable_units(asked)
-    for state, data in shown.items():
-        print_result(state, data)
+    asked, shown = display(arguments, results)
+    print(*summary(shown), sep="\n")
     print_units_note(arguments, *shown.values())
     for state, data in asked.items():
-        files[state].write(data, None)
-    fresh = any(one_file.fresh for one_file in files.values())
-    plots = next(iter(files.values())).plots
-    path = picture_path(arguments, base_name)
-    for file in draw_picture(path, plots, fresh, lambda: draw(shown)):
-        print(file)
+        files[state].write(data)
+    common_files(arguments, base, files.values()).write_pictures(lambda: draw(shown))
 
 
-def answer_both_structures(
+def common_files(arguments: argparse.Namespace, base: str, files: Iterable[Files]) -> Files:
+    """Return the ``Files`` of the picture of both structures, or of the one of ``--only``."""
+    name = f"{base}_{arguments.only}" if arguments.only else base
+    return Files.from_options(arguments, name, fresh=any(one.fresh for one in files))
+
+
+def answer_both(
     arguments: argparse.Namespace,
     structure: Structure,
     drive: Drive,
-    question: Mapping[str, Any],
-    draw: Callable[[xr.Dataset], Any] | None,
-    print_result: Callable[[xr.Dataset], None],
+    question: Question,
+    draw: Callable[[xr.Dataset], Any],
+    summary: Summary,
 ) -> None:
-    """Call a command's function that computes both structures at once; print, write, draw."""
+    """Call the public function that computes both structures at once; print, write, draw."""
     import orchestrate
 
-    ask = getattr(orchestrate, arguments.command.replace("-", "_"))
     files = Files.from_options(arguments, result_name(arguments, structure, drive, question))
-    data = ask(structure, drive, **question, **read_running_options(arguments, files.result))
-    asked = with_display_units(arguments, {"": data})
-    (shown,) = with_readable_units(asked).values()
-    print_result(shown)
-    print_units_note(arguments, shown)
-    files.write(asked[""], partial(draw, shown) if draw else None)
+    running = read_running_options(arguments, files.result)
+    data = getattr(orchestrate, arguments.row.function)(structure, drive, **question, **running)
+    asked, shown = display(arguments, {"": data})
+    print(*summary(shown[""]), sep="\n")
+    print_units_note(arguments, *shown.values())
+    files.write(asked[""], lambda: draw(shown[""]))
 
 
 def format_title(runs: Mapping[str, xr.Dataset], name: str, control: str = "") -> str:
