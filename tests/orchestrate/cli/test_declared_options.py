@@ -8,11 +8,11 @@ import subprocess
 import sys
 
 import pytest
+from orchestrate.cli.declared_options import argument_documentation, option_keywords
 
 import orchestrate
 from orchestrate import cli
 from orchestrate.cli import grammar
-from orchestrate.cli.declared_options import argument_documentation, option_keywords
 from orchestrate.cli.options import excitation_by_level, read_excitation
 from orchestrate.errors import InputError
 

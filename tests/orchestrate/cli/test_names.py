@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 import xarray as xr
+from orchestrate.cli.question import format_ranges
 
 from orchestrate.cli.output import result_name
-from orchestrate.cli.question import format_ranges
 from orchestrate.structures import Structure
 
 ASKED = {"eta": (0.1, 0.5, 8.0), "direction": "up", "transient": 500, "start": None}

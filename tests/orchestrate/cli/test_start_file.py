@@ -9,9 +9,9 @@ import math
 
 import pytest
 import xarray as xr
+from orchestrate.cli.question import asked_units
 
 import orchestrate
-from orchestrate.cli.question import asked_units
 from orchestrate.structures import Structure
 
 BEAM = Structure.from_file("beam")

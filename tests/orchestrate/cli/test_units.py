@@ -7,10 +7,10 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from orchestrate.cli.question import print_attractors
 
 from orchestrate.cli import map as map_command
 from orchestrate.cli import orbit as orbit_command
-from orchestrate.cli.question import print_attractors
 from orchestrate.dynamics.orbit_records import STABILITY
 from orchestrate.response.labels import flags
 from orchestrate.units import with_units
