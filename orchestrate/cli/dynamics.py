@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
@@ -67,7 +68,7 @@ def ask_lyapunov(arguments: argparse.Namespace) -> tuple[Structure, Question]:
     if arguments.follow:
         import orchestrate
 
-        others = [one.name for one in arguments.row.arguments()]
+        others = arguments.row.keywords(arguments)
         swept: Question = {name: question[name] for name in question if name not in others}
         swept |= {"direction": arguments.follow, "samples": 1, "transient": arguments.transient}
         question["start"] = orchestrate.sweep(structure, **swept, **read_running_options(arguments))
@@ -294,8 +295,8 @@ def draw_orbit(data: xr.Dataset) -> Any:
     from ..figures.motion import draw
     from ..structures import Structure
 
-    names = ("eta",) if "eta" in data.attrs else ("frequency", "amplitude")
-    excitation: Question = {name: float(data.attrs[name]) for name in names}
+    pairs = data.attrs["excitation"]  # as JSON where it has been stored
+    excitation: Question = dict(json.loads(pairs) if isinstance(pairs, str) else pairs)
     motion = orchestrate.simulate(
         Structure.from_attributes({str(name): value for name, value in data.attrs.items()}),
         **excitation,

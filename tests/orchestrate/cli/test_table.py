@@ -25,11 +25,34 @@ from orchestrate.units import with_units
 
 from .commands import ROOT
 
-NAMES = """
-build simulate shake cosimulate analyse diagnose resonance spectra sweep map lyapunov poincare
-attractors basin orbit manifold branch border couple capture passage jump-voltages drive-branch
-explore report paper
-""".split()
+NAMES = [
+    "build",
+    "simulate",
+    "shake",
+    "cosimulate",
+    "analyse",
+    "diagnose",
+    "resonance",
+    "spectra",
+    "sweep",
+    "map",
+    "lyapunov",
+    "poincare",
+    "attractors",
+    "basin",
+    "orbit",
+    "manifold",
+    "branch",
+    "border",
+    "couple",
+    "capture",
+    "passage",
+    "jump-voltages",
+    "drive-branch",
+    "explore",
+    "report",
+    "paper",
+]
 CONVERTED = {  # options in other units or words than the argument's, by their commands
     **dict.fromkeys([("couple", "settle"), ("passage", "settle"), ("jump-voltages", "settle")]),
     ("sweep", "direction"): "up for a range, a list as it stands",
@@ -104,9 +127,7 @@ def test_a_line_that_is_no_option_is_refused():
 
 
 @pytest.mark.parametrize("program", ["vibroimpact", "python -m orchestrate"])
-def test_help_has_quantities_and_examples_that_can_be_typed(
-    capsys, monkeypatch, parsers, program
-):
+def test_help_has_quantities_and_examples_that_can_be_typed(capsys, monkeypatch, parsers, program):
     monkeypatch.setattr(sys, "argv", [f"/bin/{program}"])
     for command in NAMES:
         with pytest.raises(SystemExit) as ended:
