@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import json
+import ast
 import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
@@ -295,8 +295,7 @@ def draw_orbit(data: xr.Dataset) -> Any:
     from ..figures.motion import draw
     from ..structures import Structure
 
-    pairs = data.attrs["excitation"]  # as JSON where it has been stored
-    excitation: Question = dict(json.loads(pairs) if isinstance(pairs, str) else pairs)
+    excitation: Question = dict(ast.literal_eval(str(data.attrs["excitation"])))
     motion = orchestrate.simulate(
         Structure.from_attributes({str(name): value for name, value in data.attrs.items()}),
         **excitation,

@@ -207,8 +207,8 @@ def test_a_sweep_is_summed_up_in_a_table_of_ten_lines():
     rows = [line for line in lines[first:] if line.startswith("  ")]
     assert len(rows) == 10
     assert rows[1].split() == ["eta", "=", "1", "to", "1.08", "after", "1", "T", "1"]
-    assert rows[3].split() == ["eta", "=", "1.11", "to", "1.2", "after", "1", "T", "1"]
-    assert rows[4].split() == ["eta", "=", "1.21", "to", "1.3", "after", "1", "T", "2"]
+    assert rows[2].split() == ["eta", "=", "1.11", "to", "1.2", "after", "1", "T", "1"]
+    assert rows[3].split() == ["eta", "=", "1.21", "to", "1.3", "after", "1", "T", "2"]
     assert "undecided" in rows[4]
     assert lines[-1].startswith("undecided: ") and "--transient 5000" in lines[-1]
     assert not any("permanent contact" in line for line in lines)
