@@ -53,12 +53,12 @@ ALL = ("frf", "psd", "orders", "harmonics", "spectrogram", "shock", "density")
 def test_each_analysis_says_its_numbers_and_draws(ask, tmp_path, files, show):
     done = ask("analyse", files["parted"], "--show", show, "--from", "0.5", "--to", "9.5").success()
     words = {
-        "frf": ["mass 1: |H1| has its largest value 3", "1.0000 in the median", "mass 2: |H1|"],
+        "frf": ["mass 1: largest |H1| 3", "(median 1.0000)", "mass 2: largest |H1|"],
         "psd": ["box: 1.41", "mass 1: 4.2"],
         "orders": ["mass 1: largest amplitudes in m/s2: order 1 6 at", "order 2 0.6 at"],
-        "harmonics": ["mass 1: distortion 10 % in the median"],
+        "harmonics": ["mass 1: distortion 10 % (median)"],
         "spectrogram": ["box: largest amplitude 1.", "mass 1: largest amplitude"],
-        "shock": ["mass 1: largest response"],
+        "shock": ["mass 1: largest amplitude"],
         "density": ["box: skewness", "kurtosis 1.5"],
     }[show]
     assert all(word in done.out for word in words), done.out
@@ -85,12 +85,6 @@ def test_three_records_in_one_picture(ask, tmp_path, files):
     assert all(map(shows_something, folder.glob("*.png")))
 
 
-def test_another_part_of_a_record_has_files_of_its_own(ask, tmp_path, files):
-    for end in ("1", "2", "3"):
-        ask("analyse", files["parted"], "--show", "psd", "--to", end, "--plot", "none").success()
-    assert len(list((tmp_path / "results").glob("*.nc"))) == 3
-
-
 def test_options_reach_the_analysis(ask, tmp_path, files):
     ask(
         *("analyse", files["parted"], "--show", "orders,shock,density,psd", "--plot", "none"),
@@ -112,31 +106,32 @@ def test_a_stored_result_of_shake(ask, tmp_path):
     ask("shake", *options, "--plot", "none").success()
     (path,) = (tmp_path / "results").glob("shake*.nc")
     done = ask("analyse", path, "--show", "frf", "--from", "5").success()
-    assert "mass 1: |H1| has its largest value" in done.out
+    assert "mass 1: largest |H1|" in done.out
 
 
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        (["nowhere.nc"], ["FILE nowhere.nc: no such file"]),
-        (["FILE", "--show", "frequency"], ["--show frequency", "expected some of frf, psd"]),
-        (["FILE", "--beside", "whole.nc"], ["--beside whole.nc: expected LABEL=FILE"]),
-        (["FILE", "--beside", "x=lost.nc"], ["--beside lost.nc: no such file"]),
-        (["FILE", "--beside", "parted=x.nc"], ["a second record parted"]),
-        (["FILE", "--damping", "0.1"], ["--damping: expected with --show shock alone"]),
-        (["FILE", "--show", "orders", "--orders", "one"], ["--orders one: expected"]),
-        (["FILE", "--show", "orders", "--orders", "2.5"], ["orders = 2.5: expected"]),
-        (["FILE", "--resolution", "0.001"], ["resolution = 0.001 Hz", "parted.nc"]),
-        (["FILE", "--window", "round"], ["window = 'round'", "hann"]),
-        (["FILE", "--from", "20"], ["nothing between --from and --to; it has 0 to 9.999 s"]),
-        (["FILE", "--plot", "gif"], ["--plot gif", "png"]),
-        (["FILE", "--show", "shock", "--damping", "1"], ["damping = 1.0: expected 0 <="]),
-    ],
-)
-def test_mistakes_are_one_line(ask, tmp_path, files, options, words):
-    given = [files["parted"] if option == "FILE" else option for option in options]
-    done = ask("analyse", *given)
-    done.complaint(*words)
+MISTAKES = """
+    FILE --beside x=lost.nc : --beside lost.nc: no such file
+    FILE --show orders --orders 2.5 : orders = 2.5: expected
+    FILE --resolution 0.001 : resolution = 0.001 Hz | parted.nc
+    FILE --from 20 : nothing between --from and --to; it has 0 to 9.999 s
+    FILE --sensor fast : --sensor fast: expected HZ or HZ:RATE
+    bench.csv : bench.csv | no unit | --unit
+    bench.csv --unit stone : unit = 'stone'
+    bench.csv --unit g --columns acceleration1=9 : no column 9
+    bench.csv --unit g --columns mass=1 : columns: 'mass'
+"""
+
+
+@pytest.mark.parametrize("line", MISTAKES.strip().splitlines())
+def test_mistakes_are_one_line(ask, tmp_path, files, line):
+    in_g(sweep(second=False), tmp_path / "bench.csv")
+    options, _, words = line.strip().partition(" : ")
+    options = options.replace("FILE", str(files["parted"]))
+    options = options.replace("bench.csv", str(tmp_path / "bench.csv"))
+    if "--sensor" in options:  # of a result of shake
+        with_impulses = xr.load_dataset(files["parted"]).assign(impulse=("impact", [1.0]))
+        with_impulses.to_netcdf(files["parted"])
+    ask("analyse", *options.split()).complaint(*(word.strip() for word in words.split("|")))
     assert not (tmp_path / "results").exists() or not any((tmp_path / "results").iterdir())
 
 
@@ -157,7 +152,7 @@ def said(done):
     return [line for line in done.out.splitlines() if line.startswith("  ")]
 
 
-@pytest.mark.parametrize("kind", ["csv", "uff", "mat", "wav", "nc"])
+@pytest.mark.parametrize("kind", ["csv", "uff", "wav"])
 def test_records_of_all_kinds_of_files(ask, tmp_path, files, kind):
     """What is said of a file is what is said of the same record in NetCDF."""
     record, options = sweep(0.5, second=False), []
@@ -194,24 +189,6 @@ def test_measured_beside_simulated(ask, tmp_path, files):
     assert len(lines) == 2 and all("order 1 6 at" in line for line in lines)
 
 
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        (["lost.csv"], ["lost.csv: no such file; expected a record"]),
-        (["bench.csv"], ["bench.csv", "no unit", "--unit"]),
-        (["bench.csv", "--unit", "stone"], ["unit = 'stone'"]),
-        (["bench.csv", "--unit", "g", "--columns", "AI 1"], ["--columns AI 1: expected CHANNEL="]),
-        (["bench.csv", "--unit", "g", "--columns", "acceleration1=9"], ["no column 9"]),
-        (["bench.csv", "--unit", "g", "--columns", "mass=1"], ["columns: 'mass'"]),
-        (["bench.doc"], ["bench.doc"]),
-    ],
-)
-def test_mistakes_in_reading_are_one_line(ask, tmp_path, options, words):
-    in_g(sweep(second=False), tmp_path / "bench.csv")
-    (tmp_path / "bench.doc").write_text("a")
-    ask("analyse", tmp_path / options[0], *options[1:]).complaint(*words)
-
-
 def test_sensors_feel_the_impulses_of_impacts(ask, tmp_path):
     """As orchestrate.measure has it: what is measured is compared with that, not with nothing."""
     sweep = ("--swept-sine", "10:13", "--duration", "8", "--g", "0.02", "--sample-rate", "1000")
@@ -229,7 +206,6 @@ def test_sensors_feel_the_impulses_of_impacts(ask, tmp_path):
     warned = ask("analyse", path, *beside)
     assert warned.code == 0 and "compares like with like" in warned.err
     ask("analyse", path, "--sensor", "400:1500", *beside).success()
-    ask("analyse", path, "--sensor", "fast").complaint("--sensor fast: expected HZ or HZ:RATE")
     ask("analyse", path, "--sensor", "-1").complaint("bandwidth = -1.0")
 
 
