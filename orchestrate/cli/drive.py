@@ -17,9 +17,9 @@ from .grammar import (
     parse_number_or_ends,
     parse_rate,
 )
-from .options import option_name, print_assumptions
+from .options import one_of, option_name, print_assumptions
 from .output import Files, digest, print_units_note, read_running_options, read_units
-from .table import Group, Question, Summary
+from .table import Group, Question
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -167,15 +167,15 @@ def read_datasheet(arguments: argparse.Namespace, changes: Mapping[str, float]) 
 def structures_by_name(arguments: argparse.Namespace, structure: Structure) -> dict[str, Structure]:
     """Return a dict of the bonded and the delaminated structure, or of the one ``--only`` names."""
     both = {"bonded": structure.as_bonded(), "delaminated": structure.as_delaminated()}
-    return {arguments.only: both[arguments.only]} if arguments.only else both
+    only = getattr(arguments, "only", None)
+    return {only: both[only]} if only else both
 
 
 def parse_voltages(
     arguments: argparse.Namespace, structure: Structure, drive: Drive
 ) -> tuple[float, ...]:
     """Return one voltage or a ramp's first and last one, V; by default around the jumps."""
-    if arguments.eta0 and arguments.voltage:
-        raise InputError("--eta0 and --voltage: expected one of them")
+    one_of(arguments, "eta0", "voltage")
     if arguments.voltage:
         return parse_number_or_ends("--voltage", arguments.voltage)
     volts = drive.volts(structure)
@@ -221,8 +221,7 @@ def averaged_jump_voltages(
 
 def ramp_rate(arguments: argparse.Namespace, structure: Structure, drive: Drive) -> float:
     """Return a ramp's rate, V/s, from ``--rate`` or ``--volt-rate``."""
-    if arguments.rate is not None and arguments.volt_rate is not None:
-        raise InputError("--rate and --volt-rate: expected one of them")
+    one_of(arguments, "rate", "volt_rate")
     if arguments.volt_rate is not None:
         return parse_rate("--volt-rate", arguments.volt_rate)
     unit = drive.volts(structure) * structure.omega
@@ -249,9 +248,8 @@ def make_schedule(
 
     rate, omega = ramp_rate(arguments, structure, drive), structure.omega
     if arguments.course:
-        others = [name for name in ("eta0", "voltage", "duration") if getattr(arguments, name)]
-        if others:
-            raise InputError(f"--course and --{others[0]}: expected one of them")
+        for name in ("eta0", "voltage", "duration"):
+            one_of(arguments, "course", name)
         return Course.from_csv(arguments.course)
     ends = parse_voltages(arguments, structure, drive)
     if len(ends) == 1:
@@ -283,8 +281,7 @@ def make_controller(
     of_pi = {"gain": arguments.gain, "reset_time": arguments.reset_time}
     of_pi["rise"] = arguments.speed_rise
     of_swing = {"filter_time": arguments.filter_time, "low": arguments.low}
-    if arguments.speed_control is not None and arguments.speed_gradient:
-        raise InputError("--speed-control and --speed-gradient: expected one of them")
+    one_of(arguments, "speed_control", "speed_gradient")
     for needed, chosen, names in (
         (
             "--speed-control",
@@ -341,25 +338,29 @@ def result_name(
     return f"{arguments.row.function}_{Path(arguments.drive).stem}_{digits}"
 
 
-def answer_each(
+Results = dict[str, "xr.Dataset"]  # by structure, or by "" if one result is of both
+
+
+def answer_drive(
     arguments: argparse.Namespace,
     structure: Structure,
     drive: Drive,
     question: Question,
-    draw: Callable[[dict[str, xr.Dataset]], Any],
-    summary: Callable[[dict[str, xr.Dataset]], Iterable[str]],
+    draw: Callable[[Results], Any],
+    summary: Callable[[Results], Iterable[str]],
+    both_at_once: bool = False,
 ) -> None:
-    """Call the public function for each structure; print, write files, draw one picture."""
+    """Call the public function for each structure, or for both; print, write files, draw."""
     import orchestrate
 
-    base = result_name(arguments, structure, drive, question)
+    base, files, results = result_name(arguments, structure, drive, question), {}, {}
     states = structures_by_name(arguments, structure)
-    files = {state: Files.from_options(arguments, f"{base}_{state}") for state in states}
-    results = {}
-    for state, chosen in states.items():
-        running = read_running_options(arguments, files[state].result)
+    for state in [""] if both_at_once else states:
+        files[state] = Files.from_options(arguments, f"{base}_{state}".rstrip("_"))
+    for state, one in files.items():
+        running = read_running_options(arguments, one.result)
         ask = getattr(orchestrate, arguments.row.function)
-        results[state] = ask(chosen, drive, **question, **running)
+        results[state] = ask(states.get(state, structure), drive, **question, **running)
     asked, shown = display(arguments, results)
     print(*summary(shown), sep="\n")
     print_units_note(arguments, *shown.values())
@@ -370,28 +371,9 @@ def answer_each(
 
 def common_files(arguments: argparse.Namespace, base: str, files: Iterable[Files]) -> Files:
     """Return the ``Files`` of the picture of both structures, or of the one of ``--only``."""
-    name = f"{base}_{arguments.only}" if arguments.only else base
+    only = getattr(arguments, "only", None)
+    name = f"{base}_{only}" if only else base
     return Files.from_options(arguments, name, fresh=any(one.fresh for one in files))
-
-
-def answer_both(
-    arguments: argparse.Namespace,
-    structure: Structure,
-    drive: Drive,
-    question: Question,
-    draw: Callable[[xr.Dataset], Any],
-    summary: Summary,
-) -> None:
-    """Call the public function that computes both structures at once; print, write, draw."""
-    import orchestrate
-
-    files = Files.from_options(arguments, result_name(arguments, structure, drive, question))
-    running = read_running_options(arguments, files.result)
-    data = getattr(orchestrate, arguments.row.function)(structure, drive, **question, **running)
-    asked, shown = display(arguments, {"": data})
-    print(*summary(shown[""]), sep="\n")
-    print_units_note(arguments, *shown.values())
-    files.write(asked[""], lambda: draw(shown[""]))
 
 
 def format_title(runs: Mapping[str, xr.Dataset], name: str, control: str = "") -> str:

@@ -16,6 +16,7 @@ from .options import (
     CONTINUED,
     START,
     frequency_option,
+    is_shaken,
     over_options,
     parse_varied,
     read_amplitude,
@@ -362,8 +363,7 @@ Floquet multipliers: of a stable orbit all lie inside the unit circle.""",
 def ask_manifold(arguments: argparse.Namespace) -> tuple[Structure, Question]:
     """Return structure and keywords of ``manifold``."""
     structure, question = read_structure_and_question(arguments)
-    shaken = frequency_option(arguments) is not None or read_amplitude(arguments) is not None
-    if shaken or question["start"] is None:
+    if is_shaken(arguments) or question["start"] is None:
         question |= read_excitation(arguments, structure, si=True, one=True)
     return structure, question
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import argparse
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from ..units import scale_of, text_of, with_units
+from ..units import text_of, with_units
 from .answer import answer, read_earlier_result
 from .grammar import (
     floats,
@@ -40,7 +40,7 @@ from .output import (
     unit_note,
 )
 from .table import Command, Group, Question, parse_options
-from .text import extents, impact_lines
+from .text import Columns, columns_of, extents, impact_lines, table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -194,91 +194,50 @@ SHAKE = Command(
 
 # -- analyse --------------------------------------------------------------------------------------
 
-Reporter = Callable[["xr.Dataset"], Iterator[str]]
 MASSES = {"box_acceleration": "box", "acceleration1": "mass 1", "acceleration2": "mass 2"}
 
 
-def channels_of(data: xr.Dataset, box: bool = True) -> Iterator[tuple[str, xr.Dataset]]:
-    """Yield each channel's printed name and part of a result; no base if not ``box``."""
-    for channel in map(str, data.channel.values):
-        if box or channel != "box_acceleration":
-            yield MASSES[channel], data.sel(channel=channel)
-
-
-def at_maximum(values: xr.DataArray) -> xr.DataArray:
-    """Return the entry of an array with the largest value, as a scalar with its coordinates."""
-    flat = values.stack(every=values.dims)
-    return flat.isel(every=int(flat.fillna(-1.0).values.argmax()))
-
-
-def format_frequency(data: xr.Dataset, peak: xr.Dataset | xr.DataArray) -> str:
-    """Format a value's frequency coordinate as text in the result's display unit."""
-    return text_of(data, peak.frequency, "Hz", ".5g")
-
-
-def frf_lines(data: xr.Dataset) -> Iterator[str]:
-    """Yield a line per channel: the FRF's peak, its frequency, random error and coherence."""
-    if not data.excited.any():
-        yield "the box does not move"
-        return
-    for name, part in channels_of(data):
-        band = part.where(data.excited > 0, drop=True)
-        peak = band.isel(frequency=int(band.magnitude.sel(estimator="H1").values.argmax()))
-        yield (
-            f"{name}: largest |H1| {float(peak.magnitude.sel(estimator='H1')):.4g} at "
-            f"{format_frequency(data, peak)}, random error "
-            f"{100.0 * float(peak.random_error):.2g} %, coherence {float(peak.coherence):.4f} "
-            f"(median {float(band.coherence.median()):.4f})"
-        )
-
-
-def psd_lines(data: xr.Dataset) -> Iterator[str]:
-    """Yield a line per channel: rms, largest spectral density and its frequency."""
-    for name, part in channels_of(data):
-        at = text_of(data, part.psd.idxmax(), "Hz", ".5g")
-        rms = text_of(data, part.rms, "m/s2", ".4g")
-        density = text_of(data, part.psd.max(), "m2/s4/Hz", ".4g").replace("m2/s4", "(m/s2)2")
-        yield f"{name}: {rms} rms, largest density {density} at {at}"
-
-
-def order_lines(data: xr.Dataset) -> Iterator[str]:
-    """Yield a line per channel: each order's largest amplitude and its frequency."""
-    size, unit = scale_of(data, "m/s2")
-    for name, part in channels_of(data, box=False):
-        peaks = []
-        for order in map(float, part.order.values):
-            peak = at_maximum(part.amplitude.sel(order=order))
-            peaks.append(
-                f"order {order:g} {float(peak) / size:.4g} at {format_frequency(data, peak)}"
-            )
-        yield f"{name}: largest amplitudes in {unit}: {', '.join(peaks)}"
-
-
-def harmonic_lines(data: xr.Dataset) -> Iterator[str]:
-    """Yield a line per channel: median and largest harmonic distortion, and where it is largest."""
-    for name, part in channels_of(data, box=False):
-        peak, median = at_maximum(part.distortion), 100.0 * float(part.distortion.median())
-        largest = f"{100.0 * float(peak):.3g} % at {format_frequency(data, peak)}"
-        yield f"{name}: distortion {median:.3g} % (median), largest {largest}"
-
-
-def peak_lines(data: xr.Dataset, variable: str) -> Iterator[str]:
-    """Yield a line per channel: a variable's largest value, its frequency and time."""
-    for name, part in channels_of(data):
-        peak = at_maximum(part[variable])
+def peak_cells(data: xr.Dataset, values: xr.DataArray, unit: str) -> list[str]:
+    """Return each channel's largest value with the frequency, and the time, at which it is."""
+    cells = []
+    for channel in values.channel.values:
+        flat = values.sel(channel=channel).stack(every=[d for d in values.dims if d != "channel"])
+        peak = flat.isel(every=int(flat.fillna(-1.0).values.argmax()))
+        size = text_of(data, peak, unit, ".4g").removesuffix(" 1")
         when = f", {float(peak.time):.4g} s" if "time" in peak.coords else ""
-        size = text_of(data, peak, "m/s2", ".4g")
-        yield f"{name}: largest amplitude {size} at {format_frequency(data, peak)}{when}"
+        cells.append(f"{size} at {text_of(data, peak.frequency, 'Hz', '.5g')}{when}")
+    return cells
 
 
-def density_lines(data: xr.Dataset) -> Iterator[str]:
-    """Yield a line per channel: skewness and kurtosis with their errors, and standard deviation."""
-    for name, part in channels_of(data):
-        yield (
-            f"{name}: skewness {float(part.skewness):.3f} +- {float(part.skewness_error):.3f}, "
-            f"kurtosis {float(part.kurtosis):.3f} +- {float(part.kurtosis_error):.3f}, standard "
-            f"deviation {text_of(data, part.standard_deviation, 'm/s2', '.4g')}"
-        )
+def columns_of_analysis(name: str, data: xr.Dataset) -> Columns:
+    """Return the columns of the table that is printed of an analysis, a row for each channel."""
+    if name in ("orders", "harmonics"):  # of the box they are those of the excitation
+        data = data.drop_sel(channel="box_acceleration", errors="ignore")
+    columns: Columns = {"channel": [MASSES[str(channel)] for channel in data.channel.values]}
+    if name == "frf":
+        h1 = data.magnitude.sel(estimator="H1").where(data.excited > 0)
+        columns["largest |H1|"] = peak_cells(data, h1, "1")
+        at = {"frequency": h1.fillna(-1.0).argmax("frequency")}
+        of_peak = data[["random_error", "coherence"]].isel(at)
+        medians = data.coherence.where(data.excited > 0).median("frequency")
+        return columns | columns_of(of_peak.assign(median=medians), "random_error coherence median")
+    if name == "psd":
+        largest = peak_cells(data, data.psd, "m2/s4/Hz")
+        columns["largest density"] = [cell.replace("m2/s4", "(m/s2)2") for cell in largest]
+        return columns | columns_of(data, "rms")
+    if name == "orders":
+        orders = data.order.values
+        parts = {f"order {n:g}": data.amplitude.sel(order=n) for n in orders}
+        return columns | {title: peak_cells(data, part, "m/s2") for title, part in parts.items()}
+    if name == "harmonics":
+        columns["largest distortion"] = peak_cells(data, data.distortion, "1")
+        medians = data.distortion.median(set(data.distortion.dims) - {"channel"})
+        return columns | columns_of(data.assign(median=medians), "median")
+    if name == "density":
+        names = "skewness skewness_error kurtosis kurtosis_error standard_deviation"
+        return columns | columns_of(data, names)
+    variable = {"spectrogram": "amplitude", "shock": "maximax"}[name]
+    return columns | {"largest amplitude": peak_cells(data, data[variable], "m/s2")}
 
 
 @dataclass(frozen=True)
@@ -288,29 +247,17 @@ class Analysis:
     function: str  # of the public face
     options: tuple[str, ...]  # of the command that it takes
     text: str  # what it shows
-    lines: Reporter  # what is printed
 
 
 SPECTRAL, SWEPT = ("resolution", "window"), ("orders", "periods")
 ANALYSES = {
-    "frf": Analysis("frf", (*SPECTRAL, "overlap"), "frequency response and coherence", frf_lines),
-    "psd": Analysis("psd", (*SPECTRAL, "overlap"), "power spectral density", psd_lines),
-    "orders": Analysis("track_orders", SWEPT, "orders of a swept sine", order_lines),
-    "harmonics": Analysis(
-        "harmonics", ("highest", "periods"), "harmonics and their distortion", harmonic_lines
-    ),
-    "spectrogram": Analysis(
-        "spectrogram", SPECTRAL, "spectra over the time", partial(peak_lines, variable="amplitude")
-    ),
-    "shock": Analysis(
-        "shock_spectrum",
-        ("damping",),
-        "shock response spectrum",
-        partial(peak_lines, variable="maximax"),
-    ),
-    "density": Analysis(
-        "probability_density", ("bins",), "probability density, skewness", density_lines
-    ),
+    "frf": Analysis("frf", (*SPECTRAL, "overlap"), "frequency response and coherence"),
+    "psd": Analysis("psd", (*SPECTRAL, "overlap"), "power spectral density"),
+    "orders": Analysis("track_orders", SWEPT, "orders of a swept sine"),
+    "harmonics": Analysis("harmonics", ("highest", "periods"), "harmonics and their distortion"),
+    "spectrogram": Analysis("spectrogram", SPECTRAL, "spectra over the time"),
+    "shock": Analysis("shock_spectrum", ("damping",), "shock response spectrum"),
+    "density": Analysis("probability_density", ("bins",), "probability density, skewness"),
 }
 READING = f"""
 --unit UNIT  of accelerations: m/s2, g, mg ...
@@ -362,10 +309,9 @@ def run_analyse(arguments: argparse.Namespace) -> None:
             for label, record in records.items()
         }
         shown = {label: with_units(data, units) for label, data in results.items()}
-        print(f"{ANALYSES[name].text}:")
         for label, data in shown.items():
-            for line in ANALYSES[name].lines(data):
-                print(f"  {label + ': ' if label else ''}{line}")
+            print(f"{f'{label}: ' if label else ''}{ANALYSES[name].text}")
+            print(*table(columns_of_analysis(name, data)), sep="\n")
         print_units_note(arguments, *shown.values())
         read = {label: str(path) for label, path in paths.items()}
         stem = f"analyse_{name}_{arguments.record.stem}_{digest(read, settings[name], *reading)}"

@@ -187,17 +187,14 @@ def read_excitation(
     structure: Structure,
     si: bool = False,
     one: bool = False,
-    level: bool = True,
 ) -> dict[str, Any]:
     """Return frequency and amplitude of the box's motion as keywords of the public API."""
     from ..constants import GRAVITY
     from ..structures.sections import TO_RAD_S
 
-    name = frequency_option(arguments)
-    amplitude = read_amplitude(arguments)
-    described_too = excitation_from_file(arguments) if name is None and amplitude is None else None
-    if described_too:
-        return described_too
+    name, amplitude = frequency_option(arguments), read_amplitude(arguments)
+    if not is_shaken(arguments) and (described := excitation_from_file(arguments)):
+        return described
     if name is None:
         raise InputError(
             f"frequency: nothing given; expected one of {join_option_names(FREQUENCIES)}"
@@ -212,8 +209,7 @@ def read_excitation(
             )
         return {"eta": values}
     if amplitude is None:
-        either = "--amplitude in m or --g" if level else "--amplitude in m"
-        raise InputError(f"--{name} {text}: expected {either} with it")
+        raise InputError(f"--{name} {text}: expected --amplitude in m or --g with it")
     omega = structure.omega
     frequencies = apply_to_each(
         TO_RAD_S[UNITS[name]] if name in UNITS else lambda eta: eta * omega, values
@@ -243,28 +239,35 @@ def excitation_from_file(arguments: argparse.Namespace) -> dict[str, Any] | None
     return {"frequency": excitation.frequency, "amplitude": excitation.amplitude}
 
 
+def one_of(arguments: argparse.Namespace, *names: str) -> str | None:
+    """Return which of some options is given, None if none is; raise if several are."""
+    given = [name for name in names if getattr(arguments, name) not in (None, False)]
+    if len(given) > 1:
+        raise InputError(f"{' and '.join(map(option_name, given))}: expected one of them")
+    return given[0] if given else None
+
+
 def frequency_option(arguments: argparse.Namespace) -> str | None:
-    """Return which option gives the frequency, None if none does; raise if several do."""
-    present = [name for name in FREQUENCIES if getattr(arguments, name) is not None]
-    if len(present) > 1:
-        raise InputError(f"{join_option_names(present, ' and ')}: expected one of them")
-    return present[0] if present else None
-
-
-def check_one_level(arguments: argparse.Namespace) -> None:
-    """Raise if both ``--amplitude`` and ``--g`` are given."""
-    if arguments.amplitude is not None and arguments.g is not None:
-        raise InputError("--amplitude and --g: expected one of them")
+    """Return which option gives the frequency, None if none does."""
+    return one_of(arguments, *FREQUENCIES)
 
 
 def read_amplitude(arguments: argparse.Namespace) -> float | None:
     """Return the number of ``--amplitude`` (m) or ``--g`` (g); None if neither is given."""
-    check_one_level(arguments)
-    for name in ("amplitude", "g"):
-        text = getattr(arguments, name)
-        if text is not None:
-            return positive_number(f"--{name}", text)
-    return None
+    name = one_of(arguments, "amplitude", "g")
+    return None if name is None else positive_number(f"--{name}", getattr(arguments, name))
+
+
+def is_shaken(arguments: argparse.Namespace) -> bool:
+    """Return whether an option gives a frequency or an amplitude of the box."""
+    return frequency_option(arguments) is not None or read_amplitude(arguments) is not None
+
+
+def read_over(arguments: argparse.Namespace) -> tuple[tuple[float, ...], bool] | None:
+    """Return the values of ``--over``, and whether they are a range; None without it."""
+    if (arguments.over is None) != (arguments.values is None):
+        raise InputError("--over and --values: expected both, or none of them")
+    return parse_values("--values", arguments.values, zero=True) if arguments.over else None
 
 
 def join_option_names(names: Any, joint: str = ", ") -> str:
@@ -284,23 +287,15 @@ def varied_arguments(
     arguments: argparse.Namespace, structure: Structure, usual: str | None = None
 ) -> tuple[dict[str, Any], bool]:
     """Return excitation and varied parameter as keywords, and whether a range was given."""
-    over, values = arguments.over, arguments.values
-    if over is None and arguments.g is not None and not is_single_number(arguments.g):
+    if arguments.over is None and arguments.g is not None and not is_single_number(arguments.g):
         box = excitation_by_level(arguments, structure, one=True)
         levels = {"over": "level", "values": box["level"]}
         return {"frequency": box["frequency"], **levels}, ":" in arguments.g
-    if (over is None) != (values is None):
-        raise InputError("--over and --values: expected both, or none of them")
-    if over is not None:
-        numbers, is_range = parse_values("--values", values, zero=True)
-        check_over(over, arguments)
+    if (values := read_over(arguments)) is not None:
+        check_over(arguments.over, arguments)
         fixed = read_excitation(arguments, structure, one=True)
-        return {**fixed, "over": over, "values": numbers}, is_range
-    if (
-        usual is not None
-        and frequency_option(arguments) is None
-        and read_amplitude(arguments) is None
-    ):
+        return {**fixed, "over": arguments.over, "values": values[0]}, values[1]
+    if usual is not None and not is_shaken(arguments):
         arguments.eta = usual
     excitation = read_excitation(arguments, structure)
     return excitation, ":" in str(getattr(arguments, frequency_option(arguments) or "eta"))
@@ -312,7 +307,7 @@ def excitation_by_level(
     """Return frequency and level (m/s2) of the box from ``--g``, each a number or a tuple."""
     from ..constants import GRAVITY
 
-    check_one_level(arguments)
+    one_of(arguments, "amplitude", "g")
     levels = parse_one_or_more("--g", arguments.g)
     plain = argparse.Namespace(**{**vars(arguments), "g": None, "amplitude": "1"})
     frequency = read_excitation(plain, structure, one=one)["frequency"]

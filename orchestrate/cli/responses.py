@@ -17,14 +17,14 @@ from .drive import DRIVE, drive_units, read_drive_options
 from .grammar import is_single_number, parse_changes, parse_values
 from .options import (
     BESIDE,
-    FREQUENCIES,
     START,
     box_group,
     check_over,
     excitation_by_level,
-    join_option_names,
+    frequency_option,
+    is_shaken,
+    one_of,
     over_options,
-    read_amplitude,
     read_excitation,
     read_question,
     read_structure_options,
@@ -152,14 +152,13 @@ HANGING = {"quick": 1.53, "beam": 1.45}  # eta0 at which the motor hangs at the 
 
 def run_spectra(arguments: argparse.Namespace) -> None:
     """Run ``spectra``: spectra on a motor, or harmonic ones if a frequency is given."""
-    frequencies = [name for name in FREQUENCIES if getattr(arguments, name) is not None]
-    if not frequencies and read_amplitude(arguments) is None:
+    of_motor = one_of(arguments, "eta0", "voltage")
+    if not is_shaken(arguments):
         answer_motor_spectra(arguments)
         return
-    for name in ("eta0", "voltage"):
-        if getattr(arguments, name) is not None:
-            what = join_option_names(frequencies or ["amplitude or --g"], " and ")
-            raise InputError(f"{what}: expected without --{name}, which is the motor's")
+    if of_motor is not None:
+        frequency = frequency_option(arguments) or "amplitude or --g"
+        raise InputError(f"--{frequency}: expected without --{of_motor}, which is the motor's")
     from ..structures import Structure
 
     arguments.structure = arguments.structure or "paper"
@@ -170,8 +169,6 @@ def run_spectra(arguments: argparse.Namespace) -> None:
 
 def answer_motor_spectra(arguments: argparse.Namespace) -> None:
     """Compute spectra of a motor-driven structure (Figure 3); print, store and draw them."""
-    if arguments.eta0 is not None and arguments.voltage is not None:
-        raise InputError("--eta0 and --voltage: expected one of them")
     structure, drive = read_drive_options(arguments)
     eta0 = HANGING.get(arguments.drive) if arguments.eta0 is None else arguments.eta0
     voltage = arguments.voltage

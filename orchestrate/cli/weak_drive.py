@@ -24,8 +24,7 @@ from .drive import (
     SETTLE,
     STEP,
     VOLTAGE,
-    answer_both,
-    answer_each,
+    answer_drive,
     averaged_jump_voltages,
     common_files,
     display,
@@ -39,8 +38,8 @@ from .drive import (
     structures_by_name,
     times_in_seconds,
 )
-from .grammar import parse_rates, parse_values, plain_float, read_pairs
-from .options import START, read_structure_options, structure_group
+from .grammar import parse_rates, plain_float, read_pairs
+from .options import START, read_over, read_structure_options, structure_group
 from .output import Files, digest, read_running_options, result_groups, user_fmus
 from .table import Command, Group, Question
 from .text import columns_of, extents, table
@@ -365,7 +364,8 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
         ),
         Group(
             options="""
-            --branches  compute the branches of stationary motions too, and draw them under the ramps
+            --branches  compute the branches of stationary motions too, and draw them under the
+                ramps
             --ssp FILE  write the coupled system for other tools instead
             """
         ),
@@ -386,9 +386,7 @@ REASONS = {
 def run_capture(arguments: argparse.Namespace) -> None:
     """Run ``capture``: find the voltages that pass the resonance or are captured."""
     structure, drive = read_drive_options(arguments)
-    if (arguments.over is None) != (arguments.values is None):
-        raise InputError("--over and --values: expected both, or none of them")
-    values = parse_values("--values", arguments.values, zero=True)[0] if arguments.over else None
+    values = read_over(arguments)
     if arguments.eta0 or arguments.voltage:
         ends = parse_ramp_ends(arguments, structure, drive)
     else:
@@ -397,13 +395,13 @@ def run_capture(arguments: argparse.Namespace) -> None:
     question = {
         "voltage": ends,
         "over": arguments.over,
-        "values": values,
+        "values": values and values[0],
         **arguments.row.keywords(arguments),
         "control": make_controller(arguments, structure, drive),
         **times_in_seconds(arguments, structure, "step"),
     }
     draw = partial(draw_capture, name=Path(arguments.drive).stem, question=question)
-    answer_each(arguments, structure, drive, question, draw, capture_lines)
+    answer_drive(arguments, structure, drive, question, draw, capture_lines)
 
 
 def draw_capture(results: dict[str, xr.Dataset], name: str, question: Question) -> Any:
@@ -513,7 +511,7 @@ def run_passage(arguments: argparse.Namespace) -> None:
         **times_in_seconds(arguments, structure, "step", "hold"),
     }
     draw = partial(draw_passage, arguments=arguments, control=control)
-    answer_each(arguments, structure, drive, question, draw, passage_lines)
+    answer_drive(arguments, structure, drive, question, draw, passage_lines)
 
 
 def first_stored_interval(data: xr.Dataset) -> xr.Dataset:
@@ -598,10 +596,17 @@ def run_jump_voltages(arguments: argparse.Namespace) -> None:
         "back": not arguments.one_way,
         **times_in_seconds(arguments, structure, "settle", "step"),
     }
-    draw = partial(draw_jump_voltages, name=Path(arguments.drive).stem, ends=ends)
+    name = Path(arguments.drive).stem
     directions = ("up",) if arguments.one_way else ("up", "down")
-    summary = partial(jump_voltage_lines, directions=directions)
-    answer_both(arguments, structure, drive, question, draw, summary)
+    answer_drive(
+        arguments,
+        structure,
+        drive,
+        question,
+        lambda shown: draw_jump_voltages(shown[""], name, ends),
+        lambda shown: jump_voltage_lines(shown[""], directions),
+        both_at_once=True,
+    )
 
 
 def draw_jump_voltages(data: xr.Dataset, name: str, ends: tuple[float, float]) -> Any:
@@ -667,8 +672,16 @@ def run_drive_branch(arguments: argparse.Namespace) -> None:
     """Run ``drive-branch``: trace branches of stationary motions."""
     structure, drive = read_drive_options(arguments)
     question = arguments.row.keywords(arguments)
-    draw = partial(draw_drive_branch, name=Path(arguments.drive).stem)
-    answer_both(arguments, structure, drive, question, draw, drive_branch_lines)
+    name = Path(arguments.drive).stem
+    answer_drive(
+        arguments,
+        structure,
+        drive,
+        question,
+        lambda shown: draw_drive_branch(shown[""], name),
+        lambda shown: drive_branch_lines(shown[""]),
+        both_at_once=True,
+    )
 
 
 def draw_drive_branch(data: xr.Dataset, name: str) -> Any:

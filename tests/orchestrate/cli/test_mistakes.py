@@ -14,22 +14,18 @@ import pytest
 QUICK = ("--transient", "5", "--samples", "8")
 MISTAKES = {  # options of each command, then what its line says
     "sweep": """
-        --eta 0 : --eta 0: | > 0
         --eta -1 : --eta -1: | 0 < FIRST
         --eta nan : --eta nan: | FIRST:LAST:STEP
         --eta 1e7 : eta = 10000000.0 | <= eta <= 1e+06
         --eta abc : --eta abc: | not numbers | FIRST:LAST:STEP
         --eta 1:2 : --eta 1:2: | FIRST:LAST:STEP
         --eta 2:1:0.1 : --eta 2:1:0.1: | FIRST <= LAST
-        --eta 1:2:0 : --eta 1:2:0: | STEP > 0
         --eta 1:2:1e-9999999 : --eta 1:2:1e-9999999: | 10000000 values
-        --eta 1,1 --direction up : eta | 1.0 twice
         --over e --eta 1 : --over and --values | both
         --over e --values 0.1,0.2 : frequency: nothing given | --eta
         --over eta --values 1,2 : --over eta | --eta VALUES
         --over amplitude --values 1,2 --hz 1 : --over amplitude | --g VALUES
         --over k1 --values 1,2 --eta 1 --g 1 : --over k1 | --hz
-        --over e --values 0.1,0.2 --eta 1,2 : --eta 1,2 | 2 values
         --over f --values 0.1 --eta 1 : 'f' | no parameter
         --set f=1 : f | no parameter of a structure | gamma
         --set e : --set e | NAME=VALUE
@@ -37,39 +33,24 @@ MISTAKES = {  # options of each command, then what its line says
         --set e=abc : --set e=abc | abc is not a number
         --set e=0.1 --set e=0.2 : --set e=0.2 | each name once
         --set e=1.2 : e = 1.2 | 0 <= e <= 1
-        --set D=-0.01 : D = -0.01 | 0 <= D
-        --set D=0.1 --set D1=0.2 : D and D1 | one of them
         --structure nowhere.toml : nowhere.toml | no such file | paper
         --samples 0 : samples = 0 | from 1
-        --transient -1 : transient = -1 | from 0
-        --tolerance 0 : tolerance = 0.0 | > 0
         --fmu nowhere.fmu : nowhere.fmu | no such file
     """,
     "simulate": """
         : frequency: nothing given | --eta | --hz | --rpm | --frequency
         --eta 1,2 : --eta 1,2 | 2 values
         --eta 1 --frequency 2 : --eta and --frequency | one of them
-        --hz 1 --rpm 2 --g 1 : --hz and --rpm | one of them
         --frequency 2 : --frequency 2 | --amplitude | --g
         --hz 2 --amplitude 1 --g 1 : --amplitude and --g | one of them
         --hz 2 --g x : --g x | expected a number > 0
-        --hz 2 --amplitude 1,2 : --amplitude 1,2 | expected a number > 0
         --hz 1:2:0.1 --g 1 : --hz 1:2:0.1 | 11 values
         --structure beam --eta 1 : --eta 1 | 75 rad/s | --amplitude | --g
         --eta 1 --beside --store a.nc : --beside | --store
         --eta 1 --store mine.dat : --store mine.dat | .nc
         --eta 1 --format nc,doc : --format nc,doc | doc | xlsx
-        --eta 1 --plot gif : --plot gif | png | svg
-        --frequency -2 --amplitude 1 : --frequency -2 | > 0
-        --eta 1 --periods 0 : periods = 0 | from 1
         --eta 1 --start 0,1 : --start 0,1 | four numbers
-        --eta 1 --start 0,-1,0,0 : start =  | x2 >= x1
-        --eta 1 --phase nan : phase = nan | <= phase <=
-        --eta 0 : --eta 0: | > 0
-        --rpm 600 --amplitude nan : --amplitude nan
-        --eta 1 --set e=2 : e = 2.0 | 0 <= e <= 1
         --eta 1 --set E=0.5 : E: no parameter | did you mean e?
-        --eta 1 --plot gif : --plot gif | png
     """,
     "shake": """
         : nothing given | --swept-sine, --stepped-sine, --random, --shock, --record
@@ -77,20 +58,16 @@ MISTAKES = {  # options of each command, then what its line says
         --swept-sine 8:20 --g 1 : nothing given | one of duration and rate
         --swept-sine 8:20 --duration 2 : level | --g and --acceleration
         --swept-sine 8:20 --g 1 --duration 2 --seed 1 : --seed | with --random alone
-        --swept-sine 8:20 --g 1 --duration 2 --spacing cubic : spacing = 'cubic' | linear, log
-        --swept-sine 8:20 --g 1 --duration 2 --accuracy 1 : accuracy = 1.0 | <= 0.01
         --swept-sine 8 --g 1 --duration 2 : --swept-sine 8 | FIRST:LAST
         --stepped-sine 8:20 --g 1 : --stepped-sine 8:20 | FIRST:LAST:STEP
         --stepped-sine 8,9 --g 1 --duration 2 : --duration: expected with --swept-sine or --random
         --random 5-9 --duration 2 : --random 5-9 | HZ:VALUE
         --random 5:1,9:nan --duration 2 : --random 5:1,9:nan | HZ:VALUE
         --random 5:1,9:1 : --random | --duration
-        --shock sine --length 1 --g 1 : shape = 'sine' | half-sine
         --shock sawtooth --g 1 : --shock | --length
         --record no.csv : no.csv | a file to read
         --record a.csv --g 1 : --g: expected with --swept-sine or --stepped-sine or --shock alone
         --swept-sine 8:20 --g 1 --unit g : --unit | with --record alone
-        --swept-sine 8:20 --g 1 --settle-cycles 3 : --settle-cycles | with --stepped-sine alone
     """,
     "analyse": """
         nowhere.nc : FILE nowhere.nc: no such file
@@ -106,8 +83,6 @@ MISTAKES = {  # options of each command, then what its line says
     "resonance": """
         : frequency: nothing given | --hz
         --structure beam --eta 1:2:0.1 : --eta 1:2:0.1 | 75 rad/s | --g
-        --eta 1,1 : eta | 1.0 twice
-        --eta 1 --prominence 0 : prominence = 0.0
     """,
     "map": """
         --over e --values 0.3,0.7 : frequency: nothing given
@@ -118,44 +93,29 @@ MISTAKES = {  # options of each command, then what its line says
         --eta 1,2 --over e : --over and --values | exactly one --values for each --over
         --hz 1,2 --g 0,1 : --g 0,1
         --hz 1,2 --g 1 --amplitude 1 --over e --values 0.3,0.7 : --g | --amplitude
-        --eta 1,2 --over e --values 0.1,7 : e = 7.0
-        --eta 1,2 --over amplitude --values 1,2 : --over amplitude
-        --eta 1,2 --over e --values 0.3,0.7 --samples 1 : samples = 1 | from 4
     """,
     "lyapunov": """
         --over e : --over and --values | both
         --eta 1,2 --over e --values 0.3,0.7 : --eta 1,2 | 2 values
-        --eta 1 --periods 0 : periods = 0
-        --eta 1.047 --periods 5 : periods = 5: 10 impacts | periods >= 8
     """,
     "attractors": """
-        --eta 1 --starts 0 : starts = 0
-        --eta 1 --seed -1 : seed = -1
         --eta 1 --scale 0 : scale = 0.0
     """,
     "basin": """
         --eta 1:2:0.5 : --eta 1:2:0.5 | 3 values
         --structure beam --eta 1 : 75 rad/s | --amplitude
         --eta 1 --x x_rel,0,1 : --x x_rel,0,1 | NAME,FIRST,LAST,COUNT
-        --eta 1 --x gap,0,1,5 : x = ('gap' | x_rel
-        --eta 1 --y x_rel,0,1,5 : x_rel twice
         --eta 1 --at 0,0,0 : --at 0,0,0 | four numbers
-        --eta 1 --at 0,-1,0,0 : at =  | x2 >= x1
-        --eta 1 --x x_rel,-2,-1,5 : the masses overlap at every start
     """,
     "orbit": """
         --eta 1 --period 0 : period = 0
         --eta 1 --guess 1,2 : --guess 1,2 | four numbers
-        --eta 1 --guess 1,0,0,0 : guess =  | x2 >= x1
-        --eta 1 --box-acceleration inf : box_acceleration = inf
-        --hz 1:2:0.5 --g 1 : --hz 1:2:0.5 | 3 values
     """,
     "branch": """
         : --limits | FIRST:LAST
         --limits 2 : --limits 2 | FIRST:LAST
         --eta 2.5 --limits 2.6:2.4 : limits | the lower one first
         --eta 3 --limits 2.4:2.6 : eta = 3.0 at the start | inside
-        --over x --eta 1 --limits 2.4:2.6 : x | expected one of
         --over hz --g 1 --limits 2.4:2.6 : --g | --amplitude
         --over frequency --eta 1 --limits 2.4:2.6 : --over frequency | --amplitude
         --over e --limits 2.4:2.6 : frequency: nothing given
@@ -174,23 +134,17 @@ MISTAKES = {  # options of each command, then what its line says
     "spectra": """
         --eta abc : --eta abc | not numbers
         --eta 1 --eta0 1.3 : --eta | --eta0
-        --eta 1 --points 10 : highest = 40 | points/2
-        --eta 1 --periods 0 : periods = 0
         --eta0 1 --voltage 1 : --eta0 and --voltage
         --drive paper : paper | no drive | [motor] and [box]
-        --set box_mass=-1 : box_mass = -1.0 | <= box_mass
     """,
     "paper": """
         --figures '' : unknown figure ''
-        --figures 5,x : unknown figure 'x' | choose from
         --figures spectra --jobs -1 : jobs = -1
-        --figures spectra --jobs 5000 : jobs = 5000 | 1024
     """,
     "couple": """
         --drive rigg : rigg | no such file | quick
         --structure glued : glued | no such file
         --set x=1 : x | no parameter
-        --set motor_constant=0 : motor_constant = 0.0 | > 0
         --fmu nowhere.fmu : nowhere.fmu | no such file
         --format doc : --format doc | xlsx
         --plot gif : --plot gif | png
@@ -201,34 +155,25 @@ MISTAKES = {  # options of each command, then what its line says
         --eta0 x:2 : --eta0 x:2 | FIRST:LAST
         --eta0 1:2 --voltage 1:2 : --eta0 and --voltage | one of them
         --step -0.1 : step = -0.1 s | 0.0001 <= step <= 1
-        --eta0 1:1 : voltage
-        --eta0 nan:2 : voltage = nan V | finite
         --eta0 1.2 : one voltage, 1.2 V | --duration
         --eta0 1:2 --duration 3 : --duration | one voltage
         --voltage high : --voltage high | a number, or FIRST:LAST
         --rate 0 : --rate 0 | > 0
-        --rate nan : --rate nan | expected a number > 0
         --rate 1e-4,5e-5 : --rate 1e-4,5e-5 | expected one | jump-voltages
         --rate 1e-4 --volt-rate 1 : --rate and --volt-rate
-        --rate 1e-9 --step 1e-3 : steps | at most 1e+09
         --course nowhere.csv : nowhere.csv | cannot be read
         --course a.csv --eta0 1:2 : --course and --eta0
         --set armature_resistance=1e-3 : does not jump | --eta0 or --voltage
         --speed-control 1.5 --speed-gradient : --speed-control and --speed-gradient
         --gain 2 : --gain 2 | --speed-control with it
         --low 0.5 : --low 0.5 | --speed-gradient with it
-        --algorithm euler : algorithm | euler | jacobi | rollback
     """,
     "passage": """
-        --around 0 : around = 0.0 s | 0 < around
         --revolutions 0 : --revolutions 0 | >= 1
     """,
     "capture": """
         --over D : --over and --values | both
-        --over colour --values 1,2 : colour | no parameter
         --over D --values a : --values a | not numbers
-        --count 1 : count = 1 | from 2
-        --tolerance 0 : tolerance = 0.0 V | 0 < tolerance
         --eta0 1.5 : --eta0 1.5 | FIRST:LAST
     """,
     "jump-voltages": """
@@ -238,8 +183,6 @@ MISTAKES = {  # options of each command, then what its line says
     """,
     "drive-branch": """
         --speed 1 : --speed 1 | FIRST:LAST
-        --speed 2:1 : speed = (2.0, 1.0) | first < last
-        --longest 0 : longest = 0.0 | <= longest <=
     """,
 }
 CASES = [
