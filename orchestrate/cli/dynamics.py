@@ -60,9 +60,6 @@ def ask_along_parameter(arguments: argparse.Namespace) -> tuple[Structure, Quest
     return structure, {**excitation, **arguments.row.keywords(arguments)}
 
 
-# -- lyapunov -------------------------------------------------------------------------------------
-
-
 def ask_lyapunov(arguments: argparse.Namespace) -> tuple[Structure, Question]:
     """Return structure and keywords of ``lyapunov``, with the responses of a sweep if followed."""
     structure, question = ask_along_parameter(arguments)
@@ -130,8 +127,6 @@ decided with so few --periods.""",
     has_picture=is_curve,
 )
 
-# -- poincare -------------------------------------------------------------------------------------
-
 COORDINATES = {  # that are printed of each section
     "phase": "x_rel v_rel",
     "impacts": "impact_velocity phase",
@@ -164,8 +159,6 @@ POINCARE = Command(
     read_question,
     poincare_summary,
 )
-
-# -- attractors -----------------------------------------------------------------------------------
 
 MAX_VALUES_IN_FULL = 5  # values up to which every attractor is printed
 
@@ -220,8 +213,6 @@ alone may miss one whose basin is small.""",
     attractors_summary,
     has_picture=is_curve,
 )
-
-# -- basin ----------------------------------------------------------------------------------------
 
 FEWEST_STARTS = 32  # along a side, for entropies
 
@@ -285,8 +276,6 @@ Coordinates: x1 x2 x_rel in m, v1 v2 v_rel in m/s, phase in rad. What is not var
     read_question,
     basin_summary,
 )
-
-# -- orbit ----------------------------------------------------------------------------------------
 
 
 def draw_orbit(data: xr.Dataset) -> Any:
@@ -357,8 +346,6 @@ Floquet multipliers: of a stable orbit all lie inside the unit circle.""",
     lambda question: not question["box_acceleration"],
 )
 
-# -- manifold -------------------------------------------------------------------------------------
-
 
 def ask_manifold(arguments: argparse.Namespace) -> tuple[Structure, Question]:
     """Return structure and keywords of ``manifold``."""
@@ -403,8 +390,6 @@ What starts beside a saddle with one multiplier outside the unit circle leaves a
     ask_manifold,
     manifold_summary,
 )
-
-# -- branch ---------------------------------------------------------------------------------------
 
 
 def ask_branch(arguments: argparse.Namespace) -> tuple[Structure, Question]:
@@ -485,8 +470,6 @@ The excitation says where a first orbit is looked for; without it that is the lo
     ask_branch,
     branch_summary,
 )
-
-# -- border ---------------------------------------------------------------------------------------
 
 
 def ask_border(arguments: argparse.Namespace) -> tuple[Structure, Question]:

@@ -47,8 +47,6 @@ if TYPE_CHECKING:
 
     from ..structures import Structure
 
-# -- shake ----------------------------------------------------------------------------------------
-
 KINDS = {  # of excitation: the class, its own options, and which of them it needs
     "swept_sine": ("SweptSine", ("duration", "rate", "spacing", "g", "acceleration"), ""),
     "stepped_sine": ("SteppedSine", ("settle_cycles", "measured_cycles", "g", "acceleration"), ""),
@@ -191,8 +189,6 @@ SHAKE = Command(
     ask_shake,
     shake_summary,
 )
-
-# -- analyse --------------------------------------------------------------------------------------
 
 MASSES = {"box_acceleration": "box", "acceleration1": "mass 1", "acceleration2": "mass 2"}
 

@@ -25,8 +25,6 @@ from .table import Command, Group
 if TYPE_CHECKING:
     import xarray as xr
 
-# -- build ----------------------------------------------------------------------------------------
-
 
 def run_build(arguments: argparse.Namespace) -> None:
     """Run ``build``: export the FMUs of the chosen models and forms; print their paths."""
@@ -83,8 +81,6 @@ BUILD = Command(
     ),
     run_build,
 )
-
-# -- explore --------------------------------------------------------------------------------------
 
 
 def read_diagram(arguments: argparse.Namespace, branches: xr.Dataset | None) -> Any:
@@ -155,8 +151,6 @@ EXPLORE = Command(
     run_explore,
 )
 
-# -- report ---------------------------------------------------------------------------------------
-
 
 def run_report(arguments: argparse.Namespace) -> None:
     """Run ``report``: write stored results as one HTML page; print its path."""
@@ -192,8 +186,6 @@ REPORT = Command(
     ),
     run_report,
 )
-
-# -- paper ----------------------------------------------------------------------------------------
 
 
 def run_paper(arguments: argparse.Namespace) -> None:

@@ -55,8 +55,6 @@ if TYPE_CHECKING:
 
     from ..structures import Structure
 
-# -- simulate -------------------------------------------------------------------------------------
-
 
 def simulate_summary(data: xr.Dataset) -> Iterator[str]:
     """Yield the ranges of displacements, gap and accelerations, and the impacts."""
@@ -78,8 +76,6 @@ SIMULATE = Command(
     read_question,
     simulate_summary,
 )
-
-# -- resonance ------------------------------------------------------------------------------------
 
 
 def run_resonance(arguments: argparse.Namespace) -> None:
@@ -144,8 +140,6 @@ RESONANCE = Command(
     summary=resonance_summary,
     has_picture=is_curve,
 )
-
-# -- spectra --------------------------------------------------------------------------------------
 
 HANGING = {"quick": 1.53, "beam": 1.45}  # eta0 at which the motor hangs at the resonance
 
@@ -235,8 +229,6 @@ SPECTRA = Command(
     run_spectra,
     summary=spectra_summary,
 )
-
-# -- sweep ----------------------------------------------------------------------------------------
 
 PAPER_RANGE = "0.1:8.0:0.001"  # frequency ratios of Figure 6
 DIFFERENT = 0.01  # of the largest gap: where up and down differ by more, they are different motions
@@ -353,8 +345,6 @@ Repeat the command to resume an interrupted run. A finished result is left as it
     sweep_summary,
     has_picture=is_curve,
 )
-
-# -- map ------------------------------------------------------------------------------------------
 
 MAX_MULTIPLICITY = 4  # that is printed
 

@@ -50,8 +50,6 @@ if TYPE_CHECKING:
     from ..structures import Drive, Structure
     from ..weak_drive.couple import CoupleJob
 
-# -- cosimulate -----------------------------------------------------------------------------------
-
 LISTED = ("parameter", "structuralParameter", "input", "output")
 PAIR = "NAME=VALUE"
 
@@ -160,8 +158,6 @@ COSIMULATE = Command(
     ask_cosimulate,
     cosimulate_summary,
 )
-
-# -- couple ---------------------------------------------------------------------------------------
 
 ERROR_LIMIT = 1e-6  # of the motor's work: larger errors give a warning
 
@@ -374,8 +370,6 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
     run_couple,
 )
 
-# -- capture --------------------------------------------------------------------------------------
-
 UNDECIDED, NEITHER = "undecided", "settled at the resonance"
 REASONS = {
     UNDECIDED: "undecided: the speed had not settled; give a longer --time",
@@ -489,8 +483,6 @@ The motor is switched on at once and followed until its speed has settled.
     run_capture,
 )
 
-# -- passage --------------------------------------------------------------------------------------
-
 
 def run_passage(arguments: argparse.Namespace) -> None:
     """Run ``passage``: compute a run through the resonance at full time resolution."""
@@ -580,8 +572,6 @@ PASSAGE = Command(
     run_passage,
 )
 
-# -- jump-voltages --------------------------------------------------------------------------------
-
 USUAL_LIST = "1e-4,5e-5,2.5e-5"
 
 
@@ -664,8 +654,6 @@ JUMP_VOLTAGES = Command(
     ),
     run_jump_voltages,
 )
-
-# -- drive-branch ---------------------------------------------------------------------------------
 
 
 def run_drive_branch(arguments: argparse.Namespace) -> None:

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from orchestrate.cli.branch import draw_result
 from orchestrate.dynamics.borders import border
 from orchestrate.dynamics.branches import branch
 from orchestrate.figures import borders, branches, held_excitation, scales
@@ -87,4 +86,4 @@ def test_the_title_of_a_branch_has_what_is_held_of_the_box(exported):
     assert both.endswith(r"$\Omega/2\pi$ = 12.732 Hz, $a$ = 0.03 mm") and "$e$" not in both
     assert branches.draw(window()).get_suptitle() == "$e$ = 0.7, $D$ = 0.005"
     in_si = window().assign_attrs({**window().attrs, "over": "frequency", "m1": 2.0, "m2": 2.0})
-    assert draw_result(in_si).get_suptitle().endswith(r"$a\,\Omega^2$ = 1 m/s$^2$ (0.102 g)")
+    assert branches.draw(in_si).get_suptitle().endswith(r"$a\,\Omega^2$ = 1 m/s$^2$ (0.102 g)")
