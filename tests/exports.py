@@ -11,10 +11,9 @@ from filelock import FileLock
 
 from fmu_src.export import forms
 from fmu_src.export.errors import CannotExport
-from orchestrate.access.c_library import library
+from orchestrate.access.c_library import SOURCES, library
 from orchestrate.access.webassembly import WEB_MODELS, web_kernel
 from orchestrate.errors import InputError
-from orchestrate.weak_drive.compiled import SOURCE
 
 ROOT = Path(__file__).resolve().parents[1]
 BUILD = ROOT / "build"
@@ -41,7 +40,8 @@ def refresh(build):
     build.mkdir(exist_ok=True)
     with FileLock(build / ".lock"), ThreadPoolExecutor() as threads:  # compilers work outside
         made = list(threads.map(lambda name: refresh_model(name, build), forms.MODELS))
-        library(SOURCE, build)
+        for source in SOURCES:
+            library(source, build)
     return {place: reason for reasons in made for place, reason in reasons.items()}
 
 

@@ -11,7 +11,10 @@ from pathlib import Path
 
 import pytest
 
+from fmu_src.export.forms import FORMS, MODELS
 from fmu_src.export.platforms import this_machine
+from orchestrate.access.c_library import SOURCES
+from orchestrate.access.webassembly import WEB_MODELS
 
 ROOT = Path(__file__).resolve().parents[1]
 TOOLS = ("ziglang", "pythonfmu", "hatchling")  # to build, not to ask
@@ -26,7 +29,7 @@ class Without(importlib.abc.MetaPathFinder):
 sys.meta_path.insert(0, Without())
 """
 QUESTIONS = ROOT / "tests" / "installed_questions.py"
-C_SOURCES = ("compiled", "event_loop")
+PLACE = "orchestrate/access/fmus"
 
 
 @pytest.fixture(scope="module")
@@ -100,9 +103,9 @@ def test_the_wheel_carries_nothing_else(wheel):
     import zipfile
 
     names = zipfile.ZipFile(wheel).namelist()
-    assert sum(name.endswith(".fmu") for name in names) == 6
-    assert sum(name.endswith(".wasm") for name in names) == 2
-    libraries = {f"orchestrate/access/fmus/libraries/{this_machine()}/{name}" for name in C_SOURCES}
+    assert sum(name.endswith(".fmu") for name in names) == len(FORMS) * len(MODELS)
+    assert sum(name.endswith(".wasm") for name in names) == len(WEB_MODELS)
+    libraries = {f"{PLACE}/libraries/{this_machine()}/{source.stem}" for source in SOURCES}
     assert libraries <= {name.partition(".")[0] for name in names}
     roots = {name.split("/")[0] for name in names if ".dist-info" not in name}
     assert roots == {"fmu_src", "orchestrate"}

@@ -19,7 +19,7 @@ from .exported import SHIPPED, default_folder
 
 log = logging.getLogger(__name__)
 FORM = "libraries"
-PACKAGE = Path(__file__).resolve().parents[1]
+SOURCES = tuple(sorted(Path(__file__).resolve().parents[1].glob("*/*.c")))
 
 
 def library(source: Path, folder: str | PathLike[str] | None = None) -> Path | None:
@@ -73,7 +73,7 @@ def build_libraries(
 ) -> list[Path]:
     """Compile all C sources of the package for the platforms; return the paths of those made."""
     target, made = default_folder() if folder is None else Path(folder), []
-    for source in sorted(PACKAGE.glob("*/*.c")):
+    for source in SOURCES:
         for platform in chosen(platforms) or usual():
             try:
                 made.append(compile_library(source, platform, target))
