@@ -53,7 +53,7 @@ def answer(arguments: argparse.Namespace) -> None:
     bonded = answer_question(arguments, structure.as_bonded(), question, picture=False)
     print("delaminated:")
     delaminated = structure.as_delaminated()
-    answer_question(arguments, delaminated, question, ending="with_bonded", bonded=bonded)
+    answer_question(arguments, delaminated, question, ending="with_bonded", beside=(bonded,))
 
 
 def answer_question(
@@ -64,15 +64,14 @@ def answer_question(
     picture: bool = True,
     ending: str = "",
     function: str = "",
-    **more: Any,
+    beside: tuple[xr.Dataset, ...] = (),
 ) -> xr.Dataset:
-    """Compute one result, print its summary, write its files, drawn with ``more``; return it."""
+    """Compute one result, print its summary, write files, drawn with others; return it."""
     import orchestrate
 
     row, function = arguments.row, function or arguments.row.function
-    more, over = {**more, **read_overlay(arguments, structure, question)}, ""
-    if "overlay" in more:
-        over = f"over_{digest(*more['overlay'])}"
+    branches = read_overlay(arguments, structure, question)
+    over = f"over_{digest(*branches)}" if branches else ""
     file = arguments.structure or getattr(arguments, "start", None) or "paper"
     name = result_name(function, file, structure, question)
     files = Files.from_options(arguments, f"{name}_{ending}" if ending else name, over)
@@ -85,16 +84,9 @@ def answer_question(
     (shown,) = with_readable_lengths(asked)
     for line in (*trivial_notes(structure, question, shown), *row.summary(shown)):
         print(line)
-    files.write(asked, partial(row.draw or draw_result, shown, **more) if picture else None)
+    draw = partial(row.draw or orchestrate.plot, shown, *branches, *beside)
+    files.write(asked, draw if picture else None)
     return data
-
-
-def draw_result(data: xr.Dataset, **more: Any) -> Any:
-    """Draw a result by the function that its dataset names; return the figure."""
-    from ..figures.plot import DRAW
-
-    command = data.attrs["call"].partition("(")[0]
-    return DRAW[command](data, **more)
 
 
 def is_curve(question: Mapping[str, Any]) -> bool:
@@ -129,11 +121,11 @@ def excitation_keys(arguments: argparse.Namespace) -> Collection[str]:
 
 def read_overlay(
     arguments: argparse.Namespace, structure: Structure, question: Mapping[str, Any]
-) -> dict[str, list[xr.Dataset]]:
-    """Return the branches of ``--overlay`` as a keyword of the drawing function, if any."""
+) -> list[xr.Dataset]:
+    """Return the branches of ``--overlay``; raise for one that does not fit the question."""
     paths = getattr(arguments, "overlay", [])
     if not paths:
-        return {}
+        return []
     if arguments.command == "resonance" and "level" in question:
         raise InputError(f"--overlay: with several levels, --g {arguments.g}; expected one")
     if not is_curve(question):
@@ -148,7 +140,7 @@ def read_overlay(
     for path, branch in zip(paths, branches, strict=True):
         if why := explain_mismatch(branch, over, parameters):
             raise InputError(f"--overlay {path}: {why}")
-    return {"overlay": branches}
+    return branches
 
 
 def read_earlier_result(option: str, path: Path) -> xr.Dataset:

@@ -282,7 +282,6 @@ def draw_orbit(data: xr.Dataset) -> Any:
     """Simulate one period from the orbit's state and draw the motion; return the figure."""
     import orchestrate
 
-    from ..figures.motion import draw
     from ..structures import Structure
 
     excitation: Question = dict(ast.literal_eval(str(data.attrs["excitation"])))
@@ -293,7 +292,7 @@ def draw_orbit(data: xr.Dataset) -> Any:
         start=data.state.isel(sample=0).values,
     )
     shown = with_units(motion, units_of(data))
-    return draw(shown, orbit_title(data, shown))
+    return orchestrate.plot(shown, title=orbit_title(data, shown))
 
 
 def orbit_title(orbit: xr.Dataset, motion: xr.Dataset) -> str:

@@ -172,11 +172,10 @@ def answer_motor_spectra(arguments: argparse.Namespace) -> None:
     stem = Path(arguments.drive).stem
     files = Files.from_options(arguments, f"spectra_{stem}_{digits}")
 
-    from ..figures import drive_spectra as figure
-    from ..weak_drive.drive_spectra import drive_spectra
+    import orchestrate
 
     running = read_running_options(arguments, files.result)
-    data = drive_spectra(structure, drive, voltage=voltage, **running)
+    data = orchestrate.drive_spectra(structure, drive, voltage=voltage, **running)
     data = with_units(data, drive_units(arguments))
     for kind in map(str, data.kind.values):
         part = data.sel(kind=kind, mass=1)
@@ -184,7 +183,7 @@ def answer_motor_spectra(arguments: argparse.Namespace) -> None:
         print(line_ratio(data, f"{kind} at {speed}", part.acceleration))
     words = str(data.attrs["title"])
     title = f"{stem}: {words[0].lower()}{words[1:]}, absolute acceleration of mass 1"
-    files.write(data, partial(figure.draw, data, title=title))
+    files.write(data, partial(orchestrate.plot, data, title=title))
 
 
 def spectra_summary(data: xr.Dataset) -> Iterator[str]:

@@ -183,11 +183,12 @@ def make_jobs(arguments: argparse.Namespace, structure: Structure, drive: Drive)
 
 def run_couple(arguments: argparse.Namespace) -> None:
     """Run ``couple``: compute the coupled runs; print jumps; write files, pictures or SSP."""
+    import orchestrate
+
     from ..access import finder
     from ..running.options import RunOptions
     from ..running.runner import answer_all
     from ..running.store import load
-    from ..weak_drive.drive_branch import drive_branch
 
     structure, drive = read_drive_options(arguments)
     jobs = make_jobs(arguments, structure, drive)
@@ -203,7 +204,8 @@ def run_couple(arguments: argparse.Namespace) -> None:
     if arguments.branches:
         digits = digest(structure.as_delaminated().parameters(), drive.parameters())
         store = arguments.output / f"branches_{Path(arguments.drive).stem}_{digits}.nc"
-        branches = drive_branch(structure, drive, **read_running_options(arguments, store))
+        running = read_running_options(arguments, store)
+        branches = orchestrate.drive_branch(structure, drive, **running)
         branches = with_units(branches, drive_units(arguments))
         print(*drive_branch_lines(branches), sep="\n")
     print(*couple_lines(shown, drive.volts(structure)), sep="\n")
@@ -213,7 +215,9 @@ def run_couple(arguments: argparse.Namespace) -> None:
     name = Path(arguments.drive).stem
     picture.write_pictures(partial(draw_couple, name, shown, structure, drive, jobs[0], branches))
     if any(data.jumps.notnull().any() for data in results.values()):
-        picture.write_pictures(partial(draw_jumps, name, shown), "jumps")
+        title = format_title(shown, name)
+        draw = partial(orchestrate.plot, *shown.values(), part="jumps", title=title)
+        picture.write_pictures(draw, "jumps")
 
 
 def write_package(
@@ -229,13 +233,6 @@ def write_package(
     return write_ssp(
         arguments.ssp, job.structure, drive, voltage=voltage, speed_start=speed, fmus=fmus
     )
-
-
-def draw_jumps(name: str, results: dict[str, xr.Dataset]) -> Any:
-    """Draw speed and amplitude around each jump; return the figure."""
-    from ..figures import weak_drive
-
-    return weak_drive.draw_jumps(results, format_title(results, name))
 
 
 def draw_couple(
@@ -400,12 +397,13 @@ def run_capture(arguments: argparse.Namespace) -> None:
 
 def draw_capture(results: dict[str, xr.Dataset], name: str, question: Question) -> Any:
     """Draw capture maps of the bonded and the delaminated structure; return the figure."""
-    from ..figures.capture import draw
+    import orchestrate
 
     control = question["control"]
     switched = f"controlled by {type(control).__name__}" if control else "switched on from rest"
     first, last = question["voltage"]
-    return draw(results, f"{name}: {switched}, {first:.4g} V to {last:.4g} V")
+    title = f"{name}: {switched}, {first:.4g} V to {last:.4g} V"
+    return orchestrate.plot(*results.values(), title=title)
 
 
 def capture_lines(results: dict[str, xr.Dataset]) -> Iterator[str]:
@@ -601,11 +599,11 @@ def run_jump_voltages(arguments: argparse.Namespace) -> None:
 
 def draw_jump_voltages(data: xr.Dataset, name: str, ends: tuple[float, float]) -> Any:
     """Draw the jump voltages over the ramps' rate; return the figure."""
-    from ..figures.jump_voltages import draw
+    import orchestrate
 
     slowest, fastest = float(data.rate.min()), float(data.rate.max())
     ramps = f"{ends[0]:.4g} V to {ends[1]:.4g} V, {slowest:.2g} V/s to {fastest:.2g} V/s"
-    return draw(data, f"{name}: {ramps}, and at rate 0")
+    return orchestrate.plot(data, title=f"{name}: {ramps}, and at rate 0")
 
 
 def jump_voltage_lines(data: xr.Dataset, directions: tuple[str, ...]) -> Iterator[str]:
@@ -674,10 +672,10 @@ def run_drive_branch(arguments: argparse.Namespace) -> None:
 
 def draw_drive_branch(data: xr.Dataset, name: str) -> Any:
     """Draw branches of stationary motions: speed over voltage, amplitude over speed."""
-    from ..figures.weak_drive import draw_stationary
+    import orchestrate
 
     volts = f"{float(data.voltage.min()):.4g} V to {float(data.voltage.max()):.4g} V"
-    return draw_stationary(data, f"{name}: stationary motions, held by {volts}")
+    return orchestrate.plot(data, title=f"{name}: stationary motions, {volts}")
 
 
 def drive_branch_lines(data: xr.Dataset) -> Iterator[str]:

@@ -250,7 +250,8 @@ def test_the_weak_drive_prints_speeds_in_the_unit_asked_for(ask, monkeypatch, tm
     for name, (value, unit) in {**numbers, "revolutions": (1.0, "1")}.items():
         branch[f"bifurcation_{name}"] = variable([value], unit, ("bifurcation",))
     (tmp_path / "results").mkdir()
-    branch = xr.Dataset(branch, along, {"k1": 8437.5, "m1": 1.5})
+    about = {"k1": 8437.5, "m1": 1.5, "call": "drive_branch()"}
+    branch = xr.Dataset(branch, along, about)
     answer_with(monkeypatch, "drive_branch", branch)
     done = ask("drive-branch", "--drive", "beam", "--units", "rpm,um").success()
     assert re.search(r"speed rpm.*\n.* 1002\.7", done.out) and "rad/s" not in done.out

@@ -257,7 +257,7 @@ def test_titles_name_set_volts_and_rates():
         "jumps": (tuple(each), np.full((2, 2), 1.58)),
         "standard_error": (tuple(each), np.full((2, 2), np.nan)),
     }
-    ramps = xr.Dataset(made, {"rate": rates, **each})
+    ramps = xr.Dataset(made, {"rate": rates, **each}, {"call": "jump_voltages()"})
     figure = weak_drive.draw_jump_voltages(ramps, "quick", (1.2, 1.65))
     title = "quick: 1.2 V to 1.65 V, 2.5e-05 V/s to 0.0001 V/s, and at rate 0"
     assert figure.get_suptitle() == title
@@ -267,8 +267,10 @@ def test_titles_name_set_volts_and_rates():
     motions["stable"] = ((*along, "point"), np.ones((1, 1, 3), dtype=bool))
     for name in ("structure", "kind", "voltage", "speed", "amplitude"):
         motions[f"bifurcation_{name}"] = ("bifurcation", np.zeros(0))
-    figure = weak_drive.draw_drive_branch(xr.Dataset(motions, along), "beam")
-    assert figure.get_suptitle() == "beam: stationary motions, held by 1.1 V to 1.3 V"
+    figure = weak_drive.draw_drive_branch(
+        xr.Dataset(motions, along, {"call": "drive_branch()"}), "beam"
+    )
+    assert figure.get_suptitle() == "beam: stationary motions, 1.1 V to 1.3 V"
 
 
 def test_the_weak_drive_as_a_package(ask, tmp_path):
