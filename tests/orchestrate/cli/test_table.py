@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import inspect
 import os
+import re
 import subprocess
 import sys
 
@@ -25,34 +26,12 @@ from orchestrate.units import with_units
 
 from .commands import ROOT
 
-NAMES = [
-    "build",
-    "simulate",
-    "shake",
-    "cosimulate",
-    "analyse",
-    "diagnose",
-    "resonance",
-    "spectra",
-    "sweep",
-    "map",
-    "lyapunov",
-    "poincare",
-    "attractors",
-    "basin",
-    "orbit",
-    "manifold",
-    "branch",
-    "border",
-    "couple",
-    "capture",
-    "passage",
-    "jump-voltages",
-    "drive-branch",
-    "explore",
-    "report",
-    "paper",
-]
+NAMES = re.findall(
+    r"[\w-]+",
+    "build simulate shake cosimulate analyse diagnose resonance spectra sweep map lyapunov "
+    "poincare attractors basin orbit manifold branch border couple capture passage jump-voltages "
+    "drive-branch explore report paper",
+)
 CONVERTED = {  # options in other units or words than the argument's, by their commands
     **dict.fromkeys([("couple", "settle"), ("passage", "settle"), ("jump-voltages", "settle")]),
     ("sweep", "direction"): "up for a range, a list as it stands",
