@@ -60,7 +60,7 @@ def columns_of(data: xr.Dataset, names: str, prefix: str = "") -> Columns:
         elif array.ndim > 1:
             columns[title] = [",".join(f"{number:.6g}" for number in row) for row in values]
         elif array.dtype.kind == "f":
-            columns[title] = [f"{value / factor:.5g}" for value in values]
+            columns[title] = [f"{value / factor:.6g}" for value in values]
         else:
             columns[title] = [str(value) for value in values]
     return columns

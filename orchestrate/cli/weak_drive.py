@@ -678,6 +678,17 @@ def draw_drive_branch(data: xr.Dataset, name: str) -> Any:
     return orchestrate.plot(data, title=f"{name}: stationary motions, {volts}")
 
 
+def unlocated_changes(leg: xr.Dataset, located: Any) -> str:
+    """Return the speeds at which a branch's stability changes without a located bifurcation."""
+    at = leg.dropna("point", subset=["voltage"])
+    stable, speeds = at.stable.values.astype(int), []
+    for i in (stable[1:] != stable[:-1]).nonzero()[0]:
+        low, high = sorted(at.speed.values[i : i + 2])
+        if not ((located > 2.0 * low - high) & (located < 2.0 * high - low)).any():
+            speeds.append(text_of(at, low, "rad/s", ".5g"))
+    return ", ".join(speeds)
+
+
 def drive_branch_lines(data: xr.Dataset) -> Iterator[str]:
     """Yield tables of the bifurcations, with what a slow ramp does there, and of the branches."""
     from ..weak_drive.ramp_path import ramp_paths
@@ -709,6 +720,9 @@ def drive_branch_lines(data: xr.Dataset) -> Iterator[str]:
         "stable": [str(int(leg.stable.sum())) for leg in legs],
         "ends by": [str(leg.end.item()) for leg in legs],
     }
+    unlocated = [unlocated_changes(leg, data.bifurcation_speed.values) for leg in legs]
+    if any(unlocated):
+        columns["stability changes near, not located (--period)"] = unlocated
     yield from table(columns, len(legs))
 
 

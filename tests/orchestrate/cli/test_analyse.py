@@ -195,7 +195,7 @@ def test_sensors_feel_the_impulses_of_impacts(ask, tmp_path):
     felt = said(ask("analyse", path, "--sensor", "400:1500", *show).success())
     made = measure(xr.load_dataset(path), Sensor(bandwidth=400.0, sample_rate=1500.0))
     rms = float(psd(made).rms.sel(channel="acceleration1"))
-    assert felt[2].endswith(f"  {rms:.5g}") and felt[2] != between[2]
+    assert felt[2].endswith(f"  {rms:.6g}") and felt[2] != between[2]
     assert len(list((tmp_path / "results").glob("analyse*.nc"))) == 2
     made.to_netcdf(tmp_path / "measured.nc")
     beside = ("--beside", f"measured={tmp_path / 'measured.nc'}", *show)
