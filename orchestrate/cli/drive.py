@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,7 +19,7 @@ from .grammar import (
 )
 from .options import one_of, option_name, print_assumptions
 from .output import Files, digest, print_units_note, read_running_options, read_units
-from .table import Group, Question
+from .table import Group
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -338,35 +338,28 @@ def result_name(
     return f"{arguments.row.function}_{Path(arguments.drive).stem}_{digits}"
 
 
-Results = dict[str, "xr.Dataset"]  # by structure, or by "" if one result is of both
-
-
-def answer_drive(
-    arguments: argparse.Namespace,
-    structure: Structure,
-    drive: Drive,
-    question: Question,
-    draw: Callable[[Results], Any],
-    summary: Callable[[Results], Iterable[str]],
-    both_at_once: bool = False,
-) -> None:
-    """Call the public function for each structure, or for both; print, write files, draw."""
+def answer_drive(arguments: argparse.Namespace) -> None:
+    """Run a command: ask for each structure, or for both at once; print, write files, draw."""
     import orchestrate
 
-    base, files, results = result_name(arguments, structure, drive, question), {}, {}
-    states = structures_by_name(arguments, structure)
-    for state in [""] if both_at_once else states:
-        files[state] = Files.from_options(arguments, f"{base}_{state}".rstrip("_"))
-    for state, one in files.items():
-        running = read_running_options(arguments, one.result)
-        ask = getattr(orchestrate, arguments.row.function)
-        results[state] = ask(states.get(state, structure), drive, **question, **running)
+    row, stem = arguments.row, Path(arguments.drive).stem
+    structure, drive, question = row.ask(arguments)
+    base, results = result_name(arguments, structure, drive, question), {}
+    states = structures_by_name(arguments, structure) if "only" in arguments else {"": structure}
+    names = {state: f"{base}_{state}" if state else base for state in states}
+    files = {state: Files.from_options(arguments, name) for state, name in names.items()}
+    for state, chosen in states.items():
+        running = read_running_options(arguments, files[state].result)
+        results[state] = getattr(orchestrate, row.function)(chosen, drive, **question, **running)
     asked, shown = display(arguments, results)
-    print(*summary(shown), sep="\n")
+    print(*row.summary(shown), sep="\n")
     print_units_note(arguments, *shown.values())
     for state, data in asked.items():
         files[state].write(data)
-    common_files(arguments, base, files.values()).write_pictures(lambda: draw(shown))
+    title = f"{stem}: {row.title(shown, question)}"
+    draw = row.draw or (lambda results, _, title: orchestrate.plot(*results.values(), title=title))
+    picture = common_files(arguments, base, files.values())
+    picture.write_pictures(lambda: draw(shown, arguments, title))
 
 
 def common_files(arguments: argparse.Namespace, base: str, files: Iterable[Files]) -> Files:
@@ -376,8 +369,8 @@ def common_files(arguments: argparse.Namespace, base: str, files: Iterable[Files
     return Files.from_options(arguments, name, fresh=any(one.fresh for one in files))
 
 
-def format_title(runs: Mapping[str, xr.Dataset], name: str, control: str = "") -> str:
-    """Format a picture's title: the drive's name, the runs' voltages, rate and controller."""
+def format_title(runs: Mapping[str, xr.Dataset], control: Controller | None = None) -> str:
+    """Format a part of a picture's title: the runs' voltages, rate and controller."""
     import numpy as np
 
     changes = [
@@ -388,4 +381,4 @@ def format_title(runs: Mapping[str, xr.Dataset], name: str, control: str = "") -
     low, high = float(volts.min()), float(volts.max())
     ends = f"{high:.4g} V" if low == high else f"{low:.4g} V to {high:.4g} V"
     moving = f", {rate:.2g} V/s" if rate and not control else ""
-    return f"{name}: {ends}{moving}{', ' + control if control else ''}"
+    return f"{ends}{moving}{f', {type(control).__name__}' if control else ''}"

@@ -342,7 +342,7 @@ Floquet multipliers: of a stable orbit all lie inside the unit circle.""",
     read_question,
     orbit_summary,
     draw_orbit,
-    lambda question: not question["box_acceleration"],
+    has_picture=lambda question: not question["box_acceleration"],
 )
 
 

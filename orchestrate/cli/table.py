@@ -34,9 +34,7 @@ from .grammar import (
 )
 
 if TYPE_CHECKING:
-    import xarray as xr
-
-    from ..structures import Structure
+    pass
 
 LINK = re.compile(r"As in :func:`orchestrate\.(\w+)`")
 MARKUP = re.compile(r":\w+:`(?:orchestrate\.)?([^`]*)`|``([^`]*)``")
@@ -61,7 +59,6 @@ READERS: dict[str, Reader[Any]] = {  # of values whose mistakes are told in one 
 }
 DEBUG = "--debug  show where in the program an error occurred"
 Question = dict[str, Any]
-Summary = Callable[["xr.Dataset"], Iterable[str]]
 
 
 @dataclass(frozen=True)
@@ -164,10 +161,11 @@ class Command:
     examples: str
     groups: tuple[Group, ...]
     run: Callable[[argparse.Namespace], None]
-    # structure and keywords of the public function; read by `run` of most commands
-    ask: Callable[[argparse.Namespace], tuple[Structure, Question]] | None = None
-    summary: Summary | None = None  # lines that are printed of the result
+    # structure, drive where it has one, and keywords of the public function
+    ask: Callable[[argparse.Namespace], tuple[Any, ...]] | None = None
+    summary: Callable[[Any], Iterable[str]] | None = None  # lines that are printed of the result
     draw: Callable[..., Any] | None = None  # by default the picture of the public function
+    title: Callable[..., str] | None = None  # of the picture, on the weak drive
     # whether a question has a picture: by default each has
     has_picture: Callable[[Question], bool] = lambda _: True
 

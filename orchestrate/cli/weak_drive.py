@@ -50,6 +50,8 @@ if TYPE_CHECKING:
     from ..structures import Drive, Structure
     from ..weak_drive.couple import CoupleJob
 
+    Results = dict[str, xr.Dataset]  # by structure, or by "" if one result is of both
+
 LISTED = ("parameter", "structuralParameter", "input", "output")
 PAIR = "NAME=VALUE"
 
@@ -207,7 +209,7 @@ def run_couple(arguments: argparse.Namespace) -> None:
         running = read_running_options(arguments, store)
         branches = orchestrate.drive_branch(structure, drive, **running)
         branches = with_units(branches, drive_units(arguments))
-        print(*drive_branch_lines(branches), sep="\n")
+        print(*drive_branch_lines({"": branches}), sep="\n")
     print(*couple_lines(shown, drive.volts(structure)), sep="\n")
     for one, data in zip(files, asked.values(), strict=True):
         one.write(data)
@@ -215,7 +217,7 @@ def run_couple(arguments: argparse.Namespace) -> None:
     name = Path(arguments.drive).stem
     picture.write_pictures(partial(draw_couple, name, shown, structure, drive, jobs[0], branches))
     if any(data.jumps.notnull().any() for data in results.values()):
-        title = format_title(shown, name)
+        title = f"{name}: {format_title(shown)}"
         draw = partial(orchestrate.plot, *shown.values(), part="jumps", title=title)
         picture.write_pictures(draw, "jumps")
 
@@ -237,7 +239,7 @@ def write_package(
 
 def draw_couple(
     name: str,
-    results: dict[str, xr.Dataset],
+    results: Results,
     structure: Structure,
     drive: Drive,
     job: CoupleJob,
@@ -252,8 +254,7 @@ def draw_couple(
     from ..weak_drive import averaged, own_resonance
     from ..weak_drive.schedule import Ramp
 
-    control = type(job.control).__name__ if job.control else ""
-    title = format_title(results, name, control)
+    title = f"{name}: {format_title(results, job.control)}"
     if job.control or not isinstance(job.schedule, Ramp):
         resonance = own_resonance.dividing_speed(structure, drive) * structure.omega
         return run_history.draw(results, resonance, title)
@@ -276,7 +277,7 @@ def draw_couple(
     return draw(results, with_units(theory, units), under, title)
 
 
-def couple_lines(results: dict[str, xr.Dataset], volts: float) -> Iterator[str]:
+def couple_lines(results: Results, volts: float) -> Iterator[str]:
     """Yield revolutions and speeds of each run, a table of jumps, and the runs' accuracy."""
     names = ("structure", "jump", "voltage V", "eta0", "of the ramp V", "decided")
     columns: dict[str, list[str]] = {name: [] for name in names}
@@ -374,8 +375,8 @@ REASONS = {
 }
 
 
-def run_capture(arguments: argparse.Namespace) -> None:
-    """Run ``capture``: find the voltages that pass the resonance or are captured."""
+def ask_capture(arguments: argparse.Namespace) -> tuple[Structure, Drive, Question]:
+    """Return structure, drive and keywords of ``capture``."""
     structure, drive = read_drive_options(arguments)
     values = read_over(arguments)
     if arguments.eta0 or arguments.voltage:
@@ -383,30 +384,28 @@ def run_capture(arguments: argparse.Namespace) -> None:
     else:
         down, up = averaged_jump_voltages(arguments, structure, drive)
         ends = down, 1.06 * up
-    question = {
-        "voltage": ends,
-        "over": arguments.over,
-        "values": values and values[0],
-        **arguments.row.keywords(arguments),
-        "control": make_controller(arguments, structure, drive),
-        **times_in_seconds(arguments, structure, "step"),
-    }
-    draw = partial(draw_capture, name=Path(arguments.drive).stem, question=question)
-    answer_drive(arguments, structure, drive, question, draw, capture_lines)
+    return (
+        structure,
+        drive,
+        {
+            "voltage": ends,
+            "over": arguments.over,
+            "values": values and values[0],
+            **arguments.row.keywords(arguments),
+            "control": make_controller(arguments, structure, drive),
+            **times_in_seconds(arguments, structure, "step"),
+        },
+    )
 
 
-def draw_capture(results: dict[str, xr.Dataset], name: str, question: Question) -> Any:
-    """Draw capture maps of the bonded and the delaminated structure; return the figure."""
-    import orchestrate
-
+def capture_title(_: Results, question: Question) -> str:
+    """Return a part of the picture's title: how the motor is started, and the voltages."""
     control = question["control"]
     switched = f"controlled by {type(control).__name__}" if control else "switched on from rest"
-    first, last = question["voltage"]
-    title = f"{name}: {switched}, {first:.4g} V to {last:.4g} V"
-    return orchestrate.plot(*results.values(), title=title)
+    return "{}, {:.4g} V to {:.4g} V".format(switched, *question["voltage"])
 
 
-def capture_lines(results: dict[str, xr.Dataset]) -> Iterator[str]:
+def capture_lines(results: Results) -> Iterator[str]:
     """Yield a table of the threshold voltages, undecided starts, and warnings."""
     rows: list[dict[str, str]] = []
     notes: list[str] = []
@@ -478,12 +477,15 @@ The motor is switched on at once and followed until its speed has settled.
         CONTROLLER,
         *result_groups(store=False, several=True),
     ),
-    run_capture,
+    answer_drive,
+    ask_capture,
+    capture_lines,
+    title=capture_title,
 )
 
 
-def run_passage(arguments: argparse.Namespace) -> None:
-    """Run ``passage``: compute a run through the resonance at full time resolution."""
+def ask_passage(arguments: argparse.Namespace) -> tuple[Structure, Drive, Question]:
+    """Return structure, drive and keywords of ``passage``."""
     from ..weak_drive.schedule import Constant
 
     structure, drive = read_drive_options(arguments)
@@ -494,14 +496,8 @@ def run_passage(arguments: argparse.Namespace) -> None:
     around = arguments.around
     if around is None and not isinstance(schedule, Constant):
         around = 300.0 / structure.omega
-    question = {
-        "voltage": schedule,
-        "around": around,
-        "control": control,
-        **times_in_seconds(arguments, structure, "step", "hold"),
-    }
-    draw = partial(draw_passage, arguments=arguments, control=control)
-    answer_drive(arguments, structure, drive, question, draw, passage_lines)
+    times = times_in_seconds(arguments, structure, "step", "hold")
+    return structure, drive, {"voltage": schedule, "around": around, "control": control, **times}
 
 
 def first_stored_interval(data: xr.Dataset) -> xr.Dataset:
@@ -513,9 +509,13 @@ def first_stored_interval(data: xr.Dataset) -> xr.Dataset:
     return data.isel(time=slice(0, int(breaks[0]) + 1)) if breaks.size else data
 
 
-def draw_passage(
-    results: dict[str, xr.Dataset], arguments: argparse.Namespace, control: Any
-) -> Any:
+def passage_title(results: Results, question: Question) -> str:
+    """Return a part of the picture's title: voltages, rate and controller."""
+    shown = {state: first_stored_interval(data) for state, data in results.items()}
+    return format_title(shown, question["control"])
+
+
+def draw_passage(results: Results, arguments: argparse.Namespace, title: str) -> Any:
     """Draw passages with waterfalls of their spectra; return the figure."""
     from .. import waterfall
     from ..figures.passage import draw
@@ -523,11 +523,10 @@ def draw_passage(
     spectra = {"revolutions": arguments.revolutions, "mass": arguments.mass}
     shown = {state: first_stored_interval(data) for state, data in results.items()}
     falls = {state: waterfall(data, **spectra) for state, data in shown.items()}
-    name = Path(arguments.drive).stem
-    return draw(shown, falls, format_title(shown, name, type(control).__name__ if control else ""))
+    return draw(shown, falls, title)
 
 
-def passage_lines(results: dict[str, xr.Dataset]) -> Iterator[str]:
+def passage_lines(results: Results) -> Iterator[str]:
     """Yield a line per structure: samples, times, jumps or passage."""
     from ..figures.passage import format_jumps
 
@@ -567,49 +566,43 @@ PASSAGE = Command(
         ),
         *result_groups(store=False, several=True),
     ),
-    run_passage,
+    answer_drive,
+    ask_passage,
+    passage_lines,
+    draw_passage,
+    title=passage_title,
 )
 
 USUAL_LIST = "1e-4,5e-5,2.5e-5"
 
 
-def run_jump_voltages(arguments: argparse.Namespace) -> None:
-    """Run ``jump-voltages``: find jump voltages at rate 0."""
+def ask_jump_voltages(arguments: argparse.Namespace) -> tuple[Structure, Drive, Question]:
+    """Return structure, drive and keywords of ``jump-voltages``."""
     structure, drive = read_drive_options(arguments)
     unit = drive.volts(structure) * structure.omega
-    ends = parse_ramp_ends(arguments, structure, drive)
-    question = {
-        "voltage": ends,
-        "rates": [rate * unit for rate in parse_rates("--rate", arguments.rate or USUAL_LIST)],
-        "back": not arguments.one_way,
-        **times_in_seconds(arguments, structure, "settle", "step"),
-    }
-    name = Path(arguments.drive).stem
-    directions = ("up",) if arguments.one_way else ("up", "down")
-    answer_drive(
-        arguments,
+    return (
         structure,
         drive,
-        question,
-        lambda shown: draw_jump_voltages(shown[""], name, ends),
-        lambda shown: jump_voltage_lines(shown[""], directions),
-        both_at_once=True,
+        {
+            "voltage": parse_ramp_ends(arguments, structure, drive),
+            "rates": [rate * unit for rate in parse_rates("--rate", arguments.rate or USUAL_LIST)],
+            "back": not arguments.one_way,
+            **times_in_seconds(arguments, structure, "settle", "step"),
+        },
     )
 
 
-def draw_jump_voltages(data: xr.Dataset, name: str, ends: tuple[float, float]) -> Any:
-    """Draw the jump voltages over the ramps' rate; return the figure."""
-    import orchestrate
-
-    slowest, fastest = float(data.rate.min()), float(data.rate.max())
-    ramps = f"{ends[0]:.4g} V to {ends[1]:.4g} V, {slowest:.2g} V/s to {fastest:.2g} V/s"
-    return orchestrate.plot(data, title=f"{name}: {ramps}, and at rate 0")
+def jump_voltages_title(_: Results, question: Question) -> str:
+    """Return a part of the picture's title: the ramps' voltages and rates."""
+    ends = "{:.4g} V to {:.4g} V".format(*question["voltage"])
+    slowest, fastest = min(question["rates"]), max(question["rates"])
+    return f"{ends}, {slowest:.2g} V/s to {fastest:.2g} V/s, and at rate 0"
 
 
-def jump_voltage_lines(data: xr.Dataset, directions: tuple[str, ...]) -> Iterator[str]:
+def jump_voltage_lines(results: Results) -> Iterator[str]:
     """Yield a table of the jump voltages at rate 0, and advice if one is missing."""
-    data = data.sel(jump=list(directions))
-    rows = {"jump at rate 0": list(directions)}
+    (data,) = results.values()
+    rows = {"jump at rate 0": [str(jump) for jump in data.jump.values]}
     for name in map(str, data.structure.values):
         at = data.sel(structure=name)
         cells = zip(at.jumps.values, at.standard_error.values, at.decided.values, strict=True)
@@ -650,32 +643,22 @@ JUMP_VOLTAGES = Command(
         ),
         *result_groups(several=True),
     ),
-    run_jump_voltages,
+    answer_drive,
+    ask_jump_voltages,
+    jump_voltage_lines,
+    title=jump_voltages_title,
 )
 
 
-def run_drive_branch(arguments: argparse.Namespace) -> None:
-    """Run ``drive-branch``: trace branches of stationary motions."""
-    structure, drive = read_drive_options(arguments)
-    question = arguments.row.keywords(arguments)
-    name = Path(arguments.drive).stem
-    answer_drive(
-        arguments,
-        structure,
-        drive,
-        question,
-        lambda shown: draw_drive_branch(shown[""], name),
-        lambda shown: drive_branch_lines(shown[""]),
-        both_at_once=True,
-    )
+def ask_drive_branch(arguments: argparse.Namespace) -> tuple[Structure, Drive, Question]:
+    """Return structure, drive and keywords of ``drive-branch``."""
+    return *read_drive_options(arguments), arguments.row.keywords(arguments)
 
 
-def draw_drive_branch(data: xr.Dataset, name: str) -> Any:
-    """Draw branches of stationary motions: speed over voltage, amplitude over speed."""
-    import orchestrate
-
-    volts = f"{float(data.voltage.min()):.4g} V to {float(data.voltage.max()):.4g} V"
-    return orchestrate.plot(data, title=f"{name}: stationary motions, {volts}")
+def drive_branch_title(results: Results, _: Question) -> str:
+    """Return a part of the picture's title: the voltages."""
+    voltage = results[""].voltage
+    return f"stationary motions, {float(voltage.min()):.4g} V to {float(voltage.max()):.4g} V"
 
 
 def unlocated_changes(leg: xr.Dataset, located: Any) -> str:
@@ -689,10 +672,11 @@ def unlocated_changes(leg: xr.Dataset, located: Any) -> str:
     return ", ".join(speeds)
 
 
-def drive_branch_lines(data: xr.Dataset) -> Iterator[str]:
+def drive_branch_lines(results: Results) -> Iterator[str]:
     """Yield tables of the bifurcations, with what a slow ramp does there, and of the branches."""
     from ..weak_drive.ramp_path import ramp_paths
 
+    (data,) = results.values()
     count = data.sizes["bifurcation"]
     effects = [""] * count
     ends = []
@@ -743,7 +727,10 @@ Branches go round their folds. Repeat the command to resume an interrupted run."
         ),
         *result_groups(several=True),
     ),
-    run_drive_branch,
+    answer_drive,
+    ask_drive_branch,
+    drive_branch_lines,
+    title=drive_branch_title,
 )
 
 COMMANDS = (COSIMULATE, COUPLE, CAPTURE, PASSAGE, JUMP_VOLTAGES, DRIVE_BRANCH)

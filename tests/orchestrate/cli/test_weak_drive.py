@@ -208,10 +208,10 @@ def test_a_jump_that_no_ramp_has_and_an_undecided_one():
     jumps, errors = [[1.5, np.nan], [np.nan] * 2], [[1e-4, np.nan], [np.nan] * 2]
     made = {"jumps": jumps, "standard_error": errors, "decided": decided}
     data = xr.Dataset({name: (tuple(each), values) for name, values in made.items()}, each)
-    _, up, down, hint = weak_drive.jump_voltage_lines(data, directions=("up", "down"))
+    _, up, down, hint = weak_drive.jump_voltage_lines({"": data})
     assert up.split() == ["up", "1.50000", "+-", "0.00010", "none"]
     assert down.split() == ["down", "undecided", "none"] and "drive-branch" in hint
-    assert len(list(weak_drive.jump_voltage_lines(data, directions=("up",)))) == 2
+    assert len(list(weak_drive.jump_voltage_lines({"": data.isel(jump=[0])}))) == 2
 
 
 def made_branch(motions, bifurcations):
@@ -239,7 +239,7 @@ def test_stationary_motions_are_listed_with_what_a_slow_ramp_does_there():
     motions = [(1.0, 0.8, 0), (1.2, 0.9, 1), (1.4, 1.0, 1), (1.3, 1.1, 0), (1.2, 1.2, 0)]
     motions += [(1.35, 1.3, 1), (1.5, 1.4, 1)]
     made = made_branch(motions, [("fold", 1.41, 1.03), ("fold", 1.19, 1.22)])
-    _, up, down, end, titles, branch = weak_drive.drive_branch_lines(made)
+    _, up, down, end, titles, branch = weak_drive.drive_branch_lines({"": made})
     assert titles.endswith("stability changes near, not located (--period)")
     assert up.split() == ["bonded", "fold", "1.41", "1.03", "jumps", "up", "to", "1.34", "rad/s"]
     assert down.split() == ["bonded", "fold", "1.19", "1.22", "jumps", "down"]
@@ -248,30 +248,15 @@ def test_stationary_motions_are_listed_with_what_a_slow_ramp_does_there():
     assert branch.split() == ["bonded,", "from", "below", "7", "4", "limit", "0.8", "rad/s"]
 
 
-def test_titles_name_set_volts_and_rates():
-    """Made-up answers; what a picture's title says of them."""
-    each = {"structure": ["bonded", "delaminated"], "jump": ["up", "down"]}
-    rates = np.array([2.5e-5, 1e-4])
-    at_rates = np.array([1.59, 1.61])[:, None, None] * np.ones((1, 2, 2))
-    made = {
-        "voltage": (("rate", *each), at_rates),
-        "jumps": (tuple(each), np.full((2, 2), 1.58)),
-        "standard_error": (tuple(each), np.full((2, 2), np.nan)),
-    }
-    ramps = xr.Dataset(made, {"rate": rates, **each}, {"call": "jump_voltages()"})
-    figure = weak_drive.draw_jump_voltages(ramps, "quick", (1.2, 1.65))
-    title = "quick: 1.2 V to 1.65 V, 2.5e-05 V/s to 0.0001 V/s, and at rate 0"
-    assert figure.get_suptitle() == title
-    along = {"structure": ["bonded"], "leg": ["from below"]}
-    names = ("speed", "voltage", "amplitude")
-    motions = {name: ((*along, "point"), np.array([[[1.1, 1.3, 1.2]]])) for name in names}
-    motions["stable"] = ((*along, "point"), np.ones((1, 1, 3), dtype=bool))
-    for name in ("structure", "kind", "voltage", "speed", "amplitude"):
-        motions[f"bifurcation_{name}"] = ("bifurcation", np.zeros(0))
-    figure = weak_drive.draw_drive_branch(
-        xr.Dataset(motions, along, {"call": "drive_branch()"}), "beam"
-    )
-    assert figure.get_suptitle() == "beam: stationary motions, 1.1 V to 1.3 V"
+def test_titles_state_voltages_and_rates():
+    asked = {"voltage": (1.2, 1.65), "rates": [1e-4, 2.5e-5]}
+    title = "1.2 V to 1.65 V, 2.5e-05 V/s to 0.0001 V/s, and at rate 0"
+    assert weak_drive.jump_voltages_title({}, asked) == title
+    motions = xr.Dataset({"voltage": ("point", [1.1, 1.3, 1.2])})
+    title = weak_drive.drive_branch_title({"": motions}, {})
+    assert title == "stationary motions, 1.1 V to 1.3 V"
+    title = weak_drive.capture_title({}, {"voltage": (1.2, 1.65), "control": None})
+    assert title == "switched on from rest, 1.2 V to 1.65 V"
 
 
 def test_the_weak_drive_as_a_package(ask, tmp_path):
