@@ -43,16 +43,22 @@ def table_marks(reference: Reference) -> tuple[str, str]:
 
 
 def variable_table(path: str | PathLike[str]) -> str:
-    """Return an FMU's variables as a Markdown table, from its model description."""
-    lines = ["| name | causality | unit | start | meaning |", "|---|---|---|---|---|"]
-    for v in describe(path).variables.values():
-        if SERIES.search(v.name):
-            continue
-        parameter = v.causality == "parameter"
-        kind = f"parameter, {v.variability}" if parameter else v.causality
-        start = "" if v.start is None else v.start
-        lines.append(f"| `{v.name}` | {kind} | {v.unit or v.type} | {start} | {v.description} |")
-    return "\n".join(lines) + "\n"
+    """Return an FMU's variables as Markdown tables by causality, from its model description."""
+    variables = [v for v in describe(path).variables.values() if not SERIES.search(v.name)]
+    lines = []
+    for causality in dict.fromkeys(v.causality for v in variables):
+        rows = [v for v in variables if v.causality == causality]
+        with_start = any(v.start is not None for v in rows)
+        heads = ["name", "unit", *["start"] * with_start, "meaning"]
+        lines += [f"**{causality.capitalize()}**", "", f"| {' | '.join(heads)} |"]
+        lines.append(f"|{'---|' * len(heads)}")
+        for v in rows:
+            tunable = " (tunable)" if v.variability == "tunable" else ""
+            start = ["" if v.start is None else str(v.start)] * with_start
+            cells = [f"`{v.name}`{tunable}", v.unit or v.type, *start, v.description]
+            lines.append(f"| {' | '.join(cells)} |")
+        lines.append("")
+    return "\n".join(lines[:-1]) + "\n"
 
 
 def replace_table(page: str, reference: Reference, table: str) -> str:

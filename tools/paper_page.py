@@ -8,6 +8,7 @@ keeps ``claims.json`` beside the pages and writes their counts and tables anew.
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import sys
 from collections.abc import Mapping, Sequence
@@ -19,6 +20,7 @@ from orchestrate.paper.claims import WORDS
 from tools.marked import MARK, replace_part
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
+IMPLIED = re.compile(r"; the paper's number agrees with (?:both|neither)\b")  # by the verdict
 PAGES, CLAIMS = (DOCS / "paper.md", DOCS / "claims.md"), DOCS / "claims.json"
 
 
@@ -33,11 +35,12 @@ def count_verdicts(rows: Sequence[Mapping[str, str]]) -> list[str]:
 
 def section_table(rows: Sequence[Mapping[str, str]]) -> list[str]:
     """Return a Markdown table of counts of verdicts by section."""
-    heads = [*WORDS.values()]
-    lines = [f"| section | {' | '.join(heads)} |", f"|{'---|' * (1 + len(heads))}"]
+    words = [word for word in WORDS if any(row["verdict"] == word for row in rows)]
+    lines = [f"| section | {' | '.join(WORDS[word] for word in words)} |"]
+    lines.append(f"|{'---|' * (1 + len(words))}")
     for section in dict.fromkeys(row["section"] for row in rows):
         own = [row["verdict"] for row in rows if row["section"] == section]
-        lines.append(f"| {section} | {' | '.join(str(own.count(word)) for word in WORDS)} |")
+        lines.append(f"| {section} | {' | '.join(str(own.count(word)) for word in words)} |")
     return lines
 
 
@@ -47,21 +50,32 @@ def escape_cell(text: str) -> str:
 
 
 def claim_table(rows: Sequence[Mapping[str, str]]) -> list[str]:
-    """Return the Markdown table of all claims with their verdicts."""
-    names = ("section", "text", "printed", "found")
-    lines = ["| section | the paper | its value | found | |", "|---|---|---|---|---|"]
-    for row in rows:
-        cells = [escape_cell(row[name]) for name in names]
-        lines.append(f"| {' | '.join(cells)} | {WORDS[row['verdict']]} |")
-    return lines
+    """Return Markdown tables, one for each section, of all claims with their verdicts."""
+    lines = []
+    for section in dict.fromkeys(row["section"] for row in rows):
+        lines += [f"Section {section}:", "", "| the paper | its value | computed | |"]
+        lines.append("|---|---|---|---|")
+        for row in rows:
+            if row["section"] == section:
+                texts = (row["text"], row["printed"], IMPLIED.sub("", row["found"]))
+                cells = [escape_cell(text) for text in texts]
+                lines.append(f"| {' | '.join(cells)} | {WORDS[row['verdict']]} |")
+        lines.append("")
+    return lines[:-1]
 
 
 def region_table(rows: Sequence[Mapping[str, str]]) -> list[str]:
-    """Return the Markdown table of frequency regions."""
-    names = ("case", "region", "count", "chaotic", "neutral", "largest")
-    heads = ("case", "from, to", "frequencies", "chaotic", "neutral", "largest exponent")
-    lines = [f"| {' | '.join(heads)} |", f"|{'---|' * len(heads)}"]
-    return lines + [f"| {' | '.join(row[name] for name in names)} |" for row in rows]
+    """Return Markdown tables, one for each case, of the regions with irregular responses."""
+    names = ("region", "count", "chaotic", "neutral", "largest")
+    heads = ("from, to", "frequencies", "chaotic", "neutral", "largest exponent")
+    lines = []
+    for case in dict.fromkeys(row["case"] for row in rows):
+        lines += [f"{case}:", "", f"| {' | '.join(heads)} |", f"|{'---|' * len(heads)}"]
+        for row in rows:
+            if row["case"] == case and (row["chaotic"], row["neutral"]) != ("0 %", "0 %"):
+                lines.append(f"| {' | '.join(row[name] for name in names)} |")
+        lines.append("")
+    return lines[:-1]
 
 
 def fill_page(text: str, found: Mapping[str, Any]) -> str:

@@ -15,7 +15,7 @@ from .written import DOCS, ROOT
 
 MOST_WORDS = 1500
 GENERATED = {  # by a tool, of which each row may be looked up but none is read in turn
-    "bifurcation_tables": "tools.bifurcation_table",
+    "bifurcations": "tools.bifurcation_table",
     "claims": "tools.paper_page",
     "variables": "tools.assets",
 }

@@ -65,7 +65,7 @@ def test_every_command_has_its_help(site):
 def test_nothing_comes_from_elsewhere_and_no_link_is_broken(site):
     """No script, style, font or picture is taken from the network."""
     checked = Site(site)
-    assert len(checked.pages) > 40
+    assert len(checked.pages) > 35
     assert checked.external_resources() == []
     assert checked.broken_links() == []
 
@@ -79,7 +79,7 @@ def test_every_page_says_how_long_it_takes_to_read(site):
 
 
 FOUND = {  # by the search: a page that is to be among the results
-    "measured": "measured_sweep",
+    "measured": "delaminated",
     "CSV": "laboratory",
     "Simulink": "fmi",
     "dSPACE": "fmi",

@@ -220,7 +220,7 @@ def test_other_parameters_cross_the_same_border(over):
 def test_the_table_in_the_documentation_is_this(period):
     """Eight digits each; the T/1 branch is followed further down there."""
     label = f"{'' if period == 1 else period}T/1"
-    lines = (DOCS / "bifurcation_tables.md").read_text("utf-8").splitlines()
+    lines = (DOCS / "bifurcations.md").read_text("utf-8").splitlines()
     rows = [line.split("|")[1:] for line in lines if line.startswith(f"| {label} |")]
     printed = {(float(row[1]), row[2].strip()) for row in rows if float(row[1]) > 1.37}
     found = windows(period)

@@ -1,6 +1,7 @@
 """Do impacts as communication points pay? Event mode and early return of the real FMUs, measured.
 
-``python -m tests.orchestrate.weak_drive.impact_points`` prints the table of ``docs/coupling.md``.
+``python -m tests.orchestrate.weak_drive.impact_points`` prints the table;
+``docs/coupling_scheme.md`` has its numbers.
 """
 
 import numpy as np

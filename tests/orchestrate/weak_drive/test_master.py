@@ -11,7 +11,7 @@ from .monolithic import Monolith
 
 TIME = 40.0
 # Observed order of the displacements' error between two communication steps, on settled motion with
-# impacts, and how far it may be off; the table is in docs/coupling.md too.
+# impacts, and how far it may be off; docs/coupling_scheme.md has these numbers.
 ORDERS = {
     "jacobi": (0.025, 0.0125, 1.0, 0.2),
     "jacobi-derivative": (0.05, 0.025, 2.0, 0.2),

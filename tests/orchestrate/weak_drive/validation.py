@@ -1,8 +1,8 @@
 """Random sets against one system of equations: trajectories, folds, Neimark-Sacker points, jumps.
 
-``python -m tests.orchestrate.weak_drive.validation`` prints the table of docs/coupling.md. The
-truth is :class:`.monolithic.Monolith`, with shooting of its own: nothing of it knows the FMUs but
-the state that it starts from.
+``python -m tests.orchestrate.weak_drive.validation`` prints a table, which docs/coupling_scheme.md
+summarises. The truth is :class:`.monolithic.Monolith`, with shooting of its own: nothing of it
+knows the FMUs but the state that it starts from.
 """
 
 import argparse
