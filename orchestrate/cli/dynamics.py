@@ -177,13 +177,14 @@ def attractors_summary(data: xr.Dataset) -> Iterator[str]:
     data = data.sortby(name)
     for number in sorted(set(data.number.values.tolist())):
         holds = data.number.values == number
-        share = format_share(int(holds.sum()), holds.size, f"with {number}")
+        share = format_share(int(holds.sum()), holds.size, f"values with {number}")
         yield f"{share}: {format_ranges(data, name, holds)}"
+    shares = data.share.where(data.multiplicity.notnull())
     ends = zip(data.first_found.values, data.last_found.values, strict=True)
     columns = {
         "range": [format_range(data, name, *map(float, pair)) for pair in ends],
-        "smallest share": [f"{share:.1%}" for share in data.share.min(name).values],
-        "largest share": [f"{share:.1%}" for share in data.share.max(name).values],
+        "smallest share": [f"{share:.1%}" for share in shares.min(name).values],
+        "largest share": [f"{share:.1%}" for share in shares.max(name).values],
     }
     yield from table(columns)
 

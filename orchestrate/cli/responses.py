@@ -375,7 +375,8 @@ def map_summary(data: xr.Dataset) -> Iterator[str]:
     kinds = data.multiplicity.values[has_flag(data.multiplicity_decided, "repeated").values]
     counts = {n: int((kinds == n).sum()) for n in sorted(set(kinds.tolist()))}
     shares = [format_share(count, kinds.size, f"after {int(n)} T") for n, count in counts.items()]
-    yield f"they repeat: {', '.join(shares[:MAX_MULTIPLICITY])}"
+    if shares:
+        yield f"they repeat: {', '.join(shares[:MAX_MULTIPLICITY])}"
     top = data.isel(data.xi_rel_max.argmax(...))
     names = map(str, data.xi_rel_max.dims)
     where = ", ".join(format_parameter(data, name, top[name]) for name in names)
