@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from orchestrate import Structure, map
-from orchestrate.figures import files, maps
+from orchestrate import Structure, map, plot
+from orchestrate.figures import files
 
 paper = Structure.nondimensional(D=0.05)
 found = map(
@@ -17,4 +17,4 @@ one_period = found.multiplicity == 1
 print(f"{float(one_period.mean()):.0%} of the map repeats after one period")
 print(f"largest gap: xi_Rel = {float(found.xi_rel_max.max()):.2f}")
 found.to_netcdf("map.nc")
-files.save(maps.draw(found), "map")  # map.png
+files.save(plot(found), "map")  # map.png

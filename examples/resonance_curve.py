@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from orchestrate import Structure, resonance
+from orchestrate import Structure, plot, resonance
 from orchestrate.figures import files
-from orchestrate.figures import resonance as picture
 
 beam = Structure(m1=1.5, m2=1.4, k1=8400.0, k2=10100.0, d1=1.1, d2=1.1, e=0.6)  # SI
 frequency = 2.0 * np.pi * np.arange(8.0, 20.0, 0.1)  # rad/s, of 8 to 20 Hz
@@ -20,4 +19,4 @@ for number in range(peaks.sizes["peak"]):
 table = found[["x1_max", "x2_max", "a1_max", "a2_max", "impacts_per_period"]]
 table.to_dataframe().to_csv("beam.csv")
 found.to_netcdf("beam.nc")
-files.save(picture.draw(found), "beam")  # beam.png
+files.save(plot(found), "beam")  # beam.png

@@ -4,12 +4,35 @@ Property tests take the same examples on every machine, however slow: campaigns 
 """
 
 import pytest
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 
 from .exports import BUILD, refresh
+from .fmu.programs.driver import Fmu2
 
-settings.register_profile("the same everywhere", deadline=None, derandomize=True, database=None)
-settings.load_profile("the same everywhere")
+everywhere = settings(
+    deadline=None,
+    derandomize=True,
+    database=None,
+    suppress_health_check=list(HealthCheck),
+)
+settings.register_profile("few", everywhere, max_examples=10)
+settings.register_profile("many", everywhere, max_examples=100)
+settings.load_profile("few")
+
+
+def pytest_configure(config):
+    """The slow run takes many examples of each property, and the ordinary one few."""
+    if config.option.markexpr == "slow":
+        settings.load_profile("many")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(config, items):
+    """Properties run in the slow run too."""
+    if config.option.markexpr == "slow":
+        for item in items:
+            if getattr(getattr(item, "function", None), "is_hypothesis_test", False):
+                item.add_marker(pytest.mark.slow)
 
 
 def pytest_addoption(parser):
@@ -19,9 +42,10 @@ def pytest_addoption(parser):
 
 
 @pytest.fixture(scope="session")
-def exported():
+def exported(tmp_path_factory):
     """The build folder, with all FMUs that can be made here, of the present sources."""
     refresh(BUILD)
+    Fmu2.home = tmp_path_factory.mktemp("extracted")
     return BUILD
 
 

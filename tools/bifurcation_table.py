@@ -14,14 +14,13 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from orchestrate import plot
 from orchestrate.access import OSCILLATOR, EventInstance, begin, find
 from orchestrate.dynamics.borders import border
 from orchestrate.dynamics.branches import branch
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.dynamics.stable_windows import kind_names
 from orchestrate.errors import InputError
-from orchestrate.figures import borders as borders_figure
-from orchestrate.figures import orbit_diagram
 from orchestrate.files import write_whole
 from orchestrate.response.sweep import sweep
 from orchestrate.structures import Excitation, Structure
@@ -175,8 +174,8 @@ def main() -> None:
     text = replace_part(page.read_text("utf-8"), "table", branch_table(answer))
     write_whole(page, lambda path: path.write_text(text, "utf-8"))
     responses = sweep(PAPER, eta=FIGURE_6)
-    save_small(orbit_diagram.draw(responses, overlay=list(answer.values())), DOCS / "branches.png")
-    save_small(borders_figure.draw(*border_curves(answer)), DOCS / "borders.png")
+    save_small(plot(responses, *answer.values()), DOCS / "branches.png")
+    save_small(plot(*border_curves(answer)), DOCS / "borders.png")
 
 
 if __name__ == "__main__":

@@ -249,7 +249,7 @@ def draw_couple(
     import numpy as np
     import xarray as xr
 
-    from ..figures import run_history
+    from ..figures.passage import draw_run
     from ..figures.weak_drive import draw
     from ..weak_drive import averaged, own_resonance
     from ..weak_drive.schedule import Ramp
@@ -257,7 +257,7 @@ def draw_couple(
     title = f"{name}: {format_title(results, job.control)}"
     if job.control or not isinstance(job.schedule, Ramp):
         resonance = own_resonance.dividing_speed(structure, drive) * structure.omega
-        return run_history.draw(results, resonance, title)
+        return draw_run(results, resonance, title)
     Omega = np.linspace(0.3, 3.0, 20001)
     volts = averaged.no_load_speed(structure, drive, Omega) * drive.volts(structure)
     amplitude = averaged.amplitude(structure, drive, Omega) * drive.length

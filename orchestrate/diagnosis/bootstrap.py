@@ -27,14 +27,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..access import Player
+from ..laboratory.pieces import Floats
 from .evidence import Evidence
 from .refit import linear_fit, nearest_fit
 from .simulation import SEED, SIMULATED, Fitted, Simulation
 
-Floats = NDArray[np.float64]
 WIDE = 1.3  # sound hypotheses up to so many times the lowest misfit are fitted again
 # A density that is wide keeps 1 part in so many: what simulations cannot exclude
 WIDE_SHARE = 1.0 / SIMULATED

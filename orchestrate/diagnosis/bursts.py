@@ -22,9 +22,9 @@ from numpy.typing import NDArray
 from ..constants import TURN
 from ..laboratory.analysis.channels import BOX, Channels
 from ..laboratory.analysis.orders import EDGE, measured_phase
+from ..laboratory.pieces import Floats
 from .response_signs import default_band_edge
 
-Floats = NDArray[np.float64]
 AVERAGING_TIME, MIN_INTERVALS = 2.0, 16  # s of each mean of the power; how many there are at least
 IN_PERIODS = (
     1.0 / 3.0

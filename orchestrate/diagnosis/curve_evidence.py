@@ -13,10 +13,17 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..laboratory.analysis.channels import BOX, Channels
 from ..laboratory.analysis.orders import dwells
+from ..laboratory.pieces import Floats
 from ..laboratory.resonance_curve import CURVE_ORDERS, FACES, FEWEST_POINTS
 from ..laboratory.sampled import Sampled
 from ..laboratory.stepped_sine import SteppedSine
-from .evidence import COARSE_RANGE, FITTED_RANGE, Evidence
+from .evidence import (
+    COARSE_RANGE,
+    FITTED_RANGE,
+    Evidence,
+    Participation,
+    checked_participation,
+)
 from .orders import (
     ORDERS,
     SAMPLES_PER_PERIOD,
@@ -33,7 +40,6 @@ if TYPE_CHECKING:
 
     from ..structures import Structure
 
-Floats = NDArray[np.float64]
 Numbers = tuple[float | None, ...]
 Kind = TypeVar("Kind")
 MEASURED_CYCLES = 10  # at each frequency: they separate the orders 0.5, 1 and 1.37
@@ -59,9 +65,12 @@ class CurveData:
     floor: tuple[Numbers, ...]
     relative: bool  # whether the amplitudes are those of the motion relative to the base
     damping: float  # damping ratio by which the motion settles
+    participation: tuple[float | None, ...] = ()  # of each sensor; None, or (): to be fitted
 
     @classmethod
-    def from_curve(cls, curve: xr.Dataset, guess: Structure) -> CurveData:
+    def from_curve(
+        cls, curve: xr.Dataset, guess: Structure, participation: Participation = None
+    ) -> CurveData:
         """Check a resonance curve and take its numbers around the resonance."""
         check_curve(curve)
         falling = curve.attrs.get("direction", "up") == "down"
@@ -87,6 +96,9 @@ class CurveData:
             floor=tuple(none_for_nan(row) for row in inside.floor.values),
             relative=inside.attrs.get("relative", "false") == "true",
             damping=float(f"{min([width, *guessed]):.2g}"),
+            participation=checked_participation(
+                participation, tuple(str(name) for name in inside.channel.values)
+            ),
         )
 
     @property
@@ -197,7 +209,11 @@ def curve_evidence(data: CurveData, settle: int, samples_per_period: float) -> C
     orders = RecordOrders(windows, channels, every, floors, np.quantile(floors, 0.2, axis=1))
     pieces = Sampled(acceleration=tuple(box), sample_rate=rate).pieces()
     return CurveEvidence(
-        orders, pieces, with_phase=np.isfinite(phase), relative_motion=data.relative
+        orders,
+        pieces,
+        participation=data.participation,
+        with_phase=np.isfinite(phase),
+        relative_motion=data.relative,
     )
 
 

@@ -6,12 +6,11 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..laboratory.pieces import Floats
 from ..laboratory.record_checks import CLIPPED
 from .misfit import soft_squares
 
-Floats = NDArray[np.float64]
 DELAMINATED = "delaminated"
 NOT_SEEN = "no opening seen"
 NOT_DESCRIBED = "not described"

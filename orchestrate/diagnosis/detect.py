@@ -19,7 +19,7 @@ from .bootstrap import Bootstrap, bootstrap
 from .bursts import burst_excess
 from .decision_rule import DELAMINATED, NOT_SEEN, Findings, resampled_share
 from .even_orders import smallest_openings, thresholds
-from .evidence import Evidence
+from .evidence import Evidence, Participation
 from .fit import Results, checked_data, checked_free, delaminated_guess, text_coordinate
 from .hypotheses import FREE
 from .search_job import SearchJob, cached_coarse_evidence, cached_orders
@@ -38,10 +38,21 @@ if TYPE_CHECKING:
 TRUTHS = ("sound", "delaminated")  # of simulated records
 ONE_DIRECTION = 0.5  # of the range of frequencies, from first to last: a sweep in one direction
 ODDS_FROM = {0: "blocks of the record", 1: "simulated records"}
+STATED = {  # numbers of the rule: their names there, units and long names
+    "ratio": ("ratio", "1", "misfit of sound over that of delaminated"),
+    "faces_apart": ("apart", "1", "difference of two sensors over its threshold"),
+    "bursts": ("bursts", "1", "power of bursts once a period over its threshold"),
+    "smallest_opening": ("smallest", "m", "smallest opening at a sensor that would be detected"),
+    "level_low": ("low", "m/s2", "lowest level of the base"),
+    "level_high": ("high", "m/s2", "highest level of the base"),
+    "frequency_low": ("first", "Hz", "lowest frequency"),
+    "frequency_high": ("last", "Hz", "highest frequency"),
+}
 ASSUMED = (
     "the masses of both halves have the ratio of the guess",
     "each half has one mode in the range of the sweep",
     "the accelerometer of the base measures all that excites the structure",
+    "each sensor's participation factor is the one that was given, or from 0.2 to 1.7",
     "gains of the sensors agree within 12 % and their delays within 1 ms",
     "restitution does not depend on the speed",
 )
@@ -52,6 +63,7 @@ def detect(
     guess: Structure,
     *,
     free: Sequence[str] = FREE,
+    participation: Participation = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Decide whether a record is that of a delaminated structure.
@@ -67,6 +79,8 @@ def detect(
         alone acts.
     free : sequence of str
         What is fitted of the delaminated structure, as for :func:`fit`.
+    participation : float or mapping of str to float, optional
+        Participation factors of the sensors that are known, as for :func:`fit`.
     **running
         ``jobs``, ``progress``, ``store`` and others, see
         :class:`orchestrate.running.options.Running`.
@@ -90,8 +104,9 @@ def detect(
         ``frequency_low``, ``frequency_high`` in Hz); of the whole record ``sample_rate``,
         ``record_duration``, ``sweep_low`` and ``sweep_high``; ``order2`` and its
         ``order2_threshold`` over ``window``. Over ``hypothesis``: ``misfit``, ``evaluations``,
-        ``minima``, ``value`` and ``standard_error`` of its parameters (NaN but of the hypotheses
-        that the verdict is about and that describe the record), ``misfit_at`` and the ``fitted``
+        ``minima``, ``value`` and ``standard_error`` of its parameters, ``participation`` and
+        ``participation_error`` over ``channel`` (NaN but of the hypotheses that the verdict is
+        about and that describe the record), ``misfit_at`` and the ``fitted``
         orders over ``window``, beside what is ``measured``. Attributes ``reason``, ``settle``,
         ``simulated``, ``seen_up_to``, ``assumed`` and ``direction`` of the sweep.
 
@@ -133,7 +148,7 @@ def detect(
     structure = delaminated_guess(guess)
     job = DetectJob(
         name=f"detect_{checked_structure(guess).label()}",
-        data=checked_data(record, structure),
+        data=checked_data(record, structure, participation),
         guess=structure,
         free=checked_free(free),
     )
@@ -170,20 +185,9 @@ class DetectJob(SearchJob):
         scalars = {
             "verdict": ((), findings.verdict(), {"long_name": "verdict"}),
             **odds_variables(findings, simulated, table["end_bootstrap"][0]),
-            "ratio": variable((), findings.ratio, "1", "misfit of sound over that of delaminated"),
-            "faces_apart": variable(
-                (), findings.apart, "1", "difference of two sensors over its threshold"
-            ),
-            "bursts": variable(
-                (), findings.bursts, "1", "power of bursts once a period over its threshold"
-            ),
-            "smallest_opening": variable(
-                (), findings.smallest, "m", "smallest opening at a sensor that would be detected"
-            ),
-            "level_low": variable((), findings.low, "m/s2", "lowest level of the base"),
-            "level_high": variable((), findings.high, "m/s2", "highest level of the base"),
-            "frequency_low": variable((), findings.first, "Hz", "lowest frequency"),
-            "frequency_high": variable((), findings.last, "Hz", "highest frequency"),
+            **{
+                name: variable((), getattr(findings, of), *at) for name, (of, *at) in STATED.items()
+            },
             **record_variables(whole),
             "order2": variable("window", even.ratio, "1", "order 2 over order 1"),
             "order2_threshold": variable("window", even.threshold, "1", "size that counts as seen"),

@@ -6,14 +6,13 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..errors import InputError
+from ..laboratory.pieces import Floats
 
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 REQUIRED_VARIABLES = ("time", "speed", "voltage", "motor")
 MIN_SPEEDS = 8  # speeds that both runs have
 

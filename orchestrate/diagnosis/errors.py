@@ -31,9 +31,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..laboratory.analysis.channels import BOX
+from ..laboratory.pieces import Floats
 from ..laboratory.sampled import Sampled
 from .evidence import Evidence
 from .fitting import Search, difference_step
@@ -46,7 +46,6 @@ if TYPE_CHECKING:
     from .hypotheses import Hypothesis
     from .orders import RecordOrders
 
-Floats = NDArray[np.float64]
 REPLICATES = 16  # motions under more noise of the base
 CURVE_REPLICATES = 100  # of the simulated scatter of a curve's points
 MAX_INCREASE = 1.05  # misfit after the last step over that before: more is a step too far

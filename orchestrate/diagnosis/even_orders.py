@@ -5,13 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..constants import TURN
+from ..laboratory.pieces import Floats
 from .evidence import Evidence
 from .orders import Complexes, moving_average
 
-Floats = NDArray[np.float64]
 AVERAGED_WINDOWS = 5  # neighbouring windows that are taken together
 MIN_RESPONSE = 0.1  # of the largest order 1: windows where less moves are not taken
 # Threshold over the noise, and over the floor between the orders, which impacts raise too
@@ -64,10 +63,7 @@ def even_orders(evidence: Evidence, bonded: Complexes) -> EvenOrders:
     """Compute order 2 of a record beyond that of a bonded structure, and its threshold."""
     power = average_over_windows(np.nan_to_num(np.abs(evidence.measured[:, 1] - bonded[:, 1]) ** 2))
     size, threshold = size_of_order_1(evidence), thresholds(evidence)
-    excess = (
-        np.sqrt(np.maximum(power - average_over_windows(floor_of_orders(evidence) ** 2), 0.0))
-        / size
-    )
+    excess = np.sqrt(np.maximum(power - average_over_windows(evidence.floor**2), 0.0)) / size
     quiet = np.isnan(threshold)
     excess[quiet] = np.nan
     chosen = np.argmax(np.nan_to_num(excess / threshold), axis=0)
@@ -80,7 +76,7 @@ def thresholds(evidence: Evidence) -> Floats:
 
     NaN where little moves.
     """
-    size, floor = size_of_order_1(evidence), floor_of_orders(evidence)
+    size, floor = size_of_order_1(evidence), evidence.floor
     noise = NOISE_FACTOR * evidence.noise[:, np.newaxis] / size
     between = FLOOR_FACTOR * np.sqrt(average_over_windows(floor**2)) / size
     found = np.maximum(np.maximum(noise, between), MIN_RATIO)
@@ -105,12 +101,6 @@ def size_of_order_1(evidence: Evidence) -> Floats:
     return np.sqrt(average_over_windows(np.abs(evidence.measured[:, 0]) ** 2))
 
 
-def floor_of_orders(evidence: Evidence) -> Floats:
-    """Return the amplitude between the orders in the fitted windows, by sensor, m/s2."""
-    rows = [evidence.orders.channels.names.index(name) for name in evidence.orders.sensors]
-    return np.asarray(evidence.orders.floor[rows][:, evidence.used_windows])
-
-
 def average_over_windows(values: Floats) -> Floats:
     """Return each sensor's values averaged over neighbouring windows."""
     return np.stack([moving_average(row, AVERAGED_WINDOWS) for row in values])
@@ -119,18 +109,22 @@ def average_over_windows(values: Floats) -> Floats:
 def sensor_difference(evidence: Evidence, threshold: Floats) -> Floats:
     """Return the difference of two sensors over its threshold, the larger of orders 1 and 2.
 
-    Two faces of one body in one mode move alike, whatever it does. The best gain and delay between
-    the sensors are taken out, as order 1 tells them.
+    Two faces of one body in one mode move alike, whatever it does. The best gain, delay and ratio
+    of participation factors between the sensors are taken out, as order 1 tells them.
     """
     if len(evidence.measured) < 2:
         return np.full(threshold.shape[1], np.nan)
     one, other = evidence.measured
     slope = -1j * TURN * evidence.frequency
-    basis = np.stack([other[0], slope * other[0]], axis=1)
+    base = evidence.base[:2]
+    basis = np.stack([other[0], slope * other[0], base[0]], axis=1)
     real = np.concatenate([basis.real, basis.imag])
-    gain, delay = np.linalg.lstsq(real, np.concatenate([one[0].real, one[0].imag]), rcond=None)[0]
+    gain, delay, share = np.linalg.lstsq(
+        real, np.concatenate([one[0].real, one[0].imag]), rcond=None
+    )[0]
     size, seen = size_of_order_1(evidence)[0], np.fmax.reduce(threshold, axis=0)
-    both = np.nan_to_num(one[:2] - (gain + np.outer((1.0, 2.0), slope) * delay) * other[:2])
+    alike = (gain + np.outer((1.0, 2.0), slope) * delay) * other[:2] + share * base
+    both = np.nan_to_num(one[:2] - alike)
     first, second = np.sqrt(average_over_windows(np.abs(both) ** 2)) / size
     order2 = np.sqrt(average_over_windows(np.nan_to_num(np.abs(evidence.measured[:, 1])) ** 2)).max(
         axis=0

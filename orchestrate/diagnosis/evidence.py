@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
@@ -10,9 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..constants import TURN
+from ..errors import InputError
 from ..laboratory.analysis.channels import Channels
-from ..laboratory.pieces import Pieces
+from ..laboratory.pieces import Floats, Pieces
 from ..laboratory.sampled import Sampled
+from ..structures.ranges import Quantity
 from .orders import (
     MIN_WINDOWS,
     ORDERS,
@@ -29,7 +32,6 @@ if TYPE_CHECKING:
     import xarray as xr
     from scipy.sparse import csr_array
 
-Floats = NDArray[np.float64]
 FITTED_ORDERS = (1.0, 2.0, 3.0)
 MODEL_ERROR = (0.03, 0.03, 0.03)  # errors of a model's orders 1, 2, 3 over the size of order 1
 NEIGHBOURS = 2  # windows on each side over which that size is the largest
@@ -38,13 +40,29 @@ FITTED_RANGE = (0.62, 1.55)  # of the resonance's frequency: what is fitted of a
 COARSE_RANGE = (0.8, 1.28)  # of that of both sensors' resonances: what a coarse search goes by
 MAX_CUT_SHARE = 0.9  # of a record: more of it is not worth to be cut
 START_UP = 1.0  # s at the beginning where the start is not forgotten; at most a tenth of the record
-# Standard deviations of a sensor's gain and delay against the base's sensor, 1 and s
-GAIN_DEVIATION, DELAY_DEVIATION = 0.03, 2e-4
+# Standard deviations of a sensor's gain and delay against the base's sensor, 1 and s, and of its
+# participation factor: a beam's first mode at the sensor over that of a mass on a spring
+GAIN_DEVIATION, DELAY_DEVIATION, PARTICIPATION_DEVIATION = 0.03, 2e-4, 0.5
 MAX_GAIN_ERROR, MAX_DELAY = 0.12, 1e-3
+PARTICIPATION_RANGE = (0.2, 1.7)  # 1.57 at the tip of a uniform cantilever, 0.34 at 0.4 of it
 # Weight of these deviations, over that of a record which misses as much as a good model may
 PRIOR_WEIGHT = 0.1
 UNBOUNDED_RESIDUAL = 30.0  # residual of a motion that has no bounds
 SENSORS = ("acceleration1", "acceleration2")
+Participation = float | Mapping[str, float] | None  # as an argument: of all, of some sensors
+
+
+def checked_participation(given: Participation, sensors: Sequence[str]) -> tuple[float | None, ...]:
+    """Return each sensor's participation factor as given; None where it is to be fitted."""
+    factor = Quantity("participation", "1", "", -10.0, 10.0)
+    if given is None:
+        return (None,) * len(sensors)
+    if not isinstance(given, Mapping):
+        return (factor.check(given),) * len(sensors)
+    if unknown := set(given) - set(sensors):
+        text = f"the record has {' and '.join(sensors)}"
+        raise InputError(f"participation: {sorted(map(str, unknown))[0]!r} is no sensor; {text}")
+    return tuple(factor.check(given[name]) if name in given else None for name in sensors)
 
 
 def cut_to_resonance(orders: RecordOrders) -> tuple[Channels, float]:
@@ -73,6 +91,7 @@ class Evidence:
     pieces: Pieces  # the base's acceleration, from the first sample on
     # errors that a good model may have, see `MODEL_ERROR`
     relative: tuple[float, ...] = MODEL_ERROR
+    participation: tuple[float | None, ...] = ()  # of each sensor; None, or (): to be fitted
 
     @classmethod
     def from_record(cls, record: xr.Dataset) -> Evidence:
@@ -80,16 +99,20 @@ class Evidence:
         return cls.from_orders(record_orders(record))
 
     @classmethod
-    def from_orders(cls, orders: RecordOrders, kept: float = SAMPLES_PER_PERIOD) -> Evidence:
+    def from_orders(
+        cls,
+        orders: RecordOrders,
+        kept: float = SAMPLES_PER_PERIOD,
+        participation: tuple[float | None, ...] = (),
+    ) -> Evidence:
         """Build the evidence from a whole record's orders: cut and decimate it where possible."""
         channels, highest = cut_to_resonance(orders)
         thin = decimated(channels, highest, kept)
         if thin is not orders.channels:
             orders = channel_orders(thin)
         rate = orders.channels.sample_rate
-        return cls(
-            orders, Sampled(acceleration=tuple(orders.channels.box), sample_rate=rate).pieces()
-        )
+        pieces = Sampled(acceleration=tuple(orders.channels.box), sample_rate=rate).pieces()
+        return cls(orders, pieces, participation=participation)
 
     def near_resonance(self) -> Evidence:
         """Return the part of the evidence around both resonances, for a coarse search."""
@@ -116,7 +139,7 @@ class Evidence:
             self.orders.floor[:, kept],
             self.orders.noise,
         )
-        return Evidence(orders, pieces, self.relative)
+        return replace(self, orders=orders, pieces=pieces)
 
     @property
     def rate(self) -> float:
@@ -158,9 +181,8 @@ class Evidence:
     @cached_property
     def measured(self) -> Complexes:
         """Measured orders 1, 2, 3 of the sensors, shape (sensors, 3, windows), m/s2."""
-        rows = [self.orders.channels.names.index(name) for name in self.orders.sensors]
         numbers = [ORDERS.index(order) for order in FITTED_ORDERS]
-        return self.orders.amplitude[rows][:, numbers][:, :, self.used_windows]
+        return self.orders.amplitude[self.orders.rows][:, numbers][:, :, self.used_windows]
 
     @cached_property
     def size(self) -> Floats:
@@ -173,16 +195,17 @@ class Evidence:
     @cached_property
     def noise(self) -> Floats:
         """Standard deviation of the orders' amplitudes by noise, shape (sensors,), m/s2."""
-        rows = [self.orders.channels.names.index(name) for name in self.orders.sensors]
-        return np.maximum(self.orders.noise[rows], 1e-9 * self.size.max())
+        return np.maximum(self.orders.noise[self.orders.rows], 1e-9 * self.size.max())
+
+    @property
+    def floor(self) -> Floats:
+        """Amplitude between the orders, shape (sensors, windows), m/s2."""
+        return self.orders.floor[self.orders.rows][:, self.used_windows]
 
     @cached_property
     def error(self) -> Floats:
         """Standard deviations (model error and noise), shape (sensors, 3, windows), m/s2."""
-        rows = [self.orders.channels.names.index(name) for name in self.orders.sensors]
-        floor = np.maximum(
-            IRREGULAR * self.orders.floor[rows][:, self.used_windows], self.noise[:, None]
-        )
+        floor = np.maximum(IRREGULAR * self.floor, self.noise[:, None])
         model = np.array(self.relative)[:, None] * self.size[:, None, :]
         return np.sqrt(floor[:, None, :] ** 2 + model**2)
 
@@ -237,35 +260,66 @@ class Evidence:
         return found[:, :, 0] + 1j * found[:, :, 1] + self.base
 
     def fitted_orders(self, motion: Floats) -> Complexes:
-        """Compute a motion's orders as the sensors read them, with fitted gains and delays."""
+        """Compute a motion's orders as the sensors read them, see :meth:`corrected_for_sensors`."""
         return self.corrected_for_sensors(self.orders_of_motion(motion))
 
     def corrected_for_sensors(self, computed: Complexes) -> Complexes:
-        """Return computed orders corrected by each sensor's gain and delay, fitted to order 1.
+        """Return computed orders as each sensor reads them: base + participation (motion - base).
 
-        A delay that all channels share is none: the base's is in the input already.
+        Participation factor, gain and delay are fitted to order 1. A delay that all channels share
+        is none: the base's is in the input already.
         """
         found = computed.copy()
         for row in range(len(found)):
-            gain, delay = self.sensor_error(row, computed[row, 0])
+            participation, gain, delay = self.sensor_error(row, computed[row, 0])
             turn = TURN * np.outer(FITTED_ORDERS, self.frequency) * delay
-            found[row] *= gain * np.exp(-1j * turn)
+            moved = self.base + participation * (found[row] - self.base)
+            found[row] = gain * np.exp(-1j * turn) * moved
         return found
 
-    def sensor_error(self, row: int, computed: Complexes) -> tuple[float, float]:
-        """Fit the gain and delay (s) of a sensor to order 1, by least squares with a prior."""
+    def sensor_error(self, row: int, computed: Complexes) -> tuple[float, float, float]:
+        """Fit a sensor's participation factor, gain and delay (s) to order 1, with a prior."""
         if not np.isfinite(computed).all():  # a motion without bounds
-            return 1.0, 0.0
-        weighted = computed / self.error[row, 0]
-        columns = np.stack(
-            [GAIN_DEVIATION * weighted, -1j * DELAY_DEVIATION * TURN * self.frequency * weighted]
+            return 1.0, 1.0, 0.0
+        target, base = self.first_order(row, computed), self.base[0]
+        participation = self.given_participation(row)
+        if participation is None:
+            gain, _, more = self.sensor_solution(row, computed, target)
+            participation = 1.0 + PARTICIPATION_DEVIATION * more / (1.0 + GAIN_DEVIATION * gain)
+            participation = float(np.clip(participation, *PARTICIPATION_RANGE))
+        read = base + participation * (computed - base)
+        gain, delay = self.sensor_solution(row, read, target, 2)
+        return (
+            participation,
+            1.0 + float(np.clip(GAIN_DEVIATION * gain, -MAX_GAIN_ERROR, MAX_GAIN_ERROR)),
+            float(np.clip(DELAY_DEVIATION * delay, -MAX_DELAY, MAX_DELAY)),
         )
-        target = self.first_order(row, computed) / self.error[row, 0] - weighted
+
+    def sensor_solution(
+        self, row: int, computed: Complexes, target: Complexes, count: int = 3
+    ) -> Floats:
+        """Return a sensor's gain, delay and participation in their deviations, by least squares."""
+        columns = self.sensor_columns(row, computed)[:count]
+        missed = (target - computed) / self.error[row, 0]
         normal = (columns @ columns.conj().T).real
-        normal += np.eye(2) * PRIOR_WEIGHT**2 * len(weighted)  # no gain or delay without a reason
-        solution = np.linalg.solve(normal, (columns.conj() @ target).real)
-        gain = 1.0 + float(np.clip(GAIN_DEVIATION * solution[0], -MAX_GAIN_ERROR, MAX_GAIN_ERROR))
-        return gain, float(np.clip(DELAY_DEVIATION * solution[1], -MAX_DELAY, MAX_DELAY))
+        normal += np.eye(count) * PRIOR_WEIGHT**2 * len(missed)  # none without a reason
+        return np.asarray(np.linalg.solve(normal, (columns.conj() @ missed).real))
+
+    def sensor_columns(self, row: int, computed: Complexes) -> Complexes:
+        """Return the changes of order 1 by one deviation of gain, delay and participation."""
+        free = 0.0 if self.given_participation(row) is not None else PARTICIPATION_DEVIATION
+        late = -1j * DELAY_DEVIATION * TURN * self.frequency * computed
+        changes = [GAIN_DEVIATION * computed, late, free * (computed - self.base[0])]
+        return np.stack(changes) / self.error[row, 0]
+
+    def given_participation(self, row: int) -> float | None:
+        """Return a sensor's participation factor if it was given; None if it is to be fitted."""
+        return self.participation[row] if self.participation else None
+
+    def participations(self, motion: Floats) -> Floats:
+        """Return the participation factors with which a motion is nearest, shape (sensors,)."""
+        first = self.orders_of_motion(motion)[:, 0]
+        return np.array([self.sensor_error(row, one)[0] for row, one in enumerate(first)])
 
     def first_order(self, row: int, computed: Complexes) -> Complexes:
         """Return a sensor's measured order 1, with which the computed one is compared."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -14,6 +13,8 @@ from numpy.typing import NDArray
 from ..access import finder
 from ..checks import checked_word
 from ..errors import InputError
+from ..laboratory.analysis.channels import BOX
+from ..laboratory.pieces import Floats
 from ..response.labels import Variable, variable
 from ..response.questions import checked_structure
 from ..running.job import Inputs, Table
@@ -22,7 +23,7 @@ from ..structures import Structure
 from .curve_evidence import CurveData
 from .decision_rule import SETTINGS, factor_outside
 from .even_orders import EvenOrders, even_orders
-from .evidence import FITTED_ORDERS, Evidence
+from .evidence import FITTED_ORDERS, Evidence, Participation, checked_participation
 from .hypotheses import FREE, REPORTED, Hypothesis
 from .orders import channel_orders, checked_channels
 from .search_job import RecordData, SearchJob
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
 
     from ..running.options import Running
 
-Floats = NDArray[np.float64]
 DEFAULT_FREE = ("f1", "f2", "zeta1", "zeta2", "e")
 DELAMINATED = "delaminated"
 SHORT_NAMES = {  # names of the hypotheses as arguments
@@ -53,6 +53,7 @@ def fit(
     *,
     free: Sequence[str] = DEFAULT_FREE,
     hypothesis: str = DELAMINATED,
+    participation: Participation = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Fit a structure to a record of a swept or stepped sine, or to a resonance curve.
@@ -71,6 +72,10 @@ def fit(
     hypothesis : str
         ``"delaminated"``; or one mass, that is ``"bonded"``, ``"curved"`` (a spring that hardens or
         softens), ``"friction"`` (dry), ``"stop"`` or ``"stop on the other side"``.
+    participation : float or mapping of str to float, optional
+        Participation factor of the sensors, or by sensor (``acceleration1``, ``acceleration2``): a
+        sensor on a beam reads ``base + participation (mass - base)``, by its place. Those that are
+        not given are fitted, from 0.2 to 1.7.
     **running
         ``jobs``, ``progress``, ``store`` and others, see
         :class:`orchestrate.running.options.Running`.
@@ -82,7 +87,8 @@ def fit(
         does not hold it: both halves' frequencies where no opening is seen. Over ``parameter`` and
         ``other_parameter``: ``correlation``. ``misfit``, 1 where the model misses 3 % of order 1 or
         the noise, and ``evaluations``; ``minima`` over ``minimum``: misfits of those that differ;
-        ``misfit_at`` over ``window``. Over ``channel``, ``order`` and ``window``: the amplitudes
+        ``misfit_at`` over ``window``; ``participation`` and ``participation_error`` over
+        ``channel``. Over ``channel``, ``order`` and ``window``: the amplitudes
         ``measured``, ``fitted`` and their ``floor`` in m/s2.
 
     Raises
@@ -96,7 +102,8 @@ def fit(
     The measured acceleration of the base is the FMU's input, as the cubic spline through its
     samples. Compared are order 1 (as a complex number) and the sizes of orders 2 and 3 in windows
     of about 0.25 s, over errors that have a relative part: 3 % of order 1 and what is between the
-    orders. A gain and a delay of each sensor against that of the base are found in closed form.
+    orders. A participation factor, a gain and a delay of each sensor against that of the base are
+    found in closed form.
     The standard errors add what simulated noise does and what blocks of windows show; see
     :mod:`orchestrate.diagnosis.errors`.
 
@@ -129,9 +136,9 @@ def fit(
     kind = checked_word("hypothesis", hypothesis, (DELAMINATED, *SHORT_NAMES))
     structure = delaminated_guess(guess)
     data = (
-        CurveData.from_curve(record, structure)
+        CurveData.from_curve(record, structure, participation)
         if is_curve(record)
-        else checked_data(record, structure)
+        else checked_data(record, structure, participation)
     )
     job = FitJob(
         name=f"fit_{checked_structure(guess).label()}",
@@ -158,9 +165,12 @@ def checked_free(free: Sequence[str]) -> tuple[str, ...]:
     return names
 
 
-def checked_data(record: xr.Dataset, guess: Structure | None = None) -> RecordData:
+def checked_data(
+    record: xr.Dataset, guess: Structure | None = None, participation: Participation = None
+) -> RecordData:
     """Check that a record's base moves as a sine, and return its channels for a job."""
     channels = checked_channels(record)
+    factors = checked_participation(participation, [one for one in channels.names if one != BOX])
     resonance = channel_orders(channels).resonance
     if guess is not None:
         low, high = sorted((guess.f1, guess.f2))
@@ -169,7 +179,7 @@ def checked_data(record: xr.Dataset, guess: Structure | None = None) -> RecordDa
             text = f"a factor of {factor:.3g} from the guess's {low:.3g} to {high:.3g} Hz"
             text = f"record: the response is largest at {resonance:.3g} Hz, {text}: are the times"
             warnings.warn(f"{text} in s, and is the guess one of this beam?", stacklevel=3)
-    return RecordData.from_channels(channels)
+    return RecordData.from_channels(channels, factors)
 
 
 def check_tones(job: FitJob) -> None:
@@ -244,6 +254,7 @@ class Results:
     misfit: Floats
     residuals: Floats
     fitted: NDArray[np.complex128]
+    participation: Floats  # and standard error of each sensor, shape (hypotheses, 2, sensors)
     evaluations: Floats
 
     @classmethod
@@ -274,38 +285,36 @@ class Results:
             return f"{size}, {even.excess:.2g} times the size from which it counts as seen"
         return f"no opening is seen ({size}): the record does not hold f1 and f2"
 
-    def reported_values(self, position: int) -> dict[str, tuple[float, float]]:
-        """Return the reported parameters of a hypothesis, by name, as (value, standard error)."""
+    def reported_values(self, position: int) -> tuple[dict[str, float], Floats]:
+        """Return the reported parameters of a hypothesis by name, and their covariance."""
         hypothesis, evidence = self.job.hypotheses[position], self.job.evidence
         names = list(hypothesis.bounds(evidence))
         here = dict(zip(names, self.values[position].tolist(), strict=False))
-        reported = hypothesis.reported(here, evidence)
         slopes = reported_derivatives(hypothesis, here, evidence)
         covariance = self.covariance[position][: len(names), : len(names)]
-        errors = np.sqrt(np.maximum(np.diag(slopes @ covariance @ slopes.T), 0.0))
-        known = dict(
-            zip(reported, zip(reported.values(), errors.tolist(), strict=True), strict=True)
-        )
-        if not self.is_opening_seen():
-            known.update(dict.fromkeys(known.keys() & set(FREE), (math.nan, math.nan)))
-        return known
+        return hypothesis.reported(here, evidence), slopes @ covariance @ slopes.T
 
     def parameters(self, stated: NDArray[np.bool_]) -> dict[str, Variable]:
         """Return values and errors of the hypotheses that are ``stated``, NaN of the others.
 
         ``asked`` is 1 where one has the parameter.
         """
-        every = [self.reported_values(position) for position in range(len(self.values))]
-        shape = (len(every), len(REPORTED))
-        value, error, asked = np.full(shape, np.nan), np.full(shape, np.nan), np.full(shape, np.nan)
-        for row, known in enumerate(every):
-            for name, (number, deviation) in known.items():
+        shape = (len(self.values), len(REPORTED))
+        value, error, asked = np.full((3, *shape), np.nan)
+        for row in range(len(self.values)):
+            known, covariance = self.reported_values(row)
+            errors = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+            for (name, number), deviation in zip(known.items(), errors, strict=True):
                 column = list(REPORTED).index(name)
-                if stated[row]:
-                    value[row, column], error[row, column] = number, deviation
                 asked[row, column] = 1.0
+                if stated[row] and (self.is_opening_seen() or name not in FREE):
+                    value[row, column], error[row, column] = number, deviation
         over = ("hypothesis", "parameter")
+        factor, doubt = np.where(stated[:, None, None], self.participation, np.nan).swapaxes(0, 1)
+        place, words = ("hypothesis", "channel"), "participation factor of the sensor"
         return {
+            "participation": variable(place, factor, "1", words),
+            "participation_error": variable(place, doubt, "1", f"standard error of the {words}"),
             "value": variable(over, value, "", "fitted value, in the parameter's unit"),
             "standard_error": variable(over, error, "", "standard error, in the parameter's unit"),
             "asked": variable(over, asked, "1", "1 where the hypothesis has the parameter"),
@@ -313,23 +322,16 @@ class Results:
 
     def correlation(self, position: int, names: list[str]) -> tuple[Any, ...]:
         """Return the correlation matrix of the errors of a hypothesis's reported parameters."""
-        hypothesis, evidence = self.job.hypotheses[position], self.job.evidence
-        fitted = list(hypothesis.bounds(evidence))
-        here = dict(zip(fitted, self.values[position].tolist(), strict=False))
-        slopes = reported_derivatives(hypothesis, here, evidence)
-        covariance = slopes @ self.covariance[position][: len(fitted), : len(fitted)] @ slopes.T
+        reported, covariance = self.reported_values(position)
         size = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
-        order = [list(hypothesis.reported(here, evidence)).index(name) for name in names]
+        order = [list(reported).index(name) for name in names]
         known = (covariance / np.outer(size, size))[np.ix_(order, order)]
         return variable(("parameter", "other_parameter"), known, "1", "correlation of errors")
 
     def comparison(self) -> tuple[dict[str, Variable], dict[str, Variable]]:
         """Return measured and fitted orders with the misfits, and their coordinates."""
         evidence = self.job.evidence
-        rows = [evidence.orders.channels.names.index(name) for name in evidence.orders.sensors]
-        floor = evidence.orders.floor[rows][:, None, evidence.used_windows].repeat(
-            len(FITTED_ORDERS), axis=1
-        )
+        floor = evidence.floor[:, None].repeat(len(FITTED_ORDERS), axis=1)
         by_window = np.sqrt(np.mean(self.residuals**2, axis=(1, 2)))
         over = ("channel", "order", "window")
         variables = {
@@ -385,7 +387,10 @@ def reported_derivatives(
     return np.stack(columns, axis=1)
 
 
-END_COLUMNS = ("values", "covariance", "minima", "misfit", "residuals", "fitted", "evaluations")
+END_COLUMNS = (
+    *("values", "covariance", "minima", "misfit", "residuals", "fitted"),
+    *("participation", "evaluations"),
+)
 
 
 def text_coordinate(dimension: str, values: Sequence[str], words: str) -> Variable:

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..laboratory.pieces import Floats
 from .evidence import Evidence
 from .hypotheses import Hypothesis
 from .linear import LinearModel
@@ -17,7 +17,6 @@ from .misfit import SOFT_LIMIT, misfit
 if TYPE_CHECKING:
     from ..access import Player
 
-Floats = NDArray[np.float64]
 STEPS = {  # of the differences that make derivatives; f and common: parts of the resonance's
     **{"common": 3e-4, "f": 1e-4, "split": 3e-3, "e": 0.02, "clearance": 0.01},
     **{"log_zeta": 0.02, "log_zeta1": 0.05, "log_zeta2": 0.05},

@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..constants import TURN
+from ..laboratory.pieces import Floats
 from ..structures import Structure
 from .single_mass import SingleMass
 
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from ..access import Player
     from .evidence import Evidence
 
-Floats = NDArray[np.float64]
 REPORTED = {  # units and long names
     "f1": ("Hz", "natural frequency of half 1 alone"),
     "f2": ("Hz", "natural frequency of half 2 alone"),

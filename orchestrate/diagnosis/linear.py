@@ -10,11 +10,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..laboratory.pieces import Floats
 from .misfit import misfit, soft_weights
 
-Floats = NDArray[np.float64]
 Bounds = Mapping[str, tuple[float, float]]
 POINTS_PER_NUMBER = 4  # of a cloud, for each number
 SEED = 20_241

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from ..laboratory.pieces import Floats
+
 SOFT_LIMIT = 3.0  # residuals above count by their size, not its square: a jump may be a window off
 
 

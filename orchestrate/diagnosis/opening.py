@@ -11,14 +11,14 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..constants import TURN
+from ..laboratory.pieces import Floats
 
 if TYPE_CHECKING:
     from ..structures import Structure
 
-Floats = NDArray[np.float64]
 POINTS_AROUND = 201  # frequencies around one of a grid
 
 

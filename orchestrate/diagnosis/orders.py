@@ -16,13 +16,13 @@ from ..constants import TURN
 from ..errors import InputError
 from ..laboratory.analysis.channels import BOX, Channels
 from ..laboratory.analysis.orders import EDGE, NYQUIST, Window, measured_phase, window
+from ..laboratory.pieces import Floats
 from ..laboratory.record import channel_label
 
 if TYPE_CHECKING:
     import xarray as xr
     from scipy.sparse import csr_array
 
-Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 ORDERS = (1.0, 2.0, 3.0, 0.5)
 OFF_ORDERS = (1.37, 2.37, 2.63)  # no multiples of 1/2, 1/3 or 1/4: what is there is no order
@@ -138,6 +138,11 @@ class RecordOrders:
         return tuple(name for name in self.channels.names if name != BOX)
 
     @property
+    def rows(self) -> list[int]:
+        """Rows of the channels beside the base's."""
+        return [row for row, name in enumerate(self.channels.names) if name != BOX]
+
+    @property
     def level(self) -> Floats:
         """Amplitude of the base's order 1, m/s2, shape (windows,)."""
         return np.abs(self.order(1.0, BOX))
@@ -145,8 +150,7 @@ class RecordOrders:
     @property
     def resonance(self) -> float:
         """Frequency at which a sensor moves most for the base's amplitude, Hz."""
-        rows = [self.channels.names.index(name) for name in self.sensors]
-        response = (np.abs(self.amplitude[rows, 0]) / self.level).max(axis=0)
+        response = (np.abs(self.amplitude[self.rows, 0]) / self.level).max(axis=0)
         return float(self.windows.frequency[np.argmax(response)])
 
 

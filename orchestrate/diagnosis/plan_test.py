@@ -9,11 +9,12 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..errors import InputError
 from ..laboratory.analysis.channels import Channels, attributes, checked_number
 from ..laboratory.analysis.orders import fit_windows
+from ..laboratory.pieces import Floats
 from ..laboratory.sensors import Sensor, measure, sensor_by_channel
 from ..laboratory.shake import shake
 from ..laboratory.swept_sine import SweptSine
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
     import xarray as xr
     from typing_extensions import Unpack
 
-Floats = NDArray[np.float64]
 ORDERS = (1.0, 2.0, 3.0)
 SPLITS = (1.0, 0.2)  # parts of the guess's difference between its halves that are computed
 SAMPLES_PER_PERIOD = 20.0  # of the computed records, in a period of the highest frequency
@@ -50,14 +50,9 @@ class Sweep:
 
     def scaled_to(self, level: float) -> Sweep:
         """Scale the sweep to another level; valid for structures without clearance."""
-        scale = level / self.level
-        return Sweep(
-            scale * self.delaminated,
-            scale * self.sound,
-            scale * self.opening,
-            scale * self.peak,
-            level,
-        )
+        names = ("delaminated", "sound", "opening", "peak")
+        scaled = {name: level / self.level * getattr(self, name) for name in names}
+        return replace(self, level=level, **scaled)
 
 
 @dataclass(frozen=True)
@@ -228,17 +223,20 @@ class SweepComputation:
             warnings.simplefilter("ignore", UserWarning)  # of a low level: it is no other unit
             channels = Channels.from_record(measure(history, quiet, excitation=sine), (BOX,))
         names, responses = channels.responses()
-        linear = self.sound.acceleration(channels)
-        rows = np.concatenate([channels.values[:1], responses, linear[None]])
-        both = Channels(channels.time, rate, (BOX, *names, "sound"), rows, channels.title)
+        shares = np.array([[self.sensors[name].participation] for name in names])
+        linear = channels.box + shares * (self.sound.acceleration(channels) - channels.box)
+        rows = np.concatenate([channels.values[:1], responses, linear])
+        sound_names = (f"sound {name}" for name in names)
+        both = Channels(channels.time, rate, (BOX, *names, *sound_names), rows, channels.title)
         windows, amplitudes, _ = fit_windows(both, ORDERS, None, self.noise.periods, 0.5)
         at = np.array([window.frequency for window in windows])
         found = interpolate_amplitudes(f, at, amplitudes[1:])
-        sound = np.zeros_like(found[:-1])
-        sound[:, 0] = found[-1, 0]
+        measured, linear_orders = np.split(found, 2)
+        sound = np.zeros_like(measured)
+        sound[:, 0] = linear_orders[:, 0]
         gaps = [largest_gap(history, both.time[one.part]) for one in windows]
         peak = float(np.abs(responses).max())
-        return Sweep(found[:-1], sound, np.interp(f, at, gaps), peak, level)
+        return Sweep(measured, sound, np.interp(f, at, gaps), peak, level)
 
 
 def interpolate_amplitudes(frequency: Floats, at: Floats, amplitudes: Floats) -> Floats:

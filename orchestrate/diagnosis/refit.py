@@ -6,11 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..access import Player
-from ..constants import TURN
-from .evidence import DELAY_DEVIATION, GAIN_DEVIATION, PRIOR_WEIGHT, Evidence
+from ..laboratory.pieces import Floats
+from .evidence import GAIN_DEVIATION, PARTICIPATION_DEVIATION, PRIOR_WEIGHT, Evidence
 from .fitting import Search, Solution, difference_step
 from .hypotheses import Delaminated
 from .linear import LinearModel
@@ -18,7 +17,6 @@ from .misfit import soft_squares, soft_weights
 from .orders import Complexes
 from .simulation import Fitted, Simulation, rounded
 
-Floats = NDArray[np.float64]
 Values = Mapping[str, float]
 ROUNDS = 6  # of reweighted least squares
 REACH = 3.0  # standard deviations of the cloud within which its regression is used
@@ -107,29 +105,24 @@ def mean_square(residuals: Floats) -> Floats:
 
 
 def sensor_error_columns(evidence: Evidence, computed: Complexes) -> tuple[Floats, Floats]:
-    """Return how gains and delays change the residuals, and how they are fitted to them.
+    """Return how sensors' errors change the residuals, and how they are fitted to them.
 
     As :meth:`.Evidence.sensor_error` has it: by order 1 alone, with a prior.
     """
     sensors, windows = len(computed), computed.shape[-1]
-    columns = np.zeros((sensors, 4, windows, sensors, 2))
+    columns = np.zeros((sensors, 4, windows, sensors, 3))
     first = np.zeros_like(columns)
     for row in range(sensors):
-        weighted = computed[row, 0] / evidence.error[row, 0]
-        pair = np.stack(
-            [
-                GAIN_DEVIATION * weighted,
-                -1j * DELAY_DEVIATION * TURN * evidence.frequency * weighted,
-            ]
-        )
-        columns[row, 0, :, row] = pair.real.T
-        columns[row, 1, :, row] = pair.imag.T
+        changes = evidence.sensor_columns(row, computed[row, 0])
+        columns[row, 0, :, row] = changes.real.T
+        columns[row, 1, :, row] = changes.imag.T
         first[row] = columns[row]
-        higher = np.abs(computed[row, 1:]) / evidence.error[row, 1:]
-        columns[row, 2:, :, row, 0] = GAIN_DEVIATION * np.nan_to_num(higher)
-    felt = first.reshape(-1, 2 * sensors)
-    normal = felt.T @ felt + np.eye(2 * sensors) * PRIOR_WEIGHT**2 * windows
-    return columns.reshape(-1, 2 * sensors), np.linalg.solve(normal, felt.T)
+        higher = np.nan_to_num(np.abs(computed[row, 1:]) / evidence.error[row, 1:])
+        columns[row, 2:, :, row, 0] = GAIN_DEVIATION * higher
+        columns[row, 2:, :, row, 2] = PARTICIPATION_DEVIATION * higher
+    felt = first.reshape(-1, 3 * sensors)
+    normal = felt.T @ felt + np.eye(3 * sensors) * PRIOR_WEIGHT**2 * windows
+    return columns.reshape(-1, 3 * sensors), np.linalg.solve(normal, felt.T)
 
 
 def linear_fit(evidence: Evidence, fitted: Fitted, player: Player) -> LinearFit:

@@ -15,8 +15,8 @@ from ..laboratory.analysis.averaging import averaging
 from ..laboratory.analysis.channels import BOX, Channels
 from ..laboratory.analysis.frf import EXCITED
 from ..laboratory.analysis.orders import Window, fit_windows
+from ..laboratory.pieces import Floats
 
-Floats = NDArray[np.float64]
 OFF_ORDERS = (2.37, 3.37)  # where no motion with a period has a line: what is there is noise
 ORDERS = (0.5, 1.0, 2.0, 2.37, 3.0, 3.37, 4.0, 5.0)
 HARMONICS = (2.0, 3.0, 4.0, 5.0)

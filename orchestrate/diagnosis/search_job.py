@@ -10,23 +10,22 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..access import OSCILLATOR, Player
 from ..laboratory.analysis.channels import Channels
+from ..laboratory.pieces import Floats
 from ..running.job import Inputs, Job, Table
 from ..structures import Structure
 from .curve_evidence import CurveData
 from .decision_rule import SETTINGS
-from .errors import estimate
+from .errors import Estimate, estimate
 from .even_orders import even_orders
-from .evidence import Evidence
-from .fitting import POLISH_ROUNDS, Search, Solution, distinct_minima
+from .evidence import MODEL_ERROR, Evidence
+from .fitting import POLISH_ROUNDS, Search, Solution, difference_step, distinct_minima
 from .hypotheses import SOUND, STARTING_SPLITS, Delaminated, DelaminatedWithClearance, Hypothesis
 from .misfit import misfit
 from .orders import RecordOrders, channel_orders
 
-Floats = NDArray[np.float64]
 BONDED_STEPS = 15  # steps downhill from the bonded solution
 SCAN_STARTS = 1  # starts of each part of the scan from which to go downhill
 # Steps downhill from each start of the scan where a delamination is possible, and elsewhere
@@ -57,12 +56,16 @@ class RecordData:
     sample_rate: float
     begin: float
     channels: tuple[tuple[float, ...], ...]  # m/s2
+    participation: tuple[float | None, ...] = ()  # of each sensor; None, or (): to be fitted
 
     @classmethod
-    def from_channels(cls, channels: Channels) -> RecordData:
+    def from_channels(
+        cls, channels: Channels, participation: tuple[float | None, ...] = ()
+    ) -> RecordData:
         """Copy the samples of checked channels."""
         values = tuple(tuple(row.tolist()) for row in channels.values)
-        return cls(channels.names, channels.sample_rate, float(channels.time[0]), values)
+        begin = float(channels.time[0])
+        return cls(channels.names, channels.sample_rate, begin, values, participation)
 
     def to_channels(self) -> Channels:
         """Return the record as channels, which were checked before."""
@@ -71,11 +74,12 @@ class RecordData:
 
     def evidence(self) -> Evidence:
         """Return the evidence of the record."""
-        return Evidence.from_orders(cached_orders(self))
+        return Evidence.from_orders(cached_orders(self), participation=self.participation)
 
     def coarse_evidence(self) -> Evidence:
         """Return the evidence near the resonance with fewer samples, for a coarse search."""
-        return Evidence.from_orders(cached_orders(self), COARSE_SAMPLES).near_resonance()
+        orders = cached_orders(self)
+        return Evidence.from_orders(orders, COARSE_SAMPLES, self.participation).near_resonance()
 
 
 @lru_cache(maxsize=2)
@@ -333,6 +337,7 @@ class SearchJob(Job):
         covariance = np.full((MAX_NUMBERS, MAX_NUMBERS), np.nan)
         if known is not None:
             covariance[: len(values), : len(values)] = known.covariance
+        factors = participations_with_errors(search, values, motion, known)
         levels = np.full(MAX_MINIMA, np.nan)
         different = distinct_minima(found)[:MAX_MINIMA]
         levels[: len(different)] = [one.misfit for one in different]
@@ -343,8 +348,34 @@ class SearchJob(Job):
             "end_misfit": misfit(residuals),
             "end_residuals": residuals,
             "end_fitted": np.stack([computed.real, computed.imag]),
+            "end_participation": factors,
             "end_evaluations": float(search.evaluations),
         }
+
+
+def participations_with_errors(
+    search: Search, values: Mapping[str, float], motion: Floats, known: Estimate | None
+) -> Floats:
+    """Return the sensors' participation factors and their standard errors, shape (2, sensors).
+
+    They follow from the numbers, whose errors they have beside those of a good model; NaN where
+    these are not known, 0 where the factor was given.
+    """
+    evidence = search.evidence
+    here = evidence.participations(motion)
+    if known is None:
+        return np.stack([here, np.full(len(here), np.nan)])
+    free = np.array([evidence.given_participation(row) is None for row in range(len(here))])
+    slopes = []
+    for name, value in values.items():
+        step = difference_step(search, name)
+        there = search.hypothesis.displacements(
+            {**values, name: value + step}, evidence, search.player
+        )
+        slopes.append((evidence.participations(there) - here) / step)
+    slope = np.stack(slopes, axis=1)
+    variance = np.diag(slope @ known.covariance @ slope.T) + (MODEL_ERROR[0] * here) ** 2
+    return np.stack([here, np.where(free, np.sqrt(variance), 0.0)])
 
 
 def with_halves_exchanged(values: Mapping[str, float]) -> dict[str, float]:

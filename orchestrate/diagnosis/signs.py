@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..checks import checked_integer
 from ..errors import InputError
 from ..laboratory.analysis.channels import Channels, attributes, checked_number
+from ..laboratory.pieces import Floats
 from ..response.labels import flags, variable
 from ..structures import Structure
 from .drive_signs import drive_signs, is_drive_run
@@ -30,7 +30,6 @@ from .undamaged import SoundStructure
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 EXCEED_FACTOR = 2.0  # times what noise and a sound structure show
 MEANINGS = {-1: "unknown", 0: "no", 1: "yes"}
 

@@ -6,15 +6,14 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..access import Player
+from ..laboratory.pieces import Floats
 from .errors import motions_under_base_noise
 from .evidence import Evidence
 from .hypotheses import Hypothesis
 from .orders import Complexes
 
-Floats = NDArray[np.float64]
 SIMULATED = 200  # records of each hypothesis
 BASE_REPLICATES = 20  # motions under more noise of the base; each serves several records
 # Parts of the record over which what a fit misses changes. Chosen on 23 beams of the campaign on

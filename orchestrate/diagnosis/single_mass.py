@@ -19,12 +19,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..access.c_library import loaded_function
+from ..laboratory.pieces import Floats
 
 log = logging.getLogger(__name__)
-Floats = NDArray[np.float64]
 SOURCE = Path(__file__).with_suffix(".c")
 # Angle of the natural vibration in a step, rad: its amplitude errs by 1e-7 in a period
 MAX_STEP_ANGLE = 0.12

@@ -7,14 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..constants import TURN
 from ..laboratory.analysis.channels import BOX, Channels
 from ..laboratory.analysis.shock_spectrum import ramp_invariant
+from ..laboratory.pieces import Floats
 from ..structures import Structure
 
-Floats = NDArray[np.float64]
 FIRST_DAMPING = (0.003, 0.02, 0.1)  # ratios that the search for the nearest oscillator begins at
 
 

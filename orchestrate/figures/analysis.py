@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import groupby
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -12,31 +12,18 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..units import as_shown
+from .colours import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, STRUCTURES
 from .labels import in_shown_units, plain_title
-from .resonance import COLOURS as STRUCTURES
 from .scales import label_with_unit, typeset_array_unit
-from .style import (
-    BLACK,
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PURPLE,
-    RED,
-    make_panels,
-    set_title,
-    styled,
-    write_plain_numbers,
-)
+from .style import draw_line, make_panels, set_title, styled, use_plain_log
 
 Results = dict[str, xr.Dataset]  # by label
 Reader = Callable[[xr.Dataset], xr.DataArray]
 CHANNELS = {"box_acceleration": "box", "acceleration1": "mass 1", "acceleration2": "mass 2"}
 COLOURS = (BLUE, RED, BLACK, ORANGE, GREEN, PURPLE)
-DECADES = 6  # of an axis, below the largest value
 FEW = 300.0  # largest over smallest value of an axis that has plain numbers
 DEGREES = 180.0 / np.pi
-NOTE_ENDS = {"left": (0.0, 0.4), "right": (0.6, 1.0), "center": (0.3, 0.7)}  # of a panel's width
+PHASE = {"ylim": (-280.0, 100.0), "yticks": (-270, -180, -90, 0, 90)}  # an axis in degrees
 
 
 @styled
@@ -61,30 +48,14 @@ def draw(
 # -- parts of pictures ----------------------------------------------------------------------------
 
 
-def make_channel_grid(
-    results: Results, rows: int, heights: tuple[float, ...]
-) -> tuple[Figure, Any]:
-    """Make a figure with a column for each measured mass; return it and the axes by channel."""
-    every = channels_in(results)
-    names = [name for name in every if name != "box_acceleration"] or every
-    size = (5.4 * len(names), 0.6 + 2.0 * sum(heights))
-    figure, axes = make_panels(
-        rows, len(names), size, sharex=True, sharey="row", height_ratios=heights[:rows]
-    )
-    columns = {name: axes[i :: len(names)] for i, name in enumerate(names)}
-    for name, column in columns.items():
-        column[0].set_title(CHANNELS[name])
-    return figure, columns
-
-
-def first_result(results: Results) -> xr.Dataset:
+def first_of(results: Results) -> xr.Dataset:
     """Return the first record's result, whose display units the axes use."""
     return next(iter(results.values()))
 
 
 def frequency_label(results: Results, words: str = "frequency") -> str:
     """Return a frequency axis' label with the display unit."""
-    return label_with_unit(words, first_result(results).frequency)
+    return label_with_unit(words, first_of(results).frequency)
 
 
 def channels_in(results: Results) -> list[str]:
@@ -119,12 +90,11 @@ def add_legend(figure: Figure, axes: Axes, results: Results) -> None:
     if any(results):
         colours = colours_by_label(results)
         handles = [axes.plot([], [], color=colours[label])[0] for label in results]
-        place: Any = {"loc": "outside lower right", "ncols": len(results)}
-        figure.legend(handles, list(results), **place)
+        figure.legend(handles, list(results), loc="outside lower right", ncols=len(results))
 
 
-def limit_log_axis(axes: Axes, values: list[np.ndarray], decades: int = DECADES) -> None:
-    """Set a logarithmic y axis that ends some decades below the largest value."""
+def limit_log_axis(axes: Axes, values: list[np.ndarray], decades: int = 6) -> None:
+    """Set a logarithmic y axis that ends at most some decades below the largest value."""
     every = np.concatenate([np.ravel(array) for array in values])
     every = every[np.isfinite(every) & (every > 0.0)]
     axes.set_yscale("log")
@@ -133,44 +103,29 @@ def limit_log_axis(axes: Axes, values: list[np.ndarray], decades: int = DECADES)
         low = max(0.7 * float(every.min()), 10.0**-decades * top)
         axes.set_ylim(min(low, 0.5 * top), 1.5 * top)
         if top < FEW * low:
-            write_plain_numbers(axes)
+            use_plain_log(axes)
 
 
-def phase_in_degrees(phase: xr.DataArray) -> np.ndarray:
+def phase_in_degrees(phase: xr.DataArray) -> xr.DataArray:
     """Convert a phase from rad to degrees in -270 to 90; NaN where the drawn line would jump."""
     degrees = (DEGREES * phase.values + 270.0) % 360.0 - 270.0
-    jumps = np.flatnonzero(np.abs(np.diff(degrees)) > 180.0)
-    degrees[jumps] = np.nan
-    return np.asarray(degrees)
+    degrees[np.flatnonzero(np.abs(np.diff(degrees)) > 180.0)] = np.nan
+    return phase.copy(data=degrees)
 
 
 def note_hidden(axes: Axes, values: Mapping[str, list[np.ndarray]]) -> None:
-    """Write into a panel the labels of records whose curves lie below its axis.
-
-    The words stand where the lowest visible curve is highest.
-    """
+    """Write above a panel the labels of records whose curves lie below its axis."""
     low = axes.get_ylim()[0]
     hidden = [name for name, arrays in values.items() if np.nanmedian(np.hstack(arrays)) < low]
     if any(hidden):
-        free = {align: lowest_curve(axes, *ends) for align, ends in NOTE_ENDS.items()}
-        align = max(free, key=lambda each: free[each])
-        place: Any = {"transform": axes.transAxes, "ha": align, "va": "bottom"}
-        x = {"left": 0.01, "right": 0.99, "center": 0.5}[align]
-        axes.text(x, 0.02, f"below this axis: {', '.join(hidden)}", fontsize=8, **place)
-
-
-def lowest_curve(axes: Axes, begin: float, end: float) -> float:
-    """Return the lowest height of a panel's visible curves between two parts of its width."""
-    axes.autoscale_view(scaley=False)
-    to_axes = axes.transData + axes.transAxes.inverted()
-    points = np.concatenate([to_axes.transform(line.get_xydata()) for line in axes.lines])
-    x, y = points.T
-    inside = (x >= begin) & (x <= end) & (y >= 0.0)
-    return float(y[inside].min()) if inside.any() else 1.0
+        axes.set_title(f"below this axis: {', '.join(hidden)}", loc="right", fontsize=8)
 
 
 def split_sweep(data: xr.Dataset) -> Iterator[tuple[xr.Dataset, str]]:
     """Yield the upward and downward parts of a swept-sine result, each with its line style."""
+    if "sweep_rate" not in data:
+        yield data, "-"
+        return
     rising = (data.sweep_rate.values >= 0.0).tolist()
     for up, numbers in groupby(range(len(rising)), key=rising.__getitem__):
         yield data.isel(time=list(numbers)), "-" if up else "--"
@@ -179,27 +134,58 @@ def split_sweep(data: xr.Dataset) -> Iterator[tuple[xr.Dataset, str]]:
 # -- pictures -------------------------------------------------------------------------------------
 
 
+class Row(NamedTuple):
+    """A row of curves over the frequency, a panel for each mass."""
+
+    label: str
+    height: float
+    values: Reader
+    axis: Mapping[str, Any] | None = None  # limits and ticks; by default logarithmic
+    decades: int = 3  # of a logarithmic axis, at most
+
+
+def draw_frequency_rows(results: Results, rows: Sequence[Row], across: str) -> Figure:
+    """Draw rows of curves over the frequency, dashed for downward sweeps; return the figure."""
+    every = channels_in(results)
+    names = [name for name in every if name != "box_acceleration"] or every
+    heights = [row.height for row in rows]
+    size = (5.4 * len(names), 0.6 + 2.0 * sum(heights))
+    shared: Any = {"sharex": True, "sharey": "row", "height_ratios": heights}
+    figure, axes = make_panels(len(rows), len(names), size, **shared)
+    shown: list[dict[str, list[np.ndarray]]] = [{} for _ in rows]
+    for number, channel in enumerate(names):
+        column = axes[number :: len(names)]
+        for label, data, colour in iterate_records(results, channel):
+            for part, style in split_sweep(data):
+                for plane, row, values in zip(column, rows, shown, strict=True):
+                    curve = row.values(part)
+                    draw_line(plane, curve.frequency, curve, style, colour, 1.0)
+                    values.setdefault(label, []).append(curve.values)
+        column[0].set_title(CHANNELS[channel])
+        column[-1].set_xlabel(frequency_label(results, across))
+    for plane, row, values in zip(axes[:: len(names)], rows, shown, strict=True):
+        plane.set_ylabel(row.label)
+        if row.axis is None:
+            limit_log_axis(plane, [array for of in values.values() for array in of], row.decades)
+            note_hidden(plane, values)
+        else:
+            plane.set(**row.axis)
+    add_legend(figure, axes[0], results)
+    return figure
+
+
 def draw_frf(results: Results) -> Figure:
     """Draw frequency response functions: magnitude (H1), phase and coherence; return the figure."""
-    figure, columns = make_channel_grid(results, 3, (1.5, 0.9, 0.9))
-    shown: list[np.ndarray] = []
-    for channel, (magnitude, phase, coherence) in columns.items():
-        for _, data, colour in iterate_records(results, channel):
-            part = data.sel(estimator="H1").where(data.excited > 0)
-            line: dict[str, Any] = {"color": colour, "linewidth": 1.0}
-            magnitude.plot(part.frequency, part.magnitude, **line)
-            phase.plot(part.frequency, phase_in_degrees(part.phase), **line)
-            coherence.plot(part.frequency, part.coherence, **line)
-            shown.append(part.magnitude.values)
-        phase.set(ylim=(-280.0, 100.0), yticks=(-270, -180, -90, 0, 90))
-        coherence.set(ylim=(-0.03, 1.03), xlabel=frequency_label(results))
-    first = next(iter(columns.values()))
-    for axes, word in zip(first, ("|H1|", "phase in degrees", "coherence"), strict=True):
-        axes.set_ylabel(word)
-    limit_log_axis(first[0], shown)
-    first[0].set_ylabel("|H1|, mass over box")
-    add_legend(figure, first[0], results)
-    return figure
+
+    def excited(data: xr.Dataset) -> xr.Dataset:
+        return data.sel(estimator="H1").where(data.excited > 0)
+
+    rows = (
+        Row("|H1|, mass over box", 1.5, lambda data: excited(data).magnitude, decades=6),
+        Row("phase in degrees", 0.9, lambda data: phase_in_degrees(excited(data).phase), PHASE),
+        Row("coherence", 0.9, lambda data: excited(data).coherence, {"ylim": (-0.03, 1.03)}),
+    )
+    return draw_frequency_rows(results, rows, "frequency")
 
 
 def draw_psd(results: Results) -> Figure:
@@ -211,11 +197,11 @@ def draw_psd(results: Results) -> Figure:
         for label, data, colour in iterate_records(results, channel):
             rms = f"{float(data.rms):.4g} {typeset_array_unit(data.rms)} rms"
             words = f"{label + ': ' if label else ''}{rms}"
-            plane.plot(data.frequency, data.psd, color=colour, linewidth=1.0, label=words)
+            draw_line(plane, data.frequency, data.psd, "-", colour, 1.0, words)
             shown.append(data.psd.values[1:])
         limit_log_axis(plane, shown)
         plane.set_title(CHANNELS[channel])
-        plane.set_ylabel(f"spectral density\nin {typeset_array_unit(first_result(results).psd)}")
+        plane.set_ylabel(f"spectral density\nin {typeset_array_unit(first_of(results).psd)}")
         plane.legend(loc="upper right")
     axes[-1].set_xlabel(frequency_label(results))
     return figure
@@ -223,64 +209,29 @@ def draw_psd(results: Results) -> Figure:
 
 def draw_orders(results: Results) -> Figure:
     """Draw tracked orders' amplitudes over frequency, a row each, and the phase of order 1."""
-    first = first_result(results)
-    orders, unit = (
-        [float(order) for order in first.order.values],
-        typeset_array_unit(first.amplitude),
-    )
-    rows = [(f"order {n:g}\nin {unit}", make_order_reader(n, "amplitude", 1.0)) for n in orders]
-    figure, columns = draw_frequency_rows(results, rows, (1.0,) * len(orders) + (0.8,))
-    for channel, column in columns.items():
-        for _, data, colour in iterate_records(results, channel):
-            for part, style in split_sweep(data):
-                phase = phase_in_degrees(select_order(part, 1.0).phase)
-                column[-1].plot(part.frequency, phase, color=colour, linestyle=style, linewidth=1.0)
-        column[-1].set(ylim=(-280.0, 100.0), yticks=(-270, -180, -90, 0, 90))
-    next(iter(columns.values()))[-1].set_ylabel("phase of order 1\nin degrees")
-    return figure
+    first, words = first_of(results), "order {:g}\nin {}"
+    unit = typeset_array_unit(first.amplitude)
+    orders = map(float, first.order.values)
+    rows = [Row(words.format(n, unit), 1.0, read_order(n, "amplitude")) for n in orders]
+    phase = read_order(1.0, "phase")
+    label = "phase of order 1\nin degrees"
+    rows.append(Row(label, 0.8, lambda data: phase_in_degrees(phase(data)), PHASE))
+    return draw_frequency_rows(results, rows, "frequency of the excitation")
 
 
 def draw_harmonics(results: Results) -> Figure:
     """Draw total harmonic distortion and the lowest harmonics over frequency; return the figure."""
-    orders = [float(order) for order in first_result(results).order.values[:2]]
-    rows: list[tuple[str, Reader]] = [("distortion\n(THD) in %", lambda x: 100.0 * x.distortion)]
-    words = "order {:g}\nover order 1 in %"
-    rows += [(words.format(n), make_order_reader(n, "ratio", 100.0)) for n in orders]
-    return draw_frequency_rows(results, rows, (1.3,) + (1.0,) * len(orders))[0]
+    words, orders = "order {:g}\nover order 1 in %", map(float, first_of(results).order.values[:2])
+    rows = [Row("distortion\n(THD) in %", 1.3, lambda data: 100.0 * data.distortion)]
+    rows += [Row(words.format(n), 1.0, read_order(n, "ratio", 100.0)) for n in orders]
+    return draw_frequency_rows(results, rows, "frequency of the excitation")
 
 
-def make_order_reader(order: float, name: str, factor: float) -> Reader:
-    """Return a function that takes one order's values, times a factor, from a result."""
-    return lambda data: factor * select_order(data, order)[name]
-
-
-def draw_frequency_rows(
-    results: Results, rows: list[tuple[str, Reader]], heights: tuple[float, ...]
-) -> tuple[Figure, Any]:
-    """Draw rows of curves over a sweep's frequency, dashed for downward parts."""
-    figure, columns = make_channel_grid(results, len(heights), heights)
-    shown: list[dict[str, list[np.ndarray]]] = [{} for _ in rows]
-    for channel, column in columns.items():
-        for label, data, colour in iterate_records(results, channel):
-            for part, style in split_sweep(data):
-                line: dict[str, Any] = {"color": colour, "linestyle": style, "linewidth": 1.0}
-                for axes, (_, values_of), values in zip(column, rows, shown, strict=False):
-                    curve = values_of(part)
-                    axes.plot(part.frequency, curve, **line)
-                    values.setdefault(label, []).append(curve.values)
-        column[-1].set_xlabel(frequency_label(results, "frequency of the excitation"))
-    first = next(iter(columns.values()))
-    for axes, (word, _), values in zip(first, rows, shown, strict=False):
-        axes.set_ylabel(word)
-        limit_log_axis(axes, [array for arrays in values.values() for array in arrays], 3)
-        note_hidden(axes, values)
-    add_legend(figure, first[0], results)
-    return figure, columns
-
-
-def select_order(data: xr.Dataset, order: float) -> xr.Dataset:
-    """Return the part of a result for one order; NaN if that order was not tracked."""
-    return data.reindex(order=[order]).isel(order=0)
+def read_order(
+    order: float, name: str, factor: float = 1.0
+) -> Callable[[xr.Dataset], xr.DataArray]:
+    """Return a function that takes one order's values, times a factor; NaN where it has none."""
+    return lambda data: factor * data.reindex(order=[order]).isel(order=0)[name]
 
 
 def draw_spectrograms(results: Results) -> Figure:
@@ -297,16 +248,15 @@ def draw_spectrograms(results: Results) -> Figure:
                 continue
             amplitude = data.amplitude.sel(channel=channel)
             levels = 20.0 * np.log10(np.maximum(amplitude / top, 1e-12))
-            mesh = plane.pcolormesh(
-                data.time, data.frequency, levels.T, vmin=-80.0, vmax=0.0, rasterized=True
-            )
+            limits: Any = {"vmin": -80.0, "vmax": 0.0, "rasterized": True}
+            mesh = plane.pcolormesh(data.time, data.frequency, levels.T, **limits)
             plane.grid(visible=False)
             plane.set_title(", ".join(filter(None, [CHANNELS[channel], label])))
             if column == 0:
                 plane.set_ylabel(frequency_label(results))
             if row == len(names) - 1:
                 plane.set_xlabel("time in s")
-    unit = typeset_array_unit(first_result(results).amplitude)
+    unit = typeset_array_unit(first_of(results).amplitude)
     figure.colorbar(mesh, ax=axes, label=f"amplitude in dB re {top:.3g} {unit}", aspect=40)
     return figure
 
@@ -320,15 +270,13 @@ def draw_shock_spectra(results: Results) -> Figure:
     for channel, plane in zip(names, axes, strict=True):
         for _, data, colour in iterate_records(results, channel):
             plane.loglog(data.frequency, data.maximax, color=colour, linewidth=1.4)
-            plane.loglog(data.frequency, data.residual, color=colour, linewidth=0.7, linestyle=":")
+            plane.loglog(data.frequency, data.residual, ":", color=colour, linewidth=0.7)
             shown.append(data.maximax.values)
         plane.set_title(f"{CHANNELS[channel]} (dotted: after the record)")
         plane.set_xlabel(frequency_label(results, "natural frequency"))
-    damping, unit = (
-        float(first_result(results).damping),
-        typeset_array_unit(first_result(results).maximax),
-    )
-    axes[0].set_ylabel(f"largest acceleration in {unit}, damping ratio {100.0 * damping:g} %")
+    first = first_of(results)
+    unit, damping = typeset_array_unit(first.maximax), f"{100.0 * float(first.damping):g} %"
+    axes[0].set_ylabel(f"largest acceleration in {unit}, damping ratio {damping}")
     limit_log_axis(axes[0], shown, 4)
     add_legend(figure, axes[0], results)
     return figure
@@ -341,14 +289,15 @@ def draw_densities(results: Results) -> Figure:
     gauss = np.linspace(-4.5, 4.5, 181)
     for channel, plane in zip(names, axes, strict=True):
         bell = np.exp(-0.5 * gauss**2) / np.sqrt(2.0 * np.pi)
-        plane.semilogy(gauss, bell, color=GREY, linestyle="--", linewidth=1.0, label="Gaussian")
+        plane.set_yscale("log")
+        draw_line(plane, gauss, bell, "--", GREY, 1.0, "Gaussian")
         for label, data, colour in iterate_records(results, channel):
             sigma = float(data.standard_deviation) or 1.0
             numbers = f"skewness {float(data.skewness):.2f}, kurtosis {float(data.kurtosis):.2f}"
             words = f"{label + ': ' if label else ''}{numbers}"
             density = (sigma * data.density).where(data.density > 0.0)
             over = (data.acceleration - data["mean"]) / sigma
-            plane.plot(over, density, color=colour, linewidth=1.1, label=words)
+            draw_line(plane, over, density, "-", colour, 1.1, words)
         plane.set_ylim(1e-5, 20.0)
         plane.set_title(CHANNELS[channel])
         plane.set_xlabel("acceleration in standard deviations")

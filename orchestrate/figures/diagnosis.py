@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import Any
 
 import numpy as np
@@ -13,22 +14,10 @@ from matplotlib.patches import Rectangle
 
 from ..units import as_shown
 from .analysis import note_hidden
+from .colours import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY
 from .labels import plain_title
 from .scales import label_with_unit, typeset_array_unit
-from .style import (
-    BLACK,
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PURPLE,
-    RED,
-    SKY,
-    legend_below,
-    make_panels,
-    set_title,
-    styled,
-)
+from .style import draw_line, legend_below, make_panels, styled, use_plain_log
 
 CHANNELS = {"acceleration1": "sensor 1", "acceleration2": "sensor 2", "motor": "motor"}
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, SKY)
@@ -37,21 +26,26 @@ PARTED, BONDED = "delaminated", "bonded"  # names of hypotheses begin so
 LIMIT = 2.0  # times what noise and a sound structure show, from which a sign stands out
 FEWEST_DECADES = (0.2, 10.0)  # of the signs' axis, at least
 HEIGHT = 0.8  # of all bars of a sign
+LINE = 100  # letters of a line above the legend
 
 
 @styled
 def draw_signs(data: xr.Dataset, title: str = "") -> Figure:
-    """Draw delamination signs as bars relative to noise and to a sound structure's values."""
-    signs = [str(sign) for sign in data.sign.values]
-    figure, (axes,) = make_panels(1, 1, (8.0, 1.6 + 0.32 * len(signs)))
-    usual = np.fmax(data.floor, data.sound_highest)
-    ratio = (data.value / usual).where(data.exceeds >= 0)
+    """Draw delamination signs as bars relative to noise and to a sound structure's values.
+
+    Signs that no sensor has are named below the bars.
+    """
+    known = (data.exceeds >= 0).any("channel")
+    left_out = [str(text) for text in data.meaning.values[~known.values]]
+    title, data = title or plain_title(str(data.attrs["title"])), data.isel(sign=known)
+    size = (8.0, 1.6 + 0.32 * max(data.sizes["sign"], 1))
+    figure, (axes,) = make_panels(1, 1, size, title)
+    ratio = (data.value / np.fmax(data.floor, data.sound_highest)).where(data.exceeds >= 0)
     channels = [str(channel) for channel in data.channel.values]
-    share = HEIGHT / len(channels)
+    share, signs = HEIGHT / len(channels), np.arange(data.sizes["sign"])
     for number, channel in enumerate(channels):
-        positions = np.arange(len(signs)) + share * (number - 0.5 * (len(channels) - 1))
-        values = ratio.sel(channel=channel).values
-        label = CHANNELS.get(channel, channel)
+        positions = signs + share * (number - 0.5 * (len(channels) - 1))
+        values, label = ratio.sel(channel=channel).values, CHANNELS.get(channel, channel)
         colour = COLOURS[number % len(COLOURS)]
         axes.barh(positions, np.nan_to_num(values), share, color=colour, label=label)
         write_values(axes, positions, values, data.value.sel(channel=channel).values)
@@ -60,12 +54,12 @@ def draw_signs(data: xr.Dataset, title: str = "") -> Figure:
     axes.axvline(LIMIT, color=RED, linestyle="--", label="from here it stands out", **lines)
     high = max(float(np.nanmax(ratio.values, initial=1.0)), FEWEST_DECADES[1])
     axes.set(xscale="log", xlim=(FEWEST_DECADES[0], 4.0 * high))
-    axes.set_yticks(np.arange(len(signs)), [str(text) for text in data.meaning.values])
+    axes.set_yticks(signs, [str(text) for text in data.meaning.values])
     axes.invert_yaxis()
     axes.grid(visible=False, axis="y")
     axes.set_xlabel("sign over what noise and a sound structure show of it")
-    legend_below(figure, [axes], 4)
-    set_title(figure, title or plain_title(str(data.attrs["title"])))
+    lacking = textwrap.fill(f"not in this record: {', '.join(left_out)}", LINE)
+    legend_below(figure, [axes], 4, title=lacking if left_out else None)
     return figure
 
 
@@ -83,67 +77,56 @@ def write_values(axes: Axes, place: np.ndarray, ratios: np.ndarray, values: np.n
 @styled
 def draw_plan(data: xr.Dataset, title: str = "") -> Figure:
     """Draw over frequency and level where a test would show a delamination; return the figure."""
-    size = (8.0, 6.2)
-    figure, (plane, below) = make_panels(2, 1, size, sharex=True, height_ratios=(1.5, 1.0))
+    title = title or plain_title(str(data.attrs["title"]))
+    heights: Any = {"sharex": True, "height_ratios": (1.5, 1.0)}
+    figure, (plane, below) = make_panels(2, 1, (8.0, 6.2), title, **heights)
     data = as_shown(data)
-    limit = float(data.threshold)
     if data.sizes["level"] > 1:
-        draw_map(figure, plane, data, limit)
+        draw_distance_map(figure, plane, data)
     else:
-        draw_distances(plane, data, limit)
+        draw_distances(plane, data)
+    unit = typeset_array_unit(data.level)
     for number, level in enumerate(data.level.values):
-        line: Any = {"color": COLOURS[number % len(COLOURS)], "linewidth": 1.1}
-        force = data.closing_force.isel(level=number)
-        label = f"at {level:.3g} {typeset_array_unit(data.level)}"
-        below.semilogy(data.frequency, force, label=label, **line)
+        force, colour = data.closing_force.isel(level=number), COLOURS[number % len(COLOURS)]
+        draw_line(below, data.frequency, force, "-", colour, 1.1, f"at {level:.3g} {unit}")
+    below.set_yscale("log")
     across = label_with_unit("frequency of the box", data.frequency)
     below.set(xlabel=across, ylabel="preload that keeps\nit shut, in N")
     legend_below(figure, [plane, below], 4)
-    set_title(figure, title or plain_title(str(data.attrs["title"])))
     return figure
 
 
-def draw_map(figure: Figure, plane: Axes, data: xr.Dataset, limit: float) -> None:
+def draw_distance_map(figure: Figure, plane: Axes, data: xr.Dataset) -> None:
     """Draw the distance by orders 2 and 3 over frequency and level, with the recommended sweep."""
     values = data.distance_harmonics
-    top = max(float(values.max()), 10.0 * limit)
-    norm = LogNorm(1e-4 * top, top)
-    shown = np.maximum(values, 1e-4 * top)
-    mesh = plane.pcolormesh(
-        data.frequency, data.level, shown, norm=norm, shading="nearest", rasterized=True
-    )
-    plane.plot(
-        data.frequency, data.smallest_level, color=RED, linewidth=1.6, label="level that counts"
-    )
+    top = max(float(values.max()), 10.0 * float(data.threshold))
+    colours: Any = {"norm": LogNorm(1e-4 * top, top), "shading": "nearest", "rasterized": True}
+    mesh = plane.pcolormesh(data.frequency, data.level, np.maximum(values, 1e-4 * top), **colours)
+    ends = float(data.level.min()) / 1.3, float(data.level.max()) * 1.3
+    if bool(((data.smallest_level >= ends[0]) & (data.smallest_level <= ends[1])).any()):
+        draw_line(plane, data.frequency, data.smallest_level, "-", RED, 1.6, "level that counts")
     first, last = float(data.recommended_first), float(data.recommended_last)
     level = float(data.recommended_level)
-    plane.add_patch(
-        Rectangle(
-            (first, level / 1.12),
-            last - first,
-            level * (1.12 - 1.0 / 1.12),
-            fill=False,
-            edgecolor=BLACK,
-            linewidth=1.6,
-            label="recommended sweep",
-        )
-    )
-    plane.set(yscale="log", ylabel=label_with_unit("level of the box", data.level))
-    plane.set_ylim(float(data.level.min()) / 1.3, float(data.level.max()) * 1.3)
+    frame: Any = {"fill": False, "edgecolor": BLACK, "linewidth": 1.6}
+    corner, height = (first, level / 1.12), level * (1.12 - 1.0 / 1.12)
+    box = Rectangle(corner, last - first, height, label="recommended sweep", **frame)
+    plane.add_patch(box)
+    plane.set_ylim(ends)
+    use_plain_log(plane)
+    plane.set_ylabel(label_with_unit("level of the box", data.level))
     plane.grid(visible=False)
     words = "difference by orders 2 and 3\nin standard deviations of the noise"
     figure.colorbar(mesh, ax=plane, label=words, aspect=20)
 
 
-def draw_distances(plane: Axes, data: xr.Dataset, limit: float) -> None:
+def draw_distances(plane: Axes, data: xr.Dataset) -> None:
     """Draw the distances by orders 1 to 3 over frequency, at the first level."""
     at = data.isel(level=0)
     plane.semilogy(at.frequency, at.distance_harmonics, color=BLUE, label="orders 2 and 3")
     plane.semilogy(at.frequency, at.distance_first, color=ORANGE, label="order 1")
-    plane.axhline(limit, color=RED, linewidth=1.0, label="from here it counts")
-    plane.axvspan(
-        float(at.recommended_first), float(at.recommended_last), color=GREY, alpha=0.15, zorder=0
-    )
+    plane.axhline(float(data.threshold), color=RED, linewidth=1.0, label="from here it counts")
+    ends = float(at.recommended_first), float(at.recommended_last)
+    plane.axvspan(*ends, color=GREY, alpha=0.15, zorder=0)
     plane.set_ylabel("difference in standard\ndeviations of the noise")
 
 
@@ -152,43 +135,33 @@ def draw_detect(data: xr.Dataset, title: str = "") -> Figure:
     """Draw a record's orders over frequency with those of the fits, one column per sensor."""
     data = with_hypothesis_dimension(as_shown(data))
     channels = [str(channel) for channel in data.channel.values]
-    orders = [float(order) for order in data.order.values]
-    rows, columns = len(orders), len(channels)
-    figure, axes = make_panels(rows, columns, (1.5 + 6.0 * columns, 0.9 + 1.9 * rows), sharex=True)
+    rows, columns = data.sizes["order"], len(channels)
+    size, title = (1.5 + 6.0 * columns, 0.9 + 1.9 * rows), title or data.attrs.get("title", "")
+    figure, axes = make_panels(rows, columns, size, str(title), sharex=True)
     shown = best_fits(data)
-    for place, (order, channel) in enumerate((n, name) for n in orders for name in channels):
-        plane = axes[place]
-        at = data.sel(order=order, channel=channel)
+    for place, plane in enumerate(axes):
+        at = data.isel(order=place // columns).sel(channel=channels[place % columns])
         plane.plot(at.frequency, at.measured, ".", color=BLACK, markersize=3.0, label="measured")
+        curves = {name: at.fitted.sel(hypothesis=name).values for name in shown}
         if "floor" in at:
-            plane.plot(at.frequency, at.floor, color=GREY, linewidth=0.8, label="floor")
+            draw_line(plane, at.frequency, at.floor, "-", GREY, 0.8, "floor")
+            curves["floor"] = at.floor.values
         for number, name in enumerate(shown):
-            line: Any = {
-                "color": FITS[number % len(FITS)],
-                "linewidth": 1.1,
-                "zorder": 3.0 - 0.1 * number,
-            }
-            plane.plot(at.frequency, at.fitted.sel(hypothesis=name), label=name, **line)
+            line: Any = {"color": FITS[number % len(FITS)], "zorder": 3.0 - 0.1 * number}
+            plane.plot(at.frequency, curves[name], linewidth=1.1, label=name, **line)
         plane.set_yscale("log")
-        limit_decades(plane, at.measured.values)
-        note_curves_below(plane, at, shown)
+        known = at.measured.values[at.measured.values > 0.0]
+        if len(known):  # the decades of what was measured
+            plane.set_ylim(0.3 * np.quantile(known, 0.02), 3.0 * known.max())
+        note_hidden(plane, {name: [y] for name, y in curves.items() if np.isfinite(y).any()})
         if place % columns == 0:
-            plane.set_ylabel(f"order {order:g}\nin {typeset_array_unit(data.measured)}")
+            plane.set_ylabel(f"order {float(at.order):g}\nin {typeset_array_unit(data.measured)}")
         if place < columns:
-            plane.set_title(CHANNELS.get(channel, channel))
+            plane.set_title(CHANNELS.get(channels[place], channels[place]))
     for plane in axes[-columns:]:
         plane.set_xlabel(label_with_unit("frequency of the excitation", data.frequency))
     legend_below(figure, axes, 3)
-    set_title(figure, title or str(data.attrs.get("title", "")))
     return figure
-
-
-def note_curves_below(plane: Axes, data: xr.Dataset, shown: list[str]) -> None:
-    """Write into a panel which fits, or whether the floor, lie below its axis."""
-    curves = {name: data.fitted.sel(hypothesis=name).values for name in shown}
-    if "floor" in data:
-        curves["floor"] = data.floor.values
-    note_hidden(plane, {name: [y] for name, y in curves.items() if np.isfinite(y).any()})
 
 
 def with_hypothesis_dimension(data: xr.Dataset) -> xr.Dataset:
@@ -196,10 +169,9 @@ def with_hypothesis_dimension(data: xr.Dataset) -> xr.Dataset:
     if "hypothesis" in data.dims:
         return data
     fitted = {name: data[name] for name in ("fitted", "misfit", "misfit_at") if name in data}
+    one = xr.Dataset(fitted).drop_vars("hypothesis", errors="ignore")
     name = str(data.attrs.get("hypothesis", "fit"))
-    return data.drop_vars(list(fitted)).merge(
-        xr.Dataset(fitted).drop_vars("hypothesis", errors="ignore").expand_dims(hypothesis=[name])
-    )
+    return data.drop_vars(list(fitted)).merge(one.expand_dims(hypothesis=[name]))
 
 
 def best_fits(data: xr.Dataset) -> list[str]:
@@ -211,26 +183,18 @@ def best_fits(data: xr.Dataset) -> list[str]:
     return [*parted, *dict.fromkeys([*sound[:1], *(name for name in sound if name == BONDED)])]
 
 
-def limit_decades(plane: Axes, values: np.ndarray) -> None:
-    """Limit a logarithmic y axis to the decades of the measured values."""
-    known = values[np.isfinite(values) & (values > 0.0)]
-    if len(known):
-        plane.set_ylim(0.3 * np.quantile(known, 0.02), 3.0 * known.max())
-
-
 @styled
 def draw_misfit(data: xr.Dataset, title: str = "") -> Figure:
     """Draw each fit's misfit to the record over frequency; return the figure."""
-    figure, (axes,) = make_panels(1, 1, (8.0, 3.4))
+    figure, (axes,) = make_panels(1, 1, (8.0, 3.4), title or str(data.attrs.get("title", "")))
     data = as_shown(data)
     for number, name in enumerate(best_fits(data)):
         one = data.sel(hypothesis=name)
-        line: Any = {"color": FITS[number % len(FITS)], "linewidth": 1.0}
         words = f"{name}: {float(one.misfit):.3g}"
-        axes.semilogy(one.frequency, one.misfit_at, label=words, **line)
+        draw_line(axes, one.frequency, one.misfit_at, "-", FITS[number % len(FITS)], 1.0, words)
+    axes.set_yscale("log")
     axes.axhline(1.0, color=GREY, linewidth=0.8)
     across = label_with_unit("frequency of the excitation", data.frequency)
     axes.set(xlabel=across, ylabel="misfit over its usual size")
     legend_below(figure, [axes], 2)
-    set_title(figure, title or str(data.attrs.get("title", "")))
     return figure

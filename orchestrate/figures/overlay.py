@@ -1,4 +1,4 @@
-"""Draw branches over responses: check that both belong together, and convert units."""
+"""Draw branches of orbits, alone or over responses, once both are known to belong together."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from ..errors import InputError
+from ..flags import flag_words
 from ..structures.ranges import OF_LENGTH, STRUCTURE
 from ..units import omega_of
-from .branch_lines import draw_bifurcations, draw_branch
+from .colours import BLUE, RED
 from .scales import ETA, acceleration_scale, axis_values, frequency_scale, parameter_scale
-from .style import BLUE, RED
+from .style import draw_line
 
+MARKERS = {  # by the bifurcation's kind
+    **{"fold": "<", "period doubling": "s", "period halving": "d", "Neimark-Sacker": "o"},
+    **{"grazing of an impact": "v", "grazing of a flight": "^", "earlier release": "D"},
+    **{"loss of permanent contact": "X", "begin of permanent contact": "P"},
+}
 SAME = 1e-9  # relative: numbers that are nearer than this are one
 SI = (*STRUCTURE, "bonded")
 MOVED = {  # by a parameter that is none of SI
-    "mu": {"m2", "d2"},
-    "kappa": {"k2"},
-    "omega": {"k1", "k2", "d1", "d2"},
-    "D": {"d1", "d2"},
-    "D1": {"d1"},
-    "D2": {"d2"},
-    "f1": {"k1", "d1"},
-    "f2": {"k2", "d2"},
-    "zeta1": {"d1"},
-    "zeta2": {"d2"},
+    **{"mu": {"m2", "d2"}, "kappa": {"k2"}, "omega": {"k1", "k2", "d1", "d2"}},
+    **{"D": {"d1", "d2"}, "D1": {"d1"}, "D2": {"d2"}, "zeta1": {"d1"}, "zeta2": {"d2"}},
+    **{"f1": {"k1", "d1"}, "f2": {"k2", "d2"}},
 }
+PAIR = (BLUE, RED)  # colours of stable and unstable orbits
 ALIKE = ({"eta", "frequency"}, {"level", "amplitude"})  # names of what is one axis
 
 
@@ -122,32 +122,68 @@ class Overlay:
 
     def scale(self, factor: float) -> np.ndarray:
         """Return factors from lengths over a eta^2 to the axis' unit, one per branch point."""
-        branch = self.branch
-        if not factor:
-            return np.ones(branch.sizes["point"])
         own = self.parameter in ALIKE[1]
-        turns = branch.frequency.values
-        amplitude = branch.amplitude.values if own else amplitude_at(self.data, turns)
-        return np.asarray(amplitude * branch.eta.values**2 / factor)
+        amplitude = None if own else amplitude_at(self.data, self.branch.frequency.values)
+        return length_factors(self.branch, factor, amplitude)
 
-    def draw(
-        self, plane: Axes, name: str, factor: float, colours: tuple[str, str] = (BLUE, RED)
-    ) -> None:
+    def draw(self, plane: Axes, name: str, factor: float, colours: tuple[str, str] = PAIR) -> None:
         """Draw a length of the orbits, such as ``xi_rel``, as lines; ``factor``: the axis' unit."""
-        rows = np.atleast_2d(self.branch[name].transpose(..., "point").values * self.scale(factor))
         x = self.x(self.branch[str(self.branch.attrs["over"])])
-        draw_branch(plane, x, rows, self.branch.stable.values == 1, colours)
+        draw_orbits(plane, self.branch, x, name, self.scale(factor), colours)
 
     def mark(self, plane: Axes, name: str, factor: float) -> None:
         """Draw the branch's bifurcations at a length of the orbits; ``factor``: the axis' unit."""
-        if not self.branch.sizes.get("bifurcation"):
-            return
-        scale, values = self.scale(factor), self.branch[f"bifurcation_{name}"]
-        at = np.interp(self.branch.bifurcation_place.values, np.arange(len(scale)), scale)
-        rows = values.transpose("bifurcation", ...).values.reshape(len(at), -1) * at[:, np.newaxis]
-        draw_bifurcations(plane, self.branch, self.x(self.branch.bifurcation_value), rows)
+        if self.branch.sizes.get("bifurcation"):
+            x = self.x(self.branch.bifurcation_value)
+            draw_bifurcations(plane, self.branch, x, name, self.scale(factor))
 
     def gaps(self, factor: float) -> np.ndarray:
         """Return the branch's gaps at phase 0 in the unit of an axis."""
         samples = self.branch.xi_rel.transpose("sample", "point").values
         return np.asarray(samples * self.scale(factor))
+
+
+def length_factors(
+    branch: xr.Dataset, factor: float, amplitude: np.ndarray | None = None
+) -> np.ndarray:
+    """Return what lengths over a eta^2 are multiplied by at each point; 1 for an axis of ratios."""
+    if not factor:
+        return np.ones(branch.sizes["point"])
+    box = branch.amplitude.values if amplitude is None else amplitude
+    return np.asarray(box * branch.eta.values**2 / factor)
+
+
+def draw_orbits(
+    plane: Axes,
+    branch: xr.Dataset,
+    x: np.ndarray,
+    name: str,
+    scale: np.ndarray,
+    colours: tuple[str, str] = PAIR,
+) -> None:
+    """Draw a length of a branch's orbits as lines: solid where stable, dashed where unstable."""
+    stable = branch.stable.values == 1
+    # a step of which one end is unstable is drawn as unstable
+    both = stable & np.append(stable[1:], True) & np.append(True, stable[:-1])
+    for row in np.atleast_2d(branch[name].transpose(..., "point").values * scale):
+        for label, shown, style, colour, width in (
+            ("stable", stable, "-", colours[0], 1.2),
+            ("unstable", ~both, "--", colours[1], 0.9),
+        ):
+            values = np.where(shown, row, np.nan)
+            draw_line(plane, x, values, style, colour, width, label if shown.any() else None)
+
+
+def draw_bifurcations(
+    plane: Axes, branch: xr.Dataset, x: np.ndarray, name: str, scale: np.ndarray
+) -> None:
+    """Draw a marker of the bifurcation's kind at a length of each bifurcation's orbit."""
+    names = flag_words(branch.bifurcation_kind.attrs)
+    there = np.interp(branch.bifurcation_place.values, np.arange(len(scale)), scale)
+    values = branch[f"bifurcation_{name}"].transpose("bifurcation", ...).values
+    rows = values.reshape(len(there), -1) * there[:, np.newaxis]
+    style: Any = {"color": "black", "markerfacecolor": "white", "markersize": 5, "zorder": 3}
+    for at, row, kind in zip(x, rows, branch.bifurcation_kind.values, strict=True):
+        word = names[int(kind)].replace("Neimark Sacker", "Neimark-Sacker")
+        place = np.full(len(row), at)
+        plane.plot(place, row, MARKERS[word], linestyle="none", label=word, **style)

@@ -1,4 +1,4 @@
-"""Draw a passage through the resonance: speed, motion, powers and spectra over time."""
+"""Draw runs of the weak drive over time: speed, motion, power and, of passages, spectra."""
 
 from __future__ import annotations
 
@@ -13,14 +13,46 @@ from matplotlib.figure import Figure
 
 from ..constants import TURN
 from ..units import as_shown, scale_of
-from .powers import ACCOUNTS, draw_powers
+from .colours import BLACK, BLUE, GREY, STRUCTURES
 from .scales import acceleration_scale, label_with_unit
-from .style import BLUE, GREY, make_panels, set_title, styled
-from .weak_drive import COLOURS, format_passage, jump_texts
+from .style import draw_line, make_panels, styled
 
-MAX_REPETITION = 4  # revolutions after which a motion is seen to repeat
-CALM_SHARE = 0.9  # of the revolutions: the others belong to the jump
+HISTORIES = {"speed": "mean speed", "amplitude": "amplitude of $x_1$"}
+ROWS = {"speed": HISTORIES["speed"], "voltage": "voltage", **HISTORIES}
+ROWS |= {"impacts": "impacts in a revolution"}
+SINKS = {"dampers": "dampers of the masses", "box_damper": "damper of the box"}
+SINKS |= {"impact_loss": "impacts"}
+ACCOUNTS = ("motor", *SINKS, "stored")
+POWER_REVOLUTIONS = 2  # that powers are averaged over: a motion may repeat after two
 FLOOR = 1e-4  # of the largest line: the lower end of the colours
+
+
+@styled
+def draw_run(runs: Mapping[str, xr.Dataset], resonance: float, title: str = "") -> Figure:
+    """Draw coupled runs over time, one column per structure; return the figure."""
+    count, rows = len(runs), len(ROWS) + 1
+    size = (6.5 * count, 2.6 * rows)
+    figure, axes = make_panels(rows, count, size, title, sharex=True, sharey="row")
+    shown = {name: as_shown(data) for name, data in runs.items()}
+    for column, (name, data) in enumerate(shown.items()):
+        panels, time = axes[column::count], data.time.values
+        for panel, what in zip(panels, ROWS, strict=False):
+            points: Any = {"color": STRUCTURES.get(name, BLUE), "linewidth": 1.0}
+            panel.plot(
+                time, data[what], "." if what == "impacts" else "-", markersize=2.5, **points
+            )
+        dashed: Any = {"linewidth": 1.0, "linestyle": "--", "label": "resonance"}
+        panels[0].axhline(resonance / scale_of(data, "rad/s")[0], color=GREY, **dashed)
+        panels[0].set_title(f"{name}: {format_passage(data)}")
+        middle = 0.5 * (time[POWER_REVOLUTIONS:] + time[:-POWER_REVOLUTIONS])
+        draw_powers(panels[-1], middle, mean_powers(data))
+        panels[-1].set_xlabel("time in s")
+    for panel, (what, words) in zip(axes[::count], ROWS.items(), strict=False):
+        panel.set_ylabel(words if what == "impacts" else label_with_unit(words, data[what]))
+    axes[-count].set_ylabel("power in W")
+    axes[0].legend(loc="best")
+    axes[-count].legend(loc="best", fontsize=7)
+    return figure
 
 
 @styled
@@ -29,28 +61,29 @@ def draw(
 ) -> Figure:
     """Draw passages, one column per structure; return the figure."""
     count = len(runs)
-    figure, axes = make_panels(5, count, (6.5 * count + 1.0, 14), sharex="col", sharey="row")
-    shown = {name: as_shown(data) for name, data in runs.items()}
+    size = (6.5 * count + 1.0, 14)
+    figure, axes = make_panels(5, count, size, title, sharex="col", sharey="row")
     felt, unit = acceleration_scale(next(iter(runs.values())))
     top = max(float(spectrum.acceleration.max()) for spectrum in spectra.values()) / felt
-    for column, (name, data) in enumerate(shown.items()):
+    for column, (name, shown) in enumerate(runs.items()):
+        data, panels = as_shown(shown), axes[column::count]
         begin, words = time_origin(data)
-        column_axes = axes[column::count]
-        period = repeats_after(data)
-        means = revolution_means(data, period)
         time = data.time.values - begin
-        draw_speed(column_axes[0], time, data, means)
-        column_axes[1].plot(time, data.voltage, color="k", linewidth=1.0)
-        column_axes[2].plot(time, data.x1, color=COLOURS.get(name, BLUE), linewidth=0.3)
-        draw_powers(column_axes[3], time, means)
-        mesh = draw_waterfall(column_axes[4], spectra[name], begin, felt, top)
-        for panel in column_axes[:4]:
+        instant: Any = {"alpha": 0.6, "label": "at the instant"}
+        panels[0].plot(time, np.abs(data.speed), color=BLUE, linewidth=0.4, **instant)
+        mean_speed = mean_rate(data, np.abs(data.angle.values), 1) / scale_of(data, "rad/s")[0]
+        draw_line(panels[0], time, mean_speed, "-", BLACK, 1.2, "mean of a revolution")
+        draw_line(panels[1], time, data.voltage, "-", BLACK, 1.0)
+        draw_line(panels[2], time, data.x1, "-", STRUCTURES.get(name, BLUE), 0.3)
+        totals = {account: data[account].values for account in ACCOUNTS}
+        means = {of: mean_rate(data, total, POWER_REVOLUTIONS, 2) for of, total in totals.items()}
+        draw_powers(panels[3], time, means)
+        mesh = draw_waterfall(panels[4], spectra[name], begin, felt, top)
+        for panel in panels[:4]:
             panel.axvline(0.0, color=GREY, linewidth=0.8, zorder=0)
-        column_axes[0].set_title(f"{name}: {format_jumps(data)}")
-        turns = "a revolution" if period == 1 else f"{period} revolutions"
-        column_axes[3].set_title(f"averaged over {turns}, twice")
-        column_axes[4].set_xlabel(f"time {words} in s")
-        column_axes[4].set_xlim(time[0], time[-1])
+        panels[0].set_title(f"{name}: {format_jumps(data)}")
+        panels[3].set_title(f"means of {POWER_REVOLUTIONS} revolutions, taken twice")
+        panels[4].set(xlabel=f"time {words} in s", xlim=(time[0], time[-1]))
     speed, displacement = label_with_unit("speed", data.speed), label_with_unit("$x_1$", data.x1)
     labels = (speed, "voltage in V", displacement, "power in W", "multiple of the speed")
     for panel, label in zip(axes[::count], labels, strict=True):
@@ -59,8 +92,49 @@ def draw(
         axes[row * count].legend(loc="best", fontsize=7)
     bar = f"amplitude of the acceleration in {unit}"
     figure.colorbar(mesh, ax=axes[4 * count :], label=bar, pad=0.01)
-    set_title(figure, title)
     return figure
+
+
+def draw_waterfall(axes: Axes, spectra: xr.Dataset, begin: float, felt: float, top: float) -> Any:
+    """Draw spectra over time as colours, without the slow motion below half the speed."""
+    shown = spectra.sel(order=slice(0.25, None))
+    values = (shown.acceleration.values.T / felt).clip(FLOOR * top)
+    colours: Any = {"norm": LogNorm(FLOOR * top, top), "shading": "nearest"}
+    return axes.pcolormesh(shown.time.values - begin, shown.order.values, values, **colours)
+
+
+# -- jumps in words -------------------------------------------------------------------------------
+
+
+def has_jump(data: xr.Dataset, direction: str) -> bool:
+    """Return whether a run jumps in a direction."""
+    return bool(np.isfinite(float(data.jumps.sel(jump=direction))))
+
+
+def undecided_directions(data: xr.Dataset) -> list[str]:
+    """Return the labels of the jumps that are undecided."""
+    decided = zip(data.jump.values, data.decided.values, strict=True)
+    return [str(direction) for direction, decision in decided if decision == "undecided"]
+
+
+def jump_texts(data: xr.Dataset) -> list[str]:
+    """Return a text for each jump of a run, and for each undecided direction."""
+    known = [way for way in map(str, data.jump.values) if has_jump(data, way)]
+    jumps = [f"{way} at {float(data.jumps.sel(jump=way)):.4f} V" for way in known]
+    return jumps + [f"{way} undecided" for way in undecided_directions(data)]
+
+
+def format_jumps(data: xr.Dataset) -> str:
+    """Format a run's jumps for a title, or whether it passes the resonance."""
+    return ", ".join(f"jump {text}" for text in jump_texts(data)) or format_passage(data)
+
+
+def format_passage(data: xr.Dataset) -> str:
+    """Format whether, and from what time on, a run is beyond the resonance."""
+    passed = float(data.passage_time)
+    if np.isfinite(passed):
+        return f"beyond the resonance from {passed:.4g} s on"
+    return "the resonance is not passed"
 
 
 def time_origin(data: xr.Dataset) -> tuple[float, str]:
@@ -73,79 +147,39 @@ def time_origin(data: xr.Dataset) -> tuple[float, str]:
     return (passed, "from the passage") if np.isfinite(passed) else (0.0, "from the start")
 
 
-def format_jumps(data: xr.Dataset) -> str:
-    """Format a run's jumps for a title, or whether it passes the resonance."""
-    return ", ".join(f"jump {text}" for text in jump_texts(data)) or format_passage(data)
+# -- powers ---------------------------------------------------------------------------------------
 
 
-def repeats_after(data: xr.Dataset) -> int:
-    """Return the number of revolutions after which impact losses repeat best; 1 without any."""
-    angle = np.maximum.accumulate(np.abs(data.angle.values))
-    turns = ((angle - angle[0]) // TURN).astype(int)
-    first = np.unique(turns, return_index=True)[1]
-    lost = np.diff(data.impact_loss.values[first])
-    if len(lost) < 4 * MAX_REPETITION or not lost.any():
-        return 1
-    changes = [np.sort(np.abs(lost[lag:] - lost[:-lag])) for lag in range(1, MAX_REPETITION + 1)]
-    sizes = np.array([change[: int(CALM_SHARE * len(change))].mean() for change in changes])
-    return 1 + int(np.flatnonzero(sizes <= 2.0 * sizes.min())[0])
+def draw_powers(axes: Axes, along: np.ndarray, powers: Mapping[str, np.ndarray]) -> None:
+    """Draw the motor's power and its losses by account, over time or speed."""
+    draw_line(axes, along, powers["motor"], "-", BLACK, 1.6, "motor")
+    for account, label in SINKS.items():
+        axes.plot(along, powers[account], linewidth=1.0, label=label)
+    draw_line(axes, along, powers["stored"], "-", GREY, 1.0, "stored")
 
 
-def revolution_means(data: xr.Dataset, count: int = 1) -> dict[str, np.ndarray]:
-    """Return running means: speed over one revolution, powers over ``count``; NaN at ends.
+def mean_powers(revolutions: xr.Dataset) -> dict[str, np.ndarray]:
+    """Return mean powers, W, by account, each over ``POWER_REVOLUTIONS`` revolutions."""
+    time = revolutions.time.values
+    span = time[POWER_REVOLUTIONS:] - time[:-POWER_REVOLUTIONS]
+    energies = {account: revolutions[account].values for account in ACCOUNTS}
+    lag = POWER_REVOLUTIONS
+    return {account: (total[lag:] - total[:-lag]) / span for account, total in energies.items()}
 
-    Means of powers are averaged twice: single ones would jump when an impact enters a little late.
+
+def mean_rate(data: xr.Dataset, total: np.ndarray, count: int, times: int = 1) -> np.ndarray:
+    """Return the rate of a total, averaged over ``count`` revolutions; NaN at the ends.
+
+    Powers are averaged twice: single means would jump when an impact enters a little late.
     """
-    angle, powers = np.abs(data.angle.values), means_over(data, count)
-    twice = {name: smooth_edges(angle, values, count) for name, values in powers.items()}
-    return {**twice, "speed": means_over(data, 1)["speed"]}
-
-
-def smooth_edges(angle: np.ndarray, means: np.ndarray, count: int) -> np.ndarray:
-    """Return means over ``count`` revolutions, averaged once more; NaN at the ends."""
     from scipy.integrate import cumulative_trapezoid
 
-    distance, half = np.maximum.accumulate(angle), 0.5 * count * TURN
-    known = np.flatnonzero(np.isfinite(means))
-    if not known.size:
-        return means
-    inner = slice(known[0], known[-1] + 1)
-    total = cumulative_trapezoid(means[inner], distance[inner], initial=0.0)
-    before, after = (np.interp(angle + side, distance[inner], total) for side in (-half, half))
-    complete = (angle - half >= distance[known[0]]) & (angle + half <= distance[known[-1]])
-    return np.where(complete, (after - before) / (2.0 * half), np.nan)
-
-
-def means_over(data: xr.Dataset, count: int) -> dict[str, np.ndarray]:
-    """Return moving means of motor speed and powers over ``count`` revolutions, NaN at ends."""
     angle, time, half = np.abs(data.angle.values), data.time.values, 0.5 * count * TURN
     distance = np.maximum.accumulate(angle)
     before, after = (np.interp(angle + side, distance, time) for side in (-half, half))
-    span = after - before
-    complete = (angle - half > distance[0]) & (angle + half < distance[-1])
-    turned = np.interp(after, time, angle) - np.interp(before, time, angle)
-    means = {"speed": turned / span}
-    for account in ACCOUNTS:
-        values = data[account].values
-        means[account] = (np.interp(after, time, values) - np.interp(before, time, values)) / span
-    return {name: np.where(complete, values, np.nan) for name, values in means.items()}
-
-
-def draw_speed(
-    axes: Axes, time: np.ndarray, data: xr.Dataset, revolution: Mapping[str, np.ndarray]
-) -> None:
-    """Draw the speed at each instant and its mean over a revolution."""
-    instant: Any = {"color": BLUE, "linewidth": 0.4, "alpha": 0.6, "label": "at the instant"}
-    axes.plot(time, np.abs(data.speed), **instant)
-    mean: Any = {"color": "k", "linewidth": 1.2, "label": "mean of a revolution"}
-    axes.plot(time, revolution["speed"] / scale_of(data, "rad/s")[0], **mean)
-
-
-def draw_waterfall(axes: Axes, spectra: xr.Dataset, begin: float, felt: float, top: float) -> Any:
-    """Draw spectra over time as colours, without the slow motion below half the speed."""
-    shown = spectra.sel(order=slice(0.25, None))
-    values = (shown.acceleration.values.T / felt).clip(FLOOR * top)
-    norm = LogNorm(FLOOR * top, top)
-    return axes.pcolormesh(
-        shown.time.values - begin, shown.order.values, values, norm=norm, shading="nearest"
-    )
+    for done in range(1, times + 1):
+        known = (angle - done * half > distance[0]) & (angle + done * half < distance[-1])
+        gained = np.interp(after, time, total) - np.interp(before, time, total)
+        rate = np.where(known, gained / (after - before), np.nan)
+        total = cumulative_trapezoid(np.nan_to_num(rate), time, initial=0.0)
+    return rate

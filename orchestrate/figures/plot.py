@@ -4,80 +4,58 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import xarray as xr
 from matplotlib.figure import Figure
 
 from ..errors import InputError
 from ..units import Units, with_units
-from . import (
-    analysis,
-    attractors,
-    basin,
-    borders,
-    branches,
-    capture,
-    cosimulation,
-    diagnosis,
-    drive_spectra,
-    jump_voltages,
-    lyapunov,
-    manifold,
-    maps,
-    motion,
-    orbit_diagram,
-    poincare,
-    resonance,
-    resonance_levels,
-    shaken,
-    spectra,
-    threshold,
-    weak_drive,
-)
+from . import analysis, diagnosis, histories, lines, planes, resonance, spectra, weak_drive
 
-DRAW: dict[str, Callable[[xr.Dataset], Figure]] = {  # questions whose answer needs no other
-    "attractors": attractors.draw,
-    "basin": basin.draw,
-    "border": borders.draw,
-    "branch": branches.draw,
-    "detect": diagnosis.draw_detect,
-    "contact_threshold": threshold.draw,
-    "cosimulate": cosimulation.draw,
+DRAW: dict[str, Callable[..., Figure]] = {  # by the function that made the result
+    # lines over a parameter
+    "attractors": lines.draw_attractors,
+    "branch": lines.draw_branch,
+    "jump_voltages": lines.draw_jump_voltages,
+    "lyapunov": lines.draw_lyapunov,
+    "sweep": lines.draw_sweep,
+    "contact_threshold": resonance.draw_contact_threshold,
+    "resonance": resonance.draw_resonance,
+    "resonance_levels": resonance.draw_levels,
+    "couple": weak_drive.draw,
     "drive_branch": weak_drive.draw_stationary,
+    # planes
+    "basin": planes.draw_basin,
+    "border": planes.draw_border,
+    "capture": weak_drive.draw_capture,
+    "manifold": planes.draw_manifold,
+    "map": planes.draw_map,
+    "poincare": planes.draw_poincare,
+    # time histories
+    "cosimulate": histories.draw_cosimulation,
+    "shake": histories.draw_shake,
+    "simulate": histories.draw_motion,
+    # spectra
+    "drive_spectra": spectra.draw_motor_spectra,
+    "spectra": spectra.draw_spectra,
+    **dict.fromkeys(analysis.DRAW, analysis.draw),
+    # special: a diagnosis
+    "detect": diagnosis.draw_detect,
     "fit": diagnosis.draw_detect,
-    "drive_spectra": drive_spectra.draw,
-    "jump_voltages": jump_voltages.draw,
-    "lyapunov": lyapunov.draw,
-    "manifold": manifold.draw,
-    "map": maps.draw,
     "plan_test": diagnosis.draw_plan,
-    "poincare": poincare.draw,
-    "resonance": resonance.draw,
-    "resonance_levels": resonance_levels.draw,
-    "shake": shaken.draw,
     "signs": diagnosis.draw_signs,
-    "simulate": motion.draw,
-    "spectra": spectra.draw,
-    "sweep": orbit_diagram.draw,
 }
-SEVERAL: dict[str, Callable[..., Figure]] = {  # of which one picture shows any number
-    "border": borders.draw,
-    "branch": branches.draw,
-    "lyapunov": lyapunov.draw,
-    "map": maps.draw,
+TOGETHER = {  # what belongs into one picture with a result of this function
+    **dict.fromkeys(("border", "branch", "lyapunov", "map"), "more of them"),
+    **dict.fromkeys(("resonance", "sweep"), "branches"),
+    **dict.fromkeys(("shake", "simulate"), "the bonded structure's"),
+    **dict.fromkeys(("capture", "couple"), "the other structure's"),
 }
-OVERLAY: dict[str, Callable[..., Figure]] = {  # over which branches are drawn
-    "resonance": resonance.draw,
-    "sweep": orbit_diagram.draw,
-}
-BESIDE: dict[str, Callable[..., Figure]] = {"simulate": motion.draw, "shake": shaken.draw}
-OF_BOTH: dict[str, Callable[..., Figure]] = {"couple": weak_drive.draw, "capture": capture.draw}
-PARTS: dict[str, Callable[..., Figure]] = {"jumps": weak_drive.draw_jumps}  # of couple
-KNOWN = ", ".join(sorted({*DRAW, *OF_BOTH, *analysis.DRAW}))
 EXPECTED = (
-    f"expected answers of one of {KNOWN}; several of one of {', '.join(SEVERAL)}; a sweep or "
-    "resonance with branches over it; simulate or shake with the bonded structure's; couple with "
-    "drive_branch"
+    f"expected answers of one of {', '.join(sorted(DRAW))}; several of one of border, branch, "
+    "lyapunov, map; a sweep or resonance with branches over it; simulate or shake with the bonded "
+    "structure's; couple with drive_branch"
 )
 
 
@@ -126,52 +104,47 @@ def plot(*answers: xr.Dataset, title: str = "", part: str = "", units: str | Uni
     every picture from then on.
     """
     kinds = [function_name(answer) for answer in answers]
-    answers = tuple(with_units(answer, units) for answer in answers)
-    several = set(kinds)
+    shown: dict[str, list[xr.Dataset]] = {kind: [] for kind in kinds}
+    for kind, answer in zip(kinds, answers, strict=True):
+        shown[kind].append(with_units(answer, units))
+    if part and (part != "jumps" or set(shown) != {"couple"}):
+        asked = f"part={part!r} of {' and '.join(sorted(shown))}"
+        raise InputError(f"plot: {asked}; expected 'jumps' of couple")
     if part:
-        return plot_part(answers, several, part, title)
-    if len(answers) == 1 and kinds[0] in analysis.DRAW:
-        return analysis.draw(answers[0], title=title)
-    keywords = {"title": title} if title else {}
-    if len(answers) == 1 and kinds[0] in DRAW:
-        return DRAW[kinds[0]](answers[0], **keywords)
-    if len(several) == 1 and kinds[0] in SEVERAL:
-        return SEVERAL[kinds[0]](*answers, **keywords)
-    (below, *more) = sorted(several - {"branch"}) or [""]
-    if "branch" in several and below in OVERLAY and not more and kinds.count(below) == 1:
-        parts = [answer for answer, kind in zip(answers, kinds, strict=True) if kind == "branch"]
-        return OVERLAY[below](answers[kinds.index(below)], overlay=parts, **keywords)
-    if len(several) == 1 and kinds[0] in BESIDE and len(answers) == 2:
-        delaminated, bonded = sorted(answers, key=is_bonded)
-        if is_bonded(bonded) and not is_bonded(delaminated):
-            return BESIDE[kinds[0]](delaminated, bonded=bonded, **keywords)
-    return plot_drive(answers, kinds, title)
+        return weak_drive.draw_jumps(by_structure(shown["couple"]), title=title)
+    draw = choose_picture(shown)
+    if draw is None:
+        raise InputError(f"plot: no picture of {' and '.join(kinds) or 'nothing'}; {EXPECTED}")
+    return draw(title=title) if title else draw()
 
 
-def plot_part(answers: Sequence[xr.Dataset], kinds: set[str], part: str, title: str) -> Figure:
-    """Draw a further picture of results, such as the jumps of runs, by its name ``part``."""
-    if part not in PARTS or kinds != {"couple"}:
-        asked = f"part={part!r} of {' and '.join(sorted(kinds))}"
-        raise InputError(f"plot: {asked}; expected {' or '.join(map(repr, PARTS))} of couple")
-    runs = {"bonded" if is_bonded(answer) else "delaminated": answer for answer in answers}
-    return PARTS[part](runs, title=title)
+def choose_picture(shown: dict[str, list[xr.Dataset]]) -> Callable[..., Figure] | None:
+    """Return what draws these results in one picture, with the results; None if there is none."""
+    kind, *more = sorted(shown, key=lambda kind: kind in ("branch", "drive_branch")) or [""]
+    if kind not in DRAW:
+        return None
+    (first, *others), beside = shown[kind], TOGETHER.get(kind)
+    runs = by_structure(shown[kind])
+    if beside == "the other structure's":
+        branches = shown.get("drive_branch", [])
+        if len(runs) <= len(others) or more not in ([], ["drive_branch"]) or len(branches) > 1:
+            return None
+        if branches and kind != "couple":
+            return None
+        return partial(DRAW[kind], runs, **{"branches": branches[0]} if branches else {})
+    if not more and (not others or beside == "more of them"):
+        return partial(DRAW[kind], first, *others)
+    if more == ["branch"] and not others and beside == "branches":
+        return partial(DRAW[kind], first, overlay=shown["branch"])
+    if not more and len(others) == 1 and len(runs) == 2 and beside == "the bonded structure's":
+        return partial(DRAW[kind], runs["delaminated"], bonded=runs["bonded"])
+    return None
 
 
-def plot_drive(answers: Sequence[xr.Dataset], kinds: Sequence[str], title: str) -> Figure:
-    """Draw results on the weak drive, of one structure or of both."""
-    of_drive = [kind for kind in kinds if kind in OF_BOTH]
-    runs = {
-        "bonded" if is_bonded(answer) else "delaminated": answer
-        for answer, kind in zip(answers, kinds, strict=True)
-        if kind in OF_BOTH
-    }
-    rest = [answer for answer, kind in zip(answers, kinds, strict=True) if kind not in OF_BOTH]
-    alike = len(set(of_drive)) == 1 and len(runs) == len(of_drive)
-    if alike and not rest:
-        return OF_BOTH[of_drive[0]](runs, title=title)
-    if alike and of_drive[0] == "couple" and len(rest) == 1 and "drive_branch" in kinds:
-        return weak_drive.draw(runs, branches=rest[0], title=title)
-    raise InputError(f"plot: no picture of {' and '.join(kinds) or 'nothing'}; {EXPECTED}")
+def by_structure(answers: Sequence[xr.Dataset]) -> dict[str, xr.Dataset]:
+    """Return results by the structure that they are of, delaminated or bonded (undamaged)."""
+    names = ["bonded" if answer.attrs.get("bonded", False) else "delaminated" for answer in answers]
+    return dict(zip(names, answers, strict=True))
 
 
 def function_name(answer: object) -> str:
@@ -185,8 +158,3 @@ def function_name(answer: object) -> str:
         raise InputError(f"plot: {kind} is no answer of a question; {EXPECTED}")
     name = call.partition("(")[0].removesuffix("Job")  # a job by its class: CoupleJob
     return re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()
-
-
-def is_bonded(answer: xr.Dataset) -> bool:
-    """Return whether a result is of the undamaged (bonded) structure."""
-    return bool(answer.attrs.get("bonded", False))

@@ -1,58 +1,53 @@
-"""Draw resonance curves: amplitude and acceleration, bonded against delaminated."""
+"""Draw lines over the frequency: resonance curves, at one level or several, and thresholds."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
+from .colours import BLACK, GREY, STRUCTURES
 from .labels import title_from_attributes
-from .marks import MAX_DISTINCT, MarkStyle, marker_keywords
+from .lines import MAX_DISTINCT, MarkStyle, marker_keywords
 from .overlay import Overlay
-from .scales import AxisValues, acceleration_scale, axis_values, length_scale, varied_dimension
-from .style import (
-    BLACK,
-    BLUE,
-    GREY,
-    RED,
-    legend_below,
-    set_title,
-    styled,
-    write_plain_numbers,
+from .scales import (
+    AxisValues,
+    acceleration_scale,
+    axis_values,
+    frequency_scale,
+    length_scale,
+    varied_dimension,
 )
-from .threshold import THRESHOLD, hide_infinite
+from .style import draw_line, legend_below, make_panels, set_title, styled, use_plain_log
 
-COLOURS = {"delaminated": RED, "bonded": BLUE}
-STYLES: dict[str, Any] = {  # down lies on up
+WAYS: dict[str, Any] = {  # down lies on up
     "up": {"linestyle": "-", "linewidth": 1.8, "alpha": 0.75},
     "down": {"linestyle": "--", "linewidth": 1.0},
 }
 JUMP_LINES: dict[str, Any] = {"up": ":", "down": (0, (6.0, 2.0, 1.0, 2.0))}
+THRESHOLD, LOWEST = "threshold_acceleration", "lowest_threshold"
 LAYOUT: list[Any] = [["x1_max", "x2_max"], ["a1_max", "a2_max"], ["x_rel_max", "x_rel_max"]]
+LAYOUT += [[THRESHOLD, THRESHOLD]]
 NAMES = {
-    "x1_max": "max $|x_1|$ in {}",
-    "x2_max": "max $|x_2|$ in {}",
-    "a1_max": r"max $|\ddot{{x}}_1 + \ddot{{y}}|$ in {}",
-    "a2_max": r"max $|\ddot{{x}}_2 + \ddot{{y}}|$ in {}",
+    **{f"x{i}_max": f"max $|x_{i}|$ in {{}}" for i in "12"},
+    **{f"a{i}_max": rf"max $|\ddot{{{{x}}}}_{i} + \ddot{{{{y}}}}|$ in {{}}" for i in "12"},
     "x_rel_max": "largest gap in {}",
 }
-
-
 LENGTHS = {"x1_max": "xi1_max", "x2_max": "xi2_max", "x_rel_max": "xi_rel_max"}  # of an orbit
+FEW = 8  # levels that have a legend entry each; more have a colour bar
 
 
 @styled
-def draw(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] = ()) -> Figure:
+def draw_resonance(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] = ()) -> Figure:
     """Draw resonance curves with their peaks and jumps; return the figure."""
-    figure = Figure(figsize=(9.6, 7.6), layout="constrained")
+    figure = Figure(figsize=(9.6, 9.4 if THRESHOLD in data else 7.6), layout="constrained")
     rows = [row for row in LAYOUT if row[0] in data]
-    if THRESHOLD in data:
-        rows.append([THRESHOLD, THRESHOLD])
-        figure.set_figheight(9.4)
     axes = figure.subplot_mosaic(rows, sharex=True)
     set_title(figure, title or title_from_attributes(data))
     parameter = varied_dimension(data[rows[0][0]])
@@ -60,12 +55,17 @@ def draw(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] = ()) 
     branches = [Overlay(branch, data, parameter) for branch in overlay]
     for name, plane in axes.items():
         if name == THRESHOLD:
-            draw_threshold(plane, data, x)
+            draw_level_of_box(plane, data, x)
             continue
         draw_quantity(plane, data, data[name], x)
         draw_peaks(plane, data, name, parameter, x)
-        if name in LENGTHS and branches:
-            draw_overlay(plane, branches, name, display_unit(data, data[name])[0])
+        span = plane.get_xlim()
+        for branch in branches if name in LENGTHS else ():
+            factor = display_unit(data, data[name])[0]
+            branch.draw(plane, LENGTHS[name], factor, (BLACK, BLACK))
+            if name == "x_rel_max":
+                branch.mark(plane, LENGTHS[name], factor)
+            plane.set_xlim(span)
     if "x_rel_max" in axes and data.sizes.get("jump"):
         draw_jumps(axes["x_rel_max"], data, parameter, x)
     for name in (name for row in rows[-2:] for name in row):  # panels of two widths
@@ -75,53 +75,59 @@ def draw(data: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] = ()) 
     return figure
 
 
-def draw_overlay(axes: Axes, branches: Sequence[Overlay], name: str, factor: float) -> None:
-    """Draw branches over the curves within their frequency range; bifurcations in the gap."""
-    span = axes.get_xlim()
-    for branch in branches:
-        branch.draw(axes, LENGTHS[name], factor, (BLACK, BLACK))
-        if name == "x_rel_max":
-            branch.mark(axes, LENGTHS[name], factor)
-    axes.set_xlim(span)
-
-
 def draw_quantity(axes: Axes, data: xr.Dataset, values: xr.DataArray, x: AxisValues) -> None:
     """Draw one quantity's curves and list each structure's maximum; no gap if bonded."""
-    name = str(values.name)
     factor, unit = display_unit(data, values)
     largest: dict[str, tuple[float, float]] = {}
-    for words, part in curves_with_labels(values):
+    for structure, way, part in iterate_curves(values):
         curve = part.values / factor
         if np.nanmax(curve, initial=0.0) <= 0.0:
             continue
-        structure = words.partition(", ")[0]
-        style = STYLES[words.rpartition(", ")[2] if "direction" in values.dims else "up"]
-        colour = COLOURS.get(structure, BLACK)
-        axes.plot(x.values, curve, **style, color=colour, label=words)
+        colour, label = STRUCTURES.get(structure, BLACK), ", ".join(filter(None, [structure, way]))
+        axes.plot(x.values, curve, **WAYS[way or "up"], color=colour, label=label)
         if len(x.values) <= MAX_DISTINCT // 4:
             axes.plot(x.values, curve, **marker_keywords(len(x.values), MarkStyle(colour, 0.6)))
         at = int(np.nanargmax(curve))
         largest[structure] = max(largest.get(structure, (0.0, 0.0)), (curve[at], x.values[at]))
-    axes.set(yscale="log", ylabel=NAMES[name].format(unit))
     axes.margins(x=0.0, y=0.12)
-    write_plain_numbers(axes)
+    use_plain_log(axes)
+    axes.set_ylabel(NAMES[str(values.name)].format(unit))
     list_largest(axes, largest, unit, x)
 
 
-def draw_threshold(axes: Axes, data: xr.Dataset, x: AxisValues) -> None:
+def iterate_curves(values: xr.DataArray) -> Iterator[tuple[str, str, xr.DataArray]]:
+    """Yield structure, direction and curve of each; an empty text for what there is one of."""
+    structures = values.structure.values if "structure" in values.dims else [""]
+    for structure in map(str, structures):
+        part = values.sel(structure=structure) if structure else values
+        for way in map(str, part.direction.values) if "direction" in part.dims else [""]:
+            yield structure, way, part.sel(direction=way) if way else part
+
+
+def draw_level_of_box(axes: Axes, data: xr.Dataset, x: AxisValues) -> None:
     """Draw the box's acceleration and the threshold at which the gap opens or closes."""
-    level = (data.amplitude * data.frequency**2).broadcast_like(data[THRESHOLD]).values
     factor, unit = acceleration_scale(data)
-    threshold, event = hide_infinite(data[THRESHOLD]) / factor, data[THRESHOLD].attrs["event"]
-    level = level / factor
-    axes.plot(x.values, threshold, color=BLACK, linewidth=1.2, label=f"level at which it {event}")
-    axes.plot(x.values, level, color=GREY, linewidth=1.2, linestyle="-.", label="level of the box")
-    axes.fill_between(
-        x.values, threshold, level, where=level >= threshold, color=GREY, alpha=0.25, linewidth=0.0
-    )
-    axes.set(yscale="log", ylabel=rf"peak $|\ddot{{y}}|$ in {unit}")
+    level = (data.amplitude * data.frequency**2).broadcast_like(data[THRESHOLD]).values / factor
+    threshold = draw_threshold(axes, data, factor, "level at which it {}", 1.2)
+    axes.plot(x.values, level, "-.", color=GREY, linewidth=1.2, label="level of the box")
+    above: Any = {"where": level >= threshold, "color": GREY, "alpha": 0.25, "linewidth": 0.0}
+    axes.fill_between(x.values, threshold, level, **above)
     axes.margins(x=0.0, y=0.12)
-    write_plain_numbers(axes)
+    use_plain_log(axes)
+    axes.set_ylabel(rf"peak $|\ddot{{y}}|$ in {unit}")
+
+
+def draw_threshold(
+    axes: Axes, data: xr.Dataset, factor: float, words: str, width: float = 1.5
+) -> np.ndarray:
+    """Draw the level at which the gap opens or closes; return it, NaN where none does."""
+    levels = data[THRESHOLD].values
+    shown: np.ndarray = np.where(np.isfinite(levels), levels, np.nan) / factor
+    x = axis_values(data, str(data[THRESHOLD].dims[0])).values
+    event = data[THRESHOLD].attrs.get("event") or data.attrs["event"]
+    mark = "o-" if shown.size < 2 else "-"
+    draw_line(axes, x, shown, mark, BLACK, width, words.format(event))
+    return shown
 
 
 def display_unit(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
@@ -132,31 +138,16 @@ def display_unit(data: xr.Dataset, values: xr.DataArray) -> tuple[float, str]:
     return factor, f"{letter}m"
 
 
-def curves_with_labels(values: xr.DataArray) -> list[tuple[str, xr.DataArray]]:
-    """Return each structure's and direction's curve, with its legend label."""
-    curves = [("", values)]
-    for name in ("structure", "direction"):
-        if name in values.dims:
-            curves = [
-                (", ".join(filter(None, [words, str(value)])), part.sel({name: value}))
-                for words, part in curves
-                for value in values[name].values
-            ]
-    return curves
-
-
 def draw_peaks(axes: Axes, data: xr.Dataset, name: str, parameter: str, x: AxisValues) -> None:
     """Draw a triangle on each resonance peak, except where responses are irregular."""
-    if not data.sizes.get("peak"):
-        return
     factor, _ = display_unit(data, data[name])
-    for i in range(data.sizes["peak"]):
+    for i in range(data.sizes.get("peak", 0)):
         peak = data.isel(peak=i)
         if "peak_irregular" in data and bool(peak.peak_irregular):
             continue
         height = float(peak[f"peak_{name}"]) / factor
         if height > 0.0:
-            colour = COLOURS.get(str(peak.peak_structure.values), BLACK)
+            colour = STRUCTURES.get(str(peak.peak_structure.values), BLACK)
             at = axis_position(float(peak[f"peak_{parameter}"]), data[parameter], x)
             axes.plot(at, height, "v", color=colour, markersize=6.0, markeredgecolor="white")
 
@@ -187,9 +178,74 @@ def list_largest(
     """Write each structure's largest value and its frequency into a panel's corner."""
     middle = float(np.mean(axes.get_xlim()))
     right = all(at < middle for _, at in largest.values())
+    style: Any = {"ha": "right" if right else "left", "va": "top", "fontsize": 7}
     for row, (structure, (value, at)) in enumerate(largest.items()):
-        style: Any = {"ha": "right" if right else "left", "va": "top", "fontsize": 7}
         corner = (0.99 if right else 0.01, 0.97 - 0.075 * row)
         text = f"{structure}: {value:.4g} {unit} at {x.text(at)}".lstrip(": ")
-        colour = COLOURS.get(structure, BLACK)
+        colour = STRUCTURES.get(structure, BLACK)
         axes.text(*corner, text, color=colour, transform=axes.transAxes, **style)
+
+
+@styled
+def draw_levels(data: xr.Dataset, title: str = "") -> Figure:
+    """Draw acceleration over level, gap and threshold over frequency; return the figure."""
+    count = 3 if THRESHOLD in data else 2
+    words = title or title_from_attributes(data, ("amplitude", "frequency"))
+    figure, axes = make_panels(count, 1, (8.4, 1.2 + 2.5 * count), words, sharex=True)
+    level, (factor, unit) = data.level.values, acceleration_scale(data, "g")
+    low, high = float(level.min()), float(level.max())
+    part = np.zeros(len(level)) if low == high else np.asarray(LogNorm(low, high)(level))
+    colours = mpl.colormaps["viridis_r"].resampled(256)(0.1 + 0.85 * part)  # light for low levels
+    size = np.maximum(data.a1_max, data.a2_max).max("direction") / data.level
+    gaps = data.x_rel_max.sel(structure="delaminated").max("direction")
+    length, letter = length_scale(data, float(gaps.max()) or 1.0)
+    x = axis_values(data, "frequency")
+    for number, colour in enumerate(colours):
+        label = f"{level[number] / factor:.4g} {unit}" if len(level) <= FEW else None
+        curve = size.isel(level=number).sel(structure="delaminated")
+        draw_line(axes[0], x.values, curve, "-", colour, 1.4, label)
+        draw_line(axes[1], x.values, gaps.isel(level=number) / length, "-", colour, 1.4)
+    glued = size.isel(level=0).sel(structure="bonded")
+    draw_line(axes[0], x.values, glued, "--", GREY, 1.0, "bonded, at each level")
+    use_plain_log(axes[0])
+    axes[0].set_ylabel("largest acceleration between\nimpacts over level, in g/g")
+    axes[1].set_ylabel(f"largest gap in {letter}m")
+    axes[1].set_ylim(bottom=0.0)
+    if THRESHOLD in data:
+        draw_threshold(axes[2], data, factor, "level at which it first {}")
+        mark_lowest(axes[2], data)
+        for number, colour in enumerate(colours):
+            axes[2].axhline(level[number] / factor, color=colour, linewidth=1.0)
+        use_plain_log(axes[2])
+        axes[2].set_ylabel(f"level of the box in {unit}")
+    axes[-1].set_xlabel(x.label)
+    axes[0].margins(x=0.0)
+    legend_below(figure, axes)
+    return figure
+
+
+@styled
+def draw_contact_threshold(data: xr.Dataset, title: str = "") -> Figure:
+    """Draw the level at which a structure first opens or touches over frequency, in g and Hz."""
+    words = title or title_from_attributes(data, ("eta", "frequency"))
+    figure, (plane,) = make_panels(1, 1, (6.4, 4.2), words)
+    factor, unit = acceleration_scale(data, "g")
+    level = draw_threshold(plane, data, factor, "it first {}")
+    mark_lowest(plane, data)
+    if np.nanmax(level, initial=0.0) > 0.0:
+        use_plain_log(plane)
+    along = axis_values(data, str(data[THRESHOLD].dims[0])).label
+    plane.set(xlabel=along, ylabel=f"peak acceleration of the box in {unit}")
+    plane.legend()
+    return figure
+
+
+def mark_lowest(axes: Axes, data: xr.Dataset) -> None:
+    """Mark the lowest threshold of the range, which may lie between two frequencies."""
+    if LOWEST not in data:
+        return
+    (factor, unit), (turn, word) = acceleration_scale(data, "g"), frequency_scale(data)
+    place, level = float(data[f"{LOWEST}_frequency"]) / turn, float(data[LOWEST]) / factor
+    where = f"at {place:.5g} {word}" if word != "eta" else rf"at $\eta$ = {place:.5g}"
+    style: Any = {"color": BLACK, "markersize": 4.0, "linestyle": "none"}
+    axes.plot(place, level, "o", label=f"lowest: {level:.3g} {unit} {where}", **style)

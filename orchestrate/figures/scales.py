@@ -7,19 +7,13 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from ..units import FACTORS, OVER_OMEGA, has_own_frequency, omega_of, scale_of, units_of
-from .labels import gap_name, si_prefix, symbol, typeset_unit
+from ..units import FACTORS, OVER_OMEGA, omega_of, scale_of, units_of
+from .labels import gap_name, has_frequency_unit, si_prefix, symbol, typeset_unit
 from .style import XI_REL
 
 ETA = symbol("eta")
-FREQUENCIES = {
-    "Hz": r"frequency $\Omega/2\pi$ in Hz",
-    "rpm": "frequency of the box in rpm",
-    "rad/s": r"$\Omega$ in rad/s",
-    "eta": ETA,
-}
-
-
+FREQUENCIES = {"Hz": r"frequency $\Omega/2\pi$ in Hz", "rpm": "frequency of the box in rpm"}
+FREQUENCIES |= {"rad/s": r"$\Omega$ in rad/s", "eta": ETA}
 MAX_LISTED = 6  # numbers that a list of values has before it says how many more there are
 
 
@@ -30,15 +24,7 @@ class AxisValues(NamedTuple):
     label: str
 
     def text(self, *values: float) -> str:
-        """Format values with the unit of the axis once, or after its letter where it has none.
-
-        Examples
-        --------
-        >>> AxisValues(np.ones(1), "frequency in Hz").text(9.9, 16.3)
-        '9.9, 16.3 Hz'
-        >>> AxisValues(np.ones(1), "$e$").text(0.3)
-        '$e$ = 0.3'
-        """
+        """Format values with the unit of the axis once, or after its letter where it has none."""
         words, _, unit = self.label.rpartition(" in ")
         letter = f"{unit} = " if not words and unit.startswith("$") else ""
         left = len(values) - MAX_LISTED
@@ -51,13 +37,6 @@ def varied_dimension(data: xr.DataArray) -> str:
     """Return the name of an array's dimension besides direction and structure."""
     (name,) = (str(name) for name in data.dims if name not in ("direction", "structure"))
     return name
-
-
-def has_frequency_unit(data: xr.Dataset) -> bool:
-    """Return whether frequencies are shown with a unit, not as ratios eta."""
-    if units_of(data).frequency:
-        return units_of(data).frequency != "eta"
-    return has_own_frequency(data) or "frequency" in data.dims
 
 
 def frequency_scale(data: xr.Dataset) -> tuple[float, str]:
@@ -73,6 +52,14 @@ def length_scale(data: xr.Dataset, largest: float) -> tuple[float, str]:
     if not units_of(data).length:
         return si_prefix(largest)
     return factor, word.removesuffix("m").replace("u", "µ")
+
+
+def lengths(
+    data: xr.Dataset, values: xr.DataArray, words: str, unit: str = "m"
+) -> tuple[xr.DataArray, str]:
+    """Return lengths, or speeds in ``m/s``, in display units, and the axis label."""
+    factor, letter = length_scale(data, float(abs(values).max()) if values.size else 1.0)
+    return values / factor, f"{words} in {letter}{unit}"
 
 
 def acceleration_scale(data: xr.Dataset, usual: str = "m/s2") -> tuple[float, str]:

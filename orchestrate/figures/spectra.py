@@ -1,75 +1,113 @@
-"""Draw amplitude spectra under harmonic excitation, bonded beside delaminated."""
+"""Draw amplitude spectra as lines: under harmonic excitation, and on a motor at resonance."""
 
 from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .labels import title_from_attributes
-from .marks import draw_stems
-from .scales import acceleration_scale, frequency_scale, has_frequency_unit
-from .style import BLACK, BLUE, ORANGE, legend_below, make_panels, set_title, styled
+from ..units import units_of, with_units
+from .colours import BLACK, BLUE, ORANGE, STRUCTURES
+from .labels import format_frequency, has_frequency_unit, title_from_attributes
+from .scales import acceleration_scale, frequency_scale
+from .style import legend_below, make_panels, styled
 
-SIDES: tuple[dict[str, dict[str, Any]], ...] = (  # left and right; a thin line lies on a wide one
-    {"bonded": {"color": BLUE, "width": 2.6, "label": "bonded"}},
+MAX_STEMS = 80  # of a spectrum, in full width
+FLOOR = 1e-6  # of a motor's spectra: the lower end of the axis over the largest amplitude
+SIDES: tuple[dict[str, tuple[str, float, str]], ...] = (  # a thin line lies on a wide one
+    {"bonded": (BLUE, 2.6, "bonded")},
     {
-        "delaminated": {"color": BLACK, "width": 2.6, "label": "delaminated"},
-        "sampled": {
-            "color": ORANGE,
-            "width": 1.0,
-            "label": "delaminated, sampled: without the impulses of the impacts",
-        },
+        "delaminated": (BLACK, 2.6, "delaminated"),
+        "sampled": (ORANGE, 1.0, "delaminated, sampled: without the impulses of the impacts"),
     },
 )
 
 
+def draw_stems(
+    axes: Axes, x: np.ndarray, amplitudes: np.ndarray, floor: float, width: float, **style: Any
+) -> None:
+    """Draw a spectrum's lines as stems on a logarithmic axis that begins at a floor."""
+    axes.set_yscale("log")
+    shown = amplitudes > floor
+    thin = min(1.0, (MAX_STEMS / (1 + int(shown.sum()))) ** 0.5)
+    axes.vlines(x[shown], floor, amplitudes[shown], linewidth=width * thin, **style)
+
+
+def acceleration_spectrum(
+    displacement: np.ndarray, interval: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return frequencies, Hz, and acceleration amplitudes from displacements (Hann window).
+
+    An impulse is a kink of the displacement, so it is in them.
+    """
+    from scipy.signal import periodogram
+
+    frequency, power = periodogram(displacement, 1.0 / interval, "hann", scaling="spectrum")
+    return frequency, (2.0 * np.pi * frequency) ** 2 * np.sqrt(2.0 * power)
+
+
 @styled
-def draw(data: xr.Dataset, title: str = "", mass: int = 1, decades: int = 4) -> Figure:
+def draw_spectra(data: xr.Dataset, title: str = "", mass: int = 1, decades: int = 4) -> Figure:
     """Draw spectra, one row per frequency, bonded left and delaminated right."""
     felt, unit = acceleration_scale(data)
     shown = data.acceleration.sel(mass=mass) / felt
-    along = str(shown.dims[0])
-    count = data.sizes[along]
-    figure, axes = make_panels(
-        count, 2, (9.6, 0.9 + 2.1 * count), sharex=not has_frequency_unit(data), sharey="row"
-    )
-    set_title(figure, title or title_from_attributes(data))
+    along, with_unit = str(shown.dims[0]), has_frequency_unit(data)
+    count, size = shown.sizes[along], (9.6, 0.9 + 2.1 * shown.sizes[along])
+    title = title or title_from_attributes(data)
+    figure, axes = make_panels(count, 2, size, title, sharex=not with_unit, sharey="row")
     for index in range(count):
         part = shown.isel({along: index})
         top = float(part.max()) or 1.0
         floor = 10.0**-decades * top
         for plane, kinds in zip(axes[2 * index : 2 * index + 2], SIDES, strict=True):
-            draw_panel(plane, data, part, kinds, floor)
+            draw_side(plane, data, part, kinds, floor)
         axes[2 * index].set_ylim(floor, 2.0 * top)
         axes[2 * index].set_ylabel(f"acceleration\nof mass {mass} in {unit}")
-    for plane in axes if has_frequency_unit(data) else axes[-2:]:
-        unit = f"in {frequency_scale(data)[1]}" if has_frequency_unit(data) else r"over $\Omega$"
-        plane.set_xlabel(f"frequency of the line {unit}")
-    columns = sum(map(len, SIDES))
+    lines = f"in {frequency_scale(data)[1]}" if with_unit else r"over $\Omega$"
+    for plane in axes if with_unit else axes[-2:]:
+        plane.set_xlabel(f"frequency of the line {lines}")
     left_out = f"what is below {10.0**-decades:g} of the largest line is left out"
-    legend_below(figure, axes[:2], columns, title=left_out)
+    legend_below(figure, axes[:2], sum(map(len, SIDES)), title=left_out)
     return figure
 
 
-def draw_panel(
+def draw_side(
     axes: Axes,
     data: xr.Dataset,
     amplitudes: xr.DataArray,
-    kinds: dict[str, dict[str, Any]],
+    kinds: dict[str, tuple[str, float, str]],
     floor: float,
 ) -> None:
     """Draw the spectra of one or both structures at one frequency."""
-    si, (turn, unit) = has_frequency_unit(data), frequency_scale(data)
-    speed = float(amplitudes.frequency)
-    lines = data.order.values * (speed / turn if si else 1.0)
-    for kind, style in kinds.items():
+    with_unit, (turn, unit) = has_frequency_unit(data), frequency_scale(data)
+    at = float(amplitudes.frequency) / turn
+    words = f"{at:.4g} {unit}" if with_unit else rf"$\eta$ = {float(amplitudes.eta):.4g}"
+    lines = data.order.values * (at if with_unit else 1.0)
+    for kind, (colour, width, label) in kinds.items():
         if kind in data.kind.values:
-            draw_stems(axes, lines, amplitudes.sel(kind=kind).values, floor, **style)
-    frequency_text = (
-        f"{speed / turn:.4g} {unit}" if si else rf"$\eta$ = {float(amplitudes.eta):.4g}"
-    )
-    axes.set_title(f"{next(iter(kinds))}, {frequency_text}")
+            values = amplitudes.sel(kind=kind).values
+            draw_stems(axes, lines, values, floor, width, color=colour, label=label)
+    axes.set_title(f"{next(iter(kinds))}, {words}")
     axes.set_xlim(0.0, 1.02 * float(lines.max()))
+
+
+@styled
+def draw_motor_spectra(data: xr.Dataset, mass: int = 1, title: str = "") -> Figure:
+    """Draw a mass' acceleration spectra on a motor, one structure below the other (Figure 3)."""
+    count = data.sizes["kind"]
+    figure, axes = make_panels(count, 1, (10, 3.5 * count), title, sharex=True, sharey=True)
+    turning = data if units_of(data).frequency else with_units(data, "rad/s")
+    felt, unit = acceleration_scale(data)
+    shown = data.acceleration.sel(mass=mass) / felt
+    top = float(shown.max())
+    for panel, kind in zip(axes, map(str, data.kind.values), strict=True):
+        values, colour = shown.sel(kind=kind).values, STRUCTURES[kind]
+        draw_stems(panel, data.order.values, values, FLOOR * top, 1.5, color=colour)
+        speed = format_frequency(turning, float(data.speed.sel(kind=kind)))
+        panel.set(title=f"{kind}, {speed}", ylabel=f"acceleration in {unit}")
+        panel.set_ylim(FLOOR * top, 2.0 * top)
+    axes[-1].set_xlabel(r"frequency over the motor's speed $\Omega$")
+    return figure

@@ -27,11 +27,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
-# colours that people tell apart however they see them: Okabe and Ito, Color Universal Design (2008)
-BLACK, GREY = "#000000", "#8c8c8c"
-BLUE, RED, GREEN = "#0072b2", "#d55e00", "#009e73"
-ORANGE, SKY, PURPLE, YELLOW = "#e69f00", "#56b4e9", "#cc79a7", "#f0e442"
-PALETTE = (BLUE, ORANGE, GREEN, RED, PURPLE, SKY, YELLOW)
+from .colours import GREY, PALETTE
+
 STYLE: dict[str, Any] = {
     "axes.grid": True,
     "axes.axisbelow": True,
@@ -67,7 +64,6 @@ def styled(draw: Callable[Arguments, Figure]) -> Callable[Arguments, Figure]:
 
     @functools.wraps(draw)
     def drawn(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Figure:
-        """Call the drawing function under our Matplotlib settings."""
         with style_context():
             return draw(*args, **kwargs)
 
@@ -75,11 +71,12 @@ def styled(draw: Callable[Arguments, Figure]) -> Callable[Arguments, Figure]:
 
 
 def make_panels(
-    rows: int, columns: int, size: tuple[float, float], **more: Any
+    rows: int, columns: int, size: tuple[float, float], title: str = "", **more: Any
 ) -> tuple[Figure, list[Axes]]:
-    """Make a figure with a grid of axes; return it and the axes row by row."""
+    """Return a figure with a title and a grid of axes, and the axes row by row."""
     figure = Figure(figsize=size, layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False, **more)
+    set_title(figure, title)
     return figure, list(axes.ravel())
 
 
@@ -87,11 +84,16 @@ def set_title(figure: Figure, title: str) -> None:
     """Write a title above all panels, broken after commas into lines that fit."""
     if title:
         letters = int(LETTERS_AN_INCH * figure.get_figwidth())
-        parts = title.replace(" ", NO_BREAK_SPACE).replace(
-            f",{NO_BREAK_SPACE}", ", "
-        )  # breaks after commas alone
+        parts = title.replace(" ", NO_BREAK_SPACE).replace(f",{NO_BREAK_SPACE}", ", ")
         lines = textwrap.fill(parts, letters, break_long_words=False)
         figure.suptitle(lines.replace(NO_BREAK_SPACE, " "), x=0.01, ha="left")
+
+
+def draw_line(
+    axes: Axes, x: Any, y: Any, line: str, colour: str, width: float, label: str | None = None
+) -> None:
+    """Draw one curve; without a label it is not in the legend."""
+    axes.plot(x, y, line, color=colour, linewidth=width, label=label)
 
 
 def legend_below(figure: Figure, axes: Iterable[Axes], columns: int = 4, **more: Any) -> None:
@@ -112,6 +114,12 @@ def legend_under(axes: Axes, columns: int = 3) -> None:
         axes.legend(ncols=columns, **below)
 
 
+def legend_above(axes: Axes, columns: int = 1) -> None:
+    """Draw one panel's legend above its right end."""
+    place: Any = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.2}
+    axes.legend(ncols=columns, **place)
+
+
 def write_in_panel(axes: Axes, words: str) -> None:
     """Write a text in the middle of a panel that has nothing to show."""
     axes.set_yticks([])
@@ -119,8 +127,9 @@ def write_in_panel(axes: Axes, words: str) -> None:
     axes.text(0.5, 0.5, words, color=GREY, fontsize=11, **middle)
 
 
-def write_plain_numbers(axes: Axes) -> None:
-    """Label a logarithmic y axis with plain numbers such as 0.02, few enough to read."""
+def use_plain_log(axes: Axes) -> None:
+    """Set a logarithmic y axis with plain numbers such as 0.02, few enough to read."""
+    axes.set_yscale("log")
     low, high = axes.get_ylim()
     axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 300.0 * low else (1.0,)))
     axes.yaxis.set_major_formatter("{x:g}")

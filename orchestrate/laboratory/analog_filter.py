@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..constants import TURN
+from .pieces import Floats
 
-Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 BLOCK = 1 << 16  # cells at once, for the memory
 FAR = 3.0  # |z| from which the recurrence upwards loses no digits of the first seven

@@ -9,14 +9,13 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..constants import GRAVITY, TURN
 from ..errors import InputError
+from .pieces import Floats
 from .record import CHANNELS, SHORT_NAMES
 from .record_checks import ascends, first_hole
 
-Floats = NDArray[np.float64]
 INCH = 0.0254
 MOST_NAMES = 12  # of columns in a message
 ACCELERATIONS = {  # in m/s2

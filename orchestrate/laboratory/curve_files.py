@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..errors import InputError
 from .columns import (
@@ -27,6 +26,7 @@ from .columns import (
     taken_text,
     warn_of_unread,
 )
+from .pieces import Floats
 from .record_csv import read_csv
 from .record_files import check_file, file_kind
 from .resonance_curve import CurveColumns, acceleration_factor, made_curve
@@ -35,7 +35,6 @@ from .signals import LEVEL, checked
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 MOST_DEGREES = 7.0  # a phase without a unit that goes beyond it, 2 pi and some, is in degrees
 
 

@@ -19,7 +19,7 @@ from .signals import (
     ExcitationSignal,
     Profile,
     along_profile,
-    checked,
+    check_fields,
     checked_profile,
 )
 
@@ -59,9 +59,8 @@ class Random(ExcitationSignal):
     seed: int = 0
 
     def __post_init__(self) -> None:
-        put = object.__setattr__
-        put(self, "psd", checked_profile("psd", self.psd, DENSITY))
-        put(self, "duration", checked(SECONDS, "duration", self.duration))
+        object.__setattr__(self, "psd", checked_profile("psd", self.psd, DENSITY))
+        check_fields(self, duration=SECONDS)
         whole = isinstance(self.seed, (int, np.integer)) and not isinstance(self.seed, bool)
         if not whole or self.seed < 0:
             raise InputError(f"seed = {self.seed!r}: expected a whole number >= 0")

@@ -16,12 +16,11 @@ from numpy.typing import NDArray
 
 from ..structures import Structure
 from .analog_filter import Cells
-from .pieces import Pieces
+from .pieces import Floats, Pieces
 
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 SHORT = 0.1  # of a cell times the highest natural frequency, rad
 LOOKS = 16  # at the contact force in a cell: it bends little there

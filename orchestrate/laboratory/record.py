@@ -7,17 +7,17 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..errors import InputError
 from ..response.labels import variable
+from .pieces import Floats
 from .record_checks import doubtful_channels
 from .signals import HERTZ, checked
 
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 CHANNELS = {  # long names
     "box_acceleration": "acceleration of the box",
     "acceleration1": "absolute acceleration of mass 1",

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from .pieces import Floats
+
 PLAUSIBLE = (0.05, 2e5)  # largest absolute values that accelerometers read in tests, m/s2
 CLIPPED = 1e-4  # share of samples at repeated extremes from which a channel is saturated
 CONSTANT = 0.02  # share of the samples, in a row, from which one value is no reading

@@ -184,6 +184,12 @@ def check_file(path: Path) -> None:
         raise InputError(f"{path}: {status.st_size} bytes; {text}")
 
 
+def damaged(path: Path, error: Exception, kind: str) -> InputError:
+    """Return the error of a file that its reader refuses, in one line."""
+    text = (str(error).splitlines() or [type(error).__name__])[0][:120]
+    return InputError(f"{path}: {text}; expected a {kind} file that is whole")
+
+
 def read_netcdf(path: Path) -> Columns:
     """Read the variables over ``time`` of a NetCDF file, with their units."""
     import xarray as xr
@@ -191,18 +197,13 @@ def read_netcdf(path: Path) -> Columns:
     try:
         data = xr.load_dataset(path, engine="netcdf4", decode_times=False)
     except Exception as error:  # of the HDF5 library too
-        text = (str(error).splitlines() or [type(error).__name__])[0][:120]
-        raise InputError(f"{path}: {text}; expected a NetCDF file that is whole") from None
+        raise damaged(path, error, "NetCDF") from None
     if "time" not in data.variables or data.time.dims != ("time",):
         raise InputError(f"{path}: no variable time over itself; expected a record")
-    over_time = [
-        str(name)
+    columns = [
+        Column(str(name), str(one.attrs.get("units", "")), one.values.astype(float))
         for name, one in data.variables.items()
         if one.dims == ("time",) and one.dtype.kind in "iuf"
-    ]
-    columns = [
-        Column(name, str(data[name].attrs.get("units", "")), data[name].values.astype(float))
-        for name in over_time
     ]
     rate = data.attrs.get("sample_rate")
     attributes = dict(data.attrs) if {"sensors", "source"} <= set(data.attrs) else {}
@@ -219,8 +220,7 @@ def read_wav(path: Path, scale: float) -> Columns:
             warnings.filterwarnings("error", message="Reached EOF prematurely")
             rate, data = wavfile.read(path)
     except Exception as error:
-        text = (str(error).splitlines() or [type(error).__name__])[0][:120]
-        raise InputError(f"{path}: {text}; expected a WAV file that is whole") from None
+        raise damaged(path, error, "WAV") from None
     values = np.asarray(data, float)
     if not values.size:
         raise InputError(f"{path}: no samples; expected some")

@@ -14,16 +14,17 @@ from ..constants import TURN
 from ..errors import InputError
 from ..response.labels import variable
 from .columns import ACCELERATIONS, LENGTHS, RATIOS, SPEEDS, plain_unit
+from .pieces import Floats
 
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 FACES = ("acceleration1", "acceleration2")
 CURVE_ORDERS = (1.0, 2.0, 3.0)
 FEWEST_POINTS = 10
 MOST_POINTS = 2000
 DIRECTIONS = ("up", "down")
+QUANTITIES = (ACCELERATIONS, SPEEDS, LENGTHS)  # by the derivatives that lack to the first
 
 
 def resonance_curve(
@@ -291,21 +292,19 @@ def power_of(unit: str) -> int:
     >>> power_of("g"), power_of("mm/s"), power_of("mm"), power_of("1")
     (0, 1, 2, 0)
     """
-    plain = plain_unit(unit)
-    return {**dict.fromkeys(SPEEDS, 1), **dict.fromkeys(LENGTHS, 2)}.get(plain, 0)
+    return next((n for n, units in enumerate(QUANTITIES) if plain_unit(unit) in units), 0)
 
 
 def acceleration_factor(name: str, unit: str, frequency: Floats, level: Floats) -> Floats:
     """Return the factors that convert order 1 of a unit's quantity to m/s2, shape (n,)."""
-    plain = plain_unit(unit)
+    plain, power = plain_unit(unit), power_of(unit)
     if plain in RATIOS:
         return level.copy()
-    for units, power in ((ACCELERATIONS, 0), (SPEEDS, 1), (LENGTHS, 2)):
-        if plain in units:
-            return np.asarray(units[plain] * (TURN * frequency) ** power)
-    text = f"unit = {unit!r}" if unit else "no unit"
-    names = "m/s2, g, mm/s, m, mm, um, or 1 for a transmissibility"
-    raise InputError(f"{name}: {text}; expected one such as {names}: give it by unit=")
+    if plain not in QUANTITIES[power]:
+        text = f"unit = {unit!r}" if unit else "no unit"
+        names = "m/s2, g, mm/s, m, mm, um, or 1 for a transmissibility"
+        raise InputError(f"{name}: {text}; expected one such as {names}: give it by unit=")
+    return np.asarray(QUANTITIES[power][plain] * (TURN * frequency) ** power)
 
 
 def lagging_phases(first: Floats, phase: Floats) -> tuple[Floats, str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +11,7 @@ from ..checks import checked_word
 from ..errors import InputError
 from ..structures.ranges import Quantity
 from .pieces import ERROR, Floats, Pieces, equal_nodes, phase_step
-from .signals import LEVEL, SECONDS, ExcitationSignal, checked
+from .signals import LEVEL, SECONDS, ExcitationSignal, check_fields, checked
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,17 +48,12 @@ class Shock(ExcitationSignal):
     duration: float = 0.0
 
     def __post_init__(self) -> None:
-        put = object.__setattr__
-        put(self, "peak", checked(LEVEL, "peak", self.peak))
-        put(self, "length", checked(SECONDS, "length", self.length))
-        put(self, "delay", checked(Quantity("delay", "s", "", 0.0, 1e7), "delay", self.delay))
+        delay = Quantity("delay", "s", "", 0.0, 1e7)
+        check_fields(self, peak=LEVEL, length=SECONDS, delay=delay)
         checked_word("shape", self.shape, ("half-sine", "sawtooth", "trapezoid"))
         end = self.delay + self.length
-        put(
-            self,
-            "duration",
-            checked(SECONDS, "duration", self.duration or end + 19.0 * self.length),
-        )
+        duration = checked(SECONDS, "duration", self.duration or end + 19.0 * self.length)
+        object.__setattr__(self, "duration", duration)
         if self.duration < end:
             text = f"expected at least delay + length = {end:g} s"
             raise InputError(f"duration = {self.duration!r} s: {text}")
@@ -80,7 +74,7 @@ class Shock(ExcitationSignal):
         begin, end = self.delay, self.delay + self.length
         nodes = np.unique([0.0, *(begin + edges), end, self.duration])
         inside = (nodes[:-1] >= begin) & (nodes[1:] <= end)
-        found = Pieces.interpolate(nodes, self._pulse(), error)
+        found = Pieces.interpolate(nodes, self._pulse, error)
         return Pieces(nodes, np.where(inside[:, None], found.derivatives, 0.0), error)
 
     def _edges(self, accuracy: float) -> tuple[Floats, float]:
@@ -93,16 +87,11 @@ class Shock(ExcitationSignal):
         error = self.peak * float(np.diff(angles).max()) ** 4 / ERROR
         return self.length * angles[:-1] / math.pi, error
 
-    def _pulse(self) -> Callable[[Floats], Floats]:
-        """Return the pulse as a function of time."""
-
-        def pulse(time: Floats) -> Floats:
-            """Return the acceleration at times inside the pulse, m/s2."""
-            part = (time - self.delay) / self.length
-            if self.shape == "half-sine":
-                return self.peak * np.sin(np.pi * part)
-            if self.shape == "sawtooth":
-                return self.peak * part
-            return self.peak * np.minimum(np.minimum(10.0 * part, 10.0 * (1.0 - part)), 1.0)
-
-        return pulse
+    def _pulse(self, time: Floats) -> Floats:
+        """Return the acceleration at times inside the pulse, m/s2."""
+        part = (time - self.delay) / self.length
+        if self.shape == "half-sine":
+            return self.peak * np.sin(np.pi * part)
+        if self.shape == "sawtooth":
+            return self.peak * part
+        return self.peak * np.minimum(np.minimum(10.0 * part, 10.0 * (1.0 - part)), 1.0)

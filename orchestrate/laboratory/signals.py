@@ -13,7 +13,9 @@ from itertools import pairwise
 from operator import add
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from ..constants import TURN
 from ..errors import InputError
 from ..structures.ranges import Quantity
 from .pieces import Floats, Pieces
@@ -30,6 +32,12 @@ def checked(quantity: Quantity, name: str, value: object) -> float:
     """Return a number; raise, by the user's name for it, if it is outside its quantity's range."""
     own = Quantity(name, quantity.unit, "", quantity.minimum, quantity.maximum)
     return own.check(value)
+
+
+def check_fields(signal: object, **quantities: Quantity) -> None:
+    """Check fields of a frozen dataclass against their quantities, and store them as numbers."""
+    for name, quantity in quantities.items():
+        object.__setattr__(signal, name, checked(quantity, name, getattr(signal, name)))
 
 
 def checked_profile(name: str, given: object, quantity: Quantity) -> Profile:
@@ -130,6 +138,35 @@ class ExcitationSignal(ABC):
         if not isinstance(other, ExcitationSignal):
             return NotImplemented
         return SumOfSignals((*parts_of(self), *parts_of(other)))
+
+
+class Sine(ExcitationSignal):
+    """A sine whose frequency and level change over the time."""
+
+    acceleration: float | Profile
+
+    @property
+    def description(self) -> str:
+        """Frequencies, duration and peak acceleration, for titles."""
+        return f"{self.label} at {format_level(self.acceleration)}"
+
+    @abstractmethod
+    def phase(self, time: ArrayLike) -> Floats:
+        """Return the phase at a time, rad."""
+
+    @abstractmethod
+    def level(self, time: ArrayLike) -> Floats:
+        """Return the peak acceleration at a time, m/s2."""
+
+    def __call__(self, time: ArrayLike) -> Floats:
+        """Return the acceleration at a time, m/s2."""
+        return np.asarray(self.level(time) * np.sin(self.phase(time)))
+
+    def check_length(self, phase: float, longest: float, name: str) -> None:
+        """Check that pieces of a sine up to this phase are not too many."""
+        if phase > MOST_PIECES * longest:
+            text = f"expected less than {MOST_PIECES * longest / TURN:.3g}"
+            raise InputError(f"the {name} has {phase / TURN:.3g} oscillations: {text}")
 
 
 def parts_of(signal: ExcitationSignal) -> tuple[ExcitationSignal, ...]:

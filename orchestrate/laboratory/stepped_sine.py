@@ -13,23 +13,14 @@ from ..constants import TURN
 from ..errors import InputError
 from ..structures.ranges import Quantity
 from .pieces import ERROR, Floats, Pieces, phase_step, subdivided
-from .signals import (
-    HERTZ,
-    MOST_PIECES,
-    ExcitationSignal,
-    Profile,
-    along_profile,
-    checked,
-    checked_level,
-    format_level,
-)
+from .signals import HERTZ, Profile, Sine, along_profile, checked, checked_level
 
 CYCLES = Quantity("cycles", "", "", 0.0, 1e6)
 MOST_FREQUENCIES = 100_000
 
 
 @dataclass(frozen=True, kw_only=True)
-class SteppedSine(ExcitationSignal):
+class SteppedSine(Sine):
     """A sine of one frequency after the other: at each the structure settles, then it is measured.
 
     The frequency changes at a peak of the acceleration, where the box's velocity passes zero: the
@@ -91,11 +82,6 @@ class SteppedSine(ExcitationSignal):
         return f"stepped sine {over} and {self.duration:.4g} s"
 
     @property
-    def description(self) -> str:
-        """Frequencies, duration and peak acceleration, for titles."""
-        return f"{self.label} at {format_level(self.acceleration)}"
-
-    @property
     def usual_rate(self) -> float:
         """Default sampling rate, Hz: twenty samples in the shortest period."""
         return 20.0 * max(self.frequencies)
@@ -123,25 +109,15 @@ class SteppedSine(ExcitationSignal):
 
     def level(self, time: ArrayLike) -> Floats:
         """Return the peak acceleration at a time, m/s2."""
-        return self._levels()[self._step_at(time)]
-
-    def _levels(self) -> Floats:
-        """Return the peak acceleration of each frequency, m/s2."""
         if isinstance(self.acceleration, float):
-            return np.full(len(self.frequencies), self.acceleration)
-        return along_profile(self.acceleration, np.array(self.frequencies))
-
-    def __call__(self, time: ArrayLike) -> Floats:
-        """Return the acceleration at a time, m/s2."""
-        return np.asarray(self.level(time) * np.sin(self.phase(time)))
+            return np.full(np.shape(time), self.acceleration)
+        return along_profile(self.acceleration, np.array(self.frequencies))[self._step_at(time)]
 
     def pieces(self, accuracy: float = 1e-6) -> Pieces:
         """Return pieces of equal phase at each frequency."""
         times, phases = self._changes()
         longest = phase_step(accuracy)
-        if phases[-1] > MOST_PIECES * longest:
-            text = f"expected less than {MOST_PIECES * longest / TURN:.3g}"
-            raise InputError(f"the stepped sine has {phases[-1] / TURN:.3g} oscillations: {text}")
+        self.check_length(phases[-1], longest, "stepped sine")
         nodes = subdivided(times, np.ceil(np.diff(phases) / longest).astype(int))
         angles = TURN * self.frequency(nodes[:-1]) * np.diff(nodes)
         error = float((self.level(nodes[:-1]) * angles**4).max() / ERROR)

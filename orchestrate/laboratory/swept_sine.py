@@ -15,19 +15,18 @@ from ..structures.ranges import Quantity
 from .pieces import ERROR, Floats, Pieces, equal_nodes, phase_step, subdivided
 from .signals import (
     HERTZ,
-    MOST_PIECES,
     SECONDS,
-    ExcitationSignal,
     Profile,
+    Sine,
     along_profile,
+    check_fields,
     checked,
     checked_level,
-    format_level,
 )
 
 
 @dataclass(frozen=True, kw_only=True)
-class SweptSine(ExcitationSignal):
+class SweptSine(Sine):
     """A sine whose frequency moves slowly from one end of a range to the other.
 
     Linear: ``A sin(2 pi (f0 t + (f1 - f0) t^2/(2 T)))``. Logarithmic, with L = ln(f1/f0):
@@ -67,8 +66,7 @@ class SweptSine(ExcitationSignal):
 
     def __post_init__(self) -> None:
         put = object.__setattr__
-        put(self, "first", checked(HERTZ, "first", self.first))
-        put(self, "last", checked(HERTZ, "last", self.last))
+        check_fields(self, first=HERTZ, last=HERTZ)
         checked_word("spacing", self.spacing, ("linear", "log"))
         if self.first == self.last:
             raise InputError(f"last = {self.last!r} Hz: expected another frequency than first")
@@ -82,7 +80,7 @@ class SweptSine(ExcitationSignal):
             rate = checked(Quantity("rate", "", "", 1e-9, 1e9), "rate", self.rate)
             put(self, "duration", self._span() / rate)
             put(self, "rate", None)
-        put(self, "duration", checked(SECONDS, "duration", self.duration))
+        check_fields(self, duration=SECONDS)
 
     def _span(self) -> float:
         """Return the range swept: Hz if linear, 60 times the octaves if logarithmic."""
@@ -94,11 +92,6 @@ class SweptSine(ExcitationSignal):
     def label(self) -> str:
         """Frequencies and duration, for titles."""
         return f"swept sine {self.first:g} to {self.last:g} Hz in {self.duration:.4g} s"
-
-    @property
-    def description(self) -> str:
-        """Frequencies, duration and peak acceleration, for titles."""
-        return f"{self.label} at {format_level(self.acceleration)}"
 
     @property
     def usual_rate(self) -> float:
@@ -147,16 +140,10 @@ class SweptSine(ExcitationSignal):
         low, high = self.acceleration[0][0], self.acceleration[-1][0]
         return along_profile(self.acceleration, np.clip(self.frequency(time), low, high))
 
-    def __call__(self, time: ArrayLike) -> Floats:
-        """Return the acceleration at a time, m/s2."""
-        return np.asarray(self.level(time) * np.sin(self.phase(time)))
-
     def pieces(self, accuracy: float = 1e-6) -> Pieces:
         """Return pieces of equal phase, shorter where the frequency changes within them."""
         end = float(self.phase(self.duration))
-        if end > MOST_PIECES * phase_step(accuracy):
-            text = f"expected less than {MOST_PIECES * phase_step(accuracy) / TURN:.3g}"
-            raise InputError(f"the sweep has {end / TURN:.3g} oscillations: {text}")
+        self.check_length(end, phase_step(accuracy), "sweep")
         phases = equal_nodes(0.0, end, phase_step(accuracy))
         nodes = self._times_of(phases)
         nodes[0], nodes[-1] = 0.0, self.duration

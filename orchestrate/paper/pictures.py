@@ -6,17 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from ..figures import (
-    attractors,
-    basin,
-    lyapunov,
-    maps,
-    orbit_diagram,
-    phase_curves,
-    phase_grid,
-    spectra,
-    time_histories,
-)
+from ..figures import histories, lines, planes, spectra
 from ..figures.style import XI_REL, XI_REL_RATE, Figure
 from .cases import CASES, MAPS, ORBITS
 from .datasets import Datasets
@@ -58,7 +48,7 @@ def orbit_diagram_part(number: str, case: str) -> Part:
         "axis is logarithmic down to its grey part, and linear in it, down to 0."
     )
     file = f"orbit_{structure.label()}_up"
-    show: Any = orbit_diagram.draw, lambda data: [data.up(case)], (file,)
+    show: Any = lines.draw_sweep, lambda data: [data.up(case)], (file,)
     return Part(f"Figure {number}", text, ORBIT, *show)
 
 
@@ -70,7 +60,7 @@ def curves_part(number: str, text: str, method: str, draw: Callable[..., Figure]
 
 def draw_basin(data: Any) -> Figure:
     """Draw the basin, in the paper's coordinates."""
-    return basin.draw(data, "", (f"{XI_REL}(0)", f"{XI_REL_RATE}(0)"))
+    return planes.draw_basin(data, "", (f"{XI_REL}(0)", f"{XI_REL_RATE}(0)"))
 
 
 PARTS = {
@@ -80,7 +70,7 @@ PARTS = {
         "motion.",
         "Started from the up-sweep's response at eta = 0.4; one period, states sampled inside the "
         "FMU and both sides of each impact.",
-        phase_curves.draw_states,
+        planes.draw_states,
     ),
     "6": orbit_diagram_part("6", ORBITS["6"]),
     "7": curves_part(
@@ -90,19 +80,19 @@ PARTS = {
         "A window nT is the longest run of the up-sweep with period nT and one impact in it; its "
         "relative peak is the largest local maximum of the largest xi_Rel inside it. The last "
         "window goes on beyond eta = 8.0: the sweep is continued upwards to 9.0.",
-        time_histories.draw,
+        histories.draw_paper_histories,
     ),
     "8": curves_part(
         "8",
         "Typical phase curves in the first irregular region 0.43 < eta < 1.37; T, nT: periodic.",
         CURVES,
-        phase_grid.draw,
+        planes.draw_phase_grid,
     ),
     "9": curves_part(
         "9",
         "Typical phase curves in the second irregular region 2.61 < eta < 3.77; T, nT: periodic.",
         CURVES,
-        phase_grid.draw,
+        planes.draw_phase_grid,
     ),
     "10": orbit_diagram_part("10", ORBITS["10"]),
     "11": orbit_diagram_part("11", ORBITS["11"]),
@@ -113,7 +103,7 @@ PARTS = {
         "plastic impact, low internal damping. Solid: mass 1, dotted: mass 2; a jump is an impact.",
         "The peak of each up-sweep's largest xi_Rel is found, and its response followed for one "
         "more period.",
-        phase_curves.draw_masses,
+        planes.draw_masses,
     ),
     "lyapunov": Part(
         "Largest Lyapunov exponent",
@@ -125,7 +115,7 @@ PARTS = {
         "motion. Validated in the tests against differences of neighbouring runs of the FMU, and "
         "against -D without impacts. The standard error is that of batches; the largest of "
         "many is chosen for its error too: those in the table come from long runs of their own.",
-        lyapunov.draw,
+        lines.draw_lyapunov,
         lambda data: [data.exponent(case) for case in CASES],
         tuple(f"exponent_{structure.label()}" for structure in CASES.values()),
     ),
@@ -142,7 +132,7 @@ PARTS = {
         "impacts that the FMU reports, and the multipliers say that the orbit is stable. Every "
         "attractor is carried to the neighbouring frequencies and matched there. Irregular "
         "responses are clustered by their statistics (25 %).",
-        attractors.draw,
+        lines.draw_attractors,
         lambda data: [data.attractors()],
         ("attractors",),
     ),
@@ -165,7 +155,7 @@ PARTS = {
         "parameters are those of Figure 6. A delamination shows best where the impulse is largest.",
         "Each point starts from rest and is followed until settled; impulses are those of single "
         f"impacts, which the FMU reports at their times. {ARTEFACT}",
-        maps.draw,
+        planes.draw_map,
         lambda data: [data.map(parameter) for parameter in MAPS],
         tuple(f"map_{parameter}" for parameter in MAPS),
     ),
@@ -177,7 +167,7 @@ PARTS = {
         "64 settled periods, 1024 states each sampled inside the FMU; the acceleration's spectrum "
         "is omega^2 times that of the absolute displacement, which holds the impulses as kinks. A "
         "Hann window.",
-        spectra.draw,
+        spectra.draw_spectra,
         lambda data: [data.spectra()],
         ("spectra",),
     ),

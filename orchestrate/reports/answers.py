@@ -1,52 +1,55 @@
-"""Report sections of any result: its picture, its scalar numbers, its signs."""
+"""Report sections of any result: its picture, its numbers, its signs, and where it comes from."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import hashlib
+import platform
+from collections.abc import Iterable, Sequence
+from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING
 
 from ..errors import InputError
-from ..figures.labels import title_without_structure
+from ..figures.labels import plain_title
 from ..figures.plot import function_name, plot
+from ..structures.ranges import EXCITATION, STRUCTURE
 from ..units import OVER_OMEGA, as_shown, scale_of
-from .page import Picture, Section, Table, format_number
-from .verdict import verdict_sections
+from .page import Section, Table, format_number
 
 if TYPE_CHECKING:
     import xarray as xr
 
 WORDS = {-1: "not in this record", 0: "no", 1: "yes"}
 MOST_ROWS = 60
-
-
-def result_sections(answer: xr.Dataset) -> list[Section]:
-    """Return all report sections of a result."""
-    kind = function_name(answer)
-    if kind == "detect":
-        return verdict_sections(answer)
-    if kind == "signs":
-        return [signs_section(answer)]
-    return [picture_section(answer)]
-
-
-def draw_result(answer: xr.Dataset, words: str) -> Picture | None:
-    """Return the picture of a result for the page; None if there is none of its kind."""
-    try:
-        return Picture.from_figure(plot(answer), words)
-    except InputError:
-        return None
+MOVED = "{0.meaning.values}: {0.formula.values} ({0.source.values}). Also moved by: "
+MOVED += "{0.moved_by.values}."
+MOVED = "{0.meaning.values}: {0.formula.values} ({0.source.values}). Also moved by: "
+MOVED += "{0.moved_by.values}."
+PACKAGES = ("numpy", "scipy", "xarray", "fmpy", "lmfit", "matplotlib")
+BY_RECORD = ("detect", "fit")  # their question is the record, which has a digest
+LONGEST = 160  # letters of an attribute
+ORIGIN = {  # attributes, and what a reader calls them
+    "title": "title",
+    "record_file": "record",
+    "record_sha256": "SHA-256 of the record",
+    "guess_file": "guess",
+    "sensors": "sensors",
+    "source": "computed by",
+}
 
 
 def title_of(answer: xr.Dataset) -> str:
     """Return a result's title as a heading; pictures and tables tell of its structure."""
-    return title_without_structure(str(answer.attrs.get("title") or function_name(answer)))
+    return plain_title(str(answer.attrs.get("title") or function_name(answer)), structure=False)
 
 
-def picture_section(answer: xr.Dataset) -> Section:
-    """Return a section with a result's picture and scalar numbers."""
+def answer_section(answer: xr.Dataset) -> Section:
+    """Return a section with a result's picture, if there is one, and its scalar numbers."""
     title = title_of(answer)
     tables = [table for table in (scalar_table(answer), parameter_table(answer)) if table.rows]
-    return Section(title, picture=draw_result(answer, title), tables=tables)
+    try:
+        return Section(title, picture=plot(answer), caption=title, tables=tables)
+    except InputError:
+        return Section(title, tables=tables)
 
 
 def scalar_table(answer: xr.Dataset) -> Table:
@@ -55,9 +58,8 @@ def scalar_table(answer: xr.Dataset) -> Table:
     for name, array in as_shown(answer).data_vars.items():
         if not array.dims and array.dtype.kind in "iufb":
             value = format_number(float(array), str(array.attrs.get("units", "")), 5)
-            rows.append(
-                (str(name), str(array.attrs.get("long_name", "")), flag_word(array) or value)
-            )
+            meaning = str(array.attrs.get("long_name", ""))
+            rows.append((str(name), meaning, flag_word(array) or value))
     return Table(("name", "what it is", "value"), rows[:MOST_ROWS])
 
 
@@ -70,11 +72,8 @@ def flag_word(array: xr.DataArray) -> str:
 
 def parameter_table(answer: xr.Dataset) -> Table:
     """Return a table of structure and excitation, from a result's attributes."""
-    from ..structures.ranges import EXCITATION, STRUCTURE
-
-    known = {**STRUCTURE, **EXCITATION}
     rows = []
-    for name, quantity in known.items():
+    for name, quantity in {**STRUCTURE, **EXCITATION}.items():
         if name in answer.attrs and not isinstance(answer.attrs[name], str):
             factor, unit = scale_of(answer, quantity.unit)
             value = float(answer.attrs[name]) / factor
@@ -83,9 +82,32 @@ def parameter_table(answer: xr.Dataset) -> Table:
     return Table(("parameter", "what it is", "value"), rows)
 
 
-def is_known(one: xr.Dataset) -> bool:
-    """Return whether a sign's verdict is known for any sensor."""
-    return bool((one.exceeds >= 0).any())
+def signs_section(answer: xr.Dataset) -> Section:
+    """Return a section on signs: values, noise floors, and other causes of those that stand out."""
+    known = [answer.sel(sign=sign) for sign in answer.sign.values]
+    known = [one for one in known if bool((one.exceeds >= 0).any())]
+    rows = [
+        (
+            str(one.meaning.values),
+            *(format_sensors(one[name].values) for name in ("value", "floor", "sound_highest")),
+            " · ".join(WORDS[int(number)] for number in one.exceeds.values),
+        )
+        for one in known
+    ]
+    marked = [number for number, one in enumerate(known) if bool((one.exceeds == 1).any())]
+    columns = ("sign", "value", "noise alone", "sound structure", "stands out")
+    moved = [MOVED.format(known[number]) for number in marked]
+    both = ", for sensor 1 and sensor 2" if answer.sizes["channel"] > 1 else ""
+    text = (
+        "A sign stands out where it is above twice what noise and a sound structure with the same "
+        "noise show. Signs know nothing of the model; each is moved by other things too. "
+        f"Numbers have no unit{both}. "
+        f"Noise from {answer.attrs.get('noise_from', 'the record')}; sound structure: "
+        f"{answer.attrs.get('sound_from', '')}, seeds {answer.attrs.get('seeds', '')}."
+    )
+    caption = "Signs of the record over what noise and a sound structure show"
+    table = Table(columns, rows, frozenset(marked))
+    return Section("Signs that need no model", [text], moved, plot(answer), caption, [table])
 
 
 def format_sensors(values: Iterable[float]) -> str:
@@ -93,36 +115,41 @@ def format_sensors(values: Iterable[float]) -> str:
     return " · ".join(format_number(float(value)) for value in values)
 
 
-def signs_section(answer: xr.Dataset) -> Section:
-    """Return a section on signs: values, noise floors, and other causes of those that stand out."""
-    shown = [one for sign in answer.sign.values if is_known(one := answer.sel(sign=sign))]
-    rows = [
-        (
-            str(one.meaning.values),
-            *(format_sensors(one[name].values) for name in ("value", "floor", "sound_highest")),
-            " · ".join(WORDS[int(number)] for number in one.exceeds.values),
-        )
-        for one in shown
-    ]
-    marked = [number for number, one in enumerate(shown) if bool((one.exceeds == 1).any())]
-    columns = ("sign", "value", "noise alone", "sound structure", "stands out")
-    moved = [
-        f"{one.meaning.values}: {one.formula.values} ({one.source.values}). "
-        f"Also moved by: {one.moved_by.values}."
-        for one in (shown[number] for number in marked)
-    ]
-    both = ", for sensor 1 and sensor 2" if answer.sizes["channel"] > 1 else ""
-    text = (
-        "A sign stands out where it is above twice what noise and a sound structure with the same "
-        "noise show. Signs know nothing of the model; each is moved by other things too. "
-        f"Numbers have no unit{both}."
-    )
-    origin = f"Noise from {answer.attrs.get('noise_from', 'the record')}; sound structure: "
-    origin += f"{answer.attrs.get('sound_from', '')}, seeds {answer.attrs.get('seeds', '')}."
-    return Section(
-        "Signs that need no model",
-        [text, origin],
-        moved,
-        draw_result(answer, "Signs of the record over what noise and a sound structure show"),
-        [Table(columns, rows, frozenset(marked))],
-    )
+def origin_section(answers: Sequence[xr.Dataset]) -> Section:
+    """Return a section with versions and identities of all results of a page."""
+    rows: list[tuple[str, str]] = []
+    for number, answer in enumerate(answers, 1):
+        begin = f"{number}. " if len(answers) > 1 else ""
+        rows += [(begin + name, text) for name, text in describe_origin(answer)]
+    found = {name: installed_version(name) for name in PACKAGES}
+    versions = [f"{name} {number}" for name, number in found.items() if number]
+    rows.append(("versions", ", ".join([f"Python {platform.python_version()}", *versions])))
+    table = Table(("what", "value"), rows)
+    return Section("Where it comes from", tables=[table], place="appendix")
+
+
+def describe_origin(answer: xr.Dataset) -> list[tuple[str, str]]:
+    """Return pairs of a name and a text on a result's origin, from its attributes."""
+    attributes = {str(name): str(text) for name, text in answer.attrs.items()}
+    rows = [(label, attributes[name]) for name, label in ORIGIN.items() if attributes.get(name)]
+    if "history" in attributes:
+        rows.append(("computed on", attributes["history"].partition(": ")[0]))
+    if "call" in attributes and attributes.get("analysis") not in BY_RECORD:
+        rows.append(("what was asked", attributes["call"]))
+    for name in sorted(attributes):
+        if name.startswith("fmu_guid"):
+            model = attributes.get(name.replace("guid", "model"), "")
+            rows.append((f"FMU {model}".rstrip(), attributes[name]))
+    if "identity" in attributes:
+        digest = hashlib.sha256(attributes["identity"].encode()).hexdigest()[:16]
+        rows.append(("identity of question, FMU and code", digest))
+    cut = {name: f"{text[:LONGEST]} ..." for name, text in rows if len(text) > LONGEST}
+    return [(name, cut.get(name, text)) for name, text in rows]
+
+
+def installed_version(name: str) -> str:
+    """Return a package's installed version; empty if it is not installed."""
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return ""

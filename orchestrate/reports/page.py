@@ -12,45 +12,22 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
-from ..figures.files import png_bytes, png_size
+from ..figures.files import Figure, png_bytes, png_size
 from ..running.store import now
 from ..version import __version__
 
 MISSING = "–"  # in place of a number
+PLACES = ("front", "second", "appendix")  # on paper: first page, pages that follow, end
 TONES = ("bad", "good", "unclear", "open")  # of a verdict, for its colour
 
 
 @dataclass(frozen=True)
-class Picture:
-    """PNG picture inside the page, with a text for those who cannot see it."""
-
-    png: bytes
-    words: str  # what it shows, for those who do not see it, and below it
-
-    @classmethod
-    def from_figure(cls, figure: Any, words: str) -> Picture:
-        """Return a ``Picture`` of a Matplotlib figure."""
-        return cls(png_bytes(figure), words)
-
-    @property
-    def source(self) -> str:
-        """PNG file as a ``data:`` address."""
-        return f"data:image/png;base64,{base64.b64encode(self.png).decode()}"
-
-    @property
-    def size(self) -> dict[str, int]:
-        """Width and height in pixels."""
-        return png_size(self.png)
-
-
-@dataclass(frozen=True)
 class Table:
-    """A table of texts: column titles, rows, highlighted rows and a caption."""
+    """A table of texts: column titles, rows and highlighted rows."""
 
     columns: tuple[str, ...]
     rows: Sequence[tuple[str, ...]]
     marked: frozenset[int] = frozenset()  # rows that stand out
-    words: str = ""  # above it
 
 
 @dataclass(frozen=True)
@@ -60,8 +37,18 @@ class Section:
     heading: str
     paragraphs: list[str] = field(default_factory=list)
     points: list[str] = field(default_factory=list)  # of a list
-    picture: Picture | None = None
+    picture: Figure | None = None
+    caption: str = ""  # what the picture shows, for those who do not see it too
     tables: list[Table] = field(default_factory=list)
+    place: str = "second"  # of `PLACES`
+
+    @property
+    def image(self) -> dict[str, Any]:
+        """Address, width and height of the picture, which is a PNG file inside the page."""
+        if self.picture is None:
+            return {}
+        png = png_bytes(self.picture)
+        return {"src": f"data:image/png;base64,{base64.b64encode(png).decode()}", **png_size(png)}
 
 
 @dataclass(frozen=True)
@@ -75,13 +62,18 @@ class Verdict:
 
 @dataclass(frozen=True)
 class Page:
-    """A report page: title, metadata, verdict, sections, and whether it has room to sign."""
+    """A report page; with a verdict, what is signed comes first, and an appendix last."""
 
     title: str
     about: str  # below the title
     sections: list[Section]
     verdict: Verdict | None = None
-    signed: bool = False  # whether there is a place for a signature
+
+    @property
+    def parts(self) -> list[tuple[str, list[Section]]]:
+        """The sections by their place on paper."""
+        parts = [(place, [s for s in self.sections if s.place == place]) for place in PLACES]
+        return [(place, sections) for place, sections in parts if sections]
 
     def html(self) -> str:
         """Render the page as HTML text."""
@@ -111,16 +103,7 @@ def content_security_policy(style: str) -> str:
 
 
 def format_number(value: float, unit: str = "", digits: int = 3) -> str:
-    """Format a number with its unit; a dash for NaN or infinity.
-
-    Examples
-    --------
-    >>> (
-    ...     format_number(0.012345, "Hz"), format_number(float("nan")),
-    ...     format_number(12.0, "1"), format_number(2e-6, "m"),
-    ... )
-    ('0.0123 Hz', '–', '12', '2 µm')
-    """
+    """Format a number with its unit; a dash for NaN or infinity."""
     if not math.isfinite(value):
         return MISSING
     factor, shown = display_scale(abs(value), unit)
@@ -128,15 +111,7 @@ def format_number(value: float, unit: str = "", digits: int = 3) -> str:
 
 
 def format_with_error(value: float, error: float, unit: str = "") -> str:
-    """Format a number with its standard error, rounded to two digits of the error.
-
-    Examples
-    --------
-    >>> format_with_error(42.12345, 0.0213, "Hz"), format_with_error(42.0, float("nan"), "Hz")
-    ('42.123 ± 0.021 Hz', '42 Hz')
-    >>> format_with_error(8437.5, 120.0, "N/m"), format_with_error(-3.4e-7, 4.4e-7, "m")
-    ('8438 ± 120 N/m', '-0.34 ± 0.44 µm')
-    """
+    """Format a number with its standard error, rounded to two digits of the error."""
     if not (math.isfinite(error) and error > 0.0):
         return format_number(value, unit, 4)
     factor, shown = display_scale(max(abs(value), error), unit)

@@ -10,10 +10,9 @@ from ..errors import InputError
 from ..figures.plot import function_name
 from ..files import write_whole
 from ..units import Units, with_units
-from .answers import result_sections, title_of
-from .origin import origin_section
-from .page import Page
-from .verdict import make_verdict
+from .answers import answer_section, origin_section, signs_section, title_of
+from .page import Page, Section
+from .verdict import make_verdict, verdict_sections
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -27,6 +26,9 @@ def report(
     units: str | Units = "",
 ) -> Path:
     """Write results as one HTML page to read, print and sign; return its path.
+
+    On paper a verdict has one page with what decided it, the record and the signature, a page with
+    the signs, and an appendix.
 
     Parameters
     ----------
@@ -67,22 +69,19 @@ def report(
     if not answers:
         raise InputError("report: no answer given; expected one at least")
     shown = [with_units(answer, units) for answer in answers]
-    ordered = sorted(shown, key=lambda answer: not is_verdict(answer))
-    first = ordered[0]
-    sections = [section for answer in ordered for section in result_sections(answer)]
-    heading = title or title_of(first)
-    record = str(first.attrs.get("record_file", ""))
-    page = Page(
-        heading,
-        notes or (record if record not in heading else ""),
-        [*sections, origin_section(ordered)],
-        make_verdict(first) if is_verdict(first) else None,
-        signed=is_verdict(first),
-    )
+    first, *others = sorted(shown, key=lambda answer: function_name(answer) != "detect")
+    verdict = make_verdict(first) if function_name(first) == "detect" else None
+    sections = [section for answer in (first, *others) for section in sections_of(answer)]
+    heading, record = title or title_of(first), str(first.attrs.get("record_file", ""))
+    about = notes or (record if record not in heading else "")
+    page = Page(heading, about, [*sections, origin_section([first, *others])], verdict)
     text = page.html().encode()
     return write_whole(Path(output), lambda path: path.write_bytes(text))
 
 
-def is_verdict(answer: xr.Dataset) -> bool:
-    """Return whether a result is a verdict of ``detect`` on a beam."""
-    return function_name(answer) == "detect"
+def sections_of(answer: xr.Dataset) -> list[Section]:
+    """Return all sections of a result."""
+    kind = function_name(answer)
+    if kind == "detect":
+        return verdict_sections(answer)
+    return [signs_section(answer) if kind == "signs" else answer_section(answer)]

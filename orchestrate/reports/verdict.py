@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +10,7 @@ import numpy as np
 from ..constants import TURN
 from ..figures.diagnosis import PARTED, draw_detect, draw_misfit
 from ..units import scale_of, units_of, with_units
-from .page import MISSING, Picture, Section, Table, Verdict, format_number, format_with_error
+from .page import MISSING, Section, Table, Verdict, format_number, format_with_error
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -20,11 +19,6 @@ TONES = {"delaminated": "bad", "no opening seen": "good", "not described": "uncl
 ALWAYS_ASSUMED = (
     "Two masses stand for the beam: waves and higher modes are left out.",
     "Impacts take no time and lose energy by one number e.",
-)
-WORTH = (
-    "This page is the result of a calculation on one record. It is no certificate, for flight or "
-    "for anything else. Faces that are pressed together, or glued in part, may be delaminated and "
-    "not open in a test."
 )
 NAMES_OF_CHANNELS = (
     "Base is what the beam is fastened to, the shaker's table or a clamp; its acceleration is "
@@ -35,31 +29,31 @@ BEST = 3  # hypotheses in the table of parameters
 
 
 def make_verdict(answer: xr.Dataset) -> Verdict:
-    """Return the verdict of a ``detect`` result: its word and one sentence."""
+    """Return the verdict of a ``detect`` result: its word and one sentence.
+
+    What is sound is never called so: no opening was seen.
+    """
     word = str(answer.verdict.values)
-    return Verdict(
-        f"{word[0].upper()}{word[1:]}.", SENTENCES[word](answer), TONES.get(word, "open")
-    )
-
-
-def format_range(answer: xr.Dataset) -> str:
-    """Format the levels and frequencies that the record covers."""
-    felt, unit = scale_of(answer, "m/s2")
-    level = f"{format_number(scalar(answer, 'level_high') / felt)} {unit.replace('m/s2', 'm/s²')}"
-    ends = scalar(answer, "frequency_low"), scalar(answer, "frequency_high")
-    return f"up to {level} over {frequencies_text(answer, *ends)}"
+    sentences = {
+        "delaminated": delaminated_statement,
+        "no opening seen": no_opening_statement,
+        "not described": lambda _: (
+            "None of the structures that were tried, sound or delaminated, describes this record: "
+            "the beam, its clamp or the sensors do something else."
+        ),
+        "undecided": lambda _: "This record does not tell a delaminated beam from a sound one.",
+    }
+    return Verdict(make_sentence(word), sentences[word](answer), TONES.get(word, "open"))
 
 
 def delaminated_statement(answer: xr.Dataset) -> str:
     """Return the statement on a delaminated beam."""
     ratio = scalar(answer, "ratio")
-    better = (
-        "" if math.isnan(ratio) else f", {format_number(ratio)} times closer than any sound one"
-    )
+    times = "" if math.isnan(ratio) else f", {format_number(ratio)} times closer than any sound one"
     apart = "the faces are seen to move apart, and " if scalar(answer, "faces_apart") > 1.0 else ""
     return (
         f"The record is that of two halves that part and strike each other: {apart}the delaminated "
-        f"structure describes it{better}."
+        f"structure describes it{times}."
     )
 
 
@@ -75,28 +69,10 @@ def no_opening_statement(answer: xr.Dataset) -> str:
             f" Faces at the sensor that part by {opening} or more would have been seen; away from "
             "it an opening may be larger."
         )
-    return f"No opening of the faces was seen {format_range(answer)}.{seen}"
-
-
-def not_described_statement(answer: xr.Dataset) -> str:
-    """Return the statement for a record that no hypothesis fits."""
-    return (
-        "None of the structures that were tried, sound or delaminated, describes this record: "
-        "the beam, its clamp or the sensors do something else."
-    )
-
-
-def undecided_statement(answer: xr.Dataset) -> str:
-    """Return the statement that the record does not suffice for a decision."""
-    return "This record does not tell a delaminated beam from a sound one."
-
-
-SENTENCES = {
-    "delaminated": delaminated_statement,
-    "no opening seen": no_opening_statement,
-    "not described": not_described_statement,
-    "undecided": undecided_statement,
-}
+    level = format_level(answer, scalar(answer, "level_high"))
+    ends = scalar(answer, "frequency_low"), scalar(answer, "frequency_high")
+    covered = f"up to {level} over {frequencies_text(answer, *ends)}"
+    return f"No opening of the faces was seen {covered}.{seen}"
 
 
 def scalar(answer: xr.Dataset, name: str) -> float:
@@ -106,12 +82,9 @@ def scalar(answer: xr.Dataset, name: str) -> float:
 
 def verdict_sections(answer: xr.Dataset) -> list[Section]:
     """Return all report sections on which a verdict rests."""
-    made = [
-        decision_section(answer),
-        measured_record(answer),
-        *(fits_section(answer), misfit_section(answer), parameter_section(answer)),
-        assumption_section(answer),
-    ]
+    front = (decision_section, fits_section, measured_record)
+    appendix = (parameter_section, misfit_section, assumption_section)
+    made = [section_of(answer) for section_of in (*front, *appendix)]
     return [section for section in made if section is not None]
 
 
@@ -119,6 +92,7 @@ def measured_record(answer: xr.Dataset) -> Section | None:
     """Return a section on the record: sensors, unit, sampling, sweep; None where none is known."""
     words = {str(name): str(text) for name, text in answer.attrs.items()}
     unit = words.get("record_unit", "").replace("m/s2", "m/s²")
+    levels = scalar(answer, "level_low"), scalar(answer, "level_high")
     rows = [
         ("file of the record", words.get("record_file", "")),
         ("columns of the file", words.get("record_columns", "")),
@@ -127,14 +101,14 @@ def measured_record(answer: xr.Dataset) -> Section | None:
         ("sampling rate", known_text(answer, "sample_rate", "Hz", 6)),
         ("duration", known_text(answer, "record_duration", "s", 4)),
         ("sweep", sweep_text(answer)),
-        ("level of the base", level_text(answer)),
+        ("level of the base, peak", format_level(answer, *levels)),
         ("file of the guess", words.get("guess_file", "")),
         ("command that made it", words.get("command", "")),
     ]
     known = [row for row in rows if row[1]]
     if not known:
         return None
-    return Section("The record", [NAMES_OF_CHANNELS], tables=[Table(("what", "value"), known)])
+    return Section("The record", tables=[Table(("what", "value"), known)], place="front")
 
 
 def known_text(answer: xr.Dataset, name: str, unit: str, digits: int) -> str:
@@ -164,14 +138,11 @@ def frequencies_text(answer: xr.Dataset, low: float, high: float) -> str:
     return f"{first} to {last} {'Omega/omega' if word == 'eta' else word}"
 
 
-def level_text(answer: xr.Dataset) -> str:
-    """Format the range of the base's levels in the units that were asked for."""
-    ends = [scalar(answer, name) for name in ("level_low", "level_high")]
-    if not all(map(math.isfinite, ends)):
-        return ""
+def format_level(answer: xr.Dataset, *levels: float) -> str:
+    """Format levels of the base in the unit that was asked for; empty where one is not known."""
     felt, unit = scale_of(answer, "m/s2")
-    low, high = (format_number(end / felt) for end in ends)
-    return f"{low} to {high} {unit.replace('m/s2', 'm/s²')} (peak)"
+    numbers = " to ".join(format_number(level / felt) for level in levels)
+    return f"{numbers} {unit.replace('m/s2', 'm/s²')}" if all(map(math.isfinite, levels)) else ""
 
 
 def decision_section(answer: xr.Dataset) -> Section:
@@ -190,29 +161,17 @@ def decision_section(answer: xr.Dataset) -> Section:
         )
     if settle:
         points.append(f"What would change or settle it: {make_sentence(settle)}")
-    return Section("Why", [WORTH], points)
+    return Section("Why", points=points, place="front")
 
 
 def format_odds(odds: float) -> str:
-    """Format odds as a ratio, "24 to 1".
-
-    Examples
-    --------
-    >>> format_odds(23.7), format_odds(2001.0), format_odds(0.0005)
-    ('24 to 1', '2000 to 1', '1 to 2000')
-    """
+    """Format odds as a ratio, "24 to 1"."""
     larger = f"{float(f'{max(odds, 1.0 / odds):.2g}'):g}"
     return f"{larger} to 1" if odds >= 1.0 else f"1 to {larger}"
 
 
 def make_sentence(words: str) -> str:
-    """Return words as a sentence, with a capital at the beginning and a full stop.
-
-    Examples
-    --------
-    >>> make_sentence("gains agree"), make_sentence("They do.")
-    ('Gains agree.', 'They do.')
-    """
+    """Return words as a sentence, with a capital at the beginning and a full stop."""
     return f"{words[:1].upper()}{words[1:].rstrip('.')}."
 
 
@@ -220,80 +179,62 @@ def fits_section(answer: xr.Dataset) -> Section | None:
     """Return a section with the measurement over the fits; None without fits."""
     if "measured" not in answer or "fitted" not in answer:
         return None
-    words = "What was measured, and what the best structures of each kind do, order by order"
-    return Section(
-        "The measurement over the fits",
-        picture=Picture.from_figure(draw_detect(answer), words),
-        tables=[hypothesis_table(answer)],
-    )
+    picture = draw_detect(answer.assign_attrs(title=""))
+    words = "What was measured, and what the best structures of each kind do, order by order."
+    return Section("The measurement over the fits", picture=picture, caption=words, place="front")
 
 
 def misfit_section(answer: xr.Dataset) -> Section | None:
-    """Return a section with the misfit over frequency; None without it."""
+    """Return a section with all structures, and the misfit over frequency; None without it."""
     if "misfit_at" not in answer:
         return None
-    words = "Misfit of each structure over the frequency of the excitation"
     text = (
         "The misfit is the distance of a structure's motion from the measured one. It is 1 where "
         "they differ by as much as noise and the usual error of a good model explain."
     )
-    picture = Picture.from_figure(draw_misfit(answer), words)
-    return Section("Where the structures differ from the measurement", [text], picture=picture)
-
-
-def hypothesis_table(answer: xr.Dataset) -> Table:
-    """Return a table of the hypotheses, the best fit first."""
-    ordered = answer.sortby("misfit")
-    rows = []
-    for position in range(ordered.sizes["hypothesis"]):
-        one = ordered.isel(hypothesis=position)
-        row = [str(one.hypothesis.values), format_number(float(one.misfit))]
-        row.append(f"{int(np.isfinite(one.minima).sum())}" if "minima" in one else MISSING)
-        row.append(format_number(scalar(one, "evaluations"), digits=6))
-        rows.append(tuple(row))
-    columns = ("structure", "misfit", "minima found", "motions computed")
-    return Table(
-        columns, rows, frozenset(deciding_hypotheses(answer, [row[0] for row in rows])[:1])
+    return Section(
+        "Where the structures differ from the measurement",
+        [text],
+        picture=draw_misfit(answer.assign_attrs(title="")),
+        caption="Misfit of each structure over the frequency of the excitation",
+        tables=[hypothesis_table(answer)],
+        place="appendix",
     )
 
 
-def deciding_hypotheses(answer: xr.Dataset, names: Sequence[str]) -> list[int]:
-    """Return the indices of the hypotheses on which the verdict rests."""
+def hypothesis_table(answer: xr.Dataset) -> Table:
+    """Return a table of the hypotheses, the best fit first; marked: on which the verdict rests."""
+    rows = []
+    for one in sort_by_misfit(answer):
+        minima = f"{int(np.isfinite(one.minima).sum())}" if "minima" in one else MISSING
+        computed = format_number(scalar(one, "evaluations"), digits=6)
+        misfit = format_number(float(one.misfit))
+        rows.append((str(one.hypothesis.values), misfit, minima, computed))
     parted = {"delaminated": True, "no opening seen": False}.get(str(answer.verdict.values))
-    return [index for index, name in enumerate(names) if name.startswith(PARTED) == parted]
+    deciding = [i for i, row in enumerate(rows) if row[0].startswith(PARTED) == parted][:1]
+    columns = ("structure", "misfit", "minima found", "motions computed")
+    return Table(columns, rows, frozenset(deciding))
 
 
 def parameter_section(answer: xr.Dataset) -> Section | None:
     """Return a section with the parameters and errors that are stated; None without any."""
     if "value" not in answer or "parameter" not in answer.dims:
         return None
-    shown = sort_by_misfit(answer)
+    shown = [one for one in sort_by_misfit(answer) if np.isfinite(one.value).any()][:BEST]
     names = [str(one.hypothesis.values) if "hypothesis" in one.coords else "value" for one in shown]
-    units = dict(zip(answer.parameter.values, answer.unit.values, strict=True))
-    meaning = dict(zip(answer.parameter.values, answer.meaning.values, strict=True))
-    rows = [
-        (
-            f"{name}, {meaning[name]}",
-            *(format_parameter(one.sel(parameter=name), str(units[name])) for one in shown),
-        )
-        for name in answer.parameter.values
-    ]
-    if all(entry == MISSING for row in rows for entry in row[1:]):
-        return None
-    columns = [0] + [
-        column for column in range(1, 1 + len(shown)) if any(row[column] != MISSING for row in rows)
-    ][:BEST]
-    known = [
-        tuple(row[column] for column in columns)
-        for row in rows
-        if any(row[column] != MISSING for column in columns[1:])
-    ]
-    heads = ("parameter", *(names[column - 1] for column in columns[1:]))
+    rows = []
+    for name in map(str, answer.parameter.values):
+        about = answer.sel(parameter=name)
+        unit, words = str(about.unit.values), f"{name}, {about.meaning.values}"
+        texts = [format_parameter(one.sel(parameter=name), unit) for one in shown]
+        if any(text != MISSING for text in texts):
+            rows.append((words, *texts))
     text = (
         "Errors are standard errors from blocks of the record and from what the structure misses. "
         f"What a structure does not have, or the record does not hold, has a dash ({MISSING})."
     )
-    return Section("Parameters", [text], tables=[Table(heads, known)])
+    table = Table(("parameter", *names), rows)
+    return Section("Parameters", [text], tables=[table], place="appendix") if rows else None
 
 
 def sort_by_misfit(answer: xr.Dataset) -> list[xr.Dataset]:
@@ -317,7 +258,7 @@ def assumption_section(answer: xr.Dataset) -> Section:
     """Return a section with the verdict's assumptions."""
     own = [text.strip() for text in str(answer.attrs.get("assumed", "")).split(";")]
     points = [*ALWAYS_ASSUMED, *describe_guess(answer), *map(make_sentence, filter(None, own))]
-    return Section("What was assumed", points=points)
+    return Section("What was assumed", [NAMES_OF_CHANNELS], points, place="appendix")
 
 
 def describe_guess(answer: xr.Dataset) -> list[str]:

@@ -17,7 +17,6 @@ import numpy as np
 from orchestrate.structures.ranges import ADDED, STRUCTURE
 
 Values = dict[str, float]
-Draw = Callable[[np.random.Generator, Values], None]
 
 
 @dataclass(frozen=True)
@@ -39,19 +38,24 @@ class ParameterSet:
             yield [time for time in inside if start < time < end] + [end]
 
 
-def draw_power_of_ten(rng: np.random.Generator, low: float, high: float) -> float:
-    """Draw a number between two powers of ten, uniformly in its logarithm."""
-    return float(10.0 ** rng.uniform(low, high))
+class Chance(np.random.Generator):
+    """Random numbers of the kinds that are drawn here."""
 
+    def power(self, low: float, high: float) -> float:
+        """Draw a number between two powers of ten, uniformly in its logarithm."""
+        return float(10.0 ** self.uniform(low, high))
 
-def draw_one_of(rng: np.random.Generator, *choices: float) -> float:
-    """Return one of several numbers, drawn at random."""
-    return choices[int(rng.integers(len(choices)))]
+    def one_of(self, *choices: float) -> float:
+        """Draw one of several numbers."""
+        return choices[int(self.integers(len(choices)))]
 
+    def sign(self) -> float:
+        """Draw -1 or 1."""
+        return self.one_of(-1.0, 1.0)
 
-def draw_sign(rng: np.random.Generator) -> float:
-    """Return -1 or 1, drawn at random."""
-    return draw_one_of(rng, -1.0, 1.0)
+    def perhaps(self) -> float:
+        """Draw 0 or 1."""
+        return self.one_of(0.0, 1.0)
 
 
 def natural_frequencies(values: Values) -> tuple[float, float]:
@@ -59,137 +63,118 @@ def natural_frequencies(values: Values) -> tuple[float, float]:
     return math.sqrt(values["k1"] / values["m1"]), math.sqrt(values["k2"] / values["m2"])
 
 
-def draw_ordinary(rng: np.random.Generator) -> Values:
+def draw_ordinary(rng: Chance) -> Values:
     """Draw a structure with chattering, impacts and contact, from which every class starts."""
     return {
         "m1": 1.0,
-        "m2": draw_power_of_ten(rng, -1.5, 1.5),
+        "m2": rng.power(-1.5, 1.5),
         "k1": 1.0,
-        "k2": draw_power_of_ten(rng, -1.5, 1.5),
-        "d1": draw_one_of(rng, 0.0, 1.0) * draw_power_of_ten(rng, -4.0, 0.0),
-        "d2": draw_one_of(rng, 0.0, 1.0) * draw_power_of_ten(rng, -4.0, 0.0),
+        "k2": rng.power(-1.5, 1.5),
+        "d1": rng.perhaps() * rng.power(-4.0, 0.0),
+        "d2": rng.perhaps() * rng.power(-4.0, 0.0),
         "e": float(rng.uniform()),
-        "gamma": draw_power_of_ten(rng, -6.0, 0.0),
+        "gamma": rng.power(-6.0, 0.0),
         "x1_start": float(rng.uniform(-1.0, 0.0)),
         "x2_start": float(rng.uniform(0.0, 1.0)),
         "v1_start": float(rng.uniform(-1.0, 1.0)),
         "v2_start": float(rng.uniform(-1.0, 1.0)),
         "phase_start": float(rng.uniform(0.0, 6.28)),
-        "box_amplitude": draw_power_of_ten(rng, -1.0, 1.0),
-        "box_frequency": draw_power_of_ten(rng, -1.0, 0.7),
+        "box_amplitude": rng.power(-1.0, 1.0),
+        "box_frequency": rng.power(-1.0, 0.7),
     }
 
 
-def make_nearly_equal(rng: np.random.Generator, values: Values) -> None:
+def make_nearly_equal(rng: Chance, values: Values) -> None:
     """Change values to nearly equal oscillators with almost lossless impacts."""
-    differs = [
-        draw_one_of(rng, 0.0, 1.0) * draw_sign(rng) * draw_power_of_ten(rng, -17.0, -2.0)
-        for _ in range(2)
-    ]
+    differs = [rng.perhaps() * rng.sign() * rng.power(-17.0, -2.0) for _ in range(2)]
     values["k2"] = values["k1"] * values["m2"] / values["m1"] * (1.0 + differs[0])
     values["d2"] = values["d1"] * values["m2"] / values["m1"] * (1.0 + differs[1])
-    values["e"] = 1.0 - draw_one_of(rng, 0.0, 1.0) * draw_power_of_ten(rng, -17.0, -1.0)
-    values["gamma"] = draw_power_of_ten(rng, -6.0, 0.0)
+    values["e"] = 1.0 - rng.perhaps() * rng.power(-17.0, -1.0)
+    values["gamma"] = rng.power(-6.0, 0.0)
     if rng.random() < 0.5:
         values["x2_start"] = values["x1_start"]
 
 
-def make_subnormal(rng: np.random.Generator, values: Values) -> None:
+def make_subnormal(rng: Chance, values: Values) -> None:
     """Change some dampings, drive values or starts to subnormal numbers or nearly so."""
     for name in ("d1", "d2", "box_amplitude", "box_frequency", "x2_start", "v2_start"):
         if rng.random() < 0.4:
-            values[name] = draw_one_of(rng, 5e-324, 1e-310, draw_power_of_ten(rng, -323.0, -20.0))
-    values["x1_start"] = draw_one_of(rng, 0.0, values["x1_start"], -5e-324)
+            values[name] = rng.one_of(5e-324, 1e-310, rng.power(-323.0, -20.0))
+    values["x1_start"] = rng.one_of(0.0, values["x1_start"], -5e-324)
 
 
-def make_any_start_size(rng: np.random.Generator, values: Values) -> None:
+def make_any_start_size(rng: Chance, values: Values) -> None:
     """Change start values to sizes far below and far above the box's motion."""
     for name in ("x1_start", "x2_start", "v1_start", "v2_start"):
-        values[name] *= draw_one_of(rng, 0.0, 1.0, 1.0) * draw_power_of_ten(rng, -150.0, 60.0)
+        values[name] *= rng.one_of(0.0, 1.0, 1.0) * rng.power(-150.0, 60.0)
     values["x1_start"], values["x2_start"] = sorted((values["x1_start"], values["x2_start"]))
 
 
-def make_small_start(rng: np.random.Generator, values: Values) -> None:
+def make_small_start(rng: Chance, values: Values) -> None:
     """Change start values to nearly rest with closed gap, under an ordinary drive."""
-    values["x1_start"] = values["x2_start"] = draw_one_of(rng, 0.0, 1.0) * draw_power_of_ten(
-        rng, -20.0, 0.0
-    )
-    values["v1_start"] = draw_one_of(rng, 0.0, 1.0) * draw_power_of_ten(rng, -20.0, 0.0)
-    values["v2_start"] = values["v1_start"] + draw_one_of(rng, 0.0, 1.0) * draw_power_of_ten(
-        rng, -20.0, 0.0
-    )
-    values["phase_start"] = draw_one_of(rng, 0.0, math.pi, draw_power_of_ten(rng, -15.0, 0.0))
+    values["x1_start"] = values["x2_start"] = rng.perhaps() * rng.power(-20.0, 0.0)
+    values["v1_start"] = rng.perhaps() * rng.power(-20.0, 0.0)
+    values["v2_start"] = values["v1_start"] + rng.perhaps() * rng.power(-20.0, 0.0)
+    values["phase_start"] = rng.one_of(0.0, math.pi, rng.power(-15.0, 0.0))
 
 
-def make_large_gamma(rng: np.random.Generator, values: Values) -> None:
+def make_large_gamma(rng: Chance, values: Values) -> None:
     """Change values to a gamma of up to one and unequal masses: impacts that nearly stick."""
-    values["gamma"] = draw_one_of(rng, 1.0, 0.99, 0.5)
-    values["m2"] = draw_one_of(rng, 25.0, 0.04, 1000.0, 0.001)
-    values["k2"] = values["m2"] * draw_power_of_ten(rng, -1.0, 1.0)
-    values["e"] = draw_one_of(rng, 0.5, 0.0, 1.0, float(rng.uniform()))
+    values["gamma"] = rng.one_of(1.0, 0.99, 0.5)
+    values["m2"] = rng.one_of(25.0, 0.04, 1000.0, 0.001)
+    values["k2"] = values["m2"] * rng.power(-1.0, 1.0)
+    values["e"] = rng.one_of(0.5, 0.0, 1.0, float(rng.uniform()))
 
 
-def make_overdamped(rng: np.random.Generator, values: Values) -> None:
+def make_overdamped(rng: Chance, values: Values) -> None:
     """Change the dampers to about and far beyond critical."""
     for name, mass, stiffness in (("d1", "m1", "k1"), ("d2", "m2", "k2")):
         critical = 2.0 * math.sqrt(values[mass] * values[stiffness])
-        factor = 1.0 + draw_sign(rng) * draw_power_of_ten(rng, -16.0, -3.0)
-        values[name] = critical * draw_one_of(
-            rng, factor, 1.0, draw_power_of_ten(rng, 0.0, 2.0), values[name]
-        )
+        factor = 1.0 + rng.sign() * rng.power(-16.0, -3.0)
+        values[name] = critical * rng.one_of(factor, 1.0, rng.power(0.0, 2.0), values[name])
         if rng.random() < 0.1:
-            values[name] = critical * draw_power_of_ten(rng, 2.0, 4.0)
+            values[name] = critical * rng.power(2.0, 4.0)
 
 
-def make_resonant(rng: np.random.Generator, values: Values) -> None:
+def make_resonant(rng: Chance, values: Values) -> None:
     """Change the drive to or next to a natural frequency, with little or no damping."""
     together = math.sqrt((values["k1"] + values["k2"]) / (values["m1"] + values["m2"]))
-    natural = draw_one_of(rng, *natural_frequencies(values), together)
-    beside = draw_one_of(rng, 0.0, 1.0) * draw_sign(rng) * draw_power_of_ten(rng, -17.0, -3.0)
+    natural = rng.one_of(*natural_frequencies(values), together)
+    beside = rng.perhaps() * rng.sign() * rng.power(-17.0, -3.0)
     values["box_frequency"] = natural * (1.0 + beside)
     for name in ("d1", "d2"):
-        values[name] = draw_one_of(rng, 0.0, 0.0, draw_power_of_ten(rng, -20.0, -2.0))
-    values["bonded"] = draw_one_of(rng, 0.0, 0.0, 0.0, 1.0)
+        values[name] = rng.one_of(0.0, 0.0, rng.power(-20.0, -2.0))
+    values["bonded"] = rng.one_of(0.0, 0.0, 0.0, 1.0)
     if values["bonded"]:
         values["x2_start"], values["v2_start"] = values["x1_start"], values["v1_start"]
 
 
-def make_late_start(rng: np.random.Generator, values: Values) -> None:
-    """Change the start time to a late one."""
-
-
-def make_cubic_input(rng: np.random.Generator, values: Values) -> None:
+def make_cubic_input(rng: Chance, values: Values) -> None:
     """Change the box accelerations to cubics of many scales."""
     for name in ("box_acceleration", "box_jerk", "box_snap", "box_crackle"):
-        values[name] = (
-            draw_one_of(rng, 0.0, 1.0) * draw_sign(rng) * draw_power_of_ten(rng, -12.0, 2.0)
-        )
+        values[name] = rng.perhaps() * rng.sign() * rng.power(-12.0, 2.0)
     if rng.random() < 0.5:
         values["box_jerk"] = values["box_snap"] = values["box_crackle"] = 0.0
-    values["box_amplitude"] *= draw_one_of(rng, 0.0, 1.0)
+    values["box_amplitude"] *= rng.perhaps()
 
 
-def make_long_chattering(rng: np.random.Generator, values: Values) -> None:
+def make_long_chattering(rng: Chance, values: Values) -> None:
     """Change values for long chattering: constant push, little loss in impacts, small gamma."""
-    values["k2"] = values["m2"] * draw_power_of_ten(rng, -0.5, 0.5)
-    values["box_acceleration"] = draw_sign(rng) * draw_power_of_ten(rng, -2.0, 2.0)
-    values["e"] = 1.0 - draw_power_of_ten(rng, -3.0, 0.0)
-    values["gamma"] = draw_power_of_ten(rng, -9.0, -1.0)
+    values["k2"] = values["m2"] * rng.power(-0.5, 0.5)
+    values["box_acceleration"] = rng.sign() * rng.power(-2.0, 2.0)
+    values["e"] = 1.0 - rng.power(-3.0, 0.0)
+    values["gamma"] = rng.power(-9.0, -1.0)
 
 
-def make_far_drive(rng: np.random.Generator, values: Values) -> None:
+def make_far_drive(rng: Chance, values: Values) -> None:
     """Change the drive's frequency to far from the natural frequencies."""
-    values["box_frequency"] = draw_one_of(
-        rng, draw_power_of_ten(rng, 0.5, 3.0), draw_power_of_ten(rng, -12.0, -1.0)
-    )
-    values["box_amplitude"] = (
-        draw_power_of_ten(rng, -3.0, 1.0) / (values["box_frequency"] + 0.01) ** 2
-    )
+    values["box_frequency"] = rng.one_of(rng.power(0.5, 3.0), rng.power(-12.0, -1.0))
+    values["box_amplitude"] = rng.power(-3.0, 1.0) / (values["box_frequency"] + 0.01) ** 2
 
 
-def make_any_scale(rng: np.random.Generator, values: Values) -> None:
+def make_any_scale(rng: Chance, values: Values) -> None:
     """Change masses and stiffnesses to scales over decades, from watches to ships."""
-    mass, stiffness = draw_power_of_ten(rng, -9.0, 9.0), draw_power_of_ten(rng, -9.0, 9.0)
+    mass, stiffness = rng.power(-9.0, 9.0), rng.power(-9.0, 9.0)
     rate = math.sqrt(stiffness / mass)
     for name in ("m1", "m2"):
         values[name] *= mass
@@ -201,28 +186,24 @@ def make_any_scale(rng: np.random.Generator, values: Values) -> None:
         values[name] *= rate
 
 
-def set_clearance(rng: np.random.Generator, values: Values) -> None:
+def set_clearance(rng: Chance, values: Values) -> None:
     """Set a random clearance or preload, and a start position that fits."""
     size = max(abs(values[name]) for name in ("x1_start", "x2_start", "box_amplitude"))
-    spread = draw_one_of(
-        rng, draw_power_of_ten(rng, -3.0, 1.0), draw_power_of_ten(rng, -12.0, 12.0)
-    )
-    values["clearance"] = draw_sign(rng) * min(size * spread, 1e100)
+    spread = rng.one_of(rng.power(-3.0, 1.0), rng.power(-12.0, 12.0))
+    values["clearance"] = rng.sign() * min(size * spread, 1e100)
     if values["clearance"] > 0.0 and not values.get("bonded"):
-        values["x2_start"] -= draw_one_of(rng, 0.0, 1.0) * values["clearance"]
+        values["x2_start"] -= rng.perhaps() * values["clearance"]
     elif spread > 10.0:  # pressed so hard that a hop is short: of hops there would be no end
         values["x2_start"], values["v2_start"] = values["x1_start"], values["v1_start"]
 
 
-def set_added_parameters(rng: np.random.Generator, values: Values) -> None:
+def set_added_parameters(rng: Chance, values: Values) -> None:
     """Set the parameters that are not in the paper to sizes that matter, or any."""
     for name in ADDED:
         if name != "clearance" and rng.random() < 0.4:
             quantity = STRUCTURE[name]
-            spread = draw_one_of(
-                rng, draw_power_of_ten(rng, -3.0, 2.0), draw_power_of_ten(rng, -30.0, 30.0)
-            )
-            size = draw_sign(rng) * unit_of_motion(values, quantity.dimension) * spread
+            spread = rng.one_of(rng.power(-3.0, 2.0), rng.power(-30.0, 30.0))
+            size = rng.sign() * unit_of_motion(values, quantity.dimension) * spread
             values[name] = min(max(size, quantity.minimum), quantity.maximum)
 
 
@@ -237,7 +218,7 @@ def unit_of_motion(values: Values, dimension: Mapping[str, int]) -> float:
     return math.prod(units[base] ** exponent for base, exponent in dimension.items())
 
 
-KINDS: dict[str, Draw] = {
+KINDS: dict[str, Callable[[Chance, Values], None]] = {
     "nearly equal": make_nearly_equal,
     "next to nothing": make_subnormal,
     "of all sizes": make_any_start_size,
@@ -245,7 +226,7 @@ KINDS: dict[str, Draw] = {
     "heavy": make_large_gamma,
     "steep": make_overdamped,
     "resonant": make_resonant,
-    "late": make_late_start,
+    "late": lambda rng, values: None,
     "cubic": make_cubic_input,
     "pressed": make_long_chattering,
     "fast or slow": make_far_drive,
@@ -265,7 +246,7 @@ def draw_parameter_set(seed: int, number: int) -> ParameterSet:
     >>> draw_parameter_set(1, 4) == draw_parameter_set(1, 4), draw_parameter_set(1, 4).kind
     (True, 'heavy')
     """
-    rng = np.random.default_rng((seed, number))
+    rng = Chance(np.random.PCG64((seed, number)))
     names = list(KINDS)
     kind = names[number % len(names)]
     values = draw_ordinary(rng)
@@ -277,16 +258,9 @@ def draw_parameter_set(seed: int, number: int) -> ParameterSet:
         values["x2_start"], values["v2_start"] = values["x1_start"], values["v1_start"]
     if rng.random() < 0.4:
         set_clearance(rng, values)
-    set_added_parameters(np.random.default_rng((seed, number, 1)), values)
+    set_added_parameters(Chance(np.random.PCG64((seed, number, 1))), values)
     rate = max(*natural_frequencies(values), values["box_frequency"])
-    duration = (
-        draw_one_of(
-            rng,
-            draw_power_of_ten(rng, -10.0, 0.0),
-            *(draw_power_of_ten(rng, 0.0, 5.0) for _ in "ab"),
-        )
-        / rate
-    )
+    duration = rng.one_of(rng.power(-10.0, 0.0), *(rng.power(0.0, 5.0) for _ in "ab")) / rate
     clock = kind == "late" or rng.random() < 0.25
-    start_time = draw_sign(rng) * draw_power_of_ten(rng, 0.0, 12.0) if clock else 0.0
+    start_time = rng.sign() * rng.power(0.0, 12.0) if clock else 0.0
     return ParameterSet(kind, values, start_time, duration)

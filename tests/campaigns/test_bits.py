@@ -1,4 +1,4 @@
-"""A motion on several communication grids, by all forms and platforms: the same bits."""
+"""A motion on several communication grids, by all forms and in WebAssembly: the same bits."""
 
 from __future__ import annotations
 
@@ -7,12 +7,9 @@ import functools
 import itertools
 import math
 import re
-import shutil
 import sys
-import zipfile
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -20,54 +17,46 @@ import pytest
 from orchestrate.access import OSCILLATOR, Instance, find
 from orchestrate.errors import FmuError, InputError
 
-from . import parameter_sets
 from .findings import expect_none
-from .parameter_sets import ParameterSet
-from .programs import temporary_folder
+from .parameter_sets import ParameterSet, draw_parameter_set
 
 STATE = (
     *("x1", "x2", "v1", "v2", "x_rel", "v_rel", "xi1", "xi2", "xi_rel", "box_force"),
     *("contact_force", "in_contact", "phase", "impact_count", "impact_time", "impact_velocity"),
     *("impact_energy", "contact_count"),
 )
-STEP = (
-    "box_impulse",
-    "box_impulse_moment",
-    "x_rel_max",
-    "evaluations",
-)  # of the last step, not of the state
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="libraries for Linux")
-FORMS = ("fmi3", "fmi2", "fmi2-python")
-ARM = ("qemu-aarch64", "-L", "/usr/aarch64-linux-gnu")
-ARM_EVERY = 25  # sets: a process under an emulator each
+STEP = ("box_impulse", "box_impulse_moment", "x_rel_max", "evaluations")  # of the last step alone
+OUTPUTS = (*STATE, *STEP)
 MANY = 1e6  # impacts in a step, from which on it may give up
-NOT = "no"  # where it is refused, or does not finish
-
+REFUSED = ("refused",)
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="libraries for Linux")
 Bits = tuple[str, ...]
 
 
-def to_hexadecimal(values: Sequence[float]) -> Bits:
-    """Return numbers as hexadecimal texts with all bits; all NaNs alike."""
+def to_hexadecimal(values: Iterable[Any]) -> Bits:
+    """Return numbers as texts with all bits; all NaNs alike."""
     return tuple("nan" if math.isnan(value) else float(value).hex() for value in values)
 
 
-def simulate_by_fmu(fmu: Path, drawn: ParameterSet, grid: Sequence[float]) -> Bits:
-    """Return the outputs at the end of a communication grid, by an FMU."""
+def end_by_fmu(drawn: ParameterSet, grid: Sequence[float], form: str = "fmi3") -> Bits:
+    """Return the outputs at the end of a grid; else one text, why a step does not finish."""
     values = {**drawn.values, "bonded": bool(drawn.values.get("bonded"))}
-    with Instance(fmu) as instance:
+    with Instance(find(OSCILLATOR, form).path) as instance:
         try:
             instance.initialize(drawn.start_time, **values)
-            time = drawn.start_time
-            for target in grid:
-                instance.step(time, target)
-                time = target
         except (FmuError, InputError):
-            return (NOT,)
-        return to_hexadecimal([float(value) for value in instance.get(*STATE, *STEP)])
+            return REFUSED
+        try:
+            for time, target in itertools.pairwise([drawn.start_time, *grid]):
+                instance.step(time, target)
+        except (FmuError, InputError) as error:
+            impacts = re.search(r"cannot finish.* after (\d+) impacts", str(error))
+            return REFUSED if impacts and int(impacts[1]) >= MANY else (str(error),)
+        return to_hexadecimal(instance.get(*OUTPUTS))
 
 
 @functools.cache
-def load_web_module() -> Any:
+def web_module() -> Any:
     """Return the kernel's WebAssembly module under wasmtime."""
     from orchestrate.access.webassembly import web_kernel
     from tools.web_instance import WebInstance
@@ -75,160 +64,91 @@ def load_web_module() -> Any:
     return WebInstance(web_kernel(OSCILLATOR))
 
 
-def simulate_by_web(drawn: ParameterSet, grid: Sequence[float]) -> Bits:
-    """Return the outputs at the end of a communication grid, by the WebAssembly module."""
-    web = load_web_module()
-    size = 8 * web.slots["SIZE"]
-    web.exports["memory"].write(web.store, bytes(size), web.address)
+def end_by_web(drawn: ParameterSet, grid: Sequence[float]) -> Bits:
+    """Return the outputs at the end of a grid, by the WebAssembly module."""
+    web = web_module()
+    call, here = web.exports, (web.store, web.address)
+    call["memory"].write(web.store, bytes(8 * web.slots["SIZE"]), web.address)
     web.set(**{**web.starts, **drawn.values})
-    if web.exports["kernel_initialize"](web.store, web.address, drawn.start_time):
-        return (NOT,)
-    time = drawn.start_time
-    for target in grid:
+    if call["kernel_initialize"](*here, drawn.start_time):
+        return REFUSED
+    for time, target in itertools.pairwise([drawn.start_time, *grid]):
         web.set(STOP=0.0)
         reached = max(time + (target - time), float(web.memory()[web.slots["TIME"]]))
-        if web.exports["kernel_advance"](web.store, web.address, reached):
-            return (NOT,)
-        time = target
+        if call["kernel_advance"](*here, reached):
+            return REFUSED
     memory = web.memory()
-    return to_hexadecimal([float(memory[web.slots[name]]) for name in (*STATE, *STEP)])
+    return to_hexadecimal(memory[web.slots[name]] for name in OUTPUTS)
 
 
-@functools.cache
-def arm_importer() -> Any:
-    """Return the importer with the FMU's 64-bit ARM binary; None if it cannot run here."""
-    from fmu_src.export import forms
-    from tools import importers
-
-    command = importers.zig_compiler("aarch64-linux-gnu.2.28")
-    if shutil.which(ARM[0]) is None or not Path(ARM[2]).is_dir() or command is None:
-        return None
-    folder = temporary_folder() / "arm"
-    forms.export(OSCILLATOR, "fmi3", folder, ("x86_64-linux", "aarch64-linux"))
-    path = folder / "fmi3" / f"{OSCILLATOR}.fmu"
-    program = importers.compile_importer("fmi3", path, folder / "importer", command)
-    with zipfile.ZipFile(path) as archive:
-        binary = archive.extract(f"binaries/aarch64-linux/{OSCILLATOR}.so", folder)
-    return importers.Importer(program, Path(binary), "fmi3")
-
-
-def simulate_by_arm(drawn: ParameterSet, grid: Sequence[float]) -> Bits:
-    """Return the outputs at the end of a grid, by the ARM binary under an emulator."""
-    from tools import importers
-
-    names, settings = ",".join((*STATE, *STEP)), importers.settings(drawn.values)
-    program, times = arm_importer(), [drawn.start_time, *grid]
-    done = program.run("simulate", names, *settings, under=ARM, times=times, success=False)
-    rows = [line.split() for line in done.stdout.splitlines() if not line.startswith("CHECKS")]
-    if done.returncode:
-        return (NOT,)
-    return to_hexadecimal([float.fromhex(cell) for cell in rows[-1]])
-
-
-def reachable_points(start: float, grid: Sequence[float]) -> list[float]:
-    """Return the grid points that steps reach to the last bit.
+def reachable_grids(drawn: ParameterSet) -> list[list[float]]:
+    """Return the grids of a set, without the points that no step size hits to the last bit.
 
     A master's step ends at ``time + (target - time)``, which may be the number beside the target;
     the end would then be another one on another grid.
     """
-    end = start + (grid[-1] - start)
-    points = [start]
-    for point in grid[:-1]:
-        if points[-1] + (point - points[-1]) == point:
-            points.append(point)
-    while len(points) > 1 and points[-1] + (end - points[-1]) != end:
-        points.pop()
-    return [*points[1:], end]
+    grids, start = [], drawn.start_time
+    for grid in drawn.grids():
+        end, points = start + (grid[-1] - start), [start]
+        for point in grid[:-1]:
+            if points[-1] + (point - points[-1]) == point:
+                points.append(point)
+        while len(points) > 1 and points[-1] + (end - points[-1]) != end:
+            points.pop()
+        grids.append([*points[1:], end])
+    return grids
 
 
-def bit_differences(drawn: ParameterSet, on_arm: bool) -> list[str]:
-    """Return a line for each pair of computations whose outputs differ in a bit."""
-    wrong: list[str] = []
-    grids = reachable_grids(drawn)
-    first = [simulate_by_fmu(find(OSCILLATOR).path, drawn, grid) for grid in grids]
-    for i, bits in enumerate(first[1:], 1):
-        if bits[: len(STATE)] != first[0][: len(STATE)]:
-            wrong.append(f"grid {i}: {differing_outputs(bits, first[0])}")
-    if first[0] == (NOT,) and (reason := unexplained_refusal(drawn)):
-        wrong.append(reason)
-    last = len(grids) - 1
-    others = {
-        form: simulate_by_fmu(find(OSCILLATOR, form).path, drawn, grids[last]) for form in FORMS[1:]
-    }
-    others["wasm"] = simulate_by_web(drawn, grids[last])
-    if on_arm:
-        others["aarch64-linux"] = simulate_by_arm(drawn, grids[last])
-    for name, bits in others.items():
-        if bits != first[last] and not (name == "wasm" and NOT in (*bits, *first[last])):
-            wrong.append(f"{name}: {differing_outputs(bits, first[last])}")
-    return wrong
-
-
-def unexplained_refusal(drawn: ParameterSet) -> str:
-    """Return why one step does not get there; empty where it has a million impacts, or the set is
-    refused at its start.
-    """
-    values = {**drawn.values, "bonded": bool(drawn.values.get("bonded"))}
-    with Instance(find(OSCILLATOR).path) as instance:
-        try:
-            instance.initialize(drawn.start_time, **values)
-        except (FmuError, InputError):
-            return ""
-        try:
-            instance.step(drawn.start_time, drawn.start_time + drawn.duration)
-        except (FmuError, InputError) as error:
-            impacts = re.search(r"cannot finish.* after (\d+) impacts", str(error))
-            return "" if impacts and int(impacts[1]) >= MANY else str(error)
-    return ""
-
-
-def differing_outputs(one: Bits, other: Bits) -> str:
-    """Return the names of the outputs that differ between two computations."""
-    if NOT in (*one, *other):
-        return "one of them does not get there"
-    names = (*STATE, *STEP)
-    pairs = zip(names, one, other, strict=True)
+def difference(one: Bits, other: Bits) -> str:
+    """Return the names of the outputs that differ between two computations, all or of the state."""
+    if 1 in (len(one), len(other)):
+        return "" if len(one) == len(other) else f"{one[0]} and {other[0]}"
+    pairs = zip(OUTPUTS, one, other, strict=False)
     return ", ".join(name for name, a, b in pairs if a != b)
 
 
-def reachable_grids(drawn: ParameterSet) -> list[list[float]]:
-    """Return the communication grids of a set, without the points that no step size hits."""
-    return [reachable_points(drawn.start_time, grid) for grid in drawn.grids()]
+def problems(drawn: ParameterSet, by_all: bool = True) -> list[str]:
+    """Return what is wrong with a set, by the native FMU on all grids, and by all on the last."""
+    grids = reachable_grids(drawn)
+    rows = [end_by_fmu(drawn, grid) for grid in grids]
+    pairs = {f"grid {i}": (row[: len(STATE)], rows[0]) for i, row in enumerate(rows[1:], 1)}
+    for form in ("fmi2", "fmi2-python") if by_all else ():
+        pairs[form] = end_by_fmu(drawn, grids[-1], form), rows[-1]
+    if by_all and len(rows[-1]) > 1:
+        web = end_by_web(drawn, grids[-1])
+        pairs["wasm"] = rows[-1] if web == REFUSED else web, rows[-1]
+    wrong = [f"{name}: {text}" for name, pair in pairs.items() if (text := difference(*pair))]
+    return wrong + ([rows[0][0]] if len(rows[0]) == 1 and rows[0] != REFUSED else [])
 
 
 @pytest.mark.slow
 @pytest.mark.budget(60)  # parameter sets
-def test_a_motion_has_the_same_bits_on_all_grids_forms_and_platforms(exported, seed, budget):
-    """By one step, two, five uneven ones and 24, cubic inputs included; by all forms; on ARM.
+def test_a_motion_has_the_same_bits_on_all_grids_and_in_all_forms(exported, seed, budget):
+    """By one step, two, five uneven ones and 24, cubic inputs included; by all forms.
 
     That a set is refused may not depend on the grid either. A step that does not finish is a
     finding unless it has a million impacts.
     """
     findings, counts = [], Counter[str]()
     for number in range(budget):
-        drawn = parameter_sets.draw_parameter_set(seed, number)
-        on_arm = number % ARM_EVERY == ARM_EVERY - 1 and arm_importer() is not None
-        counts += {drawn.kind: 1, "on ARM": on_arm}
-        lines = bit_differences(drawn, on_arm)
-        findings += [f"set {number} ({drawn.kind}): {line}" for line in lines]
+        drawn = draw_parameter_set(seed, number)
+        counts[drawn.kind] += 1
+        findings += [f"set {number} ({drawn.kind}): {line}" for line in problems(drawn)]
     expect_none(findings, counts)
 
 
 @pytest.mark.slow
-def test_another_bit_would_be_seen(fmu, monkeypatch):
-    drawn = parameter_sets.draw_parameter_set(1, 4)
-    grid = reachable_grids(drawn)[0]
+def test_another_bit_would_be_seen(exported, monkeypatch):
+    drawn = draw_parameter_set(1, 4)
     moved = {**drawn.values, "x2_start": drawn.values["x2_start"] + 1e-15}
-    other = dataclasses.replace(drawn, values=moved)
-    assert simulate_by_fmu(fmu, drawn, grid) != simulate_by_fmu(fmu, other, grid)
-    changed = ("0x0p+0",) * len((*STATE, *STEP))
-    monkeypatch.setitem(globals(), "simulate_by_web", lambda *_: changed)
-    assert any(line.startswith("wasm") for line in bit_differences(drawn, False))
+    other = end_by_fmu(dataclasses.replace(drawn, values=moved), reachable_grids(drawn)[-1])
+    monkeypatch.setitem(globals(), "end_by_web", lambda *_: other)
+    assert [line.split(":")[0] for line in problems(drawn)] == ["wasm"]
 
 
 def test_a_point_that_no_step_size_hits_is_left_out():
     """From its middle the nearest step size ends one number beside the target."""
-    drawn = parameter_sets.draw_parameter_set(19, 69)
+    drawn = draw_parameter_set(19, 69)
     _, (middle, end), *_ = drawn.grids()
     assert middle + (end - middle) != end
     grids = reachable_grids(drawn)
@@ -236,18 +156,6 @@ def test_a_point_that_no_step_size_hits_is_left_out():
     for grid in grids:
         steps = itertools.pairwise([drawn.start_time, *grid])
         assert all(time + (target - time) == target for time, target in steps)
-
-
-def complaints(seed: int, numbers: Iterable[int]) -> dict[int, str]:
-    """Return what is wrong with sets by the native FMU on their grids, by number."""
-    found = {}
-    for number in numbers:
-        drawn = parameter_sets.draw_parameter_set(seed, number)
-        grids = reachable_grids(drawn)
-        rows = [simulate_by_fmu(find(OSCILLATOR).path, drawn, grid) for grid in grids]
-        if NOT in itertools.chain(*rows) or len({row[: len(STATE)] for row in rows}) > 1:
-            found[number] = drawn.kind
-    return found
 
 
 # each did not finish on all or some of its grids, or was refused on some
@@ -262,4 +170,7 @@ def complaints(seed: int, numbers: Iterable[int]) -> dict[int, str]:
     ],
 )
 def test_sets_that_once_did_not_finish(exported, seed, numbers):
-    assert complaints(seed, numbers) == {}
+    sets = {number: draw_parameter_set(seed, number) for number in numbers}
+    assert {
+        number: wrong for number, drawn in sets.items() if (wrong := problems(drawn, False))
+    } == {}

@@ -3,132 +3,199 @@
 from __future__ import annotations
 
 import ctypes
-import os
 import random
 import resource
+import shutil
 import signal
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import pytest
 import xarray as xr
 
+from tests.faults import FILE_DAMAGE
+from tests.orchestrate.cli.commands import Commands, Done, end, kill
+
 from .findings import expect_none
-from .trials import COMMANDS, Trial, attack, format_end, message_problem
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes of Linux")
+GIVEN = "given.nc"  # beside the folder of a trial: the orbit that a command starts from
+STEPS = "--eta 1.1:1.16:0.002"
+FROM = "border --limits 2.4:2.9,0.65:0.75 --most 3 --start"
+RAMP = "--only delaminated --eta0 1.4:1.402"
+QUICK = "paper --quick --figures 6 --jobs 1"  # with pictures
+TEXTS = (
+    f"sweep {STEPS} --transient 200 --samples 8",
+    "map --eta 1.1,1.2 --over e --values 0.3,0.5,0.7 --transient 100",
+    f"resonance {STEPS} --transient 100 --samples 8",
+    "lyapunov --eta 1.1:1.16:0.02 --transient 100 --periods 200",
+    "attractors --eta 1.1,1.2 --starts 5 --transient 100",
+    "basin --eta 1.2 --x x_rel,0,1,6 --y v_rel,-1,1,6 --transient 60",
+    "spectra --eta 1.1,1.2,1.3 --transient 300 --periods 8 --points 128",
+    "shake --structure beam --random 5:0.1,100:0.1 --duration 150 --seed 1",
+    "branch --eta 2.5 --limits 2.45:2.55",
+    f"{FROM} {GIVEN}",
+    f"couple {RAMP} --rate 2e-5 --one-way",
+    "capture --only delaminated --count 3 --time 4 --tolerance 0.1",
+    f"passage {RAMP} --rate 1e-4 --settle 20 --one-way",
+    "jump-voltages --eta0 1.4:1.402 --rate 2e-4,1e-4 --settle 5 --one-way",
+    "drive-branch --most 2 --steps 16 --settle 2",
+)
+COMMANDS = {text.split()[0]: f"{text} --plot none --jobs 1" for text in TEXTS}
+DRAWN = (*COMMANDS, *COMMANDS, *COMMANDS, "paper")
+
+
+@dataclass
+class Trial:
+    """One fault during one command."""
+
+    options: list[str]
+    folder: Path
+    chance: random.Random
+    expected: dict[str, bytes] = field(default_factory=dict)  # results where nothing happens
+    seconds: float = 0.0  # that it takes then
+
+    def __post_init__(self) -> None:
+        """Make the folders of results and of temporary files."""
+        self.commands = Commands(self.folder)
+
+    def start(self, prepare: Callable[[], None] | None = None) -> Any:
+        """Start the command; return its process."""
+        return self.commands.start(*self.options, prepare=prepare)
+
+    def run(self, prepare: Callable[[], None] | None = None) -> Done:
+        """Run the command to its end."""
+        return end(self.start(prepare))
+
+    def disturb(self, number: int) -> Done:
+        """Send a signal at a random moment of the command; return how it ends."""
+        process = self.start()
+        time.sleep(self.chance.uniform(0.0, self.seconds))
+        return kill(process, number)
+
+    def again(self) -> str:
+        """Run the command again; return what is wrong with its end and its results ("")."""
+        done = self.run()
+        return format_end(done) if done.code else self.wrong_result()
+
+    def wrong_result(self) -> str:
+        """Return what is wrong with the results of a command that has ended well ("")."""
+        if self.commands.results() != self.expected:
+            return "other bytes"
+        kinds = (".nc", ".png", ".pdf", ".html")
+        left = [name for name in self.commands.files() if not name.endswith(kinds)]
+        return f"left behind: {left}" if left else ""
+
+
+def format_end(done: Done) -> str:
+    """Format how a command ended, as one line."""
+    return f"exit code {done.code}: {' / '.join(done.complaints)[:300]}"
+
+
+def wrong_message(done: Done) -> str:
+    """Return what is wrong with how a command gave up; empty if it said one line, or did not."""
+    fine = done.code == 0 or (done.code > 0 and len(done.complaints) == 1)
+    return "" if fine and "Traceback" not in done.err else format_end(done)
 
 
 def kill_often(trial: Trial) -> str:
-    """Kill the command by SIGKILL up to three times; return what is wrong at the end ("")."""
+    """Kill it up to three times."""
     for _ in range(trial.chance.randint(1, 3)):
-        trial.signal_and_wait(signal.SIGKILL)
-    return trial.run_again()
+        trial.disturb(signal.SIGKILL)
+    return trial.again()
 
 
 def terminate(trial: Trial) -> str:
-    """Send SIGTERM at a random moment, run the command again; return what is wrong ("")."""
-    trial.signal_and_wait(signal.SIGTERM)
-    return trial.run_again()
+    """Send SIGTERM."""
+    trial.disturb(signal.SIGTERM)
+    return trial.again()
 
 
 def interrupt(trial: Trial) -> str:
-    """Send Ctrl-C at a random moment, expect exit code 130; return what is wrong ("")."""
-    ended = trial.signal_and_wait(signal.SIGINT)
-    if ended.code not in (0, 130, -signal.SIGINT) or (ended.code == 130 and len(ended.lines) > 1):
-        return format_end(ended)
-    return trial.run_again()
+    """Send Ctrl-C: it ends with exit code 130 and at most one line."""
+    done = trial.disturb(signal.SIGINT)
+    if done.code not in (0, 130, -signal.SIGINT) or (done.code == 130 and len(done.complaints) > 1):
+        return format_end(done)
+    return trial.again()
 
 
 def fill_disk(trial: Trial) -> str:
-    """Limit the size of files, as a full disk does; return what is wrong ("")."""
-    largest = max(map(len, trial.expected.values()))
-    most = trial.chance.randrange(max(largest, 40_000))
-
-    def limit() -> None:
-        """Limit the size of files that this process may write."""
-        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-        import orchestrate.access as access
-
-        for model in access.MODELS:  # the FMU is unpacked elsewhere
-            access.unpacked.unpacked(access.find(model))
-        resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
-
-    wrong = message_problem(trial.start(limit).wait())
-    return wrong or trial.run_again()
+    """Limit the size of files as a quota does, to what the FMU needs or more."""
+    most = trial.chance.randrange(900_000, 1_500_000)
+    if trial.chance.random() < 0.5:  # not even that
+        most = trial.chance.randrange(200_000)
+    done = trial.run(lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most)))
+    return wrong_message(done) or trial.again()
 
 
 def forbid_writing(trial: Trial) -> str:
-    """Run in a folder that cannot be written, or is a file; return what is wrong ("")."""
-    if trial.chance.random() < 0.5:
-        trial.output.write_text("mine")
-        ended = trial.start().wait()
-        if ended.code == 0 or message_problem(ended) or trial.output.read_text() != "mine":
-            return format_end(ended)
-        trial.output.unlink()
-        return trial.run_again()
-    trial.output.mkdir()
-    trial.output.chmod(0o555)
-    ended = trial.start(drop_capabilities).wait()
-    trial.output.chmod(0o755)
-    if ended.code == 0 or message_problem(ended):
-        return format_end(ended)
-    return trial.run_again()
+    """Run where the results' folder is a file, or cannot be written."""
+    output = trial.commands.output
+    is_file = trial.chance.random() < 0.5
+    if is_file:
+        output.write_text("mine")
+    else:
+        output.mkdir(mode=0o555)
+    done = trial.run(drop_capabilities)
+    if done.code == 0 or wrong_message(done) or (is_file and output.read_text() != "mine"):
+        return format_end(done)
+    if is_file:
+        output.unlink()
+    else:
+        output.chmod(0o755)
+    return trial.again()
 
 
 def drop_capabilities() -> None:
-    """Drop root's right to write everywhere (Linux's capabilities 1 and 2)."""
-    if os.geteuid() != 0:
-        return
-    libc = ctypes.CDLL(None, use_errno=True)
-    header = (ctypes.c_uint32 * 2)(0x20080522, 0)
-    held = (ctypes.c_uint32 * 6)()
-    if libc.capget(header, held) == 0:
-        held[0] &= ~0b110
-        libc.capset(header, held)
+    """Drop root's right to write everywhere (capabilities 1 and 2 of Linux)."""
+    for capability in (1, 2):
+        ctypes.CDLL(None).prctl(24, capability, 0, 0, 0)  # PR_CAPBSET_DROP
 
 
 def run_twice_at_once(trial: Trial) -> str:
-    """Run the same command twice at once; return what is wrong ("")."""
+    """Run the same command twice at once: one of them ends well."""
     first = trial.start()
     time.sleep(trial.chance.uniform(0.0, 0.5 * trial.seconds))
-    second = trial.start()
-    ends = first.wait(), second.wait()
-    if 0 not in [end.code for end in ends]:
+    ends = [end(process) for process in (trial.start(), first)]
+    if 0 not in [done.code for done in ends]:
         return " and ".join(map(format_end, ends))
-    return message_problem(ends[0]) or message_problem(ends[1]) or trial.run_again()
+    return "".join(map(wrong_message, ends)) or trial.again()
+
+
+def damage_files(trial: Trial, pattern: str) -> None:
+    """Damage what a command has left: a bit, the end, a block, or all."""
+    for path in sorted(trial.commands.output.glob(pattern)):
+        if path.stat().st_size:
+            trial.chance.choice(list(FILE_DAMAGE.values()))(path, trial.chance)
 
 
 def damage_journal(trial: Trial) -> str:
-    """Change bytes of the journal, run the command again; return what is wrong ("")."""
-    trial.signal_and_wait(signal.SIGKILL)
-    journals = sorted(trial.output.glob("*.journal*")) if trial.output.exists() else []
-    for path in journals:
-        spoil_file(path, trial.chance)
-    ended = trial.start().wait()
-    if ended.code:
-        if message_problem(ended):
-            return format_end(ended)
-        for path in trial.output.glob("*.journal*"):
+    """Damage the journal of a killed command: it goes on, or says that it is to be removed."""
+    trial.disturb(signal.SIGKILL)
+    damage_files(trial, "*.journal*")
+    done = trial.run()
+    if done.code and not wrong_message(done):
+        for path in trial.commands.output.glob("*.journal*"):
             path.unlink()  # the remedy
-    return trial.run_again()
+    return wrong_message(done) or trial.again()
 
 
 def damage_result(trial: Trial) -> str:
-    """Change bytes of a finished result, run again; return what is wrong ("")."""
-    trial.start().wait()
-    for path in trial.output.glob("*.nc"):
-        spoil_file(path, trial.chance)
-    ended = trial.start().wait()
-    if message_problem(ended):
-        return format_end(ended)
-    if ended.code == 0 and not has_same_numbers(trial):
+    """Damage a finished result: it is never taken with other numbers."""
+    trial.run()
+    damage_files(trial, "*.nc")
+    done = trial.run()
+    if wrong_message(done):
+        return format_end(done)
+    if done.code == 0 and not has_same_numbers(trial):
         return "a damaged result is taken as it is"
-    for path in trial.output.glob("*.nc"):
+    for path in trial.commands.output.glob("*.nc"):
         path.unlink()
-    return trial.run_again()
+    return trial.again()
 
 
 def has_same_numbers(trial: Trial) -> bool:
@@ -136,26 +203,13 @@ def has_same_numbers(trial: Trial) -> bool:
     other = trial.folder / "expected.nc"
     for name, data in trial.expected.items():
         other.write_bytes(data)
-        with xr.open_dataset(trial.output / name) as here, xr.open_dataset(other) as there:
+        with (
+            xr.open_dataset(trial.commands.output / name) as here,
+            xr.open_dataset(other) as there,
+        ):
             if not here.identical(there):
                 return False
     return True
-
-
-def spoil_file(path: Path, chance: random.Random) -> None:
-    """Damage a file: flip a bit, cut off the end, or write noise over a part."""
-    data = bytearray(path.read_bytes())
-    if not data:
-        return
-    kind, place = chance.randrange(3), chance.randrange(len(data))
-    if kind == 0:
-        data[place] ^= 1 << chance.randrange(8)
-    elif kind == 1:
-        del data[place:]
-    else:
-        noise = chance.randbytes(chance.randint(1, 500))
-        data[place : place + len(noise)] = noise
-    path.write_bytes(data)
 
 
 FAULTS: dict[str, Callable[[Trial], str]] = {
@@ -170,7 +224,37 @@ FAULTS: dict[str, Callable[[Trial], str]] = {
 }
 
 
-COMMANDS_DRAWN = (*(name for name in COMMANDS for _ in range(3) if name != "paper"), "paper")
+def attack(
+    faults: Mapping[str, Callable[[Trial], str]],
+    names: Sequence[str],
+    chance: random.Random,
+    holder: Path,
+    count: int,
+    where: Callable[[], Sequence[str]] = tuple,
+) -> Iterator[str]:
+    """Do faults in turn, each to a command drawn at random; yield what was wrong.
+
+    `where` returns options that say where the command computes while it is disturbed.
+    """
+    undisturbed: dict[str, Trial] = {}
+    start = Trial(["branch", "--eta", "2.6", "--limits", "2.6:2.7"], holder / "start", chance)
+    if "border" in names:
+        start.options += ["--plot", "none", "--store", str(holder / GIVEN)]
+        start.run().success()
+    for number in range(count):
+        name, fault = chance.choice(names), list(faults)[number % len(faults)]
+        options = COMMANDS.get(name, QUICK).replace(GIVEN, str(holder / GIVEN)).split()
+        if name not in undisturbed:
+            begun = time.monotonic()
+            undisturbed[name] = Trial(options, holder / name, chance)
+            undisturbed[name].run().success()
+            undisturbed[name].seconds = time.monotonic() - begun
+        whole = undisturbed[name]
+        results = whole.commands.results()
+        folder, options = holder / "trial", [*options, *where()]
+        if wrong := faults[fault](Trial(options, folder, chance, results, whole.seconds)):
+            yield f"fault {number} ({fault}, {name}): {wrong}"
+        shutil.rmtree(folder)
 
 
 @pytest.mark.slow
@@ -179,6 +263,6 @@ def test_a_command_that_is_disturbed_gives_the_same_bytes_when_it_is_run_again(
     exported, seed, budget, tmp_path
 ):
     """It ends, gives up in one line, or says what to remove; nothing else is left behind."""
-    commands = COMMANDS_DRAWN if budget > len(FAULTS) else ("sweep",)
-    parts = (FAULTS, commands, Trial, random.Random(seed), tmp_path, budget)
-    expect_none(attack(*parts), {"faults": budget})
+    names = DRAWN if budget > len(FAULTS) else ("sweep",)
+    findings = attack(FAULTS, names, random.Random(seed), tmp_path, budget)
+    expect_none(findings, {"faults": budget})

@@ -2,143 +2,172 @@
 
 from __future__ import annotations
 
+import http.server
 import random
 import shutil
 import sys
+import threading
+import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import orchestrate
-from orchestrate.access import MODELS
-from orchestrate.access.webassembly import web_kernel
 from orchestrate.running.store import load
+from tests.faults import Surroundings
+from tests.orchestrate.cli.commands import ROOT, Done
+from tools.chromium import start_chromium
 
-from . import archives, documents, forged_results
-from .children import ChildCommand, FinishedCommand, import_all, limit_memory
+from . import archives, documents
 from .findings import expect_none
-from .forged_results import BrowserWindow
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes of Linux")
-
-SLOW = 30.0  # s
+SLOW, MEMORY = 30.0, 4 << 30  # s, bytes
 WRONG = 0.2  # of the forged results have numbers that make no sense too
 LONG = 2000  # letters of a line that a person reads
+CALM = 0.15  # s that a script has for running
+READY = "return Boolean(window.explorer)"
+SIMULATE = ("simulate", "--eta", "1", "--periods", "2", "--plot", "none")
+COUPLE = ("couple", "--only", "delaminated", "--one-way", "--plot", "none")
+READERS = (
+    "sweep --eta 1 --store {}",
+    "explore {} --no-open",
+    "explore --branches {} --no-open",
+    "branch --start {} --limits 0.9:1.1",
+    "border --start {} --limits 1:2,0.1:0.9",
+)
 
 
-def make_good_results(folder: Path) -> tuple[Path, Path]:
-    """Compute a sweep and a branch, to be damaged and forged; return their paths."""
-    places = folder / "good.nc", folder / "branch.nc"
-    structure, usual = orchestrate.Structure.nondimensional(), {"jobs": 1, "progress": False}
-    orchestrate.sweep(structure, eta=[1.0, 1.1], transient=2, samples=4, store=places[0], **usual)
-    start = orchestrate.orbit(structure, eta=2.6, **usual)
-    orchestrate.branch(structure, start=start, limits=(2.45, 2.62), store=places[1], **usual)
-    return places
+class BrowserWindow:
+    """Headless Chromium with a server that no page may request anything from."""
+
+    def __init__(self, driver: Any, address: str, asked: list[str]) -> None:
+        """Store the browser's driver and the record of requests."""
+        self.driver, self.address, self.asked = driver, address, asked
+
+    def check_page(self, page: Path, fragment: str = "") -> str:
+        """Open a page; return what is wrong with it, empty if no script of the file ran."""
+        from selenium.common.exceptions import WebDriverException
+        from selenium.webdriver.support.ui import WebDriverWait
+
+        self.asked.clear()
+        try:
+            self.driver.get("about:blank")
+            self.driver.get(page.as_uri() + fragment)
+            WebDriverWait(self.driver, 30.0, 0.02).until(lambda one: one.execute_script(READY))
+            time.sleep(CALM)
+            ran = "return window.canary || document.title === 'canary'"
+            if self.driver.execute_script(ran):
+                return "a script of the file ran"
+        except WebDriverException as error:  # a dialog of the canary, or a page that is broken
+            return f"the browser: {(error.msg or type(error).__name__).splitlines()[0]}"
+        return f"the page asked {self.asked[0]}" if self.asked else ""
 
 
-def open_forged_page(
-    folder: Path, good: Path, branch: Path, chance: random.Random, seen: BrowserWindow
-) -> tuple[FinishedCommand, str]:
-    """Forge a result, make a page of it and open that; return the end, and what is wrong."""
-    result, branches, page = (folder / name for name in ("f.nc", "b.nc", "page.html"))
-    forged_results.write_forged_sweep(result, chance, load(good), seen.address)
-    wrong = chance.random() < WRONG
-    if wrong:
-        forged_results.write_wrong_number(result, chance)
-    command = ["explore", str(result), "--no-open", "--output", str(page)]
-    if chance.random() < 0.3:
-        forged_results.write_forged_branch(branches, chance, load(branch), seen.address)
-        command += ["--branches", str(branches)]
-    ended = ChildCommand(command, folder / "temporary", limit_memory).wait(2.0 * SLOW)
-    reason = find_problem(ended, [])
-    if not reason:
-        fragment = forged_results.hostile_fragment(chance, seen.address)
-        made = ended.code == 0
-        lost = "" if wrong else f"no page: {' / '.join(ended.lines)[:200]}"
-        reason = seen.check_page(page, fragment) if made else lost
-    forged_results.delete_files(result, branches, page)
-    return ended, reason
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory) -> Iterator[BrowserWindow]:
+    """Chromium, and the server at the address that hostile texts name."""
+    programs = shutil.which("chromium"), shutil.which("chromedriver")
+    if None in programs:
+        pytest.skip("no chromium with chromedriver here")
+    asked: list[str] = []
+
+    class Handler(http.server.BaseHTTPRequestHandler):
+        def do_GET(self) -> None:
+            asked.append(self.path)
+            self.send_response(204)
+            self.end_headers()
+
+        def log_message(self, *arguments: object) -> None:
+            pass
+
+    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        driver = start_chromium(*programs, tmp_path_factory.mktemp("chromium"))
+        yield BrowserWindow(driver, f"http://127.0.0.1:{server.server_port}/canary", asked)
+        driver.quit()
+        server.shutdown()
 
 
-def write_attack(
-    folder: Path, fmu: Path, good: Path, chance: random.Random, number: int
-) -> tuple[str, list[str]]:
-    """Write a hostile input; return its kind, and the command that reads it."""
-    turn = number % 4
-    if turn in (0, 1):
-        kind = list(archives.KINDS)[(number // 2) % len(archives.KINDS)]
-        path = folder / "input.fmu"
-        path.unlink(missing_ok=True)
-        archives.KINDS[kind](fmu, path, chance)
-        command = ["simulate", "--eta", "1", "--periods", "2", "--plot", "none"]
-        return kind, [*command, "--output", str(folder / "results"), "--fmu", str(path)]
-    if turn == 2 and number % 8 == 2:
-        path = folder / "input.csv"
-        documents.write_course(path, chance)
-        command = ["couple", "--only", "delaminated", "--one-way", "--plot", "none"]
-        return "CSV", [*command, "--output", str(folder / "results"), "--course", str(path)]
-    if turn == 2:
-        path = folder / "input.toml"
-        documents.write_toml(path, chance)
-        command = ["simulate", "--eta", "1", "--periods", "2", "--plot", "none"]
-        return "TOML", [*command, "--output", str(folder / "results"), "--structure", str(path)]
-    reader = chance.choice(list(documents.READERS))
-    path = folder / "input.nc"
-    path.unlink(missing_ok=True)
-    documents.write_result(path, chance, good)
-    output = folder / ("page.html" if reader in ("explore", "branches") else "results")
-    command = [*documents.READERS[reader](path), "--output", str(output)]
-    return f"NetCDF for {reader}", command
+def run_limited(command: Sequence[object], folder: Path) -> tuple[Done, str]:
+    """Run a command with little memory; return its end, and what is wrong with that ("")."""
+    places = (Path("/"), Path("/tmp"), *folder.parents, folder, ROOT, *ROOT.parents)
+    escaped = [place / "escaped" for place in dict.fromkeys(places)]
+    assert not any(path.exists() for path in escaped)
+    temporary, begun = folder / "temporary", time.monotonic()
+    temporary.mkdir()
+    words = [sys.executable, "-m", "orchestrate", *map(str, command)]
+    ended = Surroundings(memory=MEMORY).run(words, ROOT, 20.0 * SLOW, TMPDIR=str(temporary))
+    seconds = time.monotonic() - begun
+    strays = [path for path in (*escaped, *temporary.iterdir()) if path.exists()]
+    shutil.rmtree(temporary)
+    done = Done(ended.returncode, ended.stdout, ended.stderr)
+    if strays or seconds > SLOW:
+        return done, f"left {strays}, took {seconds:.0f} s"
+    return done, find_problem(done)
 
 
-def run_on_attack(arguments: list[str], folder: Path) -> tuple[FinishedCommand, list[str]]:
-    """Run a command on hostile input; return its exit, and files written outside its folder."""
-    temporary = folder / "temporary"
-    before = {path for path in escaped_paths(folder) if path.exists()}
-    ended = ChildCommand(arguments, temporary, limit_memory).wait(2.0 * SLOW)
-    strays = [str(path) for path in escaped_paths(folder) if path.exists() and path not in before]
-    left = [path.name for path in temporary.iterdir()] if temporary.exists() else []
-    forged_results.delete_files(folder / "page.html")
-    shutil.rmtree(temporary, ignore_errors=True)
-    shutil.rmtree(folder / "results", ignore_errors=True)
-    return ended, strays + left
-
-
-def escaped_paths(folder: Path) -> list[Path]:
-    """Return the paths where an escaped file of the attacks would be."""
-    places = (Path("/"), Path("/tmp"), *folder.parents, folder, Path.cwd(), *Path.cwd().parents)
-    return [folder_above / "escaped" for folder_above in dict.fromkeys(places)]
-
-
-def find_problem(ended: FinishedCommand, strays: list[str]) -> str:
+def find_problem(done: Done) -> str:
     """Return what is wrong with how a command ended; empty where nothing is."""
-    if strays:
-        return f"left {', '.join(strays)}"
-    if ended.seconds > SLOW:
-        return f"took {ended.seconds:.0f} s"
-    if ended.code < 0:
-        return f"ended by signal {-ended.code}"
-    if any(line.startswith("Traceback") for line in ended.lines):
-        return f"a traceback: {ended.lines[-1][:200]}"
-    if ended.code == 0:
-        return ""
-    errors = [line for line in ended.lines if line.startswith("error: ")]
-    if len(errors) != 1:  # beside it may stand what the command has to say of itself
-        return f"{len(ended.lines)} lines: {' / '.join(ended.lines)[:300]}"
-    if len(errors[0]) > LONG or not errors[0].isprintable():
+    if done.code < 0 or "Traceback (most recent call last):\n  File" in done.err:
+        return f"exit code {done.code}, a traceback: {done.complaints[-1:]}"
+    errors = [line for line in done.complaints if line.startswith("error: ")]
+    if done.code and len(errors) != 1:  # beside it may stand what the command has to say of itself
+        return f"{len(done.complaints)} lines: {' / '.join(done.complaints)[:300]}"
+    if done.code and (len(errors[0]) > LONG or not errors[0].isprintable()):
         return f"not a line that people read: {errors[0][:200]!r}"
     return ""
 
 
-@pytest.fixture(scope="module")
-def browser() -> Iterator[BrowserWindow]:
-    """Headless Chromium, with a server that no page may request anything from."""
-    if not (shutil.which("chromium") and shutil.which("chromedriver")):
-        pytest.skip("no chromium with chromedriver here")
-    with forged_results.open_browser() as window:
-        yield window
+def attack_page(
+    folder: Path, good: tuple[Path, Path], chance: random.Random, browser: BrowserWindow
+) -> tuple[str, str]:
+    """Forge a result, make a page of it and open that; return the input's fate and problem."""
+    result, branches, page = (folder / name for name in ("f.nc", "b.nc", "page.html"))
+    wrong, sweep, branch = chance.random() < WRONG, *map(load, good)
+    documents.write_forged_sweep(result, chance, sweep, browser.address, wrong)
+    command = ["explore", result, "--no-open", "--output", page]
+    if chance.random() < 0.3:
+        documents.write_forged_branch(branches, chance, branch, browser.address)
+        command += ["--branches", branches]
+    done, problem = run_limited(command, folder)
+    if not problem and done.code == 0:
+        fragment = documents.hostile_fragment(chance, browser.address)
+        problem = browser.check_page(page, fragment)
+    if done.code and not wrong:
+        problem = problem or f"no page: {' / '.join(done.complaints)[:200]}"
+    return f"page {'refused' if done.code else 'made'}", problem
+
+
+def attack_reader(
+    folder: Path, fmu: Path, good: Path, chance: random.Random, number: int
+) -> tuple[str, str]:
+    """Write a hostile file and run a command that reads it; return its fate and problem."""
+    output = ["--output", folder / "results"]
+    place = folder / "input"
+    if number % 2 == 0:
+        kind = archives.KINDS[number // 2 % len(archives.KINDS)]
+        archives.write(kind, fmu, place, chance)
+        command = [*SIMULATE, "--fmu", place]
+    elif number % 8 == 1:
+        kind = "CSV"
+        documents.write_course(place, chance)
+        command = [*COUPLE, "--course", place]
+    elif number % 8 == 5:
+        kind = "TOML"
+        documents.write_toml(place, chance)
+        command = [*SIMULATE, "--structure", place]
+    else:
+        reader = chance.choice(READERS)
+        kind = f"NetCDF for {reader.split()[0]}"
+        documents.write_result(place, chance, good)
+        command = reader.format(place).split()
+        output[1] = folder / ("page.html" if "explore" in reader else "results")
+    done, problem = run_limited([*command, *output], folder)
+    return f"{kind} {'refused' if done.code else 'taken'}", problem
 
 
 @pytest.mark.slow
@@ -148,24 +177,25 @@ def test_malicious_input_is_refused_in_one_line_or_does_no_harm(
 ):
     """FMU archives, TOML, CSV, NetCDF; every second input is a result whose texts are markup.
 
-    Refused within 30 s and 2 GiB without a traceback, and nothing is written elsewhere; a page that
+    Refused within 30 s and 4 GiB without a traceback, and nothing is written elsewhere; a page that
     is made of a file works in Chromium, runs no script of the file and asks no address in it.
     """
-    import_all()
-    for model in MODELS:
-        web_kernel(model)  # or the first page would compile it
     chance, findings, counts = random.Random(seed), [], Counter[str]()
-    good, branch = make_good_results(tmp_path)
+    good = tmp_path / "good.nc", tmp_path / "branch.nc"
+    structure, usual = orchestrate.Structure.nondimensional(), {"jobs": 1, "progress": False}
+    orchestrate.sweep(structure, eta=[1.0, 1.1], transient=2, samples=4, store=good[0], **usual)
+    start = orchestrate.orbit(structure, eta=2.6, **usual)
+    orchestrate.branch(structure, start=start, limits=(2.45, 2.62), store=good[1], **usual)
     for number in range(budget):
+        folder = tmp_path / "trial"
+        folder.mkdir()
         if number % 2:
-            kind = "page"
-            ended, reason = open_forged_page(tmp_path, good, branch, chance, browser)
+            fate, problem = attack_page(folder, good, chance, browser)
         else:
-            kind, arguments = write_attack(tmp_path, fmu, good, chance, number // 2)
-            ended, strays = run_on_attack(arguments, tmp_path)
-            reason = find_problem(ended, strays)
-        counts[f"{kind} {'refused' if ended.code else 'taken'}"] += 1
-        findings += [f"input {number} ({kind}): {reason}"] if reason else []
+            fate, problem = attack_reader(folder, fmu, good[0], chance, number // 2)
+        shutil.rmtree(folder)
+        counts[fate] += 1
+        findings += [f"input {number} ({fate}): {problem}"] if problem else []
     expect_none(findings, counts)
 
 

@@ -5,8 +5,10 @@ import pytest
 from fmu_src.export import forms, self_test
 from fmu_src.export.sources import load_model
 
+from ..sparing import ordinary
 
-@pytest.mark.parametrize("folder", forms.MODELS.values())
+
+@pytest.mark.parametrize("folder", ordinary(forms.MODELS.values()))
 def test_a_cubic_input_begins_in_it(folder):
     """Its values are moved as an importer sets them, with the flag that it begins anew."""
     model = load_model(folder)

@@ -1,3 +1,3 @@
-"""The exported FMU as its users meet it: in a fresh process, through an importer, without the
-project.
+"""The exported FMU as its users meet it: by FMI calls, in a fresh process without the project where
+that matters.
 """

@@ -1,4 +1,7 @@
-"""Programs on FMUs in a fresh process: the modules below ``programs/`` and the driver there."""
+"""Where the FMUs are, and programs on them in a fresh process: the modules below ``programs/``.
+
+Tests that need no process of their own open FMUs in this one, by :mod:`.programs.driver`.
+"""
 
 from pathlib import Path
 
@@ -7,7 +10,15 @@ from ..fresh import run_fresh
 
 PROGRAMS = Path(__file__).with_name("programs")
 FORMS = ("fmi2-python", "fmi2", "fmi3")
-FMUS = {form: BUILD / form / "TwoMassImpactOscillator.fmu" for form in FORMS}
+OSCILLATOR = "TwoMassImpactOscillator"
+DRIVES = ("MotorShaker", "ElectrodynamicShaker")
+MODELS = (OSCILLATOR, *DRIVES)
+FMUS = {form: BUILD / form / f"{OSCILLATOR}.fmu" for form in FORMS}
+
+
+def path_of(model, form):
+    """Path of an exported FMU."""
+    return BUILD / form / f"{model}.fmu"
 
 
 def run(program, fmu, *arguments, **options):

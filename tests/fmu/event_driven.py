@@ -23,10 +23,19 @@ class Motion:
         FLIGHT or CONTACT.
     impacts : list of float
         Times.
+    releases : int
+        Ends of permanent contact.
     """
 
-    def __init__(self, values):
-        self.p = p = values
+    def __init__(self, values, acceleration=None):
+        self.p = p = {
+            "clearance": 0.0,
+            "phase_start": 0.0,
+            "v1_start": 0.0,
+            "v2_start": 0.0,
+            **values,
+        }
+        self.acceleration = acceleration or (lambda _: 0.0)  # of the box, beside the harmonic one
         self.omega = np.sqrt(p["k1"] / p["m1"])
         self.total = p["m1"] + p["m2"]
         preload = max(0.0, -p["clearance"]) * p["k1"] * p["k2"] / (p["k1"] + p["k2"])
@@ -35,6 +44,7 @@ class Motion:
         self.size = np.abs(self.state).max() + p["box_amplitude"] + abs(p["clearance"])
         fastest = max(p["box_frequency"], self.omega, np.sqrt(p["k2"] / p["m2"]))
         self.time, self.impacts, self.longest = 0.0, [], 0.2 / fastest
+        self.releases = 0
         self.step = self.longest
         closed = self.gap(0.0, self.state) <= 1e-14 * self.size
         pressed = closed and p["v1_start"] == p["v2_start"] and self.opening(x1, p["v1_start"]) < 0
@@ -58,7 +68,8 @@ class Motion:
     def drive(self, t):
         p = self.p
         phase = p["box_frequency"] * t + p["phase_start"]
-        return p["box_amplitude"] * p["box_frequency"] ** 2 * np.sin(phase)
+        harmonic = p["box_amplitude"] * p["box_frequency"] ** 2 * np.sin(phase)
+        return harmonic - self.acceleration(t)
 
     def flight(self, t, y):
         one, two = self.accelerations(y)
@@ -85,6 +96,7 @@ class Motion:
                 step = 0.1 * self.longest  # the force may be above zero for a short time
                 if self.integrate(self.contact, stop, events=self.release, max_step=step):
                     self.mode, self.hop = FLIGHT, 0.02 * self.longest
+                    self.releases += 1
                 continue
             if self.hop:
                 self.step = min(0.25 * self.hop, self.longest)

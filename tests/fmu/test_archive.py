@@ -16,9 +16,13 @@ import fmpy
 import pytest
 from fmpy.validation import validate_fmu
 
+from fmu_src.export import forms, pythonfmu_form
+from fmu_src.export.errors import CannotExport
+
 from ..fresh import ROOT
-from .copies import export_copy, guid_of_copy
-from .driver import FMUS, run
+from .copies import copy_sources, export_copy
+from .driver import FMUS, MODELS, OSCILLATOR, path_of
+from .programs.driver import describe, open_fmu
 
 PYTHON = FMUS["fmi2-python"]
 BUILD = 'extra == "build"'
@@ -30,45 +34,24 @@ def contents(fmu):
         return {name: archive.read(name) for name in archive.namelist()}
 
 
-@pytest.fixture(scope="module")
-def copies(tmp_path_factory):
-    """Two exports of the same sources, from different places and surroundings."""
-    first = export_copy(tmp_path_factory.mktemp("first"), PYTHONHASHSEED="1", TZ="UTC", LC_ALL="C")
-    second = export_copy(
-        tmp_path_factory.mktemp("a second one"),
-        PYTHONHASHSEED="2",
-        TZ="Asia/Tokyo",
-        LC_ALL="C.UTF-8",
-    )
-    return first, second
+def test_two_exports_are_the_same_bytes(tmp_path, monkeypatch):
+    """Of the same sources, from different places and surroundings; no other GUID either."""
+    first = export_copy(tmp_path, PYTHONHASHSEED="2", TZ="Asia/Tokyo", LC_ALL="C.UTF-8")
+    assert fmpy.read_model_description(str(first)).guid == describe(PYTHON).guid
 
+    def no_compiler(*_):
+        raise CannotExport("not wanted here")
 
-def test_two_exports_are_the_same_bytes(copies):
-    first, second = copies
+    monkeypatch.setattr(pythonfmu_form, "link_all", no_compiler)
+    second = forms.export(OSCILLATOR, forms.PYTHON_FORM, tmp_path / "here")
     assert first.read_bytes() == second.read_bytes()
 
 
-CHANGES = [  # of the table, the kernel, the runtime
-    ("models/oscillator/variables.py", '"e", "1", 0.7', '"e", "1", 0.71'),
-    ("kernels/oscillator/impact.py", '"""Impact:', '"""An impact:'),
-    (
-        "runtime/slave.py",
-        '"""Write one line to the error output,',
-        '"""Write a line to the error output,',
-    ),
-]
-
-
-def test_guid_belongs_to_the_sources(copies, tmp_path):
-    """Another place, no other GUID; another number in the kernel or the table, another GUID and
-    other module names.
+def test_guid_belongs_to_the_sources(changed):
+    """Another number in the table, another GUID and other names of modules. Which files count is
+    for tests/export.
     """
-    guid = fmpy.read_model_description(str(PYTHON)).guid
-    assert fmpy.read_model_description(str(copies[0])).guid == guid
-    changed = export_copy(tmp_path / "exported", CHANGES[:1])
-    found = [guid_of_copy(tmp_path / str(i), [change]) for i, change in enumerate(CHANGES)]
-    assert fmpy.read_model_description(str(changed)).guid == found[0]
-    assert len({guid, *found}) == 1 + len(CHANGES)
+    assert fmpy.read_model_description(str(changed)).guid != describe(PYTHON).guid
     ours = {name for name in contents(changed) if re.match(r"resources/(fmu_|TwoMass)", name)}
     assert ours and not ours & set(contents(PYTHON))
 
@@ -85,12 +68,6 @@ def other_pythons():
 def runs(python):
     """Whether an interpreter is there: pyenv has names on the path for versions not chosen."""
     return subprocess.run([python, "--version"], capture_output=True).returncode == 0
-
-
-def copy_sources(root):
-    """The sources in another folder."""
-    shutil.copytree(ROOT / "fmu_src", root / "fmu_src", ignore=shutil.ignore_patterns("*cache*"))
-    return root
 
 
 def built(python, root):
@@ -134,13 +111,9 @@ def test_another_python_makes_the_same_files(complete, tmp_path):
         assert not [name for name in ours if ours[name] != theirs[name]], form
 
 
-def test_fmpy_finds_no_problem(fmu):
-    assert validate_fmu(str(fmu)) == []
-    done = subprocess.run(
-        [sys.executable, "-m", "fmpy", "validate", str(fmu)], capture_output=True, text=True
-    )
-    assert done.returncode == 0
-    assert "No problems found" in done.stdout
+@pytest.mark.parametrize("model", MODELS)
+def test_fmpy_finds_no_problem(model, form):
+    assert validate_fmu(str(path_of(model, form))) == []
 
 
 def test_documentation_is_inside(fmu):
@@ -170,23 +143,31 @@ def test_documentation_is_inside(fmu):
     assert all(len(files[name].splitlines()) > 10 for name in reference)
 
 
-def test_reference_results_are_what_the_fmu_gives(fmu, tmp_path):
+def table(data):
+    """Names and rows of a CSV file."""
+    head, *lines = data.decode().split()
+    return head.split(","), [[float(cell) for cell in line.split(",")] for line in lines]
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_reference_results_are_what_the_fmu_gives(model, form):
     """The table in documentation/reference, recomputed at its own times with its own inputs."""
-    tables = {}
-    for name, data in contents(fmu).items():
-        if name.startswith("documentation/reference/") and name.endswith(".csv"):
-            head, *lines = data.decode().split()
-            tables["inputs" if name.endswith("_in.csv") else "results"] = (
-                head.split(","),
-                [[float(cell) for cell in line.split(",")] for line in lines],
-            )
-    (_, *inputs), settings = tables["inputs"]
-    names, rows = tables["results"]
-    assert names[0] == "time" and len(rows) > 100
-    arguments = (inputs, settings, names[1:], [row[0] for row in rows])
-    found = run("archive.reference_results", fmu, *arguments, cwd=tmp_path)
-    for (time, *expected), values in zip(rows, found, strict=True):
-        assert values == pytest.approx(expected, rel=1e-12, abs=1e-12), time
+    path = path_of(model, form)
+    files = contents(path)
+    place = f"documentation/reference/{model}"
+    (_, *inputs), settings = table(files[f"{place}_in.csv"])
+    (time_name, *names), rows = table(files[f"{place}_ref.csv"])
+    assert time_name == "time" and len(rows) > 100
+
+    def values(time):
+        return dict(zip(inputs, [row for row in settings if row[0] <= time][-1][1:], strict=True))
+
+    f = open_fmu(path).start(rows[0][0], **values(rows[0][0]))
+    for time, *expected in rows:
+        if time > rows[0][0]:
+            f.step(time)
+        assert f.get(*names) == pytest.approx(expected, rel=1e-9, abs=1e-12), time
+        f.set(**values(time))
 
 
 def test_no_path_of_the_machine_is_inside(fmu):

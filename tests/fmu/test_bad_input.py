@@ -2,69 +2,190 @@
 instance, not another one.
 """
 
-from types import SimpleNamespace
+import math
 
 import pytest
 
-from .driver import FMUS, run, run_with_output
-from .programs.bad_cases import CASES
+from .driver import FMUS
+from .programs.driver import OK, Refused, harmonic, open_fmu
+
+nan, inf = math.nan, math.inf
+forms = pytest.mark.parametrize("form", ["fmi2-python", "fmi2"])
 
 
-@pytest.fixture(scope="module", params=["fmi2-python", "fmi2-python, pure", "fmi2"])
-def variant(request):
-    """An FMI 2.0 form, compiled or pure."""
-    form, _, pure = request.param.partition(", ")
-    return SimpleNamespace(fmu=FMUS[form], pure=bool(pure), pythonfmu="python" in form)
+def new(f):
+    pass
 
 
-@pytest.fixture(scope="module")
-def outcomes(variant, tmp_path_factory):
-    """What became of each case, and the lines each wrote to the error output."""
-    folder = tmp_path_factory.mktemp("bad")
-    found, done = run_with_output(
-        "bad_input.once", variant.fmu, variant.pythonfmu, cwd=folder, pure=variant.pure
-    )
-    written, key = {}, None
-    for line in done.stderr.splitlines():
-        if line.startswith("====="):
-            key = line[6:]
-        else:
-            written.setdefault(key, []).append(line)
-    return SimpleNamespace(found=found, written=written, pythonfmu=variant.pythonfmu)
+def begun(f):
+    f.enter()
 
 
+def running(f):
+    f.start().step(2.0)
+
+
+def ended(f):
+    f.start().step(2.0).call("terminate")
+
+
+PHASES = {phase.__name__: phase for phase in (new, begun, running, ended)}
+OVERLAP = "x2_start = 0.0 m; x2_start >= x1_start = 1.0 m"
+STEP_SIZE = "expected every finite number >= 0"
+ONCE = "python: expected one call"
+STATE = "python: FMU state; expected a state saved by this FMU"
+SET = [  # phase, values, and parts of the message; those of pythonfmu's form alone are marked
+    ("new", {"m1": nan}, "m1 = nan kg; 1e-30 <= m1 <= 1e+30"),
+    ("new", {"m2": -1.0}, "m2 = -1.0 kg; 1e-30 <= m2 <= 1e+30"),
+    ("new", {"d1": -0.01}, "d1 = -0.01 N.s/m; 0.0 <= d1 <= 1e+30"),
+    ("new", {"e": 1.5}, "e = 1.5; 0.0 <= e <= 1.0"),
+    ("new", {"x2_start": -inf}, "x2_start = -inf m; -1e+100 <= x2_start <= 1e+100"),
+    ("begun", {"gamma": nan}, "gamma = nan; 1e-09 <= gamma <= 1.0"),
+    ("running", {"box_amplitude": nan}, "box_amplitude = nan m; -1e+100 <= box_amplitude <= "),
+    ("running", {"box_jerk": inf}, "box_jerk = inf m/s3; -1e+100 <= box_jerk <= 1e+100"),
+    ("running", {"box_frequency": -1.0}, "box_frequency = -1.0 rad/s; 0.0 <= box_frequency"),
+    ("running", {"m1": 2.0}, "m1 = 2.0; fixed parameter; before the end of initialisation"),
+    ("running", {"bonded": True}, "bonded = true; fixed parameter"),
+    ("ended", {"e": 0.5}, "python: e = 0.5; python: fixed parameter"),
+    ("new", {"x1": 1.0}, "x1 = 1.0; output; expected a parameter or an input"),
+    ("running", {"impact_count": 3}, "impact_count = 3; output; expected"),
+    ("running", {"in_contact": True}, "in_contact; output; expected"),
+]
+CALL = [  # phase, function, arguments of which names are references, and parts of the message
+    ("new", "setReal", (["m1", "k2", "m2"], [2.0, nan, 3.0]), "k2 = nan N/m; 1e-30 <= k2 <= 1e+30"),
+    ("running", "getReal", ([999],), "valueReference = 999; python: Real; expected"),
+    ("new", "setReal", ([999], [1.0]), "valueReference = 999; python: Real; expected"),
+    ("running", "getInteger", (["m1"],), "valueReference = 0; python: Integer; expected"),
+    ("running", "getBoolean", (["m1"],), "valueReference = 0; python: Boolean; expected"),
+    ("running", "getString", (["m1"],), "python: valueReference = 0; String"),
+    ("running", "getReal", (["impact_count"],), "valueReference = ; python: Real; expected"),
+    ("new", "setInteger", (["m1"], [2]), "valueReference = 0; python: Integer; expected"),
+    ("new", "setBoolean", (["m1"], [True]), "valueReference = 0; python: Boolean; expected"),
+    ("new", "setString", (["m1"], ["%s%n"]), "python: valueReference = 0; String"),
+    ("new", "setReal", (["bonded"], [1.0]), "valueReference = ; python: Real; expected"),
+    ("running", "doStep", (2.0, -0.5), f"communicationStepSize = -0.5 s; {STEP_SIZE}"),
+    ("running", "doStep", (2.0, nan), f"communicationStepSize = nan s; {STEP_SIZE}"),
+    ("running", "doStep", (2.0, inf), f"communicationStepSize = inf s; {STEP_SIZE}"),
+    ("running", "doStep", (2.5, 0.5), "currentCommunicationPoint = 2.5 s; expected 2.0 s"),
+    ("running", "doStep", (1.5, 0.5), "currentCommunicationPoint = 1.5 s; expected 2.0 s"),
+    ("running", "doStep", (nan, 0.5), "currentCommunicationPoint = nan s; expected 2.0 s"),
+    ("running", "doStep", (inf, 0.5), "currentCommunicationPoint = inf s; expected 2.0 s"),
+    ("new", "doStep", (0.0, 1.0), "fmi2DoStep; python: expected after initialisation"),
+    ("begun", "doStep", (0.0, 1.0), "fmi2DoStep; python: expected after initialisation"),
+    ("ended", "doStep", (2.0, 1.0), "fmi2DoStep; python: before fmi2Terminate"),
+    ("new", "exitInitializationMode", (), f"fmi2ExitInitializationMode; {ONCE} in initialisation"),
+    ("running", "exitInitializationMode", (), f"fmi2ExitInitializationMode; {ONCE}"),
+    ("begun", "enterInitializationMode", (), f"fmi2EnterInitializationMode; {ONCE}"),
+    ("running", "enterInitializationMode", (), f"fmi2EnterInitializationMode; {ONCE}"),
+    ("ended", "enterInitializationMode", (), f"fmi2EnterInitializationMode; {ONCE}"),
+    ("running", "setupExperiment", (), f"fmi2SetupExperiment; {ONCE}"),
+]
+OTHER = {  # what has more steps: a function, and parts of the message
+    "start time nan": (lambda f: f.enter(nan), "startTime = nan s; every finite number"),
+    "start time infinite": (lambda f: f.enter(-inf), "startTime = -inf s; every finite number"),
+    "overlap at the start": (lambda f: f.start(x1_start=1.0), OVERLAP),
+    "overlap seen when an output is read": (
+        lambda f: (f.set(x1_start=1.0), f.enter(), f.get("v1")),
+        OVERLAP,
+    ),
+    "bonded apart": (
+        lambda f: f.start(bonded=True, x2_start=0.5),
+        "bonded = true; x2_start = 0.5 m; x2_start = x1_start = 0.0 m",
+    ),
+    "bonded at two speeds": (
+        lambda f: f.start(bonded=True, v2_start=0.5),
+        "bonded = true; v2_start = 0.5 m/s; v2_start = v1_start = 0.0 m/s",
+    ),
+    "motion beyond floating point": (
+        lambda f: f.start(bonded=True).step(2.0).set(box_crackle=1e100).step(1e80),
+        "range of floating-point numbers; time = 1e+80 s; expected",
+    ),
+    "state of something else": (lambda f: f.restore(b"no state of this FMU" * 90, 2.0), STATE),
+    "empty state": (lambda f: f.restore(b"", 2.0), STATE),
+    "state cut short": (lambda f: f.restore(f.start().save()[0][:-1], 2.0), STATE),
+    "state cut to its header": (lambda f: f.restore(f.start().save()[0][:64], 2.0), STATE),
+    "state too long": (lambda f: f.restore(f.start().save()[0] + bytes(8), 2.0), STATE),
+    "state of another version": (lambda f: f.restore(of_another_version(f), 2.0), STATE),
+}
+
+
+def of_another_version(f):
+    data, _ = f.start().save()
+    return data[:30] + b"0000" + data[34:]
+
+
+def cases():
+    """Names of all mistakes, with phase, the call that must fail, and parts of its message."""
+    for phase, values, parts in SET:
+        name = f"{phase}: {values}"
+        yield name, (phase, lambda f, v=values: f.set(**v), parts)
+    for phase, function, given, parts in CALL:
+
+        def call(f, function=function, given=given):
+            if function[1:3] == "et" and function != "setupExperiment":
+                names, *values = given
+                given = [f.reference(x) if x in f.variables else x for x in names], *values
+            f.call(function, *given)
+
+        yield f"{phase}: {function}{given}", (phase, call, parts)
+    for name, (function, parts) in OTHER.items():
+        yield name, ("new", function, parts)
+
+
+CASES = dict(cases())
+
+
+def refusal(f, fail):
+    """Status and messages of a call that must fail."""
+    with pytest.raises(Refused) as refused:
+        fail(f)
+    assert refused.value.status != OK
+    return "\n".join(refused.value.messages)
+
+
+def good(f):
+    """Outputs of a run with parameters of its own: what a reset has to bring back."""
+    return f.start(m2=1.5, x2_start=0.25, **harmonic(1.13)).step(40.0).outputs()
+
+
+@forms
 @pytest.mark.parametrize("key", CASES)
-def test_mistake_is_refused_with_a_message(outcomes, key):
-    """A status that is not OK, and a message that names the thing, its value and what is expected.
+def test_a_mistake_is_refused_with_a_message_and_nothing_else_suffers(form, key, capfd):
+    """A message that names the thing, its value and what is expected.
 
     Where the importer does not hear what is logged, pythonfmu's message is one line on stderr, and
     only there: nothing is told twice.
     """
-    texts = [
-        text.removeprefix("python: ")
-        for text in CASES[key][2]
-        if outcomes.pythonfmu or not text.startswith("python: ")
-    ]
-    for part in ("first", "free"):
-        status, message = outcomes.found[key][part]
-        lines = outcomes.written.get(f"{key} {part}", [])
-        if outcomes.pythonfmu and part == "free":
-            assert message == ""
-            (message,) = lines
+    phase, fail, parts = CASES[key]
+    parts = [part for part in parts.split("; ") if form != "fmi2" or part[:8] != "python: "]
+    path = FMUS[form]
+    witness, expected = open_fmu(path, name="witness"), good(open_fmu(path))
+    witness.start(m2=1.5, x2_start=0.25, **harmonic(1.13)).step(20.0)
+    for logging in (True, False):
+        f = open_fmu(path, name="free", logging=logging or form == "fmi2")
+        PHASES[phase](f)
+        message, told = refusal(f, fail), capfd.readouterr().err.splitlines()
+        assert told == [] if logging or form == "fmi2" else message == ""
+        if not message:
+            (message,) = told
             assert "'free'" in message  # whose mistake it was
-        else:
-            assert lines == []
-        assert status != 0
-        for text in texts:
-            assert text in message
+        assert [part for part in parts if part.removeprefix("python: ") not in message] == [], (
+            message
+        )
+        if logging:
+            assert good(f.reset()) == expected
+        f.free()  # the second time right after the failure
+    assert witness.step(40.0).outputs()["x1"] == expected["x1"]
 
 
 @pytest.mark.parametrize("key", CASES)
-def test_nothing_else_suffers(outcomes, key):
-    assert outcomes.found[key]["reset"], "the instance after fmi2Reset"
-    assert outcomes.found[key]["witness"], "the other instance"
-
-
-def test_a_thousand_mistakes_do_no_harm(variant, tmp_path):
-    found = run("bad_input.again", variant.fmu, 1000, cwd=tmp_path, pure=variant.pure)
-    assert found == {key: [1000, True] for key in CASES}
+def test_hundreds_of_mistakes_do_no_harm(key):
+    """pythonfmu releases references at each call, which shows only after some hundred."""
+    phase, fail, _ = CASES[key]
+    f = open_fmu(FMUS["fmi2-python"])
+    PHASES[phase](f)
+    for _ in range(250):
+        refusal(f, fail)
+        if key in OTHER:
+            f.reset()
+    assert good(f.reset()) == good(open_fmu(FMUS["fmi2-python"]))

@@ -1,80 +1,232 @@
 """Ranges of ``modelDescription.xml`` hold in the FMU, and a refused call changes nothing."""
 
 import math
+import re
 
 import pytest
 
-from .driver import FMUS, run, run_with_output
+from .driver import FMUS, MODELS, path_of
+from .programs.driver import DISCARD, Refused, harmonic, open_fmu
+
+EVALUATION_RUNS = {  # settings and a time that takes more evaluations than the limits below
+    "TwoMassImpactOscillator": (harmonic(0.3), 40.0),
+    "MotorShaker": ({"voltage": 6.0, "speed_start": 40.0}, 0.4),
+    "ElectrodynamicShaker": (
+        {"command": 9.0, "command_1": -4.0, "coil_inductance": 0.02, "current_limit": 1.0},
+        4.0,
+    ),
+}
+models = pytest.mark.parametrize("model", MODELS)
 
 
-def test_every_range_holds(fmu, tmp_path):
+def beside(variable):
+    """Numbers that are none, and those just outside a variable's range."""
+    low, high = float(variable.min), float(variable.max)
+    just = (math.nextafter(low, -math.inf), math.nextafter(high, math.inf))
+    return [math.nan, math.inf, -math.inf, *just]
+
+
+def try_range(f, variable):
+    """Problems with a variable's range: values outside it, then its ends, which belong to it."""
+    name, low, high, before = variable.name, variable.min, variable.max, f.get(variable.name)
+    for value in beside(variable):
+        try:
+            f.set(**{name: value})
+            yield f"{name} = {value} was accepted"
+        except Refused as refused:
+            (text,) = refused.messages
+            told = re.search(rf"\b{name} = (\S+?):? ", text)
+            if not told or float(told[1]).hex() != value.hex():
+                yield f"{name} = {value}: {text}"
+            for end in (low, high):
+                if repr(float(end)) not in text:
+                    yield f"{name}: {end} is not in {text}"
+    if f.get(name) != before:
+        yield f"{name} is no longer {before}"
+    for value in (low, high):
+        f.set(**{name: float(value)})
+    f.set(**{name: before[0]})
+
+
+def test_every_range_holds(fmu):
     """NaN, infinities and the numbers next to the ends are refused, the ends themselves are not;
     before and after initialisation.
     """
-    tried, missed, kept, same = run("bad_ranges.ranges", fmu, cwd=tmp_path)
-    assert tried >= 5 * (18 + 6)
-    assert missed == []
-    assert kept == []
-    assert same
+    f, problems = open_fmu(fmu), []
+    settable = [v for v in f.variables.values() if v.causality in ("parameter", "input")]
+    settable = [v for v in settable if v.type in ("Real", "Float64")]
+    assert len(settable) >= 18
+    f.enter()
+    for variable in settable:
+        problems += try_range(f, variable)
+    f.leave()
+    f.step(1.0)
+    for variable in settable:
+        if variable.variability != "fixed":
+            problems += try_range(f, variable)
+    assert problems == []
+    assert f.step(50.0).outputs() == open_fmu(fmu).start().at(1.0, 50.0).outputs()
 
 
-def test_a_refused_set_sets_nothing(fmu, tmp_path):
+def test_a_refused_set_sets_nothing(fmu):
     """One bad value in a list: the good ones before and after it are not taken over either."""
-    assert run("bad_ranges.a_refused_set_sets_nothing", fmu, cwd=tmp_path) == [1.0, 1.0, 1.0]
+    f = open_fmu(fmu)
+    f.enter()
+    references = [f.reference(name) for name in ("m1", "k1", "m2")]
+    f.refused("set" + f.variables["m1"].type, references, [2.0, math.nan, 3.0])
+    assert f.get("m1", "k1", "m2") == [1.0, 1.0, 1.0]
 
 
-def test_a_refused_step_leaves_the_instance_where_it_was(fmu, tmp_path):
+def test_a_refused_step_leaves_the_instance_where_it_was(fmu):
     """After a step that cannot be done the run goes on with the bits it would have had."""
-    (refusals, unmoved, spoilt), (_, _, plain) = run(
-        "bad_ranges.a_refused_step_leaves_the_instance_where_it_was", fmu, cwd=tmp_path
-    )
-    assert refusals == 5
-    assert unmoved
-    assert spoilt == plain
+    values = {"d1": 0.0, "x2_start": 0.25, "box_frequency": 1.13}
+    f, plain = (open_fmu(fmu).start(**values).step(30.0) for _ in range(2))
+    before = f.outputs()
+    f.set(box_frequency=1e9)  # more radians than a step may walk
+    for point, size in ((30.0, 1.0), (30.0, 0.5), (30.0, -1.0), (30.0, math.nan), (12.0, 1.0)):
+        f.refused("doStep", point, size)
+    f.set(box_frequency=1.13)
+    plain.set(box_frequency=1.13)
+    assert f.outputs() == before
+    assert f.step(90.0).outputs() == plain.step(90.0).outputs()
 
 
-def test_stderr_has_the_message_where_logging_is_off(tmp_path):
+def test_stderr_has_the_message_where_logging_is_off(capfd):
     """An importer that has logging off is told nothing by pythonfmu, so the FMU itself tells."""
-    logged, done = run_with_output(
-        "bad_ranges.stderr_has_the_message_where_logging_is_off", FMUS["fmi2-python"], cwd=tmp_path
-    )
-    assert [status > 1 for status, _ in logged] == [True, True]
-    assert [messages for _, messages in logged] == [[], []]
-    first, second = done.stderr.splitlines()
+    f = open_fmu(FMUS["fmi2-python"], logging=False, name="quiet")
+    for call in (lambda: f.set(m1=-2.0), lambda: f.start().step(-1.0)):
+        with pytest.raises(Refused) as refused:
+            call()
+        assert refused.value.status > 1 and refused.value.messages == []
+    first, second = capfd.readouterr().err.splitlines()
     assert "'quiet': m1 = -2.0 kg: expected 1e-30 <= m1 <= 1e+30" in first
     assert "'quiet': communicationStepSize = -1.0 s: expected" in second
 
 
-def test_long_step_ends(fmu, tmp_path):
+def test_long_step_ends(fmu):
     """A step of some thousand periods is no hang, and zero length is no step back."""
-    before, after = run("bad_ranges.long_step_ends", fmu, cwd=tmp_path, timeout=60)
+    f = open_fmu(fmu).start(**harmonic(0.4)).step(1e5)
+    before, after = f.outputs(), f.step(1e5).outputs()
     assert before["impact_count"] > 1e5
     assert after["x_rel_max"] == pytest.approx(before["x_rel"], abs=1e-14)
-    assert after == {
-        **before,
-        "box_impulse": 0.0,
-        "box_impulse_moment": 0.0,
-        "x_rel_max": after["x_rel_max"],
-        "evaluations": 0,
-    }
+    zero = dict.fromkeys(("box_impulse", "box_impulse_moment", "evaluations"), 0)
+    assert after == {**before, **zero, "x_rel_max": after["x_rel_max"]}
     assert all(math.isfinite(value) for value in before.values())
 
 
-def test_overdamped_masses_are_supported(fmu, tmp_path):
+def test_overdamped_masses_are_supported(fmu):
     """Overdamping is in range, so it has to give right numbers: mass 2 creeps back alone, as its
     closed form says.
     """
     root = math.sqrt(2.5**2 - 1.2)
-    for (x2, v2, count), time in zip(
-        run("bad_ranges.overdamped_masses_are_supported", fmu, cwd=tmp_path),
-        (0.5, 2.0, 6.0),
-        strict=True,
-    ):
-        slow, fast = -2.5 + root, -2.5 - root
-        a = -0.5 * fast / (slow - fast)
-        b = 0.5 - a
+    slow, fast = -2.5 + root, -2.5 - root
+    a = -0.5 * fast / (slow - fast)
+    b = 0.5 - a
+    f = open_fmu(fmu).start(box_amplitude=0.0, d2=5.0, x2_start=0.5)
+    for t in (0.5, 2.0, 6.0):
+        x2, v2, count = f.step(t).get("x2", "v2", "impact_count")
         assert count == 0
-        assert x2 == pytest.approx(a * math.exp(slow * time) + b * math.exp(fast * time), rel=1e-12)
-        assert v2 == pytest.approx(
-            slow * a * math.exp(slow * time) + fast * b * math.exp(fast * time), rel=1e-12
-        )
+        assert x2 == pytest.approx(a * math.exp(slow * t) + b * math.exp(fast * t), rel=1e-12)
+        speed = slow * a * math.exp(slow * t) + fast * b * math.exp(fast * t)
+        assert v2 == pytest.approx(speed, rel=1e-12)
+
+
+@models
+def test_a_step_that_reaches_its_limit_is_discarded_and_changes_nothing(model, form):
+    values, end = EVALUATION_RUNS[model]
+    f = open_fmu(path_of(model, form)).start(**values).step(end / 4)
+    before = f.outputs()
+    with pytest.raises(Refused) as refused:
+        f.set(evaluation_limit=13).step(end)
+    assert refused.value.status == DISCARD
+    (message,) = refused.value.messages
+    assert "is discarded: evaluation_limit = 13" in message
+    assert " evaluations" in message and "reached" in message
+    assert "expected a shorter step, or a larger limit" in message
+    assert f.outputs() == before
+
+
+@models
+def test_a_run_of_divided_steps_comes_to_the_same_end(model, form):
+    """Through chattering, or limits: whatever was discarded has left no trace. The motor's formula
+    has 12 evaluations a sub-step, which begins anew with each step.
+    """
+    limit, least, most_allowed = (40, 1, 48) if model == "MotorShaker" else (9, 11, 8)
+    (values, end), path = EVALUATION_RUNS[model], path_of(model, form)
+    free = open_fmu(path).start(**values).step(end).motion()
+    f = open_fmu(path).start(**values, evaluation_limit=limit)
+    waiting, discarded, most = [end], 0, 0
+    while waiting:
+        try:
+            f.step(waiting[-1])
+        except Refused as refused:
+            assert refused.status == DISCARD
+            discarded += 1
+            waiting.append((f.time + waiting[-1]) / 2)
+        else:
+            waiting.pop()
+            most = max(most, *f.get("evaluations"))
+    assert discarded >= least and 0 < most <= most_allowed
+    if model == "MotorShaker":
+        assert f.motion() == pytest.approx(free, rel=1e-8, abs=1e-12)
+    else:
+        assert f.motion() == free
+
+
+def test_an_output_counts_the_evaluations_of_a_step(fmu):
+    """The first is a long one, and the others have no impact."""
+    f = open_fmu(fmu).start(x2_start=1e3, box_amplitude=1e-3)
+    first, *others = (f.step(time).one("evaluations") for time in (3.0, 3.0001, 3.0002))
+    assert first > 0 and others == [0, 0]
+
+
+@pytest.mark.parametrize("value", [0, -1, 10_000_001])
+def test_a_limit_out_of_range_is_refused(fmu, value):
+    f = open_fmu(fmu).start()
+    with pytest.raises(Refused, match=f"evaluation_limit = {value}: expected 1 <= evaluation_lim"):
+        f.set(evaluation_limit=value)
+
+
+STARTS = [  # with what the message names
+    ({"clearance": -0.5, "k2": 1.0, "x1_start": 0.125, "x2_start": 0.12}, "x2_start >= x1_start ="),
+    ({"clearance": 0.5, "x1_start": 0.75, "x2_start": 0.2}, "clearance = 0.25 m"),
+    ({"clearance": math.nan}, "-1e+100 <= clearance <= 1e+100"),
+    ({"e_slope": -1e-300}, "0.0 <= e_slope <= 1e+100"),
+    ({"e_slope": 1e101}, "0.0 <= e_slope <= 1e+100"),
+]
+
+
+@pytest.mark.parametrize(("values", "words"), STARTS)
+def test_starts_that_cannot_be_are_refused(fmu, values, words):
+    with pytest.raises(Refused) as refused:
+        open_fmu(fmu).start(**values)
+    assert words in refused.value.messages[-1]
+
+
+def begun(path, start, stop):
+    f = open_fmu(path)
+    f.enter(start, stopTime=stop)
+    f.leave()
+    return f
+
+
+def test_no_step_goes_past_the_stop_time(fmu):
+    """FMI 2.0.5 (fmi2SetupExperiment) and 3.0.2 (fmi3EnterInitializationMode): an error."""
+    f = begun(fmu, 0.0, 1.0).step(0.75)
+    assert "stopTime = 1.0 s" in (message := f.refused("doStep", 0.75, 0.5)) and "1.25" in message
+    f.step(1.0)
+    f.refused("doStep", 1.0, 0.5)
+
+
+def test_stop_time_before_the_start_is_refused(fmu):
+    with pytest.raises(Refused, match="startTime = 2.0 s with stopTime = 1.0 s: expected stopTime"):
+        begun(fmu, 2.0, 1.0)
+
+
+@pytest.mark.parametrize("steps", [7, 10, 49, 1000])
+def test_steps_whose_sum_rounds_past_the_stop_time_are_taken(fmu, steps):
+    """A tenth, ten times, is not one: the importer's rounding is no step past the end."""
+    f = begun(fmu, 0.0, 3.0)
+    for _ in range(steps):
+        f.step(f.time + 3.0 / steps)
+    assert f.time == pytest.approx(3.0)

@@ -1,6 +1,5 @@
 """What lies beside FMI's core in the files: terminals, licences, the manifest of references."""
 
-import math
 import posixpath
 import re
 import zipfile
@@ -85,21 +84,3 @@ def test_each_page_tells_its_own_forms_truth(form):
         place = "" if sources.startswith("resources") else "documentation/"
         assert [name for name in names if re.match(f"{place}{pattern}/motion.py", name)], other
     assert [other for other, page in pages.items() if SAID[form] in page] == [form]
-
-
-def test_display_units_are_defined(fmu):
-    found = fmpy.read_model_description(str(fmu))
-    units = {unit.name: {d.name for d in unit.displayUnits} for unit in found.unitDefinitions}
-    assert {"Hz", "rpm"} <= units["rad/s"] and "mm" in units["m"]
-    for variable in found.modelVariables:
-        shown = getattr(variable, "displayUnit", None)
-        assert shown is None or shown in units[variable.unit]
-
-
-def test_box_frequency_is_shown_in_hertz_or_turns_a_minute(fmu):
-    found = fmpy.read_model_description(str(fmu))
-    (frequency,) = (v for v in found.modelVariables if v.name == "box_frequency")
-    assert frequency.displayUnit == "Hz"
-    (unit,) = (unit for unit in found.unitDefinitions if unit.name == frequency.unit)
-    factors = {shown.name: float(shown.factor) for shown in unit.displayUnits}
-    assert factors == {"Hz": pytest.approx(0.5 / math.pi), "rpm": pytest.approx(30.0 / math.pi)}

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from .driver import run
+from .programs.driver import open_fmu
 
 VALUES = {
     "m1": 1.2,
@@ -20,11 +20,12 @@ VALUES = {
 }
 
 
-def test_outputs_follow_their_definitions(fmu, tmp_path):
+def test_outputs_follow_their_definitions(fmu):
     """Differences, the paper's xi, force on the box, compressive force, phase: in flight and in
     contact.
     """
-    rows = run("outputs.outputs_follow_their_definitions", fmu, VALUES, cwd=tmp_path)
+    f = open_fmu(fmu).start(phase_start=1.0, **VALUES)
+    rows = [{"time": f.step(k / 16).time, **f.outputs()} for k in range(1, 1000)]
     m1, m2, k1, k2, d1, d2, e, a, frequency = VALUES.values()
     unit = a * frequency**2 * m1 / k1
     contacts = 0
@@ -56,23 +57,36 @@ def test_outputs_follow_their_definitions(fmu, tmp_path):
     assert 20 < contacts < len(rows) - 20
 
 
-def test_paper_displacements_are_zero_without_excitation(fmu, tmp_path):
+def test_paper_displacements_are_zero_without_excitation(fmu):
     """Where a eta = 0: zero, not a division by zero."""
-    assert (
-        run("outputs.paper_displacements_are_zero_without_excitation", fmu, cwd=tmp_path)
-        == [[0.0] * 3] * 2
-    )
+    for still in ({"box_amplitude": 0.0}, {"box_frequency": 0.0}):
+        f = open_fmu(fmu).start(x1_start=-1.0, **still).step(1.0)
+        assert f.get("xi1", "xi2", "xi_rel") == [0.0] * 3
 
 
-def test_what_belongs_to_a_step_is_exact(fmu, tmp_path):
+STEPS = [
+    {},
+    {"box_acceleration": 0.1},
+    {"box_frequency": 1.13, "box_acceleration": -0.2, "m2": 2.0},
+]
+
+
+@pytest.mark.parametrize("more", STEPS)
+def test_what_belongs_to_a_step_is_exact(fmu, more):
     """Impulse, its moment and the largest gap of long steps, with many impacts in them, against
     small ones put together.
     """
-    for (impulse, moment, largest, gap), rows in run(
-        "outputs.what_belongs_to_a_step_is_exact", fmu, VALUES, cwd=tmp_path
-    ):
+    whole, parts = (open_fmu(fmu).start(**{**VALUES, **more}) for _ in range(2))
+    names = ("box_force", "box_impulse", "box_impulse_moment", "x_rel", "x_rel_max")
+    step = 2.0**-6
+    for size in (0.25, 3.0, 17.0, 40.0):
+        begin, rows = whole.time, []
+        whole.step(begin + size)
+        while parts.time < begin + size:
+            here, force = parts.time, parts.one("box_force")
+            rows.append([here - begin, force, *parts.step(here + step).get(*names)])
         since, before, after, impulses, moments, gaps, largests = np.array(rows).T
-        step = 2.0**-6
+        impulse, moment, largest, gap = whole.get(*names[1:3], "x_rel_max", "x_rel")
         assert impulse == pytest.approx(np.sum(impulses), abs=1e-11)
         assert moment == pytest.approx(np.sum(moments + since * impulses), abs=1e-9)
         # the trapezoidal rule knows nothing of impacts; dampers make the force jump there by d *
@@ -83,13 +97,16 @@ def test_what_belongs_to_a_step_is_exact(fmu, tmp_path):
         assert largest >= gap - 1e-14
 
 
-def test_largest_gap_between_samples_is_found(fmu, tmp_path):
+def test_largest_gap_between_samples_is_found(fmu):
     """One step over a single summit of known height, and a step that ends before it; off, it stays
     0.
     """
-    (summit, _), (climbing, gap), (off, _) = run(
-        "outputs.largest_gap_between_samples_is_found", fmu, cwd=tmp_path
-    )
-    assert summit == pytest.approx(2.0 / math.sqrt(1.2), rel=1e-14)
+
+    def largest(end, on=True):
+        f = open_fmu(fmu).start(box_amplitude=0.0, d2=0.0, v2_start=2.0, x_rel_max_on=on)
+        return f.step(end).get("x_rel_max", "x_rel")
+
+    assert largest(2.5)[0] == pytest.approx(2.0 / math.sqrt(1.2), rel=1e-14)
+    climbing, gap = largest(0.5)
     assert climbing == pytest.approx(gap, rel=1e-14)
-    assert off == 0.0
+    assert largest(2.5, on=False)[0] == 0.0

@@ -18,32 +18,6 @@ TREES = pytest.mark.parametrize(
 SHARED = {"numerics.elementary", "numerics.first_root", "numerics.slots"}
 EXACT = {"sqrt", "floor"}  # what IEEE 754 fixes to the last bit
 CALLABLE = {"abs", "min", "max", "range", "float", "int"}
-FORBIDDEN = (
-    *(
-        ast.Try,
-        ast.Raise,
-        ast.Assert,
-        ast.With,
-        ast.Global,
-        ast.Nonlocal,
-        ast.Lambda,
-        ast.ClassDef,
-        ast.AsyncFunctionDef,
-        ast.Await,
-    ),
-    *(
-        ast.List,
-        ast.Dict,
-        ast.Set,
-        ast.ListComp,
-        ast.SetComp,
-        ast.DictComp,
-        ast.GeneratorExp,
-        ast.Yield,
-        ast.YieldFrom,
-    ),
-    *(ast.Starred, ast.JoinedStr, ast.NamedExpr, ast.Pow, ast.FloorDiv, ast.MatMult, ast.Delete),
-)
 
 
 def functions(tree):
@@ -62,22 +36,6 @@ def test_only_math_and_its_own_modules_are_imported(tree):
         if isinstance(node, ast.ImportFrom):
             assert node.level == 1 or (node.level == 2 and node.module in SHARED)
             assert all(alias.name != "*" for alias in node.names)
-
-
-@TREES
-def test_functions_are_plain_arithmetic(tree):
-    for node in ast.walk(tree):
-        assert not isinstance(node, (ast.ClassDef, ast.Try, ast.Raise, ast.Pow)), ast.unparse(node)
-    for function in functions(tree):
-        for node in ast.walk(function):
-            assert not isinstance(node, FORBIDDEN), ast.unparse(node)
-            assert node is function or not isinstance(node, ast.FunctionDef), (
-                f"nested {ast.unparse(node)}"
-            )
-        assert not function.decorator_list
-        assert not function.args.defaults
-        assert not function.args.vararg
-        assert not function.args.kwonlyargs
 
 
 @TREES

@@ -1,3 +1,3 @@
-"""The native FMUs as C and FMI 3.0 importers meet them: no Python inside, hostile callers, event
-mode, the same bits in every form.
+"""The native FMUs as C and FMI 3.0 importers meet them: calls in any order, event mode, the same
+bits in every form and on every platform.
 """

@@ -7,13 +7,11 @@ from types import SimpleNamespace
 import pytest
 
 from fmu_src.export import compiler
-from fmu_src.export.errors import CannotExport
 from fmu_src.export.forms import FORMS
-from fmu_src.export.platforms import usual
-from fmu_src.export.source_code import kernel_source
 from tools import importers
 
-from ..exports import guid_inside, once, refresh
+from ..exports import guid_inside, refresh
+from ..fmu.programs.driver import free_all
 
 VERSIONS = ("fmi2", "fmi3")
 
@@ -35,22 +33,6 @@ def fmus(exported):
     if not all(guid_inside(path) for path in paths.values()):
         cannot(next(iter(refresh(exported).values()), "no reason given"))
     return paths
-
-
-def compiled_once_more():
-    """The oscillator's kernel, or why it cannot be compiled."""
-    source = kernel_source("oscillator")
-    try:
-        return {name: compiler.kernel_object(name, source) for name in usual()}
-    except CannotExport as reason:
-        return reason
-
-
-@pytest.fixture(scope="session")
-def kernel_objects(tmp_path_factory):
-    """The kernel compiled once more, by platform: nothing of the FMUs' own build."""
-    found = once(tmp_path_factory, "kernel", compiled_once_more)
-    return cannot(found) if isinstance(found, Exception) else found
 
 
 @pytest.fixture
@@ -105,3 +87,10 @@ def importer(request, importer_of):
 def native_fmu(request, fmus):
     """Path of the native FMU of each FMI version."""
     return fmus[request.param]
+
+
+@pytest.fixture(autouse=True)
+def instances():
+    """No instance outlives its test."""
+    yield
+    free_all()

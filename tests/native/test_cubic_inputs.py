@@ -3,14 +3,12 @@
 What is compared is bits: however the way is divided, the motion is that of one step.
 """
 
-import itertools
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from ..fmu.programs.driver import STATE, harmonic, open_fmu
 from ..kernels.oscillator.kernel import examples
-from .slave import STATE, harmonic, slave
 
 CUBIC = ("box_acceleration", "box_jerk", "box_snap", "box_crackle")
 TICKS = 2.0**-12  # s: sums of dyadic steps are exact, all grids reach the same time
@@ -31,32 +29,25 @@ def motions(draw):
     return values, [[tick * TICKS for tick in split] for split in splits]
 
 
-def run(fmu, values, grid):
+def run(f, values, grid):
     """Outputs at the grid's end; in event mode with all that an importer does there."""
-    fmu.fmu.reset()
-    fmu.steps = 0
-    fmu.start(**values)
+    f.reset().start(**values)
     for point in grid:
-        while fmu.time < point:
-            told = fmu.step(point)
-            if fmu.event_mode and told[0]:
-                fmu.fmu.enterEventMode()
-                fmu.update()
-                fmu.fmu.enterStepMode()
-    return fmu.get(*STATE, *CUBIC)
+        if not f.third:
+            f.step(point)
+        while f.time < point:
+            if f.go(point)[0] and f.event_mode:
+                f.handle()
+    return f.get(*STATE, *CUBIC)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def ways(fmus):
     """A plain instance of FMI 3.0; others of FMI 2.0, with event mode, and with early return."""
-    events, early = {"event_mode": True}, {"event_mode": True, "early_return": True}
-    with (
-        slave(fmus["fmi3"]) as plain,
-        slave(fmus["fmi2"]) as second,
-        slave(fmus["fmi3"], **events) as third,
-        slave(fmus["fmi3"], **early) as fourth,
-    ):
-        yield plain, second, third, fourth
+    events = {"event_mode": True}
+    second, plain = (open_fmu(fmus[version]) for version in ("fmi2", "fmi3"))
+    others = events, {**events, "early_return": True}
+    return plain, second, *(open_fmu(fmus["fmi3"], **options) for options in others)
 
 
 @examples(150)
@@ -70,16 +61,6 @@ def test_five_splits_event_mode_and_early_return_are_one_step(ways, motion):
             assert run(way, values, grid) == expected
 
 
-def test_early_return_with_a_jerk_is_the_plain_motion(ways):
-    """Where an importer noticed that the cubic began again at each early return."""
-    values = {**harmonic(2.9), "box_jerk": 0.05}
-    grid = [2.5 * k for k in range(1, 9)]
-    plain = run(ways[0], values, [20.0])
-    assert plain[STATE.index("impact_count")] > 2
-    for way in ways:
-        assert run(way, values, grid) == plain
-
-
 def at_end(fmu, *times):
     """Outputs after steps without a touch of the inputs."""
     for time in times:
@@ -88,20 +69,15 @@ def at_end(fmu, *times):
 
 
 @pytest.mark.parametrize("form", ["fmi2", "fmi3"])
-def test_inputs_read_as_they_were_set_while_the_cubic_runs(fmus, form):
-    values = dict(zip(CUBIC, (0.1, -0.03, 0.02, 0.01), strict=True))
-    with slave(fmus[form]) as fmu:
-        fmu.start(**values)
-        at_end(fmu, 1.5, 4.0)
-        assert fmu.get(*CUBIC) == list(values.values())
-
-
-@pytest.mark.parametrize("form", ["fmi2", "fmi3"])
 @pytest.mark.parametrize("name", CUBIC)
 def test_a_cubic_begins_where_one_of_its_inputs_is_set(fmus, form, name):
     """To the value that it has already, too: it is the one at the time of setting."""
     values = dict(zip(CUBIC, (0.1, -0.03, 0.02, 0.01), strict=True))
-    with slave(fmus[form]) as fmu, slave(fmus[form]) as all_set, slave(fmus[form]) as untouched:
+    with (
+        open_fmu(fmus[form]) as fmu,
+        open_fmu(fmus[form]) as all_set,
+        open_fmu(fmus[form]) as untouched,
+    ):
         for one in (fmu, all_set, untouched):
             one.start(**values)
             one.step(3.0)
@@ -119,7 +95,7 @@ def test_a_cubic_runs_on_where_other_inputs_are_set(fmus, form):
     """
     values = dict(zip(CUBIC, (0.1, -0.03, 0.02, 0.01), strict=True))
     values |= {"bonded": True, "box_amplitude": 0.0, "box_frequency": 0.0}
-    with slave(fmus[form]) as fmu, slave(fmus[form]) as whole:
+    with open_fmu(fmus[form]) as fmu, open_fmu(fmus[form]) as whole:
         for one in (fmu, whole):
             one.start(**values)
         fmu.step(2.0)
@@ -132,60 +108,12 @@ def test_a_cubic_runs_on_where_other_inputs_are_set(fmus, form):
         assert found[place] == pytest.approx(expected[place], rel=1e-13)
 
 
-def saved(fmu, serialised):
-    """A state, and a function that sets it in an instance."""
-    state = fmu.fmu.getFMUState()
-    if not serialised:
-        return lambda one: one.fmu.setFMUState(state)
-    data = fmu.fmu.serializeFMUState(state)
-    fmu.fmu.freeFMUState(state)
-
-    def restore(one):
-        read = one.fmu.deserializeFMUState(data)
-        one.fmu.setFMUState(read)
-        one.fmu.freeFMUState(read)
-
-    return restore
-
-
-@pytest.mark.parametrize("form", ["fmi2", "fmi3"])
-@pytest.mark.parametrize("serialised", [False, True])
-@pytest.mark.parametrize("touched", [False, True])
-def test_the_time_of_setting_belongs_to_the_state(fmus, form, serialised, touched):
-    """A state saved while the cubic runs; or after an input was set, before the step."""
-    values = {**harmonic(1.13), **dict(zip(CUBIC, (0.1, -0.03, 0.02, 0.001), strict=True))}
-    with slave(fmus[form]) as fmu, slave(fmus[form]) as other:
-        fmu.start(**values)
-        other.start()
-        fmu.step(3.0)
-        if touched:
-            fmu.set(box_jerk=values["box_jerk"])
-        restore = saved(fmu, serialised)
-        expected = at_end(fmu, 4.0, 9.0)
-        for one in (fmu, other) if serialised else (fmu,):
-            restore(one)
-            one.time = 3.0
-            assert at_end(one, 4.5, 9.0) == expected
-        undisturbed = at_end(other.__class__(fmus[form]).start(**values), 9.0)
-        assert (expected == undisturbed) == (not touched)
-
-
-def test_a_reset_forgets_when_inputs_were_set(fmus):
-    values = {**harmonic(1.13), "box_jerk": -0.03}
-    with slave(fmus["fmi3"]) as fmu:
-        found = []
-        for _ in range(2):
-            fmu.start(**values)
-            fmu.step(2.0)
-            fmu.set(box_snap=0.01)
-            found.append(at_end(fmu, 3.0, 7.0))
-            fmu.set(box_crackle=0.1)  # pending, and forgotten
-            fmu.fmu.reset()
-    assert found[0] == found[1]
-
-
 def test_input_derivatives_of_fmi2_begin_a_cubic(fmus):
-    with slave(fmus["fmi2"]) as fmu, slave(fmus["fmi2"]) as twin, slave(fmus["fmi2"]) as untouched:
+    with (
+        open_fmu(fmus["fmi2"]) as fmu,
+        open_fmu(fmus["fmi2"]) as twin,
+        open_fmu(fmus["fmi2"]) as untouched,
+    ):
         reference = fmu.variables["box_acceleration"].valueReference
         for one in (fmu, twin, untouched):
             one.start(**harmonic(1.13), box_jerk=0.03)
@@ -194,20 +122,3 @@ def test_input_derivatives_of_fmi2_begin_a_cubic(fmus):
         twin.set(box_jerk=0.03)
         found, expected, other = (at_end(one, 4.0, 9.0) for one in (fmu, twin, untouched))
     assert found == expected != other
-
-
-def test_impulses_of_the_steps_on_which_a_cubic_runs_add_up(fmus):
-    """Their sum is that of one step, and the moments are about each step's own beginning."""
-    values = {**harmonic(1.13), **dict(zip(CUBIC, (0.1, -0.03, 0.02, -0.005), strict=True))}
-    with slave(fmus["fmi3"]) as whole, slave(fmus["fmi3"]) as parts:
-        whole.start(**values)
-        parts.start(**values)
-        whole.step(8.0)
-        impulse = moment = 0.0
-        for begin, end in itertools.pairwise((0.0, 0.001, 0.0025, 1.0, 2.75, 5.5, 5.504, 8.0)):
-            parts.step(end)
-            part, part_moment = parts.get("box_impulse", "box_impulse_moment")
-            impulse += part
-            moment += part_moment + begin * part
-        expected = whole.get("box_impulse", "box_impulse_moment")
-    assert [impulse, moment] == pytest.approx(expected, rel=1e-11)

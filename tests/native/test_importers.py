@@ -1,30 +1,44 @@
-"""The native FMUs through the project's own importers in C: FMPy's numbers, no Python, many
-instances, threads, a million steps.
+"""The native FMUs through the project's own importer in C: FMPy's numbers, many instances, threads,
+calls that nobody would think of, and every byte accounted for.
 """
 
+import hashlib
+import os
 import random
 import re
+import shutil
 import subprocess
+from pathlib import Path
 
 import pytest
 
-from fmu_src.kernels.oscillator import memory as at
-from tools.importers import Importer, compile_importer, unpack_binary, zig_compiler
+from fmu_src.export import forms
+from tools import importers
 
-from .slave import COMMON, harmonic, slave
+from ..fmu.programs.driver import COMMON, harmonic, open_fmu
+from ..sparing import ordinary
+from .conftest import VERSIONS
 
-# bytes before the numbers of a serialised state, and numbers before the memory
-HEADER, HEAD = 64, 3
-
-
-def slot(index):
-    """Offset of a slot of the memory in a serialised state."""
-    return HEADER + 8 * (HEAD + index)
+HERE = Path(__file__).parent
+MODELS = tuple(forms.MODELS)
+SECONDS = int(os.environ.get("FUZZ_SECONDS", "600"))  # of the coverage-guided fuzzer, each
+CORPUS = Path(os.environ["FUZZ_CORPUS"]) if "FUZZ_CORPUS" in os.environ else None  # kept there
+VALGRIND = ("valgrind", "-q", "--error-exitcode=9", "--leak-check=full")
+VALGRIND += ("--errors-for-leak-kinds=all", "--show-leak-kinds=all")
+SANITIZERS = {"address": importers.SANITIZE, "thread": ("-fsanitize=thread",)}
+PAIRS = [(version, model) for version in VERSIONS for model in MODELS]
+RANDOM, MANY = ("random", 7, 100), ("many", 10, 40, 100)
 
 
 def uneven_times(end):
     draw = random.Random(2)
     return sorted({0.0, end, *(draw.uniform(0.0, end) for _ in range(300))})
+
+
+def clean(done):
+    """No check failed, and no tool that watches has anything to say."""
+    assert " FAILURES 0" in done.stdout
+    assert done.stderr == ""
 
 
 @pytest.mark.parametrize(
@@ -35,76 +49,13 @@ def uneven_times(end):
 def test_numbers_are_those_of_fmpy(importer, fmus, values):
     times = uneven_times(300.0)
     found = importer.simulate(COMMON, times, **values)
-    with slave(fmus[importer.version]) as fmu:
-        fmu.start(**values)
-        expected = [fmu.get(*COMMON)]
-        for time in times[1:]:
-            fmu.step(time)
-            expected.append(fmu.get(*COMMON))
+    with open_fmu(fmus[importer.version]) as f:
+        f.start(**values)
+        expected = [f.get(*COMMON), *(f.step(time).get(*COMMON) for time in times[1:])]
     assert [[cell.hex() for cell in row] for row in found] == [
         [float(cell).hex() for cell in row] for row in expected
     ]
     assert bool(values.get("bonded")) == (found[-1][COMMON.index("impact_count")] == 0.0)
-
-
-def test_there_is_no_python_in_the_process(importer):
-    linked = subprocess.run(["ldd", str(importer.library)], capture_output=True, text=True).stdout
-    assert {line.split()[0].rsplit("/", 1)[-1] for line in linked.splitlines()} <= {
-        "linux-vdso.so.1",
-        "libc.so.6",
-        "ld-linux-x86-64.so.2",
-    }
-    mapped = {
-        line.rsplit("/", 1)[-1]
-        for line in importer.run("maps").stdout.splitlines()
-        if line.startswith("/")
-    }
-    assert importer.library.name in mapped
-    assert not [name for name in mapped if "python" in name.lower()]
-    system = {"libc.so.6", "libm.so.6", "libdl.so.2", "libpthread.so.0", "ld-linux-x86-64.so.2"}
-    assert mapped - {importer.library.name, importer.program.name} <= system
-
-
-def test_importer_compiled_by_ziglang(fmus, importer, tmp_path):
-    """What is compiled where the machine has no C compiler; and another compiler's eye on the
-    importer.
-    """
-    if zig_compiler() is None:
-        pytest.skip("ziglang is not installed")
-    other = Importer(
-        compile_importer(importer.version, fmus[importer.version], tmp_path, zig_compiler()),
-        importer.library,
-        importer.version,
-    )
-    times = uneven_times(300.0)
-    assert other.simulate(COMMON, times, **harmonic(1.13)) == importer.simulate(
-        COMMON, times, **harmonic(1.13)
-    )
-    assert "FAILURES 0" in other.run("hostile").stdout
-
-
-def test_hostile_calls_are_refused_and_change_nothing(importer):
-    done = importer.run("hostile")
-    assert int(re.search(r"CHECKS (\d+) FAILURES 0", done.stdout).group(1)) > 30000
-
-
-def test_a_thousand_instances_and_four_threads(importer):
-    importer.run("many", 1000, 40, 4000)
-
-
-def test_a_million_small_steps(importer):
-    done = importer.run("million", 1_000_000)
-    assert int(re.search(r"IMPACTS (\d+)", done.stdout).group(1)) > 200
-
-
-def test_speed_of_a_step_without_impact(importer):
-    """Under 0.3 us of processor time is wanted and found on a machine of 2.6 GHz; the bound is
-    wide, the numbers are printed.
-    """
-    found = dict(re.findall(r"SPEED (.*) ([\d.]+) ns", importer.run("speed", 50_000).stdout))
-    print(importer.version, found)
-    for kind in ("bonded", "flight", "flight, x_rel_max off"):
-        assert float(found[kind]) < 900.0
 
 
 def test_two_versions_in_one_process_do_not_meet(fmus, importer_of, tmp_path):
@@ -112,83 +63,122 @@ def test_two_versions_in_one_process_do_not_meet(fmus, importer_of, tmp_path):
     one, other = importer_of("fmi2"), importer_of("fmi3")
     times = uneven_times(100.0)
     alone = one.simulate(COMMON, times, **harmonic(1.13))
-    together = Importer(one.program, one.library, "fmi2").run(
-        "simulate",
-        ",".join(COMMON),
-        *(f"{name}={value.hex()}" for name, value in harmonic(1.13).items()),
-        times=times,
-        env={"LD_PRELOAD": str(unpack_binary(fmus["fmi3"], "fmi3", tmp_path))},
-    )
-    rows = [
-        [float.fromhex(cell) for cell in line.split()]
-        for line in together.stdout.splitlines()
-        if not line.startswith("CHECKS")
-    ]
-    assert rows == alone
+    preload = {"LD_PRELOAD": str(importers.unpack_binary(fmus["fmi3"], "fmi3", tmp_path))}
+    settings = importers.settings(harmonic(1.13))
+    together = one.run("simulate", ",".join(COMMON), *settings, times=times, env=preload)
+    assert importers.read_rows(together.stdout) == alone
     assert other.simulate(COMMON, times, **harmonic(1.13)) == alone
 
 
-@pytest.mark.slow
-def test_a_step_that_cannot_finish_ends_with_a_message(importer):
-    """Ten million evaluations, and no more."""
-    done = importer.run("simulate", "x1", "box_frequency=1e30", times=[0.0, 1.0], success=False)
-    assert done.returncode == 2
-    assert "cannot finish" in done.stderr
+def test_a_thousand_instances_and_four_threads(importer):
+    importer.run("many", 1000, 40, 4000)
 
 
-BODY = [
-    (at.SAMPLE_COUNT, "1e6"),  # would write a million numbers into room for 200
-    (at.SAMPLE_COUNT, "nan"),
-    (at.M1, "-1"),
-    (at.E, "5"),
-    (at.BOX_AMPLITUDE, "inf"),
-    (at.TIME, "inf"),
-    (at.TIME, "nan"),
-]
-HIDDEN = [
-    (at.MODE, "77"),
-    (at.X1, "nan"),
-    (at.ORIGIN, "nan"),
-    (at.IMPACT_COUNT, "-5"),
-    (at.END_KIND, "nan"),
-]
+@pytest.fixture(scope="module", params=ordinary(PAIRS, [PAIRS[2], PAIRS[3]]), ids="-".join)
+def importer_of_model(request, exported, fmus, tmp_path_factory):
+    """The importer compiled for a model in an FMI version, and the FMU's own binary."""
+    version, model = request.param
+    if importers.own_compiler() is None:
+        pytest.skip("there is no C compiler")
+    path, folder = exported / version / f"{model}.fmu", tmp_path_factory.mktemp("model")
+    program = importers.compile_importer(version, path, folder / "importer")
+    return importers.Importer(program, importers.unpack_binary(path, version, folder), version)
 
 
-@pytest.mark.parametrize(("index", "value"), BODY + HIDDEN)
-def test_a_damaged_state_is_refused(importer, index, value):
-    assert importer.run("corrupt", slot(index), value).stdout.startswith("REFUSED")
+def seeds(version):
+    """Inputs that the fuzzer has found to take different ways, in hexadecimal digits."""
+    return (HERE / "corpus" / f"{version}.txt").read_text().split()
 
 
-@pytest.mark.parametrize(("index", "value"), BODY)
-def test_a_forged_state_with_a_value_out_of_range_is_refused(importer, index, value):
-    assert importer.run("corrupt", slot(index), value, "sealed").stdout.startswith("REFUSED")
+@pytest.mark.parametrize("every", ordinary([5, 1]))
+def test_calls_in_any_order_are_survived(importer_of_model, every):
+    """Drawn at random, and the fuzzer's kept inputs, in the FMU's own binary; each that is refused
+    has a message.
+    """
+    count = 300 // every
+    done = importer_of_model.run("random", 7, count)
+    assert int(re.search(r"CHECKS (\d+) FAILURES 0", done.stdout).group(1)) > 7 * count
+    lines = seeds(importer_of_model.version)[::every]
+    done = importer_of_model.run("replay", text="\n".join(lines))
+    assert f"PLAYED {len(lines)}\n" in done.stdout
+    clean(done)
+    importer_of_model.run("many", 50, 40, 200)
 
 
-def test_no_forged_state_crashes(importer):
-    """Made by somebody who knows the checksum: wrong in, wrong out, but the process lives."""
-    assert (
-        int(re.search(r"TAKEN (\d+)\n.* FAILURES 0", importer.run("forge").stdout).group(1)) > 1000
-    )
-
-
-@pytest.mark.parametrize("number", [0, 1, 2])
-@pytest.mark.parametrize("value", ["nan", "inf"])
-@pytest.mark.parametrize("sealed", [(), ("sealed",)], ids=["damaged", "forged"])
-def test_a_head_that_is_no_number_is_refused(importer, number, value, sealed):
-    assert importer.run("corrupt", HEADER + 8 * number, value, *sealed).stdout.startswith("REFUSED")
-
-
-@pytest.mark.parametrize(
-    ("number", "value"),
-    [(0, "-1"), (0, "4.5"), (0, "1e300"), (0, "64"), (2, "-1"), (2, "0.5"), (2, "4"), (2, "1e300")],
+needs_valgrind = pytest.mark.skipif(
+    shutil.which("valgrind") is None, reason="valgrind is not installed"
 )
-def test_a_forged_phase_or_flag_is_refused(importer, number, value):
-    assert importer.run("corrupt", HEADER + 8 * number, value, "sealed").stdout.startswith(
-        "REFUSED"
+
+
+@needs_valgrind
+@pytest.mark.parametrize("version", ordinary(["fmi3", "fmi2"]))
+def test_no_leak_no_error_and_no_other_bit_under_valgrind(importer_of, version):
+    """The kernel needs no more than what valgrind's processor has: no fused multiply-add, no 80-bit
+    numbers.
+    """
+    importer = importer_of(version)
+    clean(importer.run(*MANY, under=VALGRIND))
+    names, times, values = ["x1", "x2", "impact_count"], [0.0, 50.0, 200.0], {"box_frequency": 1.13}
+    found = importer.simulate(names, times, under=VALGRIND, **values)
+    assert found == importer.simulate(names, times, **values)
+
+
+@needs_valgrind
+@pytest.mark.slow
+def test_no_leak_and_no_error_under_valgrind_at_length(importer_of_model):
+    for mode in (("random", 3, 200), ("many", 100, 40, 400)):
+        clean(importer_of_model.run(*mode, under=VALGRIND, timeout=1800))
+
+
+@pytest.mark.parametrize("sanitizer", ordinary(SANITIZERS))
+@pytest.mark.parametrize("pair", ordinary(PAIRS, [PAIRS[3]]), ids="-".join)
+def test_no_error_with_sanitizers_in_the_shim(exported, fmus, tmp_path, pair, sanitizer):
+    """Address, undefined behaviour and leaks; or threads."""
+    options = SANITIZERS[sanitizer]
+    if importers.own_compiler() is None:
+        pytest.skip("no C compiler of the machine's own: ziglang's sanitizers load from no library")
+    (tmp_path / "empty.c").write_text("int main(void) { return 0; }\n")
+    command = [*importers.own_compiler(), *options, "empty.c", "-o", "empty"]
+    if subprocess.run([*map(str, command)], cwd=tmp_path, capture_output=True).returncode:
+        pytest.skip("the compiler has no such sanitizer")
+    importer = importers.importer_with_sanitizer(*pair, exported, tmp_path, options)
+    clean(importer.run(*RANDOM, timeout=1800))
+    clean(importer.run("many", 100, 40, 1000, timeout=1800))
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("clang") is None, reason="clang is not installed")
+@pytest.mark.parametrize("pair", PAIRS, ids="-".join)
+def test_a_coverage_guided_fuzzer_finds_nothing(exported, fmus, tmp_path, pair):
+    """libFuzzer with its sanitizers in the shim, for FUZZ_SECONDS (600 by default) each."""
+    version, model = pair
+    path, guards = exported / version / f"{model}.fmu", "address,undefined"
+    folder, number = tmp_path / "fuzzer", version[-1]
+    importers.compile_importer(version, path, folder)  # leaves the headers there
+    library = importers.rebuild_shim(
+        version,
+        tmp_path / "shim",
+        importers.kernel_objects(model),
+        (f"-fsanitize=fuzzer-no-link,{guards}", "-fno-sanitize-recover=all"),
+        forms.MODELS[model],
+        ("clang",),
     )
-
-
-@pytest.mark.parametrize("d1", [0.0, 0.005, 0.0099])
-def test_a_start_at_rest_with_less_damping_on_mass_1_gets_going(importer, d1):
-    """Contact from rest: the event function and its first derivative vanish at the start."""
-    assert importer.simulate(["x_rel"], [0.0, 0.05, 400.0], d1=d1)[-1][0] >= 0.0
+    units = [importers.HERE / f"{unit}.c" for unit in ("importer", f"fuzz{number}", "fuzz")]
+    options = ["-std=gnu11", "-O1", "-g", f"-fsanitize=fuzzer,{guards}"]
+    options += [f"-I{folder}", f"-I{importers.HERE}"]
+    command = ["clang", *options, HERE / "fuzzer.c", *units, "-ldl", "-lm", "-o", "fuzzer"]
+    importers.run_compiler(command, folder)
+    corpus = CORPUS / f"{version}-{model}" if CORPUS else folder / "corpus"
+    corpus.mkdir(parents=True, exist_ok=True)
+    for line in seeds(version):
+        (corpus / hashlib.sha1(bytes.fromhex(line)).hexdigest()).write_bytes(bytes.fromhex(line))
+    limits = [f"-max_total_time={SECONDS}", "-max_len=512", "-timeout=60", "-print_final_stats=1"]
+    done = subprocess.run(
+        ["./fuzzer", corpus, *limits],
+        cwd=folder,
+        env={**os.environ, "FMU_BINARY": str(library)},
+        capture_output=True,
+        text=True,
+    )
+    print("\n".join(done.stderr.splitlines()[-12:]))
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-4000:]

@@ -7,8 +7,8 @@ from fmpy.validation import validate_fmu
 from fmu_src.export import forms
 from fmu_src.export.platforms import this_machine
 
+from ..fmu.programs.driver import COMMON, harmonic, open_fmu
 from .conftest import VERSIONS
-from .slave import COMMON, harmonic, slave
 
 
 @pytest.fixture(scope="module")
@@ -36,7 +36,7 @@ def test_an_importer_that_knows_real_alone_runs_a_plain_form(plain_fmus, fmus, v
     """It writes 0 to all inputs, which stops no harmonic excitation, and reads all outputs as
     Real: the numbers of the full form. That form's own types can still be read.
     """
-    with slave(plain_fmus[version]) as fmu, slave(fmus[version]) as full:
+    with open_fmu(plain_fmus[version]) as fmu, open_fmu(fmus[version]) as full:
         inputs = [v.name for v in fmu.variables.values() if v.causality == "input"]
         assert inputs == ["box_acceleration", "box_jerk", "box_snap", "box_crackle"]
         for name in ("box_amplitude", "box_frequency"):
@@ -62,7 +62,7 @@ def test_an_importer_that_knows_real_alone_runs_a_plain_form(plain_fmus, fmus, v
 def test_a_plain_form_has_the_same_bits(plain_fmus, fmus, version):
     rows = []
     for path in (plain_fmus[version], fmus[version]):
-        with slave(path) as fmu:
+        with open_fmu(path) as fmu:
             fmu.start(**harmonic(1.13)).step(512.0)
             rows.append(fmu.get(*COMMON))
     assert rows[0] == rows[1]

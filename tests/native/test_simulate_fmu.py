@@ -1,10 +1,9 @@
-"""FMPy's own simulation loop on the native FMUs: with and without event mode and input signal."""
+"""FMPy's own simulation loop on the native FMUs: with and without event mode."""
 
 import fmpy
 import numpy as np
-import pytest
 
-from .slave import harmonic, slave
+from ..fmu.programs.driver import harmonic
 
 CHAOS = harmonic(1.13)
 NAMES = ["x1", "x2", "v1", "v2", "impact_count", "impact_time"]
@@ -49,19 +48,3 @@ def test_simulation_is_the_same_with_and_without_event_mode(fmus):
     assert off.sum() < 50
     same(early[place], reference)
     assert set(reference["impact_time"][1:]) - {0.0} <= set(early["time"])
-
-
-@pytest.mark.parametrize("form", ["fmi2", "fmi3"])
-def test_an_input_signal_is_held_over_the_step(fmus, form):
-    times = np.arange(0.0, 40.25, 0.25)
-    signal = np.array(
-        list(zip(times, 0.1 * np.sin(times), strict=True)),
-        dtype=[("time", float), ("box_acceleration", float)],
-    )
-    found = simulate(fmus[form], input=signal, stop_time=32.0, start_values={})
-    with slave(fmus[form]) as fmu:
-        fmu.start()
-        for k in range(128):
-            fmu.set(box_acceleration=signal["box_acceleration"][k])
-            fmu.step(0.25 * (k + 1))
-            assert fmu.one("x1") == found["x1"][k + 1]

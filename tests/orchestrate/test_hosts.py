@@ -20,7 +20,7 @@ CELLS = (
     "                        transient=3000)\nfound.xi_rel_max",
     "motion = orchestrate.simulate(own, frequency=80.0, amplitude=1e-3, periods=5)",
     "%matplotlib inline\nimport matplotlib\nmatplotlib.get_backend()",
-    "from orchestrate.figures.orbit_diagram import draw\n"
+    "from orchestrate.figures.lines import draw_sweep as draw\n"
     "figure = draw(orchestrate.sweep(own, eta=[1.0, 1.1], transient=50, samples=20))",
     "motion.x1.plot();",
 )

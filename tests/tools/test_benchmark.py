@@ -21,11 +21,6 @@ def test_a_quiet_step(exported):
     assert 0.0 < benchmark.time_quiet_step(find(OSCILLATOR).path, 100) < 1e-2
 
 
-def test_resonance_beside_the_fmus_steps(exported):
-    asked, alone = benchmark.time_resonance(find(OSCILLATOR).path, 3)
-    assert 0.0 < alone < asked
-
-
 def test_one_measurement_in_a_process_of_its_own(exported, capsys, monkeypatch):
     fmu = find(OSCILLATOR, "fmi2-python").path
     monkeypatch.setattr(sys, "argv", ["benchmark", "--once", str(fmu), "1.0", "1"])

@@ -1,4 +1,4 @@
-"""Compile C importers against an FMU, for tests; rebuild its C shim with sanitizers."""
+"""Compile an importer in C, with a fuzzer, against an FMU; rebuild its C shim with sanitizers."""
 
 from __future__ import annotations
 
@@ -17,18 +17,15 @@ from fmu_src.export.compiler import kernel_object
 from fmu_src.export.model_header import model_header
 from fmu_src.export.platforms import this_machine
 from fmu_src.export.source_code import kernel_source
-from fmu_src.kernels.electrodynamic_shaker import memory as coil
-from fmu_src.kernels.shaker import memory as shaker
 from orchestrate.access import describe
 
 HERE = Path(__file__).parent
 TYPES = {"Real": "R", "Float64": "R", "Integer": "I", "Int32": "I", "Boolean": "B"}
 FOLDERS = {"fmi2": ("linux64", "win64"), "fmi3": ("x86_64-linux", "x86_64-windows")}
-ROLES = {  # macro of a model that is not the oscillator, first and count of what a step only writes
-    "MotorShaker": ("MOTOR_SHAKER", shaker.RATES, shaker.STATE - shaker.RATES),
-    "ElectrodynamicShaker": ("ELECTRODYNAMIC_SHAKER", coil.GUARD, coil.TERMS),
-}
-SANITIZE = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-omit-frame-pointer")
+SANITIZE = (
+    "-fsanitize=address,undefined,float-cast-overflow",
+    *("-fno-sanitize-recover=all", "-fno-omit-frame-pointer"),
+)
 WARNINGS = ("-std=gnu11", "-Wall", "-Wextra", "-Werror", "-Wno-unused-function")
 
 
@@ -93,9 +90,7 @@ def names_header(fmu: Path) -> str:
         f"#define TIME_REFERENCE {time}u",
         f"#define FMI_VERSION {description.fmi_version[0]}",
     ]
-    macro, first, count = ROLES.get(description.name, ("OSCILLATOR", 0, 0))
-    defines += [f"#define {macro}"]
-    defines += [f"#define SCRATCH_FIRST {first}", f"#define SCRATCH_COUNT {count}"]
+    defines += [f"#define MODEL_{description.name}"]
     return "\n".join([*defines, "static const Name NAMES[] = {", *rows, "};", ""])
 
 
@@ -137,7 +132,7 @@ def compile_importer(
 ) -> Path:
     """Compile the importer of an FMI version for an FMU; return the program's path."""
     number = version[-1]
-    parts = ("modes", "fuzz", "hostile", "arguments", f"fuzz{number}", f"arguments{number}")
+    parts = ("modes", "fuzz", f"fuzz{number}")
     return compile_against(fmu, folder, [HERE / f"{part}.c" for part in parts], options, command)
 
 
@@ -180,6 +175,12 @@ def rebuild_shim(
 def settings(values: Mapping[str, float]) -> list[str]:
     """Return start values as arguments of a program that calls ``fmu_set_all``."""
     return [f"{name}={float(value).hex()}" for name, value in values.items()]
+
+
+def read_rows(text: str) -> list[list[float]]:
+    """Return the rows of numbers that ``simulate`` printed."""
+    lines = (line.split() for line in text.splitlines() if not line.startswith("CHECKS"))
+    return [[float.fromhex(cell) for cell in line] for line in lines]
 
 
 @dataclass(frozen=True)
@@ -226,11 +227,7 @@ class Importer:
     ) -> list[list[float]]:
         """Return outputs at each of ``times``; the first one is the start."""
         done = self.run("simulate", ",".join(names), *settings(values), under=under, times=times)
-        return [
-            [float.fromhex(cell) for cell in line.split()]
-            for line in done.stdout.splitlines()
-            if not line.startswith("CHECKS")
-        ]
+        return read_rows(done.stdout)
 
 
 def kernel_objects(model: str) -> dict[str, bytes]:
@@ -250,24 +247,3 @@ def importer_with_sanitizer(
         version, folder / "shim", kernel_objects(model), sanitizer, forms.MODELS[model]
     )
     return Importer(program, library, version)
-
-
-def read_coverage(
-    folder: Path, unit: str, lines: dict[object, bool], branches: dict[object, bool]
-) -> None:
-    """Add a C file's executed lines and taken branches, by gcov, to two collections."""
-    notes = next(folder.glob(f"*{Path(unit).stem}.gcda"))
-    command = ["gcov", "-b", "-c", "-o", notes.name, unit]
-    subprocess.run(command, cwd=folder, capture_output=True, check=True)
-    number = text = None
-    for row in (folder / f"{unit}.gcov").read_text().splitlines():
-        if row.startswith("branch"):
-            key = (unit, number, row.split()[1], text)
-            taken = "taken" in row and "taken 0" not in row
-            branches[key] = branches.get(key, False) or taken
-            continue
-        parts = row.split(":", 2)
-        if len(parts) == 3 and parts[0].strip() not in ("-", ""):
-            number, text = parts[1].strip(), parts[2].strip()
-            key = (unit, number, text)
-            lines[key] = lines.get(key, False) or parts[0].strip()[0] not in "#="

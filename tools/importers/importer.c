@@ -91,7 +91,6 @@ void fmu_initialize(void *instance, double start) {
     must(fmi.ExitInitializationMode(instance));
 }
 
-bool fmu_try_step(void *instance, double time, double size) { return step_to(instance, time, size) == FMI_OK; }
 
 void fmu_step(void *instance, double time, double size) {
 #if FMI_VERSION == 2

@@ -80,10 +80,6 @@ void fmu_initialize(void *instance, double start);
 void fmu_step(void *instance, double time, double size);
 size_t fmu_save(void *instance, char **bytes);                        /* to be freed */
 bool fmu_restore(void *instance, const char *bytes, size_t size);     /* false where the FMU refuses */
-bool fmu_try_step(void *instance, double time, double size);          /* false where the FMU refuses */
 void fmu_close(void *instance);
-
-/* Every function with valid and with hostile arguments. */
-void hostile(void);
 
 #endif

@@ -18,7 +18,6 @@ from matplotlib.figure import Figure
 
 import orchestrate
 from orchestrate import cli
-from orchestrate.figures import drive_spectra
 from orchestrate.weak_drive.drive_spectra import drive_spectra as ask_drive_spectra
 from tools.pictures import beam, cards, fmu, theory
 from tools.pictures.small import save_small, write_small
@@ -72,7 +71,7 @@ def draw_spectra() -> Figure:
     """Draw spectra of the set ``quick`` with the motor at resonance; return the figure."""
     structure = orchestrate.Structure.from_file("quick")
     drive = orchestrate.Drive.from_file("quick")
-    return drive_spectra.draw(ask_drive_spectra(structure, drive, progress=False), title="quick")
+    return orchestrate.plot(ask_drive_spectra(structure, drive, progress=False), title="quick")
 
 
 PICTURES: dict[str, Callable[[], Figure]] = {

@@ -9,7 +9,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from orchestrate.figures.style import BLACK, BLUE, RED, legend_below, make_panels, styled
+from orchestrate.figures.colours import BLACK, BLUE, RED
+from orchestrate.figures.style import legend_below, make_panels, styled
 
 SIZE = (3.8, 2.9)
 STYLES: dict[str, dict[str, Any]] = {

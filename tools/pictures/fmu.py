@@ -7,7 +7,8 @@ from typing import Any
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch
 
-from orchestrate.figures.style import BLUE, RED, styled
+from orchestrate.figures.colours import BLUE, RED
+from orchestrate.figures.style import styled
 
 INPUTS = ("box_\namplitude", "box_\nfrequency", "box_\nacceleration")
 OUTPUTS = ("x1, x2, v1, v2", "x_rel: gap", "contact_force", "box_force")

@@ -5,14 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ...checks import checked_word
 from ...errors import InputError
 from .channels import Channels, checked_number
 
-Floats = NDArray[np.float64]
 WINDOWS = ("hann", "hamming", "blackman", "blackmanharris", "flattop", "boxcar")
 USUAL_SEGMENTS = 16  # without overlap
 FEWEST_LINES = 8  # samples in a segment
@@ -56,6 +52,15 @@ class Averaging:
         return count / (1.0 + 2.0 * total)
 
 
+def segment_length(channels: Channels, resolution: float | None) -> int:
+    """Return the samples of a segment whose lines have a distance in Hz; 0 if none is given."""
+    if resolution is None:
+        return 0
+    finest, coarsest = (channels.sample_rate / n for n in (len(channels.time), FEWEST_LINES))
+    checked = checked_number("resolution", resolution, finest, coarsest, "Hz")
+    return round(channels.sample_rate / checked)
+
+
 def averaging(
     channels: Channels, resolution: float | None, window: str, overlap: float, fewest: int = 1
 ) -> Averaging:
@@ -63,11 +68,7 @@ def averaging(
     checked_word("window", window, WINDOWS)
     part = checked_number("overlap", overlap, 0.0, 0.95)
     count, rate = len(channels.time), channels.sample_rate
-    if resolution is None:
-        length = max(count // USUAL_SEGMENTS, FEWEST_LINES)
-    else:
-        finest, coarsest = rate / count, rate / FEWEST_LINES
-        length = round(rate / checked_number("resolution", resolution, finest, coarsest, "Hz"))
+    length = segment_length(channels, resolution) or max(count // USUAL_SEGMENTS, FEWEST_LINES)
     shared = min(int(part * length), length - 1)
     segments = (count - shared) // (length - shared)
     if segments < fewest:

@@ -7,16 +7,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...errors import InputError
 from ...response.labels import Variable, variable
 from ..columns import column_taken
+from ..pieces import Floats
 
 if TYPE_CHECKING:
     import xarray as xr
 
-Floats = NDArray[np.float64]
 BOX = "box_acceleration"
 CHANNELS = {  # and what the result of shake calls them
     BOX: BOX,

@@ -83,36 +83,27 @@ def histograms(values: Floats, bins: int) -> tuple[Floats, Floats]:
 
 def statistics(values: Floats) -> dict[str, tuple[Floats, str, str]]:
     """Compute moments of channels, each with unit and long name; shape (channels,)."""
-    shape = {"skewness": third(values), "kurtosis": fourth(values)}
-    parts = np.array_split(values, PARTS, axis=1)
-    errors = {
-        "skewness_error": np.std([third(part) for part in parts], axis=0, ddof=1) / PARTS**0.5,
-        "kurtosis_error": np.std([fourth(part) for part in parts], axis=0, ddof=1) / PARTS**0.5,
-    }
-    return {
+    third, fourth = "third moment over the deviation's third", "fourth moment over the deviation's"
+    made = {
         "mean": (values.mean(axis=1), "m/s2", "mean value"),
         "standard_deviation": (values.std(axis=1), "m/s2", "standard deviation"),
-        "skewness": (shape["skewness"], "1", "third moment over the deviation's third power"),
-        "kurtosis": (shape["kurtosis"], "1", "fourth moment over the deviation's fourth power"),
-        "skewness_error": (errors["skewness_error"], "1", "standard error of the skewness"),
-        "kurtosis_error": (errors["kurtosis_error"], "1", "standard error of the kurtosis"),
+        "skewness": (shape_of(values, "skewness"), "1", f"{third} power"),
+        "kurtosis": (shape_of(values, "kurtosis"), "1", f"{fourth} fourth power"),
     }
+    parts = np.array_split(values, PARTS, axis=1)
+    for name in ("skewness", "kurtosis"):
+        error = np.std([shape_of(part, name) for part in parts], axis=0, ddof=1) / PARTS**0.5
+        made[f"{name}_error"] = (error, "1", f"standard error of the {name}")
+    return made
 
 
-def third(values: Floats) -> Floats:
-    """Compute the skewness along the last axis; NaN for a constant signal."""
-    from scipy.stats import skew
+def shape_of(values: Floats, name: str) -> Floats:
+    """Compute skewness or kurtosis (3 for a Gaussian signal); NaN for a constant signal."""
+    from scipy.stats import kurtosis, skew
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # of a part that does not move
-        return np.where(np.ptp(values, axis=-1) > 0.0, skew(values, axis=-1), np.nan)
-
-
-def fourth(values: Floats) -> Floats:
-    """Compute the kurtosis along the last axis, 3 for a Gaussian signal; NaN for a constant one."""
-    from scipy.stats import kurtosis
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)
-        number = kurtosis(values, axis=-1, fisher=False)
+        number = (
+            skew(values, axis=-1) if name == "skewness" else kurtosis(values, axis=-1, fisher=False)
+        )
     return np.where(np.ptp(values, axis=-1) > 0.0, number, np.nan)

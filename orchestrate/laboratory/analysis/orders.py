@@ -10,23 +10,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...constants import TURN
 from ...errors import InputError
 from ...response.labels import variable
 from ..stepped_sine import SteppedSine
 from ..swept_sine import SweptSine
-from .channels import (
-    BOX,
-    Channels,
-    Floats,
-    attributes,
-    channel_coordinate,
-    checked_number,
-)
+from .channels import BOX, Channels, Floats, attributes, channel_coordinate, checked_number
 
 if TYPE_CHECKING:
     import xarray as xr
 
-TURN = 2.0 * math.pi
 MOST_ORDERS = 50
 EDGE = 2.0  # periods at both ends where the Hilbert transform is not trusted
 NYQUIST = 0.45  # of the sampling rate: orders above are not resolved
@@ -297,12 +290,8 @@ def window(channels: Channels, phase: Floats, part: slice, smooth: bool) -> Wind
 def fit(channels: Channels, window: Window, orders: tuple[float, ...]) -> tuple[Floats, Floats]:
     """Fit orders in a window by least squares; return each channel's amplitudes and residual.
 
-    Returns
-    -------
-    amplitudes : ndarray, shape (channels, orders)
-        Complex: ``A exp(i theta)`` of ``A sin(n phase + theta)`` in the middle.
-    residual : ndarray, shape (channels,)
-        Weighted root mean square of the rest.
+    Complex ``A exp(i theta)`` of ``A sin(n phase + theta)`` in the middle, shape (channels,
+    orders), and the weighted root mean square of the rest, shape (channels,).
     """
     limit = NYQUIST * channels.sample_rate
     resolved = [n for n in orders if n * window.frequency <= limit]

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...checks import checked_word
 from ...response.labels import variable
-from .averaging import FEWEST_LINES, WINDOWS
+from .averaging import FEWEST_LINES, WINDOWS, segment_length
 from .channels import (
     Channels,
     attributes,
@@ -71,11 +71,8 @@ def spectrogram(
     checked_word("window", window, WINDOWS)
     most = round(checked_number("spectra", spectra, 1, 100_000))
     count, rate = len(channels.time), channels.sample_rate
-    if resolution is None:
-        length = min(max(int((USUAL_SHARE * count) ** 0.5), FEWEST_LINES), count)
-    else:
-        finest, coarsest = rate / count, rate / FEWEST_LINES
-        length = round(rate / checked_number("resolution", resolution, finest, coarsest, "Hz"))
+    usual = min(max(int((USUAL_SHARE * count) ** 0.5), FEWEST_LINES), count)
+    length = segment_length(channels, resolution) or usual
     hop = max(1, -(-(count - length) // most))
     transform = ShortTimeFFT.from_window(
         window, rate, length, length - hop, fft_mode="onesided2X", scale_to="magnitude"

@@ -1,10 +1,13 @@
-/* Does the FMU miss a root? ``roots BINARY SEED COUNT``: adversarial flights by the seed, each one's end
-   as the FMU says against a dense search of the closed form. With a fourth argument ``show`` every flight is printed; with ``wrong``
-   the search's stiffness is off by a billionth, which has to be found. */
+/* Does the FMU miss a root, and do its impacts balance? ``roots BINARY SEED COUNT``: adversarial flights by the seed, each one's end
+   as the FMU says against a dense search of the closed form, which has the velocities before an impact too; those after it are the
+   FMU's. With a fourth argument ``show`` every flight is printed; with ``wrong`` the search's stiffness and our restitution are off
+   by a billionth, which has to be found. */
 #include "flight.h"
 
 enum { BLOCK = 64, FOLLOWED = 4 };
 enum { OK, MISSED, NOT_A_ROOT, UNFINISHED, REFUSED, VERDICTS };
+static long impacts;
+static double momentum, restitution, energy; /* largest errors, in parts of the momentum and the energy of the motion's terms */
 
 typedef struct { double re[TERMS][BLOCK], im[TERMS][BLOCK]; } Turns;
 
@@ -86,9 +89,34 @@ static void show(const Flight *f, double end, bool root, int verdict) {
     printf("\n");
 }
 
+/* A mass's velocity at the end of a flight; returns the size of the terms it is the sum of. */
+static double velocity(double m, double d, double k, double x, double v, const Flight *f, double t, double *found) {
+    Signal motion = {0};
+    double at[3], size = fabs(motion.p[1]);
+    add_mass(&motion, m, d, k, x, v, f, 1.0, 1);
+    value_of(&motion, t, at);
+    *found = at[1];
+    for (int i = 0; i < TERMS; i++) size += cabs(motion.c[i] * motion.s[i]);
+    return size;
+}
+
+/* An impact's momentum, restitution and loss of energy. */
+static void balance(const Flight *before, double t, const Flight *after, bool stuck, double lost) {
+    double v[2], m1 = before->m1, m2 = before->m2;
+    double size = m1 * velocity(m1, before->d1, before->k1, before->x1, before->v1, before, t, &v[0])
+        + m2 * velocity(m2, before->d2, before->k2, before->x2, before->v2, before, t, &v[1]);
+    double closing = v[0] - v[1], opened = after->v2 - after->v1;
+    double expected = stuck ? 0.0 : before->e * closing / (1.0 + before->e_slope * closing);
+    double loss = 0.5 * m1 * m2 / (m1 + m2) * (closing * closing - opened * opened);
+    momentum = fmax(momentum, fabs(m1 * v[0] + m2 * v[1] - m1 * after->v1 - m2 * after->v2) / size);
+    restitution = fmax(restitution, fabs(opened - expected) * fmin(m1, m2) / size);
+    energy = fmax(energy, fabs(lost - loss) * (m1 + m2) / (size * size));
+    impacts++;
+}
+
 /* A flight, and those that follow it. */
 static void follow(void *it, Flight f, long verdicts[VERDICTS], bool shown) {
-    double time = 0.0, lost;
+    double time = 0.0, lost = 0.0;
     for (int i = 0; i < FOLLOWED; i++) {
         bool impact;
         double reached = fly(it, time, time + HORIZON[f.kind], &impact);
@@ -100,8 +128,11 @@ static void follow(void *it, Flight f, long verdicts[VERDICTS], bool shown) {
         verdicts[verdict]++;
         if (shown || verdict == MISSED || verdict == NOT_A_ROOT) show(&f, reached - time, impact, verdict);
         if (reached < 0.0 || !impact) return;
+        Flight before = f;
+        double already = lost;
         go_on(it, &f, reached - time, &lost);
         bool stuck = touching(it);
+        if (f.kind != CUBIC) balance(&before, reached - time, &f, stuck, lost - already); /* cubics cancel */
         end_event(it);
         if (stuck) return;
         time = reached;
@@ -154,8 +185,9 @@ int main(int count, char **arguments) {
     void *it = open_with("roots", true, true);
     for (int kind = 0; done < wanted; kind = (kind + 1) % KINDS) {
         Flight f = draw(&seed, kind);
+        f.e_slope = chance(&seed, 0.5) ? 0.0 : decades(&seed, 1e-3, 1e2);
         bool begun = begin(it, &f, GAMMA);
-        if (wrong) f.k2 *= 1.0 + 1e-9;
+        if (wrong) f.k2 *= 1.0 + 1e-9, f.e *= 1.0 - 1e-9;
         long *here = verdicts[kind], before = here[OK] + here[MISSED] + here[NOT_A_ROOT] + here[UNFINISHED];
         if (!begun) here[REFUSED]++;
         else if (kind == CONTACT ? !touching(it) : touching(it)) here[REFUSED]++;
@@ -167,6 +199,7 @@ int main(int count, char **arguments) {
         for (int i = 0; i < VERDICTS; i++) printf("%ld ", verdicts[kind][i]);
         printf("%s\n", KIND[kind]);
     }
+    printf("%ld %.3e %.3e %.3e\n", impacts, momentum, restitution, energy);
     fmi.FreeInstance(it);
     return 0;
 }

@@ -1,4 +1,7 @@
-"""FMUs in a fresh process: FMI calls by name, and a status that is not OK as an exception."""
+"""FMUs as importers meet them: FMI calls by name, and a status that is not OK as an exception.
+
+For tests in their own process, and as the module ``driver`` for programs in a fresh one.
+"""
 
 import atexit
 import ctypes
@@ -13,16 +16,16 @@ from fmpy.fmi1 import FMICallException
 from fmpy.logging import addLoggerProxy
 
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)
-messages = []  # of the call under way; the proxy below knows one logger a process
-callbacks = fmi2.fmi2CallbackFunctions()
-callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(
-    lambda _e, _i, _s, _c, text: messages.append(text.decode())
+STEPS = 100_000  # more than any test takes: one that waits for what never comes has to end
+IMPACT = 2000  # value reference of the clock
+OF_A_STEP = ("box_impulse", "box_impulse_moment", "x_rel_max", "evaluations")
+STATE = (
+    *("x1", "x2", "v1", "v2", "x_rel", "v_rel", "xi1", "xi2", "xi_rel", "box_force"),
+    *("contact_force", "in_contact", "phase", "impact_count", "impact_time", "impact_velocity"),
+    *("impact_energy", "contact_count"),
 )
-callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
-callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(fmpy.free)
-addLoggerProxy(
-    ctypes.byref(callbacks)
-)  # expands the message as a printf format, as importers written in C do
+COMMON = (*STATE, *OF_A_STEP[:3])
+messages = []  # of the call under way
 
 
 class Refused(Exception):
@@ -33,41 +36,84 @@ class Refused(Exception):
         super().__init__(f"{function}: {status}: {self.messages}")
 
 
+def hear(*given):
+    messages.append(given[-1].decode())
+
+
+LOGGER = fmi2.fmi2CallbackLoggerTYPE(hear)  # FMPy's proxy calls the last one that it was given
+
+
+def allocation():
+    return (
+        fmi2.fmi2CallbackAllocateMemoryTYPE(fmpy.calloc),
+        fmi2.fmi2CallbackFreeMemoryTYPE(fmpy.free),
+    )
+
+
+def callbacks():
+    """FMI 2.0's, with a logger that fills a printf format in, as importers written in C do."""
+    made = fmi2.fmi2CallbackFunctions()
+    made.logger, made.allocateMemory, made.freeMemory = LOGGER, *allocation()
+    addLoggerProxy(ctypes.byref(made))
+    return made
+
+
 class Fmu2:
     """One FMI 2.0 co-simulation instance; ``time`` is the communication point reached."""
 
-    folders = {}  # where an FMU of this process was extracted to,
+    make = fmi2.FMU2Slave
+    third = False
+    home = None  # where FMUs are extracted to
+    folders = {}  # where one was extracted to,
     descriptions = {}  # and what is known of it
     alive = []
 
-    def __init__(self, path, name="instance", logging=True, folder=None):
+    def __init__(self, path, name="instance", logging=True, folder=None, **options):
+        path = str(path)
         if folder is None:
             if path not in self.folders:
-                self.folders[path] = fmpy.extract(path, tempfile.mkdtemp(dir=Path.cwd()))
+                self.folders[path] = fmpy.extract(path, tempfile.mkdtemp(dir=self.home))
             folder = self.folders[path]
         found = describe(path)
         self.variables = {v.name: v for v in found.modelVariables}
         scalars = [v for v in found.modelVariables if v.type != "Clock" and not v.dimensions]
         self.output_names = [v.name for v in scalars if v.causality == "output"]
-        identifier = found.coSimulation.modelIdentifier
-        self.slave = self.make(
-            guid=found.guid, unzipDirectory=folder, modelIdentifier=identifier, instanceName=name
+        self.fmu = self.make(
+            guid=found.guid,
+            unzipDirectory=str(folder),
+            modelIdentifier=found.coSimulation.modelIdentifier,
+            instanceName=name,
         )
-        self.instantiate(logging)
+        self.event_mode = options.get("event_mode", False)
+        self.instantiate(logging, **options)
         self.alive.append(self)
-        self.time = 0.0
-
-    make = fmi2.FMU2Slave
+        self.time, self.steps = 0.0, 0
 
     def instantiate(self, logging):
-        self.slave.instantiate(callbacks=callbacks, loggingOn=logging)
+        self.callbacks = callbacks()
+        self.fmu.instantiate(callbacks=self.callbacks, loggingOn=logging)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.free()
 
     def call(self, function, *arguments, **keywords):
         messages.clear()
         try:
-            return getattr(self.slave, function)(*arguments, **keywords)
+            return getattr(self.fmu, function)(*arguments, **keywords)
         except FMICallException as failure:
             raise Refused(function, failure.status) from None
+
+    def refused(self, function, *arguments, **keywords):
+        """The one message of a call that has to be refused."""
+        try:
+            self.call(function, *arguments, **keywords)
+        except Refused as refused:
+            (message,) = refused.messages
+            return message
+        raise AssertionError(f"{function}{arguments} was accepted")
 
     def reference(self, name):
         return self.variables[name].valueReference
@@ -76,14 +122,26 @@ class Fmu2:
         for name, value in values.items():
             variable = self.variables[name]
             self.call("set" + variable.type, [variable.valueReference], [value])
+        return self
 
     def get(self, *names):
         kinds = [(self.variables[name].type, self.variables[name].valueReference) for name in names]
         return [self.call("get" + kind, [reference])[0] for kind, reference in kinds]
 
+    def one(self, name):
+        return self.get(name)[0]
+
+    def series(self, name):
+        """All elements of an array, which FMI 2.0 has one by one."""
+        return self.get(*[other for other in self.variables if other.startswith(f"{name}[")])
+
     def outputs(self, names=None):
         names = self.output_names if names is None else names
         return dict(zip(names, self.get(*names), strict=True))
+
+    def motion(self):
+        """All outputs that are not about the last step."""
+        return self.outputs([name for name in self.output_names if name not in OF_A_STEP])
 
     def enter(self, start_time=0.0, **experiment):
         self.time = start_time
@@ -94,18 +152,29 @@ class Fmu2:
         self.call("exitInitializationMode")
 
     def start(self, start_time=0.0, **values):
+        """Set and initialise; goes on to step mode."""
         self.set(**values)
         self.enter(start_time)
         self.leave()
+        if self.event_mode:
+            self.call("enterStepMode")
         return self
 
     def reset(self):
         self.call("reset")
+        self.steps = 0
         return self
 
     def step(self, target):
+        """Step to a point of time."""
         self.call("doStep", self.time, target - self.time)
         self.time = target
+        return self
+
+    def at(self, *times):
+        """Step through points of time."""
+        for time in times:
+            self.step(time)
         return self
 
     def save(self):
@@ -119,51 +188,60 @@ class Fmu2:
         try:
             self.call("setFMUState", state)
         finally:
-            self.slave.freeFMUState(state)
+            self.fmu.freeFMUState(state)
         self.time = time
         return self
 
     def free(self):
-        self.alive.remove(self)
-        self.slave.freeInstance()
+        if self in self.alive:
+            self.alive.remove(self)
+            self.fmu.freeInstance()
 
 
 class Fmu3(Fmu2):
-    """The same of FMI 3.0."""
+    """The same of FMI 3.0, with event mode where it is asked for."""
 
     make = fmi3.FMU3Slave
+    third = True
 
-    def instantiate(self, logging):
-        self.slave.instantiate(
-            loggingOn=logging, logMessage=lambda _e, _s, _c, text: messages.append(text.decode())
-        )
+    def instantiate(self, logging, event_mode=False, early_return=False):
+        options = {"eventModeUsed": event_mode, "earlyReturnAllowed": early_return}
+        self.fmu.instantiate(loggingOn=logging, logMessage=hear, **options)
+
+    def series(self, name):
+        variable = self.variables[name]
+        size = int(variable.dimensions[0].start)
+        return list(self.fmu.getFloat64([variable.valueReference], size))
 
     def enter(self, start_time=0.0, **experiment):
         self.time = start_time
         self.call("enterInitializationMode", startTime=start_time, **experiment)
 
+    def go(self, target):
+        """Step towards a point of time; whether there is an event, and whether it ended early."""
+        self.steps += 1
+        assert self.steps < STEPS
+        event, end, early, self.time = self.call("doStep", self.time, target - self.time)
+        assert not end
+        return event, early
 
-def excepthook(*error):
-    failed.append(error)
-    sys.__excepthook__(*error)
+    def clock(self):
+        return self.fmu.getClock([IMPACT])[0]
 
+    def update(self):
+        """fmi3UpdateDiscreteStates: there is never anything more to do."""
+        again, end, nominals, values, defined, _ = self.fmu.updateDiscreteStates()
+        assert not (again or end or nominals or values or defined)
 
-failed, sys.excepthook = [], excepthook
-
-
-@atexit.register
-def leave():
-    for f in list(Fmu2.alive):
-        f.free()
-    # pythonfmu's library writes into freed memory when a process ends, see test_limits: no test is
-    # to fail of that by chance
-    if "pythonfmu" in sys.modules and not os.environ.get("TEST_THE_END"):
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(1 if failed else 0)
+    def handle(self):
+        """All that an importer does at an event."""
+        self.fmu.enterEventMode()
+        self.update()
+        self.fmu.enterStepMode()
 
 
 def describe(path):
+    path = str(path)
     if path not in Fmu2.descriptions:
         Fmu2.descriptions[path] = fmpy.read_model_description(path)
     return Fmu2.descriptions[path]
@@ -172,6 +250,11 @@ def describe(path):
 def open_fmu(path, **options):
     """An instance of an FMU, of its own FMI version."""
     return (Fmu3 if describe(path).fmiVersion.startswith("3") else Fmu2)(path, **options)
+
+
+def free_all():
+    for f in list(Fmu2.alive):
+        f.free()
 
 
 def outputs(path, end, **values):
@@ -187,3 +270,23 @@ def compiled():
 def harmonic(eta):
     """Settings with which every number is the paper's non-dimensional one."""
     return {"box_amplitude": 1.0 / eta**2, "box_frequency": eta}
+
+
+if __name__ == "driver":  # a fresh process
+    failed, Fmu2.home = [], Path.cwd()
+
+    def excepthook(*error):
+        failed.append(error)
+        sys.__excepthook__(*error)
+
+    sys.excepthook = excepthook
+
+    @atexit.register
+    def leave():
+        free_all()
+        # pythonfmu's library writes into freed memory when a process ends, see test_limits: no
+        # test is to fail of that by chance
+        if "pythonfmu" in sys.modules and not os.environ.get("TEST_THE_END"):
+            sys.stdout.flush()
+            sys.stderr.flush()
+            os._exit(1 if failed else 0)

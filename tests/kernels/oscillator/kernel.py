@@ -6,7 +6,7 @@ import math
 from unittest.mock import patch
 
 import mpmath as mp
-from hypothesis import HealthCheck, settings
+from hypothesis import settings
 from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
@@ -97,14 +97,8 @@ def flight(x1, v1, x2, v2, **values):
 
 
 def examples(count):
-    """Settings of a property-based test: the same examples on every machine, however slow."""
-    return settings(
-        max_examples=count,
-        deadline=None,
-        derandomize=True,
-        database=None,
-        suppress_health_check=list(HealthCheck),
-    )
+    """Settings of a property: all of ``count`` examples in the slow run, else a tenth."""
+    return settings(max_examples=max(8, count * settings.default.max_examples // 100))
 
 
 def sizes(low, high):

@@ -5,10 +5,7 @@ Flights begin and end as in the corrected (12)-(20), in SI units; ``gamma`` coun
 1/omega of mass 1.
 """
 
-import math
-
 import mpmath as mp
-from scipy.integrate import solve_ivp
 
 from tools import exact_motion as truth
 
@@ -70,35 +67,3 @@ def event_by_event(values, state, stop):
             mode = CONTACT
         events.append((time, "stick" if mode == CONTACT else "impact"))
         state = x, w1, x, w2
-
-
-def impacts_by_solver(values, state, stop):
-    """Times of impacts by a Runge-Kutta solver of eighth order, and the state at ``stop``; without
-    permanent contact.
-    """
-    a, frequency = values["box_amplitude"], values["box_frequency"]
-
-    def slope(t, y):
-        drive = a * frequency**2 * math.sin(
-            frequency * t + values.get("phase_start", 0.0)
-        ) - values.get("box_acceleration", 0.0)
-        pull_1 = (values["k1"] * y[0] + values["d1"] * y[1]) / values["m1"]
-        pull_2 = (values["k2"] * y[2] + values["d2"] * y[3]) / values["m2"]
-        return y[1], drive - pull_1, y[3], drive - pull_2
-
-    def gap(t, y):
-        return y[2] - y[0]
-
-    gap.terminal, gap.direction = True, -1
-    time, times = 0.0, []
-    while True:
-        done = solve_ivp(
-            slope, (time, stop), state, "DOP853", rtol=1e-12, atol=1e-14, events=gap, max_step=0.1
-        )
-        time, state = done.t[-1], done.y[:, -1]
-        if done.status == 0:
-            return times, state
-        times.append(time)
-        x = 0.5 * (state[0] + state[2])
-        v1, v2 = collide(values, state[1], state[3])
-        state = [x, v1, x, v2]

@@ -2,13 +2,11 @@
 displacements; stops on the way do no harm.
 """
 
-import math
-
 import pytest
 
 from fmu_src.kernels.oscillator import memory as at
 
-from .kernel import advanced, least_work, outputs, started
+from .kernel import advanced, least_work, started
 
 # f = -0.2, closing with 1 mm/s
 PRESSED = {
@@ -41,44 +39,3 @@ def test_a_bouncing_mass_comes_to_rest_after_as_many_impacts_as_a_ball(gamma, e,
     assert m[at.IMPACT_TIME] == pytest.approx(flown, rel=0.1, abs=1e-12)
     # almost all of the closing energy
     assert m[at.IMPACT_ENERGY] == pytest.approx(0.25e-6, rel=0.01)
-
-
-@pytest.mark.parametrize(
-    "values",
-    [
-        {"m2": 0.644, "k2": 0.16, "d1": 0.0, "d2": 4e-4, "gamma": 1.5e-6, "phase_start": math.pi},
-        {
-            "m2": 1.69,
-            "k2": 2.32,
-            "d1": 1e-3,
-            "d2": 0.0,
-            "e": 0.9,
-            "gamma": 1.7e-6,
-            "phase_start": -4.92,
-        },
-        {"m2": 0.144, "k2": 3.23, "d1": 2.6e-4, "d2": 0.0, "e": 0.3, "gamma": 1.7e-5},
-    ],
-)
-@least_work
-def test_parted_by_damping_and_pressed_by_stiffness_from_rest(values):
-    m = advanced(started(box_frequency=0.8, **values), 0.5)
-    assert m[at.IMPACT_COUNT] < 150.0
-    assert m[at.IN_CONTACT] == 1.0
-
-
-@pytest.mark.parametrize(
-    "values",
-    [
-        {"e": 0.3, "gamma": 1e-8},
-        {"e": 0.7, "gamma": 1e-6},
-        {"e": 0.5, "gamma": 1e-7, "box_frequency": 0.3},
-    ],
-)
-def test_stopping_at_the_shortest_flights_leaves_no_trace(values):
-    free, stopped = advanced(started(**values), 200.0), started(**values)
-    stopped[at.STOP_AT_IMPACT] = 1.0
-    stops = 0
-    while stopped[at.TIME] < 200.0 and stops < 1000:
-        advanced(stopped, 200.0)
-        stops += 1
-    assert outputs(stopped) == outputs(free)

@@ -29,21 +29,6 @@ def test_cubic_by_its_derivatives(cubic, age):
     assert list(cubic_at(m, age)) == pytest.approx(expected, rel=1e-12, abs=1e-12)
 
 
-@examples(30)
-@given(st.floats(0.0, 6.28), st.floats(0.1, 20.0), st.floats(0.0, 3.0), st.floats(-2.0, 2.0))
-def test_state_and_phase_go_on_when_inputs_change(phase, time, frequency, acceleration):
-    m = advanced(started(phase_start=phase, box_frequency=0.7), time)
-    assert m[at.PHASE] == pytest.approx(math.fmod(phase + 0.7 * time, 2 * math.pi), abs=1e-13)
-    before = [m[at.X1], m[at.X2], m[at.V1], m[at.V2]]
-    set_inputs(m, box_frequency=frequency, box_acceleration=acceleration, box_amplitude=0.5)
-    advanced(m, time)
-    assert [m[at.X1], m[at.X2], m[at.V1], m[at.V2]] == pytest.approx(before, abs=1e-13)
-    advanced(m, time + 2.0)
-    assert m[at.PHASE] == pytest.approx(
-        math.fmod(phase + 0.7 * time + 2.0 * frequency, 2 * math.pi), abs=1e-13
-    )
-
-
 def handed_over(cubic, age):
     """The cubic's inputs for a step that begins at an age."""
     return {
@@ -65,16 +50,6 @@ def test_a_cubic_in_parts_is_the_cubic_in_one(cubic):
     assert whole[at.IMPACT_COUNT] == parts[at.IMPACT_COUNT] >= 1
     for slot in (at.X1, at.X2, at.V1, at.V2, at.IMPACT_ENERGY):
         assert parts[slot] == pytest.approx(whole[slot], abs=1e-10)
-
-
-def test_a_constant_acceleration_bends_the_springs():
-    m = started(box_acceleration=0.5, box_amplitude=0.0, d1=0.5, d2=0.5, k2=0.8)
-    advanced(m, 200.0)
-    # pressed together: mass over stiffness
-    assert m[at.X1] == m[at.X2] == pytest.approx(-0.5 * 2.0 / 1.8, rel=1e-12)
-    set_inputs(m, box_acceleration=-0.5)
-    advanced(m, 400.0)
-    assert [m[at.X1], m[at.X2]] == pytest.approx([0.5, 0.5 / 0.8], rel=1e-12)
 
 
 def test_without_a_frequency_the_amplitude_is_nothing():

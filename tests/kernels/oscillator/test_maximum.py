@@ -2,8 +2,6 @@
 optimisation finds.
 """
 
-import math
-
 import mpmath as mp
 import numpy as np
 import pytest
@@ -11,15 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
-from fmu_src.kernels.oscillator.motion import state_at
 from tools import exact_motion as truth
 
 from .kernel import (
     DEFAULTS,
     advanced,
     examples,
-    least_work,
-    pieces,
     sizes,
     started,
     structures,
@@ -59,105 +54,12 @@ def test_over_a_piece_of_flight(values, state, start, length):
     assert m[at.X_REL_MAX] == pytest.approx(highest, rel=1e-12, abs=1e-14 * terms)
 
 
-@pytest.mark.parametrize(
-    "values",
-    [
-        {"box_frequency": 0.7},
-        {"e": 0.3},
-        {"box_frequency": 1.045, "d1": 0.1, "d2": 0.1},
-        {"k2": 3.0, "d1": 1.5},
-    ],
-)
-def test_over_steps_with_impacts_and_contact(values):
-    m = started(**values)
-    time = 0.0
-    for step in (0.05, 1.0, 0.3, 7.0, 20.0, 0.01, 2.5, 40.0):
-        time += step
-        passed = pieces(m, time)
-        samples = [0.0]
-        for state, entry, end in passed:
-            if state[at.MODE] == at.FLIGHT:
-                samples.append(of_piece(state, entry, end))
-        assert m[at.X_REL_MAX] == pytest.approx(max(samples), rel=1e-12, abs=1e-14)
-        assert m[at.X_REL_MAX] >= m[at.X_REL]
-
-
-def of_piece(state, entry, end):
-    """Largest gap on part of a flight, from its initial conditions by Newton's law."""
-    x1, v1, x2, v2 = state_at(state, 0.0)
-    values = {name: state[getattr(at, name.upper())] for name in DEFAULTS}
-    phase = 2 * mp.pi * mp.mpf(state[at.TURN])
-    first, second = truth.free_motion(values, (x1, v1, x2, v2), phase)
-    return summit(second - first, entry, end)[0] if end > entry else 0.0
-
-
-def test_the_maximum_of_parts_is_the_maximum_of_the_whole():
-    whole, parts = started(box_frequency=0.7), started(box_frequency=0.7)
-    advanced(whole, 30.0)
-    highest = 0.0
-    for i in range(1, 301):
-        highest = max(highest, advanced(parts, 0.1 * i if i < 300 else 30.0)[at.X_REL_MAX])
-    assert highest == pytest.approx(whole[at.X_REL_MAX], rel=1e-13)
-
-
 def test_at_the_very_end_of_a_step():
     m = started(x1_start=0.0, x2_start=0.1, v2_start=1.0, box_amplitude=0.0)
     advanced(m, 0.3)
     assert m[at.X_REL_MAX] == m[at.X_REL]
     advanced(m, 0.3)  # no time passes
     assert m[at.X_REL_MAX] == m[at.X_REL]
-
-
-def test_switched_off_it_stays_zero():
-    m = started(x_rel_max_on=0.0, x2_start=1.0)
-    assert m[at.X_REL_MAX] == 0.0
-    assert advanced(m, math.pi)[at.X_REL_MAX] == 0.0
-
-
-@least_work
-def test_right_after_a_start_from_rest():
-    values = {
-        "m2": 0.13382651145246977,
-        "k2": 0.159505453032413,
-        "d1": 0.0,
-        "d2": 0.0,
-        "box_frequency": 1.2476410867983083,
-    }
-    m = advanced(started(phase_start=math.pi, **values), 0.2)
-    assert m[at.X_REL_MAX] == pytest.approx(m[at.X_REL], abs=1e-15)
-
-
-STALLS = {
-    "a gap far below the rounding of its terms, drawn apart": {
-        **{"m2": 1000.0, "k2": 125.587, "d1": 0.0292, "d2": 0.0703, "e": 0.5, "gamma": 1.0},
-        **{"x1_start": -7.5e-90, "x2_start": 1.77e-80, "box_frequency": 0.425},
-        **{"phase_start": 2.211, "box_amplitude": 0.455},
-    },
-    "equal oscillators that part by 1e-75 m/s": {
-        **{"m2": 0.28, "k2": 0.28, "d1": 0.0046, "d2": 0.28 * 0.0046, "e": 1.0},
-        **{"x1_start": -2193.92, "x2_start": -2193.92, "v2_start": 8e-76, "box_frequency": 1.16},
-    },
-    "a start of 1e-132 m beside dampers": {
-        **{"m2": 0.3334, "k2": 3.5155, "d1": 0.9626, "d2": 0.0, "e": 0.1857, "gamma": 2e-6},
-        **{"x2_start": 1e-132, "v1_start": -7e-85, "v2_start": 2.7e-91, "box_amplitude": 1.317},
-        **{"box_frequency": 0.5878, "phase_start": 1.318},
-    },
-    "a start of 1e54 m/s": {
-        **{"m2": 10.69, "k2": 0.3044, "d1": 0.00263, "d2": 0.0, "e": 0.327, "gamma": 0.413},
-        **{"x1_start": -4.27e7, "v1_start": -4.47e54, "x2_start": 1e-61, "v2_start": -2e-33},
-        **{"box_amplitude": 1.894, "box_frequency": 0.1958, "phase_start": 4.43},
-    },
-}
-
-
-@least_work
-@pytest.mark.parametrize("values", STALLS.values(), ids=STALLS)
-@pytest.mark.parametrize("length", [2e-3, 2.0])
-def test_no_rounding_holds_the_search_up(values, length):
-    """Where nothing but rounding tells one gap from another, the search went on by rounding."""
-    m = advanced(started(**values), length)
-    assert m[at.X_REL] <= m[at.X_REL_MAX]
-    m = advanced(started(**values), *(length * i / 16.0 for i in range(1, 17)))
 
 
 @examples(60)

@@ -7,14 +7,13 @@ from fractions import Fraction
 from unittest.mock import patch
 
 import mpmath as mp
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from fmu_src.kernels.oscillator import memory as at
 from fmu_src.kernels.oscillator import stepper
-from fmu_src.kernels.oscillator.motion import FAINTEST, move_origin, state_at
+from fmu_src.kernels.oscillator.motion import FAINTEST, move_origin
 from tools import exact_motion as truth
 
 from . import reference
@@ -81,25 +80,6 @@ def test_event_by_event_in_high_precision(values):
     )
 
 
-@pytest.mark.parametrize(
-    "values",
-    [
-        {"box_frequency": 1.045, "d1": 0.1, "d2": 0.1},
-        {"box_frequency": 2.0, "m2": 2.0, "k2": 3.0, "d1": 0.1, "d2": 0.3},
-    ],
-)
-def test_periods_by_an_ode_solver(values):
-    values = {**DEFAULTS, **values}
-    stop = 6 * 2 * math.pi / values["box_frequency"]
-    times, state = reference.impacts_by_solver(values, STATE, stop)
-    m = started(**values, **STARTS)
-    found = events(m, stop)
-    assert all(mode == at.FLIGHT for _, mode in found)
-    assert len(times) >= 5
-    assert [time for time, _ in found] == pytest.approx(times, abs=1e-8)
-    assert [m[i] for i in (at.X1, at.V1, at.X2, at.V2)] == pytest.approx(list(state), abs=1e-7)
-
-
 def test_a_flight_of_thousands_of_radians_is_written_anew():
     values = {"k2": 0.5, "box_acceleration": -3.0, "box_amplitude": 0.1, "box_frequency": 1.7}
     m = advanced(started(x1_start=3.0, x2_start=6.0, **values), 5000.0)
@@ -161,49 +141,6 @@ def test_equal_oscillators_always_move_together(values, drive):
     assert m[at.X1] == pytest.approx(float(common(99.5)), abs=1e-12)
 
 
-@pytest.mark.parametrize("e", [0.0, 0.4, 1.0])
-def test_free_motion_conserves_energy_up_to_impacts(e):
-    m = started(
-        x1_start=-1.0,
-        x2_start=0.5,
-        v1_start=0.8,
-        v2_start=-0.3,
-        d1=0.0,
-        d2=0.0,
-        box_amplitude=0.0,
-        e=e,
-        m2=2.0,
-        k2=5.0,
-    )
-    start = energy(m)
-    for i in range(1, 101):
-        advanced(m, 0.5 * i)
-        assert energy(m) + m[at.IMPACT_ENERGY] == pytest.approx(start, rel=1e-12)
-    assert m[at.IMPACT_COUNT] > 2
-    assert (m[at.IMPACT_ENERGY] == 0.0) == (e == 1.0)
-
-
-def energy(m):
-    """Mechanical energy relative to the box."""
-    kinetic = m[at.M1] * m[at.V1] ** 2 + m[at.M2] * m[at.V2] ** 2
-    return 0.5 * (kinetic + m[at.K1] * m[at.X1] ** 2 + m[at.K2] * m[at.X2] ** 2)
-
-
-@pytest.mark.parametrize(
-    "values",
-    [{"box_frequency": 0.7}, {"box_frequency": 0.4, "e": 0.2}, {"box_frequency": 1.9, "e": 1.0}],
-)
-def test_never_through_each_other(values):
-    m = started(**values)
-    for state, entry, end in pieces(m, 150.0):
-        for age in np.linspace(entry, end, 20):
-            x1, _, x2, _ = state_at(state, float(age))
-            assert x2 >= x1
-    for i in range(1, 1000):
-        advanced(m, 150.0 + 0.1 * i)
-        assert m[at.X_REL] >= 0.0
-
-
 def part_from_rest(kappa, frequency):
     """From rest two nearly equal oscillators; the memory after a while, and the gap then by
     Newton's law.
@@ -214,15 +151,6 @@ def part_from_rest(kappa, frequency):
         {**DEFAULTS, "k2": kappa, "box_frequency": frequency}, (0, 0, 0, 0), mp.mpf(0)
     )
     return m, float((second - first)(0.5 / frequency))
-
-
-@pytest.mark.parametrize("frequency", [0.01, 0.4, 3.0])
-@pytest.mark.parametrize("kappa", [0.9, 0.97, 0.99])
-@least_work
-def test_from_rest_nearly_equal_oscillators_part(kappa, frequency):
-    m, gap = part_from_rest(kappa, frequency)
-    assert m[at.IMPACT_COUNT] == 0.0
-    assert m[at.X_REL] == pytest.approx(gap, abs=1e-15)
 
 
 @pytest.mark.parametrize("frequency", [0.15, 0.11, 1.3])

@@ -5,11 +5,9 @@ overdamped, and its envelope.
 import math
 
 import mpmath as mp
-import numpy as np
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
-from scipy.integrate import solve_ivp
 
 from fmu_src.kernels.numerics.elementary import TWO_PI, sincos_turns
 from fmu_src.kernels.oscillator import memory as at
@@ -67,31 +65,6 @@ def state(m, tau):
     x, v = free_part_after(m, BRANCH, m[FREE], m[FREE + 1], tau)
     sine, cosine = sincos_turns(m[at.TURN] + m[at.ETA] / TWO_PI * tau)
     return displacement(m, HARMONIC, CUBIC, tau, x, v, sine, cosine)
-
-
-@pytest.mark.parametrize("ratio", DAMPINGS)
-@pytest.mark.parametrize("omega_squared", [1.0, 2.7])
-def test_against_an_ode_solver(ratio, omega_squared):
-    damping = ratio * math.sqrt(omega_squared)
-    m = oscillator(damping, omega_squared, 0.4, -0.8, 1.1)
-
-    def slope(t, y):
-        cubic = sum(
-            FORCING[f"box_{name}"] * t**i / math.factorial(i)
-            for i, name in enumerate(("acceleration", "jerk", "snap", "crackle"))
-        )
-        drive = (
-            FORCING["box_amplitude"]
-            * FORCING["box_frequency"] ** 2
-            * math.sin(FORCING["box_frequency"] * t + 1.1)
-            - cubic
-        )
-        return y[1], drive - 2 * damping * y[1] - omega_squared * y[0]
-
-    t = np.linspace(0.0, 12.0, 25)
-    y = solve_ivp(slope, (0.0, 12.0), (0.4, -0.8), "DOP853", t, rtol=1e-12, atol=1e-13).y
-    found = np.array([state(m, tau) for tau in t]).T
-    assert np.abs(found - y).max() <= 1e-10 * np.abs(y).max()
 
 
 @examples(150)
@@ -170,16 +143,3 @@ def test_envelope_bounds_the_basis(ratio, omega_squared, age):
     assert abs(S) <= m[BRANCH + at.ENVELOPE_SINE] * decay * room
     if m[BRANCH + at.ENVELOPE_RATE] * tau < 700.0:
         assert decay == pytest.approx(math.exp(-m[BRANCH + at.ENVELOPE_RATE] * tau), rel=1e-12)
-
-
-@pytest.mark.parametrize("tau", [0.0, 1e-9, 1e-3, 0.4999, 0.5001, 1.0, 5.0, 30.0])
-@pytest.mark.parametrize("ratio", DAMPINGS)
-def test_basis_solves_its_initial_value_problem(ratio, tau):
-    m = [0.0] * at.SIZE
-    set_oscillator(m, BRANCH, ratio, 1.0)
-    with mp.workdps(80):
-        still = truth.box_acceleration({"box_amplitude": 0.0}, 0)
-        cosine = truth.oscillator_motion(1, 2 * mp.mpf(ratio), 1, 1, -mp.mpf(ratio), still)(tau)
-        sine = truth.oscillator_motion(1, 2 * mp.mpf(ratio), 1, 0, 1, still)(tau)
-    found = fundamental_solutions(m, BRANCH, tau)
-    assert list(found[:2]) == pytest.approx([float(cosine), float(sine)], rel=3e-14, abs=1e-15)

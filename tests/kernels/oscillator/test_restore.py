@@ -98,12 +98,6 @@ def test_a_restored_run_has_the_same_bits(seed):
     check(seed, 12)
 
 
-@pytest.mark.slow
-def test_many_restored_runs_have_the_same_bits():
-    for seed in range(300):
-        check(seed, 25)
-
-
 @pytest.mark.parametrize("values", [{"bonded": 1.0}, {"k2": 1.0, "d2": 0.01}])
 def test_a_state_that_nothing_ends_may_be_as_old_as_it_likes(values):
     """Bonded, or pressed together for good: such a state is never written anew."""

@@ -17,16 +17,12 @@ from fmu_src.kernels.numerics.first_root import (
     taylor_root,
 )
 from fmu_src.kernels.oscillator import memory as at
-from fmu_src.kernels.oscillator.event_function import evaluate
 from fmu_src.kernels.oscillator.roots import walk
 from tools import exact_motion as truth
 
 from .kernel import (
-    CHAOTIC,
     DEFAULTS,
-    advanced,
     examples,
-    pieces,
     rest_together,
     sizes,
     started,
@@ -267,36 +263,3 @@ def test_a_near_miss_and_a_graze(values, depth, sign):
     expected = truth.first_root(gap, 20.0)
     assert (expected < bottom) == (sign < 0)
     assert agree(first_end(m, 20.0), expected, gap, 20.0)
-
-
-@pytest.mark.parametrize(
-    "values",
-    [CHAOTIC, {"box_frequency": 0.4, "e": 0.3}, {"d1": 0.3, "d2": 0.1, "box_frequency": 0.5}],
-)
-def test_every_state_ends_on_a_root(values):
-    m = started(**values)
-    for state, _, end in pieces(m, 300.0)[:-1]:
-        if state[at.END_KIND] == at.END_EVENT:
-            assert abs(evaluate(state, end)[0]) <= 1e-12 * abs(m[at.FORCING])
-
-
-def test_the_walk_does_not_depend_on_where_it_is_interrupted():
-    once, often = started(**CHAOTIC), started(**CHAOTIC)
-    advanced(once, 60.0)
-    advanced(often, *[0.06 * i for i in range(1, 1000)], 60.0)
-    assert once[at.ORIGIN : at.END_KIND + 1] == often[at.ORIGIN : at.END_KIND + 1]
-
-
-@pytest.mark.parametrize(
-    "ratio", [0.9, 1 - 1e-4, 1 - 1e-8, 1 - 1e-13, 1.0, 1 + 1e-13, 1 + 1e-8, 1 + 1e-4, 1.1, 20.0]
-)
-def test_the_walk_is_short_around_critical_damping(ratio):
-    m = started(
-        d1=2.0 * ratio,
-        d2=2.0 * ratio * math.sqrt(1.2),
-        x2_start=1.0,
-        v2_start=0.5,
-        x_rel_max_on=0.0,
-    )
-    advanced(m, 40.0)
-    assert m[at.WORK] < 1000.0

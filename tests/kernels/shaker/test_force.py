@@ -3,7 +3,7 @@
 import pytest
 
 from fmu_src.kernels.shaker import memory as at
-from fmu_src.kernels.shaker import rates, restore, stepper
+from fmu_src.kernels.shaker import rates, stepper
 
 from .test_integration import FORCED, MOVING, started, state
 
@@ -63,26 +63,3 @@ def test_the_force_begins_where_it_is_set_to_the_value_it_has():
     assert state(advanced(m, 0.1)) == state(advanced(other, 0.1))
     untouched = advanced(started(**FORCED, **MOVING), 0.05, 0.1)
     assert state(m) != state(untouched)
-
-
-def test_a_restored_state_knows_when_the_force_was_set():
-    m = advanced(started(**FORCED, **MOVING), 0.05)
-    set_force(m, 2.0)
-    advanced(m, 0.0625)
-    for touched in (False, True):
-        if touched:
-            set_force(m, 1.0)
-        other = list(m)
-        assert restore.restore(other, 0.0) == at.OK
-        assert state(advanced(list(m), 0.1)) == state(advanced(other, 0.1))
-
-
-@pytest.mark.parametrize(
-    ("slot", "value"),
-    [(at.FORCE_TIME, -1.0), (at.FORCE_TIME, 0.06), (at.FORCE_SET, 0.5)],
-)
-def test_a_forged_time_of_setting_is_refused(slot, value):
-    m = advanced(started(**FORCED), 0.05)
-    m[slot] = value
-    assert restore.restore(m, 0.0) == at.FORGED
-    assert m[at.WORK] == slot

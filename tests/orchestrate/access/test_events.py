@@ -72,19 +72,6 @@ def test_no_impacts(events):
     assert (found.time.shape, found.state.shape, found.sticks.dtype) == ((0,), (0, 4), bool)
 
 
-def test_time_and_length_in_si(event_fmu):
-    """The same motion on another clock and another rule: seconds by 1/omega, metres by a eta^2."""
-    with EventInstance(event_fmu) as instance:
-        begin(instance, STRUCTURE, CHAOS)
-        plain = instance.impacts(0.0, 50.0)
-        quick = Structure.nondimensional(mu=0.7, kappa=1.3, D=0.013, e=0.6, m1=2.0, omega=64.0)
-        excitation = Excitation(frequency=1.2 * 64.0, amplitude=CHAOS.amplitude / 1024.0)
-        begin(instance, quick, excitation)
-        found = instance.impacts(0.0, 50.0 / 64.0)
-    np.testing.assert_allclose(found.time * 64.0, plain.time, rtol=1e-9)
-    np.testing.assert_allclose(found.closing * 1024.0 / 64.0, plain.closing, rtol=1e-6, atol=1e-9)
-
-
 def test_begin_sets_all(any_fmu):
     structure = Structure(m1=2.0, m2=3.0, k1=4.0, k2=5.0, d1=0.1, d2=0.2, e=0.3, gamma=1e-5)
     excitation = Excitation(frequency=2.0, amplitude=0.5, phase=1.0)

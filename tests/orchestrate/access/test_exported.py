@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import shutil
 import subprocess
 import sys
@@ -86,12 +85,6 @@ def test_what_is_missing_is_exported_once(maker, places):
     for _ in range(2):
         assert find(OSCILLATOR).path == folder / "fmi3" / f"{OSCILLATOR}.fmu"
     assert maker.asked == [(OSCILLATOR, "fmi3", folder)]
-
-
-def test_export_is_said(maker, places, caplog):
-    caplog.set_level(logging.INFO)
-    find(OSCILLATOR)
-    assert f"exporting {places[0] / 'fmi3' / OSCILLATOR}.fmu" in caplog.text
 
 
 @pytest.mark.parametrize("progress", [True, False])
@@ -254,29 +247,6 @@ def test_guids_need_the_standard_library_alone(real):
     guids = done.stdout.split()
     assert len(set(guids)) == len(guids) == len(FORMS) * len(MODELS)
     assert {describe(real[form]).guid for form in FORMS} < set(guids)
-
-
-def test_two_at_once_see_whole_files_alone(tmp_path, python_fmu):
-    """Both export the same FMU again and again; every look at it finds none, or a whole one."""
-    program = Path(__file__).with_name("exporting.py")
-    command = [sys.executable, str(program), str(tmp_path), "3", str(python_fmu)]
-    both = [subprocess.Popen(command, stderr=subprocess.PIPE, text=True) for _ in range(2)]
-    path, seen = tmp_path / "fmi2-python" / f"{OSCILLATOR}.fmu", []
-    stop = threading.Event()
-
-    def look():
-        while not stop.is_set():
-            if path.is_file():
-                seen.append(describe(path).name)
-
-    looking = threading.Thread(target=look)
-    looking.start()
-    errors = [one.communicate()[1] for one in both]
-    stop.set()
-    looking.join()
-    assert [one.returncode for one in both] == [0, 0], errors
-    assert len(seen) > 5 and set(seen) == {OSCILLATOR}
-    assert [item.name for item in path.parent.iterdir()] == [path.name]
 
 
 def test_who_waits_for_an_export_does_not_make_it_again(maker, places, monkeypatch):

@@ -161,16 +161,6 @@ def test_instances_side_by_side_do_not_mind_each_other(any_fmu):
             assert three.get(*STATE[:5]) == two.get(*STATE[:5])
 
 
-def test_closing_one_leaves_the_others(instance, any_fmu):
-    """They share a binary, which is loaded once."""
-    for _ in range(3):
-        with Instance(any_fmu, name="other") as other:
-            other.initialize(**CHAOS)
-            other.step(0.0, 100.0)
-            there = trajectory(other, 100.0, 3)
-    assert trajectory(instance, 100.0, 3) == there
-
-
 def test_what_is_no_number_is_refused(instance):
     with pytest.raises(FmuError, match="real number"):
         instance.set(e="much")
@@ -209,6 +199,7 @@ for _ in range(2):
 """
 
 
+@pytest.mark.slow
 def test_the_second_instance_of_a_process_is_as_fast_as_the_first(python_fmu):
     command = [sys.executable, "-c", SECONDS, str(python_fmu)]
     done = subprocess.run(command, capture_output=True, text=True, check=True)

@@ -80,6 +80,7 @@ def test_a_hardening_curve_upwards_has_its_cube():
     assert (abs(found / [33.0, zeta, cube] - 1.0) < [0.01, 0.1, 0.2]).all(), found
 
 
+@pytest.mark.slow
 def test_order_1_of_one_face_alone_does_not_state_the_halves():
     hertz = np.linspace(28.0, 40.0, 25)
     ratio = abs(transmissibility(hertz, 33.8, 0.02))

@@ -11,6 +11,8 @@ from tools.benches.excitation import Swept
 from tools.benches.lumped import Faces, Halves
 from tools.benches.sensors import Sensor
 
+from ...sparing import ordinary
+
 
 def two_sensors(opposite):
     """Both read order 2 in phase, or opposite to each other; gains and delays differ."""
@@ -35,7 +37,7 @@ def test_faces_move_apart_where_their_order_2_differs(opposite):
     assert (even.moved_apart > 1.5) if opposite else (even.moved_apart < 0.5)
 
 
-@pytest.mark.parametrize("sensors", [1, 2])
+@pytest.mark.parametrize("sensors", ordinary([1, 2]))
 def test_what_would_have_been_seen_is_not_below_an_opening_that_was_not(sensors):
     """Faces that are pressed together open a little, at the resonance alone."""
     halves = Halves(m1=1.5, m2=1.2, f1=38.0, f2=34.5, zeta1=0.01, zeta2=0.01)

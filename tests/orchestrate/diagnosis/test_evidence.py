@@ -38,10 +38,12 @@ def test_gain_and_delay_of_a_sensor_are_found_in_closed_form(player):
     values = hypothesis.values_from_structure(BEAM, evidence)
     computed = evidence.orders_of_motion(hypothesis.displacements(values, evidence, player))
     found = [evidence.sensor_error(row, computed[row, 0]) for row in (0, 1)]
-    np.testing.assert_allclose([gain for gain, _ in found], [1.04, 1.0], atol=2e-3)
-    assert max(abs(delay) for _, delay in found) < 2e-6
+    factors, gains, delays = zip(*found, strict=True)
+    np.testing.assert_allclose(factors, 1.0, atol=1e-2)
+    np.testing.assert_allclose(gains, [1.04, 1.0], atol=1e-2)
+    assert max(map(abs, delays)) < 4e-6
     late = computed * np.exp(-2j * np.pi * evidence.frequency * 1e-4)
-    assert evidence.sensor_error(1, late[1, 0])[1] == pytest.approx(-1e-4, rel=0.05)
+    assert evidence.sensor_error(1, late[1, 0])[2] == pytest.approx(-1e-4, rel=0.05)
 
 
 def test_impulses_do_not_come_back_from_above_the_sampling_rate(player):

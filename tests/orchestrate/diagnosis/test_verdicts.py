@@ -35,70 +35,32 @@ OPENED = Findings(
     guessed=(42.0, 52.0),
 )
 QUIET = replace(OPENED, excess=0.3, sound_misfit=0.3, bursts=0.8)
-CASES = {
-    "opens, and the halves explain it": ({}, "delaminated"),
-    "no order 2, one mass explains it": (
-        {"excess": 0.3, "sound_misfit": 0.3, "bursts": 0.8},
-        "no opening seen",
-    ),
-    "the same, sampled too slowly for impacts": (
-        {"excess": 0.3, "sound_misfit": 0.3, "bursts": float("nan")},
-        "no opening seen",
-    ),
-    "no order 2, one mass explains it, but something strikes": (
-        {"excess": 0.3, "sound_misfit": 0.3},
-        "undecided",
-    ),
-    "no order 2, and nothing explains it": (
-        {"excess": 0.3, "delaminated_misfit": 3.5, "sound_misfit": 6.0},
-        "not described",
-    ),
-    "no order 2, but the halves alone explain it": ({"excess": 0.3}, "undecided"),
-    "order 2, both explain it": ({"sound_misfit": 0.9}, "undecided"),
-    "order 2, one mass explains it better": (
-        {"sound_misfit": 0.2, "delaminated_misfit": 1.2},
-        "undecided",
-    ),
-    "order 2, and nothing explains it": (
-        {"delaminated_misfit": 3.5, "sound_misfit": 6.0},
-        "not described",
-    ),
-    "better, but not in most parts of the record": ({"share": 0.6}, "undecided"),
-    "no order 2, but the faces move apart and impacts are heard": (
-        {"excess": 0.2, "apart": 4.0},
-        "delaminated",
-    ),
-    "the faces differ, as by a torsion mode of a sound beam": (
-        {"excess": 0.25, "bursts": 0.8, "apart": 40.0, "sound_misfit": 1.4},
-        "undecided",
-    ),
-    "the same, and nothing hears impacts": (
-        {"excess": 0.25, "bursts": float("nan"), "apart": 40.0, "sound_misfit": 1.4},
-        "undecided",
-    ),
-    "the faces differ alone, and the halves explain it far better": (
-        {"excess": 0.25, "bursts": 0.8, "apart": 40.0, "sound_misfit": 9.0},
-        "delaminated",
-    ),
-    "the odds speak against it": ({"simulated_odds": 0.68}, "undecided"),
-    "a channel is saturated": ({"clipped": 0.01}, "undecided"),
-    "the sweep does not pass the resonance": ({"end_response": 0.98}, "undecided"),
-    "the times are in ms": ({"resonance": 0.046}, "undecided"),
-    "the halves explain it hardly better": ({"sound_misfit": 1.1}, "undecided"),
-    "the same, and the faces move apart": ({"sound_misfit": 0.9, "apart": 4.0}, "delaminated"),
-    "they move apart, and one mass explains it as well": (
-        {"sound_misfit": 0.82, "apart": 4.0},
-        "undecided",
-    ),
-    "they move apart, and the halves explain it badly": (
-        {"delaminated_misfit": 3.5, "sound_misfit": 6.0, "apart": 4.0},
-        "delaminated",
-    ),
-    "they move apart, and nothing explains it": (
-        {"delaminated_misfit": 4.5, "sound_misfit": 9.0, "apart": 4.0},
-        "not described",
-    ),
-}
+CASES = """
+opens, and the halves explain it: -> delaminated
+no order 2, one mass explains it: excess=0.3 misfit=0.3 bursts=0.8 -> no opening seen
+the same, sampled too slowly for impacts: excess=0.3 misfit=0.3 bursts=nan -> no opening seen
+no order 2, one mass explains it, but something strikes: excess=0.3 misfit=0.3 -> undecided
+no order 2, and nothing explains it: excess=0.3 other=3.5 misfit=6 -> not described
+no order 2, but the halves alone explain it: excess=0.3 -> undecided
+order 2, both explain it: misfit=0.9 -> undecided
+order 2, one mass explains it better: misfit=0.2 other=1.2 -> undecided
+order 2, and nothing explains it: other=3.5 misfit=6 -> not described
+better, but not in most parts of the record: share=0.6 -> undecided
+no order 2, but the faces move apart and impacts are heard: excess=0.2 apart=4 -> delaminated
+the faces differ as by a torsion mode: excess=0.25 bursts=0.8 apart=40 misfit=1.4 -> undecided
+the same, and nothing hears impacts: excess=0.25 bursts=nan apart=40 misfit=1.4 -> undecided
+faces alone differ, halves are far better: excess=0.25 bursts=0.8 apart=40 misfit=9 -> delaminated
+the odds speak against it: simulated_odds=0.68 -> undecided
+a channel is saturated: clipped=0.01 -> undecided
+the sweep does not pass the resonance: end_response=0.98 -> undecided
+the times are in ms: resonance=0.046 -> undecided
+the halves explain it hardly better: misfit=1.1 -> undecided
+the same, and the faces move apart: misfit=0.9 apart=4 -> delaminated
+they move apart, and one mass explains it as well: misfit=0.82 apart=4 -> undecided
+they move apart, and the halves explain it badly: other=3.5 misfit=6 apart=4 -> delaminated
+they move apart, and nothing explains it: other=4.5 misfit=9 apart=4 -> not described
+"""  # what is changed of a record that opens -> its verdict
+MISFITS = {"misfit": "sound_misfit", "other": "delaminated_misfit"}
 
 
 STOPS = {  # and what is named
@@ -134,10 +96,11 @@ def test_what_keeps_a_record_from_being_called_delaminated_is_named():
     assert OPENED.stops == []
 
 
-@pytest.mark.parametrize("name", CASES)
-def test_each_case_has_its_word(name):
-    changes, expected = CASES[name]
-    findings = replace(OPENED, **changes)
+@pytest.mark.parametrize("case", CASES.strip().splitlines())
+def test_each_case_has_its_word(case):
+    changes, _, expected = case.rpartition(": ")[2].partition("-> ")
+    pairs = (change.split("=") for change in changes.split())
+    findings = replace(OPENED, **{MISFITS.get(n, n): float(value) for n, value in pairs})
     assert findings.verdict() == expected
     assert findings.next_measurement()
     assert (

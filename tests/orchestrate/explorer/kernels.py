@@ -2,34 +2,26 @@
 
 import math
 
-from ...native.slave import Slave
+from ...fmu.programs.driver import open_fmu
 
 
 class Native:
     """An instance of the FMI 2.0 binary, whose serialised state has its whole memory."""
 
     def __init__(self, path, size):
-        self.slave, self.size = Slave(path), size
+        self.fmu, self.size = open_fmu(path), size
 
     def bytes(self):
-        fmu = self.slave.fmu
-        state = fmu.getFMUState()
-        found = fmu.serializeFMUState(state)
-        fmu.freeFMUState(state)
-        return bytes(found)[-8 * self.size - 8 : -8]
+        return bytes(self.fmu.save()[0])[-8 * self.size - 8 : -8]
 
     def begin(self, **values):
-        fmu = self.slave.fmu
-        self.slave.set(**values)
-        fmu.setupExperiment(startTime=0.0)
-        fmu.enterInitializationMode()
-        fmu.exitInitializationMode()
+        self.fmu.start(**values)
 
     def set(self, **values):
-        self.slave.set(**values)
+        self.fmu.set(**values)
 
     def step(self, time, target):
-        self.slave.fmu.doStep(time, target - time)
+        self.fmu.call("doStep", time, target - time)
 
 
 def period(frequency):

@@ -12,9 +12,7 @@ import orchestrate
 from orchestrate import cli
 from orchestrate.errors import InputError
 from orchestrate.explorer import figure6
-from orchestrate.explorer.branches import split_by_stability
-from orchestrate.explorer.bundle import IMPORT, bundle
-from orchestrate.explorer.page import explore, read_modules
+from orchestrate.explorer.page import explore
 from orchestrate.explorer.sweep_data import read_sweep
 from orchestrate.running.store import load
 
@@ -77,22 +75,6 @@ def test_no_script_of_a_file_runs_and_none_that_is_added_to_its_page(chromium, f
     assert len(chromium.console()) >= 2  # what the policy has kept from running
 
 
-def test_no_module_of_the_page_makes_elements_of_text():
-    ways = r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|\beval\b|new Function"
-    found = [name for name, text in read_modules().items() if re.search(ways, text)]
-    assert found == []
-
-
-def test_each_module_imports_in_the_form_that_is_joined_and_is_used():
-    scripts = read_modules()
-    for name, text in scripts.items():
-        assert len(IMPORT.findall(text)) == text.count("\nimport ") + text.startswith("import ")
-        assert text.startswith("/** "), f"{name}.js: expected what it is for in the first line"
-        assert len(text.splitlines()) < 360, f"{name}.js is long"
-    reached = bundle(scripts, "main") + bundle(scripts, "worker")
-    assert all(f"const module_{name} = " in reached for name in scripts)
-
-
 def test_starts_are_the_ends_of_the_responses_before():
     both = orchestrate.sweep(
         orchestrate.Structure(), eta=[1.2, 1.21, 1.22], direction="both", transient=20, samples=5
@@ -104,17 +86,6 @@ def test_starts_are_the_ends_of_the_responses_before():
     ends = both.end_state.transpose("direction", "eta", "coordinate").values
     assert np.array_equal(up, [[0.0] * 4, *ends[0][:-1]])
     assert np.array_equal(down, [*ends[1][1:], [0.0] * 4])
-
-
-def test_starts_in_metres_where_the_excitation_is():
-    beam = orchestrate.Structure.from_file("beam")
-    data = orchestrate.sweep(
-        beam, frequency=[78.0, 79.0], amplitude=1e-3, transient=20, samples=5, direction="up"
-    )
-    start = read_sweep(data).numbers[6:].reshape(2, 4)[1]
-    motion = orchestrate.simulate(beam, frequency=78.0, amplitude=1e-3, transient=25, periods=1)
-    state = [float(motion[name][0]) for name in ("x1", "x2", "v1", "v2")]
-    assert start == pytest.approx(state, rel=1e-9)
 
 
 def test_what_is_no_sweep_along_the_frequency_is_refused(tmp_path):
@@ -145,17 +116,6 @@ def test_a_page_is_replaced_and_no_other_file(tmp_path):
     path.unlink()
     inodes = {explore(output=path).stat().st_ino for _ in range(2)}
     assert len(inodes) == 2 and [one.name for one in tmp_path.iterdir()] == ["notes.html"]
-
-
-def test_a_branch_of_no_numbers_is_refused(swept, tmp_path):
-    numbers = {"stable": ("point", [1, 1]), "xi_rel": (("sample", "point"), [[1.0, 2.0]])}
-    good = xr.Dataset({**numbers, "eta": ("point", [1.0, 1.1])}, attrs={"over": "eta"})
-    explore(swept, output=tmp_path / "page.html", branches=good)
-    for wrong in ([1.0, np.nan], [1.0, np.inf], ["a", "b"]):
-        with pytest.raises(InputError, match="branches: .*; expected a result"):
-            branches = good.assign(eta=("point", wrong))
-            explore(swept, output=tmp_path / "other.html", branches=branches)
-    assert [path.name for path in tmp_path.iterdir()] == ["page.html"]
 
 
 WRONG = {
@@ -215,14 +175,6 @@ def test_the_command_writes_a_page(tmp_path, capsys, swept):
         assert "expected" in capsys.readouterr().err
 
 
-def test_a_branch_is_cut_where_its_stability_changes():
-    along = np.arange(5.0)
-    gaps = np.array([1.0, 2.0, 3.0, 0.0, 5.0])
-    stable = np.array([True, True, False, False, False])
-    parts = [(list(x), list(y), flag) for x, y, flag in split_by_stability(along, gaps, stable)]
-    assert parts == [([0, 1, 2], [1, 2, 3], True), ([2, 4], [3, 5], False)]
-
-
 ANEW = "the kernel has changed: make Figure 6 of the explorer anew, python -m tools.figure6_states"
 
 
@@ -241,12 +193,6 @@ def test_figure_6_is_replayed_from_where_its_responses_begin(exported, first):
     )
     for name in ("end_state", "impacts_per_period", "frequency", "amplitude"):
         assert swept[name].values.tobytes() == few[name].values.tobytes(), ANEW
-
-
-def test_figure_6_is_all_of_the_papers_frequencies():
-    found = figure6.first_diagram(orchestrate.Structure())
-    assert (found.count, found.low, found.high) == (7901, 0.1, 8.0)
-    assert figure6.first_diagram(orchestrate.Structure(e=0.3)).count == 0
 
 
 def test_a_page_of_another_kernel_computes_its_own_and_says_so(monkeypatch, tmp_path, caplog):

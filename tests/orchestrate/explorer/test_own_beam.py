@@ -2,7 +2,6 @@
 
 import json
 import os
-import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -12,12 +11,10 @@ import pytest
 import xarray as xr
 
 import orchestrate
-from orchestrate import cli
 
-from .conftest import typed
+from .conftest import READY, typed
 
 DIAGRAM = "explorer.regions.diagram"
-READY = "return explorer.regions.complete && !explorer.regions.quick && explorer.inspector.found"
 FILE = """
 const [name, text] = arguments;
 const given = new DataTransfer();
@@ -70,48 +67,6 @@ def test_the_papers_motions_are_those_of_a_beam_in_hertz(browser):
         "units.dispatchEvent(new Event('change'))"
     )
     assert browser.run("return explorer.structure") == browser.run("return explorer.table.usual")
-
-
-def test_a_frequency_carried_over_from_the_papers_beam_goes_with_the_new_beam(browser):
-    """Until a frequency in Hz was chosen: then it stays."""
-    browser.run("explorer.choose(2.997, true)")
-    own(browser)
-    assert float(browser.get("hertz", "value")) == pytest.approx(119.88)
-    typed(browser, "f1", "12")
-    typed(browser, "f2", "14")
-    browser.until(READY)
-    assert float(browser.get("hertz", "value")) == pytest.approx(12 * 2.997, rel=1e-6)
-    low, high = browser.run(f"return [{DIAGRAM}.low, {DIAGRAM}.high]")
-    assert low < browser.run("return explorer.eta") < high
-    assert (low, high) == pytest.approx((0.1, 8.0))
-    typed(browser, "hertz", "20")
-    typed(browser, "f1", "13")
-    browser.until(READY)
-    assert float(browser.get("hertz", "value")) == pytest.approx(20.0)
-
-
-@pytest.mark.slow
-def test_a_beam_of_42_and_55_hertz_is_what_the_commands_compute(browser, tmp_path):
-    browser.open(Path(browser.run("return location.pathname")), "#from=1&to=1.3&eta=1.2")
-    own(browser)
-    for name, text in {"f1": "42", "f2": "55", "zeta-number": "0.7", "level": "0.5"}.items():
-        typed(browser, name, text)
-    typed(browser, "hertz", "50.25")
-    browser.until(READY)
-    structure = browser.run("return explorer.structure")
-    names = ("m1", "m2", "k1", "k2", "d1", "d2", "e")
-    beam = orchestrate.Structure.from_halves(m1=1, m2=1, f1=42, f2=55, zeta1=0.007, zeta2=0.007)
-    assert [structure[name] for name in names] == pytest.approx([getattr(beam, n) for n in names])
-    assert browser.run("return explorer.inspector.choice.point.frequency") == 2.0 * np.pi * 50.25
-    (motion,) = pasted(browser.text("motion-command"), tmp_path / "motion")
-    states = browser.numbers("explorer.inspector.found.motion.states").reshape(-1, 4)
-    assert states[:, 0].tobytes() == motion.x1.values.tobytes()
-    assert " --hz 50.25 --g 0.5 " in browser.text("motion-command")
-    arguments = cli.make_parser().parse_args(shlex.split(browser.text("command"))[3:])
-    assert arguments.hz and float(arguments.g) == 0.5
-    (swept,) = pasted(browser.text("command"), tmp_path / "sweep")
-    gaps = browser.numbers(f"{DIAGRAM}.lanes[0].found.flatMap((one) => Array.from(one.gaps))")
-    assert gaps.tobytes() == swept.xi_rel.values.tobytes()
 
 
 SHOWN = {  # states of the page: a link's words, and what is done then
@@ -179,17 +134,6 @@ def test_what_is_wrong_with_a_number_stands_beside_its_field_and_nothing_changes
     typed(browser, "e-number", "0.6")
     assert browser.run("return explorer.structure.e") == 0.6
     assert browser.text("e-number-wrong") == ""
-
-
-def test_a_number_that_is_being_typed_is_left_alone(browser):
-    from selenium.webdriver.common.keys import Keys
-
-    browser.chosen()
-    browser.run("const at = document.getElementById('eta-number'); at.focus(); at.select()")
-    browser.keys("2.")
-    browser.run("explorer.refreshDiagram()")  # as when the diagram is complete
-    browser.keys("5", Keys.TAB)
-    assert browser.run("return explorer.eta") == 2.5
 
 
 def test_a_link_with_wrong_numbers_opens_the_usual_view(browser, page):

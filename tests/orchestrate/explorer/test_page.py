@@ -1,6 +1,5 @@
 """The page in headless browsers: each way to use it, and the bits of what it shows."""
 
-import re
 import shlex
 import xml.etree.ElementTree as ET
 from pathlib import Path
@@ -19,17 +18,11 @@ from orchestrate.response.response_loop import LoopSettings, response_loop
 from orchestrate.structures import Excitation, Structure
 
 from ...sparing import ordinary
-from .conftest import typed
 from .test_own_beam import pasted
 
 PAPER = Structure()
 DIAGRAM = "explorer.regions.diagram"
 MOTION = "explorer.inspector.found.motion"
-DRAWN = """(() => {
-  const canvas = document.getElementById(arguments[0]);
-  const seen = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
-  return seen.data.some((value) => value);
-})()"""
 
 
 def gaps(browser, lane=0):
@@ -100,41 +93,9 @@ def test_a_dragged_region_is_computed_anew_and_there_is_a_way_back(browser, swep
     assert np.array_equal(etas(browser), region)
 
 
-def test_sliders_change_the_structure_and_the_command_says_so(browser):
-    browser.open(page_of(browser), "#from=1.1&to=1.3&direction=up")
-    browser.click("e")  # its middle
-    browser.until("return explorer.regions.complete && !explorer.regions.quick")
-    assert abs(browser.run("return explorer.structure.e") - 0.5) < 0.02
-    command = shlex.split(browser.text("command"))
-    arguments = cli.make_parser().parse_args(command[3:])
-    assert arguments.set == [f"e={browser.run('return explorer.structure.e')}"]
-    first, last, step = map(float, arguments.eta.split(":"))
-    region = etas(browser)
-    assert (first, last) == (region[0], region[-1]) and step > 0.0
-    structure = orchestrate.Structure().replace(e=browser.run("return explorer.structure.e"))
-    found = orchestrate.sweep(structure, eta=region[:60], direction="up", progress=False)
-    assert gaps(browser)[:60].tobytes() == found.xi_rel.values.tobytes()
-    browser.run(
-        "const box = document.getElementById('m2'); box.value = 0.5;"
-        "box.dispatchEvent(new Event('change'))"
-    )
-    assert float(browser.run("return document.getElementById('mu').value")) == 0.5
-    browser.click("reset")
-    assert browser.run("return explorer.structure.e") == 0.7
-
-
 def page_of(browser):
     """The file that is open."""
     return Path(browser.run("return location.pathname"))
-
-
-def test_both_directions_show_that_responses_are_not_unique(browser):
-    browser.run(
-        "const box = document.getElementById('direction'); box.value = 'both';"
-        "box.dispatchEvent(new Event('change')); explorer.open(1.2, 1.5)"
-    )
-    browser.until("return explorer.regions.complete")
-    assert not np.array_equal(gaps(browser, 0), gaps(browser, 1))
 
 
 def test_a_link_restores_the_view(browser):
@@ -210,33 +171,6 @@ def test_keys_alone_do_it(browser):
     assert browser.run(f"return {DIAGRAM}.high - {DIAGRAM}.low") == whole
 
 
-def test_the_page_opens_with_a_motion_that_moves_and_sound_is_a_key_away(browser):
-    eta = browser.chosen()
-    assert eta == pytest.approx(0.7, abs=0.03) and f"eta={eta}" in browser.run(
-        "return location.hash"
-    )
-    turn = browser.run("return explorer.inspector.animation.turn")
-    browser.until(f"return explorer.inspector.animation.turn !== {turn}")
-    assert browser.text("play") == "Pause"
-    assert browser.text("sentence").startswith("Repeats every shaking period: 3 impacts")
-    for name in ("history", "phase", "section", "spectrum"):
-        browser.until("return " + DRAWN.replace("arguments[0]", repr(name)))
-    assert browser.run("return explorer.inspector.sound.context === null")
-    browser.keys("s")
-    browser.until("return explorer.inspector.sound.playing")
-    assert browser.text("listen") == "Stop sound (S)"
-    browser.keys("s")
-    assert browser.run("return !explorer.inspector.sound.playing")
-
-
-def test_without_a_sweep_the_page_computes_its_own(chromium, tmp_path, exported):
-    structure = orchestrate.Structure(e=0.3)
-    chromium.open(explore(structure, output=tmp_path / "page.html"), "#from=1.0&to=1.1")
-    found = orchestrate.sweep(structure, eta=etas(chromium)[:40], progress=False)
-    assert gaps(chromium)[:40].tobytes() == found.xi_rel.values.tobytes()
-    assert chromium.console() == []
-
-
 @pytest.mark.parametrize("clearance", [0.0, 3.0, -1.0])
 def test_the_weak_drive_is_the_masters(browser, clearance):
     structure, drive = (
@@ -268,49 +202,6 @@ def test_the_weak_drive_is_the_masters(browser, clearance):
         assert np.array_equal(mine, found[name].values), name
 
 
-def test_the_motor_runs_and_is_stopped(browser):
-    browser.settle_at("ramp-up")
-    browser.click("ramp-up")
-    browser.until("return explorer.drive.rows.length > 100")
-    browser.click("drive-go")
-    browser.run(
-        "const { rows, state } = explorer.drive; window.row = rows.at(-1);"
-        "explorer.drive.take({ rows: [{ ...row, impacts: 1 }], run: state })"
-    )
-    words = browser.text("drive-status")
-    assert words.endswith(", 1 impact a revolution") and not re.search(r"\d (m|V|rad)\b", words)
-    assert browser.run("return explorer.drive.rows.at(-1).voltage > explorer.drive.rows[0].voltage")
-
-
-def check_command_gives_the_motion(chromium, folder, capsys):
-    """Run the command that the page shows; its motion has the bits of the page's."""
-    command = shlex.split(chromium.text("motion-command"))
-    assert cli.main([*command[3:], "--output", str(folder)]) == 0, capsys.readouterr().err
-    (path,) = folder.glob("*.nc")
-    with xr.open_dataset(path) as motion:
-        states = chromium.numbers(f"{MOTION}.states").reshape(-1, 4)
-        assert states[:, 0].tobytes() == motion.x1.values.tobytes()
-
-
-def test_a_sweep_in_hertz_and_metres_is_looked_into(chromium, tmp_path, capsys):
-    beam = orchestrate.Structure.from_file("beam")
-    turns = 2.0 * np.pi * np.linspace(11.0, 16.0, 41)
-    data = orchestrate.sweep(beam, frequency=turns, amplitude=1e-3, direction="up")
-    chromium.open(explore(data, output=tmp_path / "page.html"))
-    assert gaps(chromium)[:10] == pytest.approx(data.xi_rel.values[:10], rel=1e-6, abs=1e-9)
-    chromium.run("explorer.choose(1.05)")
-    chromium.chosen()
-    check_command_gives_the_motion(chromium, tmp_path, capsys)
-    near = chromium.run("return explorer.inspector.choice.point")
-    chromium.run("explorer.open(1.0, 1.1)")
-    chromium.until("return explorer.regions.complete")
-    index = int(np.abs(etas(chromium) - near["eta"]).argmin())
-    peak = chromium.run(f"return {DIAGRAM}.lanes[0].found[{index}].peak")
-    row = data.isel(frequency=int(np.abs(data.eta.values - near["eta"]).argmin()))
-    assert peak == pytest.approx(float(row.xi_rel_max), rel=0.05)
-    assert chromium.console() == []
-
-
 TURNS = [2.0 * np.pi * hertz for hertz in (12.0, 12.25, 12.5)]
 EXCITATIONS = {  # an excitation, and what the command has of it; no option says the last
     "metres": (TURNS, [1e-3] * 3, "--hz 12:12.5:0.25 --amplitude 0.001"),
@@ -334,43 +225,14 @@ def test_the_commands_of_an_own_beam_compute_what_is_shown(chromium, tmp_path, k
     assert chromium.console() == []
 
 
-def test_the_motion_of_an_own_beam_is_computed_by_its_command(chromium, tmp_path, capsys):
-    beam = orchestrate.Structure.from_file("beam")
-    chromium.open(explore(beam, output=tmp_path / "page.html"), "#from=1&to=1.2&eta=1.1")
-    chromium.chosen()
-    check_command_gives_the_motion(chromium, tmp_path, capsys)
-    numbers = chromium.text("numbers")
-    point = chromium.run("return explorer.inspector.choice.point")
-    assert f"frequency, Hz{point['frequency'] / (2 * np.pi):.6g}" in numbers
-    for words in ("amplitude of the box, mm", "acceleration of the box, g", "largest gap, mm"):
-        assert words in numbers
+@pytest.mark.slow
+def test_all_of_figure_6_is_one_branch_to_the_last_bit(chromium, tmp_path, exported):
+    page = explore(output=tmp_path / "figure6.html")
+    assert page.stat().st_size < 1_500_000
+    chromium.open(page)
+    lane = "explorer.regions.diagram.lanes[0]"
+    starts = chromium.numbers(f"{lane}.starts").reshape(-1, 4)
+    ends = chromium.numbers(f"{lane}.found.flatMap((one) => one.end)").reshape(-1, 4)
+    assert ends.shape == starts.shape == (7901, 4)
+    assert ends[:-1].tobytes() == starts[1:].tobytes()
     assert chromium.console() == []
-
-
-def test_a_number_counts_when_it_has_been_typed(browser):
-    browser.open(page_of(browser), "#from=1.1&to=1.3&direction=up")
-    browser.run(
-        "window.seen = []; const old = explorer.change.bind(explorer);"
-        "explorer.change = (s, shown) => { seen.push(s.m2); old(s, shown); }"
-    )
-    typed(browser, "mu-number", "1.7")
-    assert browser.run("return seen") == [1.7]
-    typed(browser, "e-number", "1.7")  # beyond its range: nothing of it counts
-    assert browser.run("return explorer.structure.e") == 0.7
-    assert browser.run("return document.getElementById('e-number').validationMessage") == (
-        "expected 0 to 1"
-    )
-
-
-TAKE = "explorer.inspector.takeSpectra({ exponent: { value: arguments[0], error: 0.001 } })"
-
-
-def test_no_response_is_called_regular_and_irregular(browser):
-    """At 2.95 the response does not repeat within the samples; whatever its exponent."""
-    browser.run("explorer.choose(2.95)")
-    browser.chosen()
-    browser.until("return explorer.inspector.exponent !== undefined")  # its own comes no more
-    for exponent, words in ((-0.01, "has not repeated yet"), (0.1, "chaotic")):
-        browser.run(TAKE, exponent)
-        told = browser.text("numbers")
-        assert words in told and "not within 50 periods" in told and "regular" not in told

@@ -1,20 +1,15 @@
 """The page in the units that it was asked for: axes, fields, numbers, commands, what is saved."""
 
-import re
-import shlex
-
 import pytest
 
 import orchestrate
-from orchestrate import cli
 from orchestrate.constants import GRAVITY, TURN
 from orchestrate.explorer.page import explore
-from orchestrate.units import Units
 
-from .conftest import typed
+from ...sparing import ordinary
+from .conftest import READY, typed
 
 BEAM = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0, "zeta1": 0.007, "zeta2": 0.007}
-READY = "return explorer.regions.complete && !explorer.regions.quick && explorer.inspector.found"
 SHOWN = """
 const kept = {};
 const { inspector, regions } = explorer;
@@ -46,13 +41,7 @@ def beam(exported):
     return orchestrate.Structure.from_halves(**BEAM)
 
 
-@pytest.mark.parametrize(
-    "units",
-    [
-        units if i == 0 else pytest.param(units, marks=pytest.mark.slow)
-        for i, units in enumerate(ASKED)
-    ],
-)
+@pytest.mark.parametrize("units", ordinary(ASKED))
 def test_the_page_follows_the_units_asked_for(chromium, beam, units, tmp_path):
     turns, lengths, pushes, times, turn, length, push = ASKED[units]
     browser = chromium
@@ -89,24 +78,6 @@ def test_the_page_follows_the_units_asked_for(chromium, beam, units, tmp_path):
     gap = peak * point["amplitude"] * point["eta"] ** 2 / length
     told = numbers.partition(f"largest gap, {lengths}")[2].partition("impacts")[0]
     assert float(told.replace("−", "-")) == pytest.approx(gap, rel=1e-3)
-    assert browser.console() == []
-
-
-@pytest.mark.slow
-def test_its_commands_and_what_it_saves_are_in_these_units(chromium, beam, tmp_path):
-    units = "rad/s, um, m/s2"
-    browser = chromium
-    browser.open(explore(beam, units=units, output=tmp_path / "page.html"), "#from=1&to=1.1")
-    browser.until(READY)
-    for name in ("command", "motion-command"):
-        arguments = cli.make_parser().parse_args(shlex.split(browser.text(name))[3:])
-        assert Units.from_text(arguments.units) == Units.from_text(units)
-    browser.run("document.querySelector('[data-save=\"history.svg\"]').click()")
-    saved = browser.download("history_eta*.svg").read_text(encoding="utf-8")
-    text = " ".join(re.sub("<[^>]*>", " ", saved).split())
-    for words in ("displacement, µm", "halves of 263.9 and 345.6 rad/s", "rad/s, 9.807 m/s²"):
-        assert words in text
-    assert " Hz" not in text and " mm" not in text
     assert browser.console() == []
 
 

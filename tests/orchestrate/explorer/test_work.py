@@ -50,24 +50,6 @@ TASKS = {  # what a worker is asked, and how often it hands over at the least
 MOST = 25_000  # impacts and steps: 5 to 15 ms on a core of today
 
 
-FIRST = """
-const { pool, inspector } = explorer;
-pool.workers.splice(1);
-const came = [];
-const asked = { point: inspector.choice.point, start: inspector.choice.start, periods: 2000 };
-const order = (name) => pool.ask("section", asked, () => came.push(name));
-order("before");
-const { take } = inspector;
-inspector.take = (found) => {
-  came.push("clicked");
-  take.call(inspector, found);
-};
-explorer.choose(0.4);
-window.orders = [order("after"), order("last")];
-window.came = came;
-"""
-
-
 @pytest.fixture
 def probed(browser):
     """The page, with the kernel and what workers compute at hand."""
@@ -82,13 +64,6 @@ def test_little_is_done_between_two_pauses(probed, task, eta):
     asked, least = TASKS[task]
     work = probed.run(LONGEST, task, asked, eta, {})
     assert len(work) > least and max(work) <= MOST, work
-
-
-def test_a_restitution_near_one_has_more_pauses_not_longer_ones(probed):
-    asked, _ = TASKS["motion"]
-    usual, elastic = (probed.run(LONGEST, "motion", asked, 0.1, {"e": e}) for e in (0.7, 0.95))
-    assert sum(elastic) > 3 * sum(usual) and len(elastic) >= 2 * len(usual)
-    assert max(elastic) <= 200 * 200 + MOST  # 200 samples are one step of the kernel
 
 
 def test_a_motion_that_paused_goes_on_as_if_it_had_not(probed):
@@ -112,13 +87,3 @@ def test_a_motion_that_paused_goes_on_as_if_it_had_not(probed):
     """
     first, second, count, alike = probed.run(same)
     assert first == second > 2 and count > 80_000 and alike
-
-
-def test_a_click_comes_before_all_that_is_asked_later(browser):
-    """Without its urgency the two that are newer have the only worker in turn."""
-    browser.chosen()
-    browser.until("return explorer.regions.complete && explorer.inspector.exponent !== undefined")
-    browser.run(FIRST)
-    browser.until("return ['clicked', 'after', 'last'].every((name) => came.includes(name))")
-    came = browser.run("return came")
-    assert set(came[: came.index("clicked")]) <= {"before"}, came

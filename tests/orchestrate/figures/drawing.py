@@ -8,7 +8,7 @@ import matplotlib
 import numpy as np
 import xarray as xr
 
-from orchestrate.figures import orbit_diagram
+from orchestrate.figures import lines
 from orchestrate.figures.files import save
 from tools.pictures import oscillator, shaker
 
@@ -25,12 +25,12 @@ def main(folder: str) -> None:
     matplotlib.rcParams["lines.linewidth"] = 7.0  # a user's own setting
     before = dict(matplotlib.rcParams)
     figures = {
-        "orbit": orbit_diagram.draw(sweep()),
+        "orbit": lines.draw_sweep(sweep()),
         "scheme": oscillator.draw_scheme(),
         "shaker": shaker.draw_shaker(),
     }
     for name, figure in figures.items():
-        save(figure, f"{folder}/{name}", ("png", "pdf", "svg"))
+        save(figure, f"{folder}/{name}", ("png", "pdf"), dpi=30)
     assert dict(matplotlib.rcParams) == before
     assert "matplotlib.pyplot" not in sys.modules
     line = figures["orbit"].axes[1].lines[0]
@@ -38,7 +38,7 @@ def main(folder: str) -> None:
     from matplotlib import pyplot
 
     backend = matplotlib.get_backend()
-    save(orbit_diagram.draw(sweep()), f"{folder}/again")
+    save(lines.draw_sweep(sweep()), f"{folder}/again", dpi=30)
     assert matplotlib.get_backend() == backend
     pyplot.plot([1, 2])
     assert pyplot.gca().lines[0].get_linewidth() == 7.0

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from orchestrate.dynamics.borders import border
 from orchestrate.dynamics.branches import branch
-from orchestrate.figures import borders, branches, held_excitation, scales
+from orchestrate.figures import labels
+from orchestrate.figures.lines import draw_branch
+from orchestrate.figures.planes import draw_border
 from orchestrate.structures import Structure
 from orchestrate.units import with_units
 
@@ -21,7 +22,7 @@ def window():
 
 
 def test_stable_is_solid_and_unstable_dashed():
-    figure = branches.draw(window())
+    figure = draw_branch(window())
     lines = figure.axes[0].get_lines()
     solid = next(line for line in lines if line.get_linestyle() == "-")
     dashed = next(line for line in lines if line.get_linestyle() == "--")
@@ -32,16 +33,8 @@ def test_stable_is_solid_and_unstable_dashed():
     assert dashed.get_xdata()[np.isfinite(dashed.get_ydata())].max() == pytest.approx(2.8)
 
 
-def test_a_branch_of_a_structure_in_si_is_drawn_in_hertz():
-    told = {**window().attrs, "over": "frequency", "m1": 2.0, "m2": 2.0}
-    figure = branches.draw(window().assign_attrs(told))
-    solid = figure.axes[0].get_lines()[0]
-    assert solid.get_xdata() == pytest.approx(window().frequency.values / (2.0 * np.pi))
-    assert figure.axes[0].get_xlabel() == scales.FREQUENCIES["Hz"]
-
-
 def test_bifurcations_are_marked_each_kind_once_in_the_legend():
-    figure = branches.draw(window(), window())
+    figure = draw_branch(window(), window())
     (plane,) = figure.axes
     words = [text.get_text() for text in figure.legends[0].get_texts()]
     assert sorted(words) == ["Neimark-Sacker", "period doubling", "stable", "unstable"]
@@ -49,22 +42,28 @@ def test_bifurcations_are_marked_each_kind_once_in_the_legend():
     assert {float(mark.get_xdata()[0]) for mark in marks} == set(window().bifurcation_value.values)
 
 
-def test_a_border_is_a_line_over_both_parameters():
-    curve = border(PAPER, start=window(), bifurcation=1, limits=[(2.7, 2.9), (0.69, 0.71)])
-    figure = borders.draw(curve)
-    (line,) = figure.axes[0].get_lines()
-    assert line.get_xdata() == pytest.approx(curve.eta.values)
-    assert line.get_ydata() == pytest.approx(curve.e.values)
+def test_a_border_is_a_line_over_both_parameters_with_its_points():
+    sides = {"eta": ("point", [2.7, 2.8, 2.9]), "e": ("point", [0.69, 0.7, 0.71])}
+    kinds = {"flag_values": [0, 1], "flag_meanings": "cusp fold_flip"}
+    made = {"codimension_two_kind": ("codimension_two", [1], kinds)}
+    made |= {"codimension_two_eta": ("codimension_two", [2.8])}
+    made |= {"codimension_two_e": ("codimension_two", [0.7])}
+    attributes = {**PAPER.parameters(), "over": ["eta", "e"], "kind": "period doubling"}
+    figure = draw_border(xr.Dataset(made, sides, attributes))
+    line, point = figure.axes[0].get_lines()
+    assert line.get_xdata() == pytest.approx([2.7, 2.8, 2.9])
+    assert line.get_ydata() == pytest.approx([0.69, 0.7, 0.71])
+    assert (point.get_xdata()[0], point.get_ydata()[0]) == (2.8, 0.7)
+    words = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert words == ["period doubling", "fold flip"]
 
 
-def test_gaps_of_a_branch_are_lengths_where_they_are_asked_for(exported):
-    beam = Structure.from_halves(m1=1, m2=1, f1=42, f2=55, zeta1=0.007, zeta2=0.007)
-    ends = (50.0 * 2.0 * np.pi, 52.0 * 2.0 * np.pi)
-    found = branch(beam, over="frequency", limits=ends, amplitude=5e-5, progress=False, jobs=1)
-    (plane,) = branches.draw(with_units(found, "Hz, mm")).axes
+def test_gaps_of_a_branch_are_lengths_where_they_are_asked_for():
+    found = with_units(window(), "Hz, mm")
+    (plane,) = draw_branch(found).axes
     assert plane.get_ylabel() == "gap $x_2 - x_1$ in mm, at $t = nT$"
     lengths = 1e3 * (found.xi_rel * found.amplitude * found.eta**2).values
-    drawn = np.concatenate([np.ravel(line.get_ydata()) for line in plane.lines])
+    drawn = np.concatenate([np.ravel(line.get_ydata()) for line in plane.lines[:2]])
     assert np.nanmax(drawn) == pytest.approx(lengths.max())
 
 
@@ -77,13 +76,13 @@ def test_the_title_of_a_branch_has_what_is_held_of_the_box(exported):
         points = {"frequency": frequency, "eta": frequency / omega, "amplitude": amplitude}
         columns = {name: ("point", values * np.ones(3)) for name, values in points.items()}
         data = xr.Dataset(coords=columns, attrs=beam)
-        return held_excitation.branch_title(with_units(data, units), [over])
+        return labels.branch_title(with_units(data, units), [over])
 
     assert titled("frequency", frequency, 3e-5, "Hz, mm").endswith("$a$ = 0.03 mm")
     level = titled("frequency", frequency, 0.2 / frequency**2, "Hz, mm, g")
     assert level.endswith(r"$a\,\Omega^2$ = 0.0204 g") and r"\Omega/2\pi" not in level
     both = titled("e", 80.0 * np.ones(3), 3e-5, "Hz, mm")
     assert both.endswith(r"$\Omega/2\pi$ = 12.732 Hz, $a$ = 0.03 mm") and "$e$" not in both
-    assert branches.draw(window()).get_suptitle() == "$e$ = 0.7, $D$ = 0.005"
+    assert draw_branch(window()).get_suptitle() == "$e$ = 0.7, $D$ = 0.005"
     in_si = window().assign_attrs({**window().attrs, "over": "frequency", "m1": 2.0, "m2": 2.0})
-    assert branches.draw(in_si).get_suptitle().endswith(r"$a\,\Omega^2$ = 1 m/s$^2$ (0.102 g)")
+    assert draw_branch(in_si).get_suptitle().endswith(r"$a\,\Omega^2$ = 1 m/s$^2$ (0.102 g)")

@@ -8,9 +8,8 @@ import pytest
 from orchestrate.constants import GRAVITY
 from orchestrate.dynamics.branches import branch
 from orchestrate.errors import InputError
-from orchestrate.figures import orbit_diagram, resonance
+from orchestrate.figures import resonance
 from orchestrate.figures.plot import plot
-from orchestrate.figures.style import GREY
 from orchestrate.response import resonance as curves
 from orchestrate.response.sweep import sweep
 from orchestrate.structures import Structure
@@ -43,12 +42,6 @@ def blue(plane):
     return next(line for line in plane.get_lines() if line.get_label() in ("stable", "unstable"))
 
 
-def grey(figure):
-    """Samples of responses in a picture."""
-    lines = [line for line in figure.axes[0].get_lines() if line.get_color() == GREY]
-    return {point for line in lines for point in map(tuple, line.get_xydata())}
-
-
 def test_branches_lie_over_the_samples_of_a_sweep():
     responses = sweep(PAPER, eta=[2.45, 2.5, 2.55], **SHORT)
     top, _ = plot(responses, window()).axes
@@ -58,14 +51,6 @@ def test_branches_lie_over_the_samples_of_a_sweep():
     assert top.get_xlim() == (2.45, 2.55)
     marks = [line for line in top.get_lines() if line.get_markerfacecolor() == "white"]
     assert [float(mark.get_xdata()[0]) for mark in marks] == list(window().bifurcation_value)
-
-
-def test_responses_in_both_directions_lie_below_a_branch():
-    both = sweep(PAPER, eta=[2.45, 2.5], direction="both", transient=20, samples=7)
-    drawn = grey(orbit_diagram.draw(both, overlay=[window()]))
-    parts = [both.sel(direction=d) for d in ("up", "down")]
-    apart = [grey(orbit_diagram.draw(part, overlay=[window()])) for part in parts]
-    assert len(both.xi_rel.values.ravel()) == 28 and drawn == apart[0] | apart[1]
 
 
 def test_a_branch_is_in_hertz_and_metres_where_the_responses_are():
@@ -78,14 +63,6 @@ def test_a_branch_is_in_hertz_and_metres_where_the_responses_are():
     line, unit = blue(top), {"nm": 1e-9, "µm": 1e-6}[top.get_ylabel().split()[5].strip(",")]
     there = np.interp(turns / (2.0 * np.pi), line.get_xdata(), line.get_ydata()) * unit
     assert there == pytest.approx(metres, rel=2e-3)
-
-
-def test_a_branch_over_the_amplitude_is_one_over_the_level():
-    levels = np.array([0.9, 1.1])
-    responses = sweep(PAPER, frequency=2.5, over="level", values=levels, **SHORT)
-    top, _ = plot(responses, over("amplitude")).axes
-    ends = 2.5**2 / GRAVITY * np.array([0.1, 0.2])
-    assert sorted(blue(top).get_xdata()[[0, -1]]) == pytest.approx(ends)
 
 
 def test_displacements_and_gaps_lie_over_resonance_curves():
@@ -114,7 +91,6 @@ def test_displacements_and_gaps_lie_over_resonance_curves():
             "eta",
             "another structure, e = 0.7; .* e = 0.3",
         ),
-        (PAPER.replace(D=0.01), {"eta": 2.5, "over": "e", "values": [0.66, 0.7]}, "e", "d1 = 0.01"),
         (PAPER, {"eta": 2.6, "over": "e", "values": [0.66, 0.7]}, "e", "eta = 2.5; .* eta = 2.6"),
         (
             PAPER.replace(clearance=1e-3),
@@ -129,9 +105,3 @@ def test_what_does_not_belong_together_is_refused(structure, box, name, words):
     with pytest.raises(InputError, match=f"overlay: .*{words}") as caught:
         plot(responses, window() if name == "eta" else over(name))
     assert "\n" not in str(caught.value)
-
-
-def test_what_a_parameter_moves_may_differ():
-    """Both structures vary in it."""
-    responses = sweep(PAPER.replace(e=0.5), eta=2.5, over="e", values=[0.66, 0.7], **SHORT)
-    assert plot(responses, over("e")).axes

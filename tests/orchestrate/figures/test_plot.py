@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 import orchestrate
 from orchestrate import Drive, InputError, Structure, plot
-from orchestrate.figures import branches, motion, orbit_diagram, weak_drive
+from orchestrate.figures.plot import DRAW
 
 PAPER = Structure.nondimensional()
 QUIET = {"progress": False}
@@ -37,19 +37,13 @@ def driven():
 def drawn(monkeypatch):
     """What was drawn with what."""
     calls = {}
-    for module in (branches, motion, orbit_diagram, weak_drive):
-        name = module.__name__.rpartition(".")[2]
+    for kind in ("branch", "simulate", "sweep", "couple"):
 
-        def draw(*parts, _name=name, **more):
-            calls[_name] = parts, more
+        def draw(*parts, _kind=kind, **more):
+            calls[_kind] = parts, more
             return Figure()
 
-        for table in ("DRAW", "SEVERAL", "BESIDE", "OF_BOTH", "OVERLAY"):
-            entries = getattr(orchestrate.figures.plot, table)
-            for kind, function in list(entries.items()):
-                if function is module.draw:
-                    monkeypatch.setitem(entries, kind, draw)
-        monkeypatch.setattr(module, "draw", draw)
+        monkeypatch.setitem(DRAW, kind, draw)
     return calls
 
 
@@ -63,29 +57,22 @@ def test_the_bonded_structure_beside_it_in_any_order(simulated, drawn):
     bonded, delaminated = simulated
     for answers in (simulated, simulated[::-1]):
         plot(*answers)
-        (main,), more = drawn["motion"]
+        (main,), more = drawn["simulate"]
         assert main is delaminated and more["bonded"] is bonded
 
 
 def test_branches_over_a_sweep(continued, drawn):
     sweep, branch = continued
     plot(branch, sweep, branch)
-    parts, more = drawn["orbit_diagram"]
+    parts, more = drawn["sweep"]
     assert parts == (sweep,) and list(map(id, more["overlay"])) == [id(branch), id(branch)]
 
 
 def test_runs_of_both_structures(driven, drawn):
     bonded, delaminated = driven
     plot(delaminated, bonded)
-    (runs,), _ = drawn["weak_drive"]
+    (runs,), _ = drawn["couple"]
     assert runs == {"delaminated": delaminated, "bonded": bonded}
-
-
-def test_the_second_picture_of_runs(driven):
-    ramp, jumps = plot(*driven, title="mine"), plot(*driven, title="mine", part="jumps")
-    assert [figure.get_suptitle() for figure in (ramp, jumps)] == ["mine", "mine"]
-    assert [axes.get_title(loc="left") for axes in jumps.axes] == ["", ""]
-    assert [text.get_text() for axes in jumps.axes for text in axes.texts] == ["no jump"] * 2
 
 
 @pytest.mark.parametrize(("which", "part"), [(slice(None), "ramps"), (slice(0), "jumps")])
@@ -95,28 +82,11 @@ def test_a_part_that_there_is_not_is_refused(driven, simulated, which, part):
         plot(*answers, part=part)
 
 
-def test_pictures_of_several_show_something(continued, driven):
-    for answers in (continued, driven):
-        figure = plot(*answers)
-        assert any(axes.lines or axes.collections for axes in figure.axes)
-
-
-def test_answers_of_an_analyser():
-    time = np.arange(2000) / 1000.0
-    box = np.random.default_rng(1).normal(size=2000)
-    record = orchestrate.record(time=time, box_acceleration=box, acceleration1=0.5 * box)
-    figure = plot(orchestrate.frf(record))
-    assert any(axes.lines for axes in figure.axes)
-
-
 def test_all_public_questions_are_drawn_or_known_to_have_no_picture():
-    from orchestrate.figures.plot import DRAW, OF_BOTH, analysis
-
     public = {name for name in orchestrate.__all__ if name.islower()}
     named = {"track_orders": "orders"}  # what an analysis calls itself
-    drawn = {*DRAW, *OF_BOTH, *analysis.DRAW}
     # an orbit is drawn as a motion begun on it, a passage with its waterfall; records are analysed
-    assert {name for name in public if named.get(name, name) not in drawn} == {
+    assert {name for name in public if named.get(name, name) not in DRAW} == {
         *("couple_all", "impact_statistics", "orbit", "passage", "plot", "waterfall", "write_ssp"),
         *("__version__", "measure", "record", "read_record", "write_record"),
         *("read_curve", "resonance_curve"),

@@ -9,7 +9,6 @@ import pytest
 import xarray as xr
 
 from orchestrate.dynamics.lyapunov import CHAOTIC, PERIODIC
-from orchestrate.paper.cases import CASES
 from orchestrate.paper.claims import (
     NO,
     PARTLY,
@@ -21,7 +20,6 @@ from orchestrate.paper.claims import (
 )
 from orchestrate.paper.curves import CONTACT, FLIGHT
 from orchestrate.paper.measures import check_claims, equations, find_measure, limits, setup
-from orchestrate.paper.reading import impacts_in_turn
 from orchestrate.paper.resolution import QUICK
 
 from .known import along_eta, known, measured, responses, verdict
@@ -215,23 +213,6 @@ def test_chattering_is_endless_or_not(restitutions, change, expected):
 # -- section 3 -------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("impacts", "expected"),
-    [((0, 0, 9), PARTLY), ((0, 9, 9), YES), ((9, 0, 9), PARTLY), ((9, 0, 0), NO)],
-)
-def test_masses_that_never_influence_each_other_are_no_exception(impacts, expected):
-    rows = {"mu": [1.0, 2.0, 2.0], "kappa": [1.0, 2.0, 2.2], "impacts": list(impacts)}
-    data = xr.Dataset({name: ("motion", np.array(row)) for name, row in rows.items()})
-    assert verdict("only_equal", known(slow_impacts=data)) == expected
-
-
-@pytest.mark.parametrize(("own", "expected"), [(5.0, NO), (1.0, YES)])
-def test_the_most_unfavourable_detuning(own, expected):
-    impulses = (("kappa", "eta"), [[1.0, 0.5], [own, 0.5], [7.0, 0.5]])
-    data = xr.Dataset({"impulse_max": impulses}, {"kappa": [1.0, 1.2, 1.4], "eta": [1.0, 2.0]})
-    assert verdict("most_unfavourable", known(map=data)) == expected
-
-
 def loops(count, last=0.0):
     """Flights and impacts in turn; the last impact parts with ``last``, contact follows."""
     rows = []
@@ -299,70 +280,3 @@ def one_period(impacts):
 def test_impacts_that_rise_in_between_do_not_decrease(impacts, expected):
     """A number that had been there before was dropped before the numbers were compared."""
     assert verdict("impacts_decrease", known(sweep=one_period(impacts))) == expected
-
-
-def test_numbers_of_impacts_in_turn():
-    assert impacts_in_turn(one_period(TO_AND_FRO)) == [5, 4, 5, 7, 8, 7, 3, 2]
-    assert verdict("seven_to_two", known(sweep=one_period([7, 7, 5, 3, 2]))) == YES
-    assert verdict("seven_to_two", known(sweep=one_period([7, 5, 6, 3, 2]))) == PARTLY
-
-
-def test_each_number_of_impacts_has_its_own_frequencies():
-    """A window of several numbers had been called by its first one."""
-    data = one_period(TO_AND_FRO)
-    text = measured("interchange", known(settled=data, exponent=data)).found
-    assert "5 (0.500 to 0.511), 4 (0.522 to 0.522), 5 (0.533 to 0.533), 7 (0.556" in text
-
-
-@pytest.mark.parametrize(
-    ("irregular", "expected"),
-    [([(2.7, 3.5), (4.8, 5.6)], YES), ([(2.7, 3.5), (0.5, 0.8)], PARTLY), ([(0.5, 0.8)], NO)],
-)
-def test_where_irregularities_occur(irregular, expected):
-    chaotic = np.array([any(low < eta < high for low, high in irregular) for eta in ETAS])
-    data = responses(ETAS, ~chaotic, 1, verdict=np.where(chaotic, CHAOTIC, PERIODIC))
-    assert verdict("irregularities", known(settled=data, exponent=data)) == expected
-
-
-@pytest.mark.parametrize(
-    ("sizes", "expected"),
-    [
-        ((20.0, 0.2, 0.01, 0.0005), YES),
-        ((20.0, 0.2, 0.016, 0.005), PARTLY),  # as it is: the last step is a factor of 3
-        ((4.0, 3.0, 2.0, 1.0), NO),
-        ((20.0,), UNDECIDED),  # without windows
-    ],
-)
-def test_powers_of_ten_from_peak_to_peak(sizes, expected):
-    n = np.repeat(np.arange(len(sizes)), 3)
-    gaps = np.concatenate([[0.5 * size, size, 0.4 * size] for size in sizes])
-    data = responses(
-        n + np.tile([1.0, 1.2, 1.4], len(sizes)), n, 1, xi_rel_max=gaps, closing_max=gaps
-    )
-    assert verdict("decay", known(sweep=data, impacts=data)) == expected
-
-
-@pytest.mark.parametrize(
-    ("ratios", "expected"),
-    [
-        ((0.8, 1.08, 1.05, 1.03, 1.02), YES),
-        ((0.8, 1.25, 1.12, 1.08, 1.02), PARTLY),  # as it is: near one oscillator's at the end only
-        ((0.8, 1.2, 1.3, 1.4, 1.5), NO),
-    ],
-)
-def test_amplitudes_like_those_of_one_oscillator(ratios, expected):
-    etas, case = np.array([1.047, 2.07, 4.166, 6.268, 8.0]), CASES["elastic"]
-    alone = 1.0 / np.hypot((1.0 + case.kappa) / (1.0 + case.mu) - etas**2, 0.01 * etas)
-    sizes = dict.fromkeys(("xi1_max", "xi2_max"), np.array(ratios) * alone)
-    data = along_eta(etas, xi_rel_max=0.1 * alone, **sizes)
-    assert verdict("single_oscillator", known(sweep=data)) == expected
-
-
-@pytest.mark.parametrize(
-    ("amplitude", "impulse", "expected"), [(2, 2, YES), (1, 2, PARTLY), (1, 3, NO)]
-)
-def test_amplitudes_and_impulses_are_largest_at_the_main_peak_or_not(amplitude, impulse, expected):
-    columns = {"xi_rel_max": 2, "xi1_max": amplitude, "xi2_max": amplitude, "closing_max": impulse}
-    peaks = {name: 1.0 + (np.arange(1, 5) == place) for name, place in columns.items()}
-    data = along_eta(np.array([1.0, 1.05, 1.1, 1.2]), **peaks)
-    assert verdict("both_at_peak", known(sweep=data, impacts=data)) == expected

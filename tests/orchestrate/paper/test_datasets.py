@@ -10,12 +10,10 @@ import xarray as xr
 
 import orchestrate
 from orchestrate.paper.answers import describe_largest_impulse
-from orchestrate.paper.cases import CASES, MAPS, map_values
+from orchestrate.paper.cases import CASES
 from orchestrate.paper.curves import CONTACT, FLIGHT, SEQUENCE, Panel, trace
 from orchestrate.paper.datasets import Datasets, most_even
-from orchestrate.paper.resolution import FULL, QUICK
-
-from .known import WINDOWS
+from orchestrate.paper.resolution import QUICK
 
 pytestmark = pytest.mark.usefixtures("exported")
 RUNNING = {"jobs": 1, "progress": False}
@@ -58,6 +56,7 @@ def test_what_does_not_repeat_is_run_on_and_irregular_in_the_end(data):
     assert found.periods.values[0] == 4596 and np.isfinite(found.end_state).all()
 
 
+@pytest.mark.slow
 def test_exact_limits_of_a_branch_through_a_sweep(data):
     """The period doubling that ends T/2 at D = 0.05, eight digits as in the manual's table."""
     data.sweep = lambda *_: swept([1.05, 1.06])
@@ -147,12 +146,3 @@ def test_the_frequency_at_which_two_attractors_share_starts_most_evenly():
     names = {"share": share, "multiplicity": n, "impacts_per_period": impacts}
     found = xr.Dataset({name: (("eta", "attractor"), rows) for name, rows in names.items()})
     assert most_even(found) == 2  # not 1, one is irregular, and not 3, their impacts are alike
-
-
-def test_cases_and_resolutions():
-    numbers = [(case.e, case.get("D")) for case in CASES.values()]
-    assert numbers == [(0.7, 0.005), (0.7, 0.05), (0.3, 0.005)]
-    for parameter, (low, high) in MAPS.items():
-        values = map_values(parameter, 5)
-        assert (values[0], values[-1]) == pytest.approx((low, high))
-    assert FULL.decides and not QUICK.decides and set(WINDOWS)

@@ -9,6 +9,8 @@ from tools.benches.beam import DelaminatedBeam, intact_frequency
 from tools.benches.integrator import integrate
 from tools.benches.lumped import TURN, Faces
 
+from ...sparing import ordinary
+
 PUBLISHED = {  # clamped-clamped, delaminated in the middle of span and thickness: Wang, Liu and
     # Gibby (1982), Della and Shu (2005), as tabled by Erdelyi and Hashemi (2016): modes 1 and 2
     0.1: (22.37, 60.76),
@@ -36,7 +38,7 @@ def test_an_intact_beam_has_the_closed_frequencies(both):
     assert beam.modes(1)[0][0] / TURN == pytest.approx(intact_frequency(beam), rel=1e-6)
 
 
-@pytest.mark.parametrize("length", PUBLISHED)
+@pytest.mark.parametrize("length", ordinary(PUBLISHED, [0.2, 0.5]))
 def test_a_delaminated_beam_has_the_published_frequencies(length):
     """Modes in which the layers move alike, which the published ones are: of equal layers.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -9,23 +10,21 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
-from tools.benches import restitution
-from tools.benches.bench import Bench
-from tools.benches.excitation import Swept
 from tools.benches.integrator import UnboundedMotionError, equilibrium, integrate
 from tools.benches.lumped import (
     TURN,
-    Clamp,
     Faces,
     Halves,
-    Torsion,
     cubic_stiffness,
     frequency_change,
 )
 from tools.benches.recipe import OPENED
 
+from ...sparing import ordinary
+
 HALVES = Halves(zeta1=0.03, zeta2=0.03)
 LAWS = ("linear", "hunt-crossley", "hertz")
+CLEARANCES = (0.0, 3e-4, -2e-4)  # m
 
 
 def driven(frequency, seconds, step, level=5.0):
@@ -44,31 +43,6 @@ def test_a_bonded_beam_has_the_closed_transfer_function():
         times = step * np.arange(moved.shape[1])
         closed = 5.0 * np.imag(ratio * np.exp(1j * TURN * frequency * times))
         assert np.abs(moved - closed)[:, -24_000:].max() < 2e-7 * 5.0 * abs(ratio)
-
-
-def test_a_beam_that_twists_has_the_closed_transfer_functions_of_both_sensors():
-    torsion = Torsion(ratio=1.1, participation=0.5, offset=0.2)
-    system, step = HALVES.bonded_with_torsion(torsion), 1.0 / 24_000.0
-    whole = HALVES.bonded_beam()
-    frequency = 1.05 * whole.f
-    moved = integrate(system, driven(frequency, 4.0, step), step).acceleration
-    ratios = [frequency / whole.f, frequency / (1.1 * whole.f)]
-    bending, twist = (r * r / (1.0 - r * r + 2j * whole.zeta * r) for r in ratios)
-    times = step * np.arange(moved.shape[1])
-    for row, side in zip(moved, (1.0, -1.0), strict=True):
-        read = 1.0 + bending + side * 0.2 * 0.5 * twist
-        closed = 5.0 * np.imag(read * np.exp(1j * TURN * frequency * times))
-        assert np.abs(row - closed)[-24_000:].max() < 2e-7 * 5.0 * abs(read)
-
-
-def test_a_linear_motion_converges_with_the_fourth_power_of_the_step():
-    system = HALVES.bonded()
-    ends = [
-        integrate(system, driven(40.0, 0.5, step), step).position[0]
-        for step in (1e-3, 5e-4, 2.5e-4, 1e-5)
-    ]
-    errors = np.abs(np.array(ends[:-1]) - ends[-1])
-    assert (np.log2(errors[:-1] / errors[1:]) > 3.8).all()
 
 
 def reference(system, base, times):
@@ -102,8 +76,14 @@ def speeds(system, base, times, parts):
     return np.array(found).T, impacts
 
 
-@pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("clearance", [0.0, 3e-4, -2e-4])
+@pytest.mark.parametrize(
+    ("law", "clearance"),
+    ordinary(
+        itertools.product(LAWS, CLEARANCES),
+        [*zip(LAWS, CLEARANCES, strict=True)],
+        several_names=True,
+    ),
+)
 def test_motion_with_contact_is_that_of_an_adaptive_method(law, clearance):
     """The stated error: half a percent of the largest speed through the first impacts, 2 % where a
     dashpot's force jumps at each of them.
@@ -144,26 +124,6 @@ def test_a_collision_has_the_restitution_that_was_asked_for(law, e):
     assert (v2 - v1) / speed == pytest.approx(e, rel=1e-3)
     assert 1.5 * v1 + 0.7 * v2 == pytest.approx(1.5 * speed, rel=1e-9)
     assert done.impacts[0] == 1 and done.restitution[0] == pytest.approx(e, rel=2e-2)
-
-
-def test_hunt_and_crossley_at_small_speeds():
-    """Their own approximation e = 1 - 2/3 c v."""
-    for speed in (1e-3, 1e-2):
-        assert restitution.hunt_crossley_restitution(0.5, speed) == pytest.approx(
-            1.0 - speed / 3.0, abs=speed**2
-        )
-    damping = restitution.hunt_crossley_damping(0.4, 0.2)
-    assert restitution.hunt_crossley_restitution(damping, 0.2) == pytest.approx(0.4)
-    assert restitution.hunt_crossley_restitution(damping, 0.02) > 0.8, "slow impacts lose less"
-
-
-def test_a_dashpot_that_pulled_would_lose_more():
-    for ratio in (0.05, 0.3, 0.7):
-        pulling = math.exp(-math.pi * ratio / math.sqrt(1.0 - ratio**2))
-        assert pulling < restitution.linear_restitution(ratio) < 1.0
-    assert restitution.linear_restitution(restitution.linear_damping_ratio(0.5)) == pytest.approx(
-        0.5
-    )
 
 
 def test_pressed_faces_rest_where_the_forces_balance():
@@ -257,22 +217,3 @@ def test_friction_of_faces_needs_their_pressure():
             for friction in (0.3, 0.0)
         )
         assert np.array_equal(rubbed, smooth) == alike
-
-
-def test_a_clamp_that_is_pressed_holds_like_one_spring_more():
-    """Pressed on one side it does not open at small levels: two masses with one spring more."""
-    own = Halves(zeta1=0.02, zeta2=0.02)
-    clamp = Clamp(faces=Faces(law="linear", restitution=0.999), play=-1e-3, both_sides=False)
-    system = own.in_rattling_clamp(clamp)
-    moved = integrate(system, driven(30.0, 1.5, 1e-5, 0.2), 1e-5)
-    assert moved.time_open[0] == 0.0
-    loose = integrate(system, driven(30.0, 1.5, 1e-5, 200.0), 1e-5)
-    assert 0.0 < loose.time_open[0] < 1.5
-
-
-def test_steps_of_a_bench_resolve_its_fastest_oscillation():
-    bench = Bench(excitation=Swept(20.0, 90.0, 1.0, 5.0))
-    for frequency in (500.0, 1500.0):
-        system = HALVES.delaminated(Faces(law="linear", frequency=frequency))
-        rate = bench.steps_per_sample(system) * bench.rate
-        assert bench.steps <= rate / frequency < 1.2 * bench.steps + bench.rate / frequency

@@ -1,0 +1,228 @@
+"""Draw time histories: motions, laboratory records and coupled runs, a panel per quantity."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ..constants import TURN
+from ..units import units_of, with_units
+from .colours import BLACK, BLUE, GREY, RED
+from .labels import (
+    format_period,
+    gap_name,
+    has_frequency_unit,
+    in_shown_units,
+    title_from_attributes,
+)
+from .planes import relative_motion as relative_curve
+from .scales import acceleration_scale, frequency_scale, length_scale
+from .spectra import acceleration_spectrum, draw_stems
+from .style import XI_REL, draw_line, legend_above, make_panels, set_title, styled, write_in_panel
+
+LAYOUT: list[Any] = [["masses", "phases"], ["gap", "relative"], ["force", "spectrum"]]
+MASSES: tuple[tuple[str, dict[str, Any]], ...] = (
+    ("1", {"color": BLUE, "linewidth": 1.4, "label": "mass 1"}),
+    ("2", {"color": RED, "linewidth": 1.0, "linestyle": "--", "label": "mass 2"}),
+)
+GLUED: dict[str, Any] = {"color": GREY, "linewidth": 3.0, "alpha": 0.6, "zorder": 1}
+GLUED["label"] = "both, bonded"
+STEM_WIDTHS = {GREY: 5.0, BLUE: 2.6, RED: 1.0}  # a thin line lies on a wide one
+SPECTRUM_FLOOR = 1e-5  # of the largest line: the lower end of the axis
+MIN_PERIODS = 4  # periods that a spectrum takes
+HIGHEST = 20.0  # frequency of a spectrum, over that of the box
+COLUMNS = 400  # of an envelope
+SHORT = 5000  # points that are drawn as a line
+
+
+@styled
+def draw_motion(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) -> Figure:
+    """Draw a simulated motion: histories, phase planes and spectrum; return the figure."""
+    figure = Figure(figsize=(10.4, 6.8), layout="constrained")
+    axes = figure.subplot_mosaic(LAYOUT, width_ratios=(2.2, 1))
+    set_title(figure, title or title_from_attributes(data))
+    largest = {name: float(np.abs(data[name]).max()) for name in ("x1", "x2", "v1", "v2")}
+    factor, letter = length_scale(data, max(largest["x1"], largest["x2"]))
+    pace, speed_letter = length_scale(data, max(largest["v1"], largest["v2"]))
+    turns, instants = time_axis(data, data)
+    time, gap, rate = relative_motion(data)
+    for number, style in MASSES:
+        axes["masses"].plot(turns, data[f"x{number}"] / factor, **style)
+        axes["phases"].plot(data[f"x{number}"] / factor, data[f"v{number}"] / pace, **style)
+    draw_line(axes["gap"], np.interp(time, data.time, turns), gap / factor, "-", BLACK, 1.0)
+    draw_line(axes["relative"], gap / factor, rate / pace, "-", BLACK, 0.8)
+    at, count = np.interp(data.impact_time.values, data.time.values, turns), data.sizes["impact"]
+    label = f"{count} impact{'s' * (count != 1)}" if count else "no impacts"
+    axes["gap"].plot(at, np.zeros_like(at), "|", color=RED, markersize=8, label=label)
+    if float(data.contact_force.max()):
+        draw_line(axes["force"], turns, data.contact_force, "-", BLACK, 1.0)
+    else:
+        write_in_panel(axes["force"], "no permanent contact")
+    top = draw_spectrum(axes["spectrum"], data, MASSES)
+    if bonded is not None:
+        axes["masses"].plot(time_axis(data, bonded)[0], bonded.x1 / factor, **GLUED)
+        axes["phases"].plot(bonded.x1 / factor, bonded.v1 / pace, **GLUED)
+        alike = with_units(bonded, units_of(data))  # one axis has one unit
+        top = max(top, draw_spectrum(axes["spectrum"], alike, (("1", GLUED),)))
+    axes["spectrum"].set_ylim(SPECTRUM_FLOOR * (top or 1.0), 2.0 * (top or 1.0))
+    axes["masses"].set_ylabel(f"displacement in {letter}m")
+    axes["gap"].set_ylabel(f"{gap_name(data)} in {letter}m")
+    axes["force"].set(ylabel="contact force in N", xlabel=instants, xlim=(turns[0], turns[-1]))
+    rate_label = f"velocity in {speed_letter}m/s"
+    axes["phases"].set(xlabel=f"displacement in {letter}m", ylabel=rate_label)
+    axes["relative"].set(xlabel=f"gap in {letter}m", ylabel=f"gap {rate_label}")
+    for name, columns in (("masses", 3), ("gap", 1)):
+        axes[name].sharex(axes["force"])
+        axes[name].tick_params(labelbottom=False)
+        legend_above(axes[name], columns)
+    return figure
+
+
+def time_axis(data: xr.Dataset, motion: xr.Dataset) -> tuple[np.ndarray, str]:
+    """Return a motion's times in the display unit (periods or s), and the axis label."""
+    if units_of(data).time == "s":
+        return motion.time.values, "time in s"
+    return motion.periods_done.values, "time in periods, $t/T$"
+
+
+def relative_motion(data: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return time, gap and gap velocity, with points before and after each impact (14)."""
+    at, closing = data.impact_time.values, data.impact_velocity.values
+    after = np.where(data.sticks.values == 1, 0.0, float(data.attrs.get("e", 0.0)) * closing)
+    time = np.concatenate([data.time.values, at, at])
+    gap = np.concatenate([data.x_rel.values, 0.0 * at, 0.0 * at])
+    rate = np.concatenate([data.v_rel.values, -closing, after])
+    order = np.argsort(time, kind="stable")
+    return time[order], gap[order], rate[order]
+
+
+def draw_spectrum(
+    axes: Axes, data: xr.Dataset, masses: Iterable[tuple[str, dict[str, Any]]]
+) -> float:
+    """Draw amplitude spectra of accelerations in the box; return the largest amplitude."""
+    turns, time = data.periods_done.values, data.time.values
+    periods = float(turns[-1] - turns[0])
+    if periods < MIN_PERIODS:
+        if not axes.texts:
+            write_in_panel(axes, f"a spectrum takes {MIN_PERIODS} periods")
+            axes.set_xticks([])
+        return 0.0
+    base, top = periods / (time[-1] - time[0]), 0.0
+    (turn, word), (felt, unit_felt) = frequency_scale(data), acceleration_scale(data)
+    for number, style in masses:
+        moved = data[f"x{number}"].values[1:]
+        frequency, amplitude = acceleration_spectrum(moved, time[1] - time[0])
+        shown = (frequency > 0.25 * base) & (frequency <= HIGHEST * base)
+        # a window widens lines: of each, its largest amplitude
+        peaks = shown & np.append(True, np.diff(amplitude) > 0.0)
+        peaks &= np.append(np.diff(amplitude) <= 0.0, True)
+        felt_amplitude = amplitude / felt
+        highest = float(felt_amplitude[shown].max(initial=0.0))
+        top = max(top, highest)
+        lines = frequency * (TURN / turn if has_frequency_unit(data) else 1.0 / base)
+        stem = {name: style[name] for name in ("color", "alpha", "zorder") if name in style}
+        floor = 1e-3 * SPECTRUM_FLOOR * highest  # unseen
+        width = STEM_WIDTHS[style["color"]]
+        draw_stems(axes, lines[peaks], felt_amplitude[peaks], floor, width, **stem)
+    unit = f"in {word}" if has_frequency_unit(data) else r"over $\Omega/2\pi$"
+    axes.set(xlabel=f"frequency {unit}", ylabel=f"acceleration in {unit_felt}")
+    return top
+
+
+@styled
+def draw_shake(data: xr.Dataset, title: str = "", bonded: xr.Dataset | None = None) -> Figure:
+    """Draw a laboratory record: accelerations, gap and impulses over time; return the figure."""
+    words = str(data.attrs.get("excitation_description") or data.attrs["excitation"])
+    title = title or f"{in_shown_units(data, words)}; {title_from_attributes(data)}"
+    heights: Any = {"sharex": True, "height_ratios": (1.0, 1.6, 1.2, 1.2)}
+    figure, (box, masses, gap, impacts) = make_panels(4, 1, (10.4, 7.2), title, **heights)
+    scale, _ = acceleration_scale(data)
+    draw_box_gap_impacts(data, box, gap, impacts)
+    for number, colour in (("1", BLUE), ("2", RED)):
+        style: Any = {"color": colour, "label": f"mass {number}", "alpha": 0.55}
+        draw_signal(masses, data, f"a{number}_abs", scale, **style)
+    if bonded is not None:
+        time, low, high = local_extremes(bonded.time.values, bonded.a1_abs.values / scale)
+        draw_line(masses, time, high, "-", BLACK, 0.9, "both, bonded")
+        draw_line(masses, time, low, "-", BLACK, 0.9)
+    masses.set_ylabel(box.get_ylabel().replace("of box", "of masses"))
+    legend_above(masses, 3)
+    impacts.set(xlabel="time in s", xlim=(0.0, float(data.time[-1])))
+    return figure
+
+
+@styled
+def draw_cosimulation(data: xr.Dataset, title: str = "") -> Figure:
+    """Draw a coupled run over time, a panel for each quantity of the drive; return the figure."""
+    names = [str(name) for name in data.attrs["recorded"].split(",") if name]
+    count = 4 + len(names)
+    title = title or f"{data.attrs['drive']}; {title_from_attributes(data)}"
+    figure, rows = make_panels(count, 1, (10.4, 1.2 + 1.6 * count), title, sharex=True)
+    draw_box_gap_impacts(data, rows[0], rows[2], rows[3])
+    factor, letter = length_scale(data, float(abs(data.x1).max()))
+    for name, colour in (("x1", BLUE), ("x2", RED)):
+        draw_signal(rows[1], data, name, factor, color=colour, label=f"mass {name[1]}")
+    rows[1].set_ylabel(f"displacement\nin {letter}m")
+    legend_above(rows[1], 2)
+    for axes, name in zip(rows[4:], names, strict=True):
+        draw_signal(axes, data, name, 1.0, color=BLACK)
+        axes.set_ylabel(f"{name}\nin {data[name].attrs['units']}")
+    rows[-1].set(xlabel="time in s", xlim=(0.0, float(data.time[-1])))
+    return figure
+
+
+def draw_box_gap_impacts(data: xr.Dataset, box: Axes, gap: Axes, impacts: Axes) -> None:
+    """Draw the box's acceleration, the gap and each impact's impulse, in a panel each."""
+    scale, unit = acceleration_scale(data)
+    draw_signal(box, data, "box_acceleration", scale, color=BLACK)
+    box.set_ylabel(f"acceleration\nof box in {unit}")
+    factor, letter = length_scale(data, float(data.x_rel.max()))
+    draw_signal(gap, data, "x_rel", factor, color=BLACK)
+    gap.set_ylabel(f"gap in {letter}m")
+    impacts.set_ylabel("impulse in N s")
+    if count := data.sizes["impact"]:
+        size = 5 if count < COLUMNS else 2
+        impacts.plot(data.impact_time, data.impulse, ".", color=RED, markersize=size)
+        impacts.set_ylim(bottom=0.0)
+    else:
+        write_in_panel(impacts, "no impacts")
+
+
+def draw_signal(axes: Axes, data: xr.Dataset, name: str, factor: float, **style: Any) -> None:
+    """Draw a signal as a line, or as the band between its extremes if it is long."""
+    time, values = data.time.values, data[name].values / factor
+    if len(time) <= SHORT:
+        axes.plot(time, values, linewidth=1.0, **{**style, "alpha": 1.0})
+    else:
+        axes.fill_between(*local_extremes(time, values), linewidth=0.4, **style)
+
+
+def local_extremes(
+    time: np.ndarray, values: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Split a signal into equal parts; return each part's time, smallest and largest value."""
+    edges = np.linspace(0, len(time), min(COLUMNS, len(time)) + 1).astype(int)[:-1]
+    return time[edges], np.minimum.reduceat(values, edges), np.maximum.reduceat(values, edges)
+
+
+@styled
+def draw_paper_histories(data: xr.Dataset) -> Figure:
+    """Draw the gap over periods, a panel per response, and the excitation below (Figure 7)."""
+    count, turns = data.sizes["panel"], np.zeros(1)
+    figure, axes = make_panels(count + 1, 1, (8.5, 1.6 * (count + 1)), sharex=True)
+    for index, plane in enumerate(axes[:count]):
+        eta = float(data.eta[index])
+        tau, gap, _ = relative_curve(data, index)
+        turns = tau * eta / TURN
+        draw_line(plane, turns, gap, "-", BLACK, 0.9)
+        kind = f"{format_period(index + 1)}-periodic, one impact in a response period"
+        plane.set(ylabel=XI_REL, title=rf"$\eta = {eta:.3f}$: {kind}")
+        plane.ticklabel_format(axis="y", scilimits=(-2, 3))
+    draw_line(axes[-1], turns, np.sin(TURN * turns), "-", BLUE, 0.9)
+    axes[-1].set(ylabel=r"$\sin\eta\tau$", xlabel=r"$\tau/T$", xlim=(0, round(turns[-1])))
+    return figure

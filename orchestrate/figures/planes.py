@@ -1,0 +1,368 @@
+"""Draw planes: maps, basins, bifurcation curves over two parameters, sections and phase curves."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap, LogNorm
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, MultipleLocator
+
+from ..constants import TURN
+from ..flags import flag_words
+from ..units import length_of_ratio, omega_of, scale_of, units_of
+from . import labels
+from .colours import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, YELLOW
+from .labels import branch_title, has_frequency_unit, title_from_attributes
+from .scales import axis_values, lengths, parameter_scale
+from .style import XI_REL, XI_REL_RATE, draw_line, legend_below, make_panels, styled
+
+COLUMNS = {  # of a map: the quantities that have a panel
+    "impacts_per_period": "impacts per $T$",
+    "multiplicity": "multiplicity",
+    "xi_rel_max": f"largest {XI_REL}",
+    "impulse_max": r"largest impulse over $m_1 \omega a \eta^2$",
+    "exponent": r"$\lambda$ per unit of $\tau$",
+}
+SHADES = (  # of multiplicity
+    *("#dfe6ee", SKY, GREEN, YELLOW, ORANGE, RED, PURPLE),  # 1 to 7
+    *("#7a4a1e", BLACK),  # 8 and more, none
+)
+MULTIPLICITIES = ("1", "2", "3", "4", "5", "6", "7", "8+", "not\nperiodic")
+NOTHING = "#d9d9d9"  # no impacts
+BASINS = (BLUE, ORANGE, GREEN, PURPLE, RED)  # of the most frequent attractors
+OTHER = "#bbbbbb"
+BORDERS = {
+    **{"fold": ORANGE, "period doubling": RED, "Neimark-Sacker": BLUE},
+    **{"grazing of an impact": GREEN, "grazing of a flight": BLACK, "earlier release": PURPLE},
+}
+MARKERS = ("*", "D", "o", "s", "^", "P", "v", "X", "<", ">", "h")  # by number of the point's kind
+LEAST_HALF = 0.05  # of an axis of a section, over its middle
+SHARES = {0.0: "0", 0.25: "π/2", 0.5: "π", 0.75: "3π/2", 1.0: "2π"}  # of a turn
+STATES = (BLUE, RED, GREY)  # separate motion, sequence of impacts, permanent contact
+
+
+@styled
+def draw_map(*maps: xr.Dataset, title: str = "") -> Figure:
+    """Draw maps over two parameters, one row per dataset; return the figure."""
+    columns = [name for name in COLUMNS if all(name in data for data in maps)]
+    size = (max(3.1 * len(columns), 4.5), 0.4 + 2.8 * len(maps))
+    words = title or (title_from_attributes(maps[0]) if len(maps) == 1 else "")
+    figure, axes = make_panels(len(maps), len(columns), size, words)
+    for row, data in enumerate(maps):
+        first, second = map(str, data[columns[0]].dims)
+        up, right = (second, first) if first in ("eta", "frequency") else (first, second)
+        x, y = axis_values(data, right), axis_values(data, up)
+        for column, name in enumerate(columns):
+            plane = axes[row * len(columns) + column]
+            values, label = shown_values(data, name)
+            draw_values(plane, values.transpose(up, right), x.values, y.values)
+            words = "" if column or title or len(maps) == 1 else title_from_attributes(data)
+            plane.set_title("\n".join(filter(None, [words, label])))
+            plane.set(ylabel="" if column else y.label, xlabel=x.label)
+    return figure
+
+
+def shown_values(data: xr.Dataset, name: str) -> tuple[xr.DataArray, str]:
+    """Return a quantity and its label; gaps and impulses in SI, or in the unit asked for.
+
+    They stay ratios where neither the structure is in SI nor a unit of length is asked for.
+    """
+    in_si = has_frequency_unit(data) or units_of(data).length
+    unit = length_of_ratio(data) if name in ("xi_rel_max", "impulse_max") and in_si else None
+    if unit is None:
+        return data[name], COLUMNS[name]
+    if name == "impulse_max":  # over m1 omega a eta^2
+        impulses = (data[name] * unit * float(data.attrs["m1"]) * omega_of(data)).rename(name)
+        factor, letter = labels.si_prefix(float(impulses.max()))
+        return impulses / factor, f"largest impulse in {letter}N s"
+    gaps = (data[name] * unit).rename(name)
+    return lengths(data, gaps, f"largest {labels.gap_name(data)}")
+
+
+def draw_values(plane: Axes, data: xr.DataArray, x: np.ndarray, y: np.ndarray) -> None:
+    """Draw one map with its colour bar; a y axis in equal ratios becomes logarithmic."""
+    values, shades = colour_scale(str(data.name), data.values)
+    picture = plane.pcolormesh(x, y, values, rasterized=True, **shades)
+    bar = plane.figure.colorbar(picture, ax=plane)
+    if data.name == "multiplicity":
+        bar.set_ticks(range(1, 10), labels=MULTIPLICITIES)
+        bar.ax.minorticks_off()
+    if data.name == "impacts_per_period":
+        bar.ax.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        bar.ax.yaxis.set_major_formatter("{x:g}")
+        bar.ax.minorticks_off()
+    if np.ma.is_masked(values):
+        plane.set_facecolor(NOTHING)
+        bar.ax.set_xlabel("grey: none", fontsize=7)
+    plane.set_yscale("log" if is_geometric(y) else "linear")
+    plane.grid(False)
+
+
+def colour_scale(name: str, values: np.ndarray) -> tuple[np.ndarray, dict[str, Any]]:
+    """Return a quantity's values for colouring, and colour map and norm as keywords."""
+    if name == "multiplicity":
+        shown = np.where(values == 0, 9, np.minimum(values, 8))
+        return shown, {"vmin": 0.5, "vmax": 9.5, "cmap": ListedColormap(SHADES)}
+    if name == "exponent":
+        reach = float(np.nanmax(np.abs(values)))
+        return values, {"vmin": -reach, "vmax": reach, "cmap": "PuOr_r"}
+    above_zero = values[values > 0.0]
+    shown = np.ma.masked_less_equal(values, 0.0)
+    return shown, {"norm": LogNorm(above_zero.min(), above_zero.max()) if above_zero.size else None}
+
+
+def is_geometric(values: np.ndarray) -> bool:
+    """Return whether values grow by a constant factor from one to the next."""
+    if len(values) < 3 or values[0] <= 0.0 or values[-1] <= values[0]:
+        return False
+    return bool(np.allclose(values, np.geomspace(values[0], values[-1], len(values))))
+
+
+@styled
+def draw_basin(data: xr.Dataset, title: str = "", names: tuple[str, str] = ("", "")) -> Figure:
+    """Draw basins: each start in the colour of the attractor it leads to; return the figure."""
+    y, x = map(str, data.attractor_of.dims)
+    by_ratio = "eta" in data.coords and not units_of(data).frequency  # else the title has it
+    eta = rf"$\eta$ = {float(data.eta):.4g}" if by_ratio else ""
+    words = title or labels.join([title_from_attributes(data, ("eta", x, y)), eta])
+    figure, (plane,) = make_panels(1, 1, (6.4, 5.6), words)
+    kinds = data.attractor_of.where(data.attractor_of >= 0).values.clip(max=len(BASINS))
+    limits: Any = {"vmin": -0.5, "vmax": len(BASINS) + 0.5, "rasterized": True}
+    (right, x_label), (up, y_label) = (coordinate_scale(data, name) for name in (x, y))
+    shades = ListedColormap([*BASINS, OTHER])
+    plane.pcolormesh(data[x] / right, data[y] / up, kinds, cmap=shades, **limits)
+    label_attractors(plane, data)
+    if "state" in data and "phase" not in (x, y):
+        mark_attractors(plane, data, (x, right), (y, up))
+    plane.set(xlabel=names[0] or x_label, ylabel=names[1] or y_label)
+    plane.grid(False)
+    figure.legend(loc="outside lower left")
+    return figure
+
+
+def coordinate_scale(data: xr.Dataset, name: str) -> tuple[float, str]:
+    """Return the divisor to display units and the axis label of a coordinate of the plane."""
+    if name == "phase":
+        return 1.0, labels.symbol(name)
+    factor, word = scale_of(data, "m/s" if name.startswith("v") else "m")
+    words = labels.gap_name(data) if name == "x_rel" else labels.symbol(name).rpartition(" in ")[0]
+    return factor, f"{words} in {labels.typeset_unit(word)}"
+
+
+def mark_attractors(
+    plane: Axes, data: xr.Dataset, across: tuple[str, float], up: tuple[str, float]
+) -> None:
+    """Mark a state of each attractor by a cross, projected on the plane; axes: name and unit."""
+    columns = dict(zip(("x1", "x2", "v1", "v2"), data.state.values.T, strict=True))
+    clearance = 0.0 if data.attrs.get("bonded") else float(data.attrs.get("clearance", 0.0))
+    columns["x_rel"] = columns["x2"] - columns["x1"] + clearance
+    columns["v_rel"] = columns["v2"] - columns["v1"]
+    x, y = (columns[name] / unit for name, unit in (across, up))
+    limits = plane.get_xlim(), plane.get_ylim()
+    cross: Any = {"marker": "X", "markeredgecolor": BLACK, "markersize": 8.0, "linestyle": "none"}
+    for index in range(data.sizes["attractor"]):
+        colour = BASINS[index] if index < len(BASINS) else OTHER
+        plane.plot(x[index], y[index], markerfacecolor=colour, **cross)
+    plane.set(xlim=limits[0], ylim=limits[1])
+    plane.plot([], [], markerfacecolor="white", label="states on them", **cross)
+
+
+def label_attractors(plane: Axes, data: xr.Dataset) -> None:
+    """Add a legend with period, impacts and share of each coloured attractor."""
+    for index, colour in zip(range(data.sizes["attractor"]), BASINS, strict=False):
+        part = data.isel(attractor=index)
+        n, impacts = float(part.multiplicity), float(part.impacts_per_period)
+        kind = labels.orbit_label(n, impacts) or f"not periodic, {impacts:.2f} impacts per T"
+        text = f"{float(part.share):.1%}: {kind}, largest {gap_text(data, float(part.xi_rel_max))}"
+        plane.plot([], [], "s", color=colour, label=text)
+    rest = data.share.values[len(BASINS) :].sum()
+    if rest:
+        words = f"{rest:.1%}: {data.sizes['attractor'] - len(BASINS)} others"
+        plane.plot([], [], "s", color=OTHER, label=words)
+    if (data.attractor_of.values < 0).any():  # in no share
+        words = "no states: the gap would be below 0"
+        plane.plot([], [], "s", color="white", markeredgecolor=OTHER, label=words)
+
+
+def gap_text(data: xr.Dataset, gap: float) -> str:
+    """Format a gap over a eta^2, as a length where a unit of length is asked for."""
+    if not (units_of(data).length and {"amplitude", "frequency"} <= set(data.attrs)):
+        return f"{XI_REL} = {gap:.3g}"
+    eta = float(data.attrs["frequency"]) / omega_of(data)
+    return f"gap = {labels.format_length(data, gap * float(data.attrs['amplitude']) * eta**2)}"
+
+
+@styled
+def draw_border(*curves: xr.Dataset, title: str = "") -> Figure:
+    """Draw bifurcation curves over two parameters, with codimension-two points."""
+    over = [str(name) for name in curves[0].attrs["over"]]
+    figure, (plane,) = make_panels(1, 1, (9.6, 4.4), title or branch_title(curves[0], over))
+    (x_unit, x_label), (y_unit, y_label) = (parameter_scale(curves[0], name) for name in over)
+    shown: dict[str, None] = {}  # each kind is in the legend once
+    for curve in curves:
+        kind = str(curve.attrs["kind"])
+        x, y = curve[over[0]] / x_unit, curve[over[1]] / y_unit
+        draw_line(plane, x, y, "-", BORDERS[kind], 1.2, None if kind in shown else kind)
+        shown[kind] = None
+    for curve in (curve for curve in curves if curve.sizes.get("codimension_two")):
+        words = flag_words(curve.codimension_two_kind.attrs)
+        points = zip(*(curve[f"codimension_two_{name}"].values for name in over), strict=True)
+        for kind, (right, up) in zip(curve.codimension_two_kind.values, points, strict=True):
+            word, marker = words[int(kind)], MARKERS[int(kind) % len(MARKERS)]
+            label = None if word in shown else word
+            plane.plot(right / x_unit, up / y_unit, marker, color=BLACK, label=label)
+            shown[word] = None
+    plane.set(xlabel=x_label, ylabel=y_label)
+    figure.legend(loc="outside lower right", ncols=min(4, len(shown)))
+    return figure
+
+
+@styled
+def draw_poincare(data: xr.Dataset, title: str = "") -> Figure:
+    """Draw a Poincaré section at a phase of the box, at impacts or at releases."""
+    figure, (plane,) = make_panels(1, 1, (6.4, 5.0), title or title_from_attributes(data))
+    count, at = data.sizes["point"], str(data.attrs["at"])
+    size = 2.0 if count > 2000 else 4.0 if count > 200 else 7.0
+    sticks = np.full(count, False)
+    if at == "phase":
+        (x, x_label), (y, y_label) = gap_and_rate(data)
+    else:
+        x, x_label = data.phase / TURN, "phase of the box in rad"
+        plane.set_xlim(0.0, 1.0)
+        plane.xaxis.set_major_locator(MultipleLocator(0.25))
+        plane.xaxis.set_major_formatter(FuncFormatter(lambda turn, _: SHARES.get(turn, "")))
+    if at == "releases":
+        y, y_label = lengths(data, data.v1, "velocity of both masses", "m/s")
+    if at == "impacts":
+        y, y_label = lengths(data, data.impact_velocity, "closing speed", "m/s")
+        sticks = data.sticks.values.astype(bool)
+    points: Any = {"linestyle": "none", "marker": ".", "markersize": size, "markeredgewidth": 0.0}
+    kinds = (("impacts", ~sticks, BLACK), ("permanent contact follows", sticks, RED))
+    for label, chosen, colour in kinds:
+        if chosen.any():
+            plane.plot(x[chosen], y[chosen], color=colour, label=label, **points)
+    plane.set(xlabel=x_label, ylabel=y_label)
+    if sticks.any():
+        plane.legend()
+    widen_narrow_limits(plane)
+    return figure
+
+
+def gap_and_rate(data: xr.Dataset) -> tuple[tuple[xr.DataArray, str], tuple[xr.DataArray, str]]:
+    """Return gap and gap velocity in display units, each with its axis label."""
+    return lengths(data, data.x_rel, "gap"), lengths(data, data.v_rel, "gap velocity", "m/s")
+
+
+def widen_narrow_limits(plane: Axes) -> None:
+    """Widen axes with nearly constant values, so that a periodic motion shows as a point."""
+    for low, high, put in (
+        (*plane.get_xlim(), plane.set_xlim),
+        (*plane.get_ylim(), plane.set_ylim),
+    ):
+        middle = 0.5 * (low + high)
+        half = max(0.5 * (high - low), LEAST_HALF * abs(middle))
+        put(middle - half, middle + half)
+
+
+@styled
+def draw_manifold(data: xr.Dataset, title: str = "") -> Figure:
+    """Draw both sides of a manifold, broken where it is discontinuous; return the figure."""
+    figure, (plane,) = make_panels(1, 1, (7.4, 5.6), title or title_from_attributes(data))
+    (gap, x_label), (rate, y_label) = gap_and_rate(data)
+    sides = {"+": (BLUE, "where the gap grows from the saddle on"), "-": (RED, "where it falls")}
+    for side in map(str, data.side.values):
+        colour, words = sides[side]
+        draw_line(plane, gap.sel(side=side), rate.sel(side=side), "-", colour, 0.8, words)
+    saddle: Any = {"color": BLACK, "markersize": 9, "linestyle": "none", "label": "saddle"}
+    plane.plot(gap[0, 0], rate[0, 0], "+", **saddle)
+    plane.set(xlabel=x_label, ylabel=y_label)
+    legend_below(figure, [plane])
+    return figure
+
+
+# -- the paper's curves: along `point` tau, state (xi_1, xi_2, xi_1', xi_2'), kind and panel_of;
+# along `panel` e, D, eta and multiplicity
+
+
+def relative_motion(data: xr.Dataset, panel: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return time tau, gap xi_Rel and its velocity along one panel's curve."""
+    part = data.isel(point=data.panel_of.values == panel)
+    state = part.state.values
+    return part.tau.values, state[:, 1] - state[:, 0], state[:, 3] - state[:, 2]
+
+
+@styled
+def draw_states(data: xr.Dataset) -> Figure:
+    """Draw one response's phase planes, coloured by state (Figure 5); return the figure."""
+    figure, (left, right) = make_panels(1, 2, (8.5, 4.2))
+    state = data.state.values
+    _, gap, rate = relative_motion(data, 0)
+    draw_by_state(left, data, (state[:, 0], state[:, 2]), "-")
+    draw_by_state(left, data, (state[:, 1], state[:, 3]), "--")
+    draw_by_state(right, data, (gap, rate), "-", dotted=True)
+    title = r"(a) both masses: solid $\xi_1$, dashed $\xi_2$"
+    left.set(title=title, xlabel=r"$\xi_i$", ylabel=r"$\xi'_i$")
+    right.set(title="(b) relative motion", xlabel=XI_REL, ylabel=XI_REL_RATE)
+    legend_below(figure, [right])
+    return figure
+
+
+def draw_by_state(
+    axes: Axes,
+    data: xr.Dataset,
+    curve: tuple[np.ndarray, np.ndarray],
+    line: str,
+    dotted: bool = False,
+) -> None:
+    """Draw a curve in the colours of its states; contact as a thick line, or a dot."""
+    names = flag_words(data.kind.attrs)
+    for index, colour in enumerate(STATES):
+        x, y = (np.where(data.kind.values == index, along, np.nan) for along in curve)
+        contact = index == len(STATES) - 1
+        width = 2.5 if contact and not dotted else 1.0
+        marker, label = "o" if contact and dotted else "", names[index] if line == "-" else None
+        draw_line(axes, x, y, line + marker, colour, width, label)
+
+
+@styled
+def draw_masses(data: xr.Dataset) -> Figure:
+    """Draw both masses' phase planes, one panel per response on one scale (Figure 12)."""
+    count = data.sizes["panel"]
+    figure, axes = make_panels(1, count, (3.3 * count, 3.7))
+    reach = 1.08 * float(np.abs(data.state).max())
+    for index, plane in enumerate(axes):
+        state = data.state.values[data.panel_of.values == index]
+        draw_line(plane, state[:, 0], state[:, 2], "-", BLACK, 1.0, r"$m_1$")
+        draw_line(plane, state[:, 1], state[:, 3], ":", RED, 1.4, r"$m_2$")
+        e, D, eta = (float(data[name][index]) for name in ("e", "D", "eta"))
+        plane.set_title(rf"({'abcdefgh'[index]}) $e = {e:g}$, $D = {D:g}$, $\eta = {eta:.3f}$")
+        plane.set_xlabel(r"$\xi_i$")
+        plane.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
+    axes[0].set_ylabel(r"$\xi'_i$")
+    legend_below(figure, axes[:1])
+    return figure
+
+
+@styled
+def draw_phase_grid(data: xr.Dataset, columns: int = 4) -> Figure:
+    """Draw a grid of relative phase planes, each on its own scales (Figures 8 and 9)."""
+    count = data.sizes["panel"]
+    rows = -(-count // columns)
+    figure, axes = make_panels(rows, columns, (2.7 * columns, 2.6 * rows))
+    for index, plane in enumerate(axes[:count]):
+        _, gap, rate = relative_motion(data, index)
+        plane.plot(gap, rate, "-k", linewidth=0.15, rasterized=True)
+        kind = labels.format_period(int(data.multiplicity[index]))
+        plane.set_title(rf"$\eta = {float(data.eta[index]):.3f}$, {kind}")
+        plane.ticklabel_format(scilimits=(-2, 3))
+    for plane in axes[count:]:
+        plane.set_visible(False)
+    for plane in axes[::columns]:
+        plane.set_ylabel(XI_REL_RATE)
+    for plane in axes[-columns:]:
+        plane.set_xlabel(XI_REL)
+    return figure

@@ -1,0 +1,227 @@
+"""``MotorShaker`` and ``ElectrodynamicShaker`` in all their forms: the same bits, states that
+resume, the motion of the equations, inputs that are seen at once, and mistakes that are named.
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+from ..kernels.electrodynamic_shaker.truth import Shaker
+from ..kernels.shaker.truth import solve
+from .driver import DRIVES, FORMS, path_of, run, run_with_output
+from .programs.driver import Refused, open_fmu
+
+MOTOR, COIL = DRIVES
+LIMITED = {  # from limit to limit within half a second
+    **{"coil_inductance": 0.02, "voltage_limit": 6.0, "current_limit": 1.0, "position_start": 2e-3},
+    **{"command": 1.0, "command_1": 120.0, "command_2": -900.0, "command_3": 2000.0},
+    **{"box_force": 5.0, "box_force_1": -100.0, "box_force_2": 900.0},
+}
+COMMANDED = {**LIMITED, "current_control": True, "coil_inductance": 0.0}
+drives = pytest.mark.parametrize("model", DRIVES)
+
+
+def test_all_communication_points_and_forms_give_the_same_bits(tmp_path):
+    """The coil's motion is exact between limits; in pure Python too, and in a fresh process."""
+    for values in (LIMITED, COMMANDED):
+        ends = []
+        for form, pure in (*((form, False) for form in FORMS), ("fmi2-python", True)):
+            arguments = (path_of(COIL, form), values, 0.5)
+            ends += run("drives.grids", *arguments, cwd=tmp_path, pure=pure)
+        assert len(ends) == 3 * (len(FORMS) + 1)
+        assert all(end == ends[0] for end in ends)
+
+
+RESUMED = {  # start values, and inputs set at each step
+    MOTOR: (
+        {"voltage": 6.0, "box_force": 0.5, "box_force_1": -3.0, "armature_inductance": 0.01},
+        lambda k: {"voltage": 6.0 + 0.1 * k, "box_force": 0.3 * k},
+    ),
+    COIL: (
+        LIMITED,
+        lambda k: {"command": 2 - 0.1 * k, "command_1": 500 - 10.0 * k, "box_force": 0.3 * k},
+    ),
+}
+
+
+@drives
+def test_states_resume_with_the_same_bits_in_all_forms(model):
+    values, inputs = RESUMED[model]
+
+    def go(f, first, last):
+        for k in range(first, last):
+            f.step(k * 0.0137).set(**inputs(k))
+        return f.motion()
+
+    ends = []
+    for form in FORMS:
+        f = open_fmu(path_of(model, form)).start(**values)
+        go(f, 1, 41)
+        half = f.save()
+        ends += [go(f, 41, 61), go(f.restore(*half), 41, 61)]
+        ends.append(go(open_fmu(path_of(model, form)).restore(*half), 41, 61))
+    assert len(ends) == 9 and all(end == ends[0] for end in ends)
+    assert abs(ends[0]["box_position"]) > 1e-4
+
+
+def test_a_motor_turns_by_the_equations(form):
+    values = {"voltage": 8.0, "box_force": 2.0}
+    values |= {"box_force_1": 30.0, "box_force_2": -500.0, "box_force_3": 1e4}
+    f = open_fmu(path_of(MOTOR, form)).start(**values).step(0.25)
+    expected = solve(values, (0.0,) * 5, 0.25)
+    found = f.get("box_position", "box_velocity", "angle", "speed", "motor_energy")
+    assert found == pytest.approx([*expected[:4], expected[5]], rel=1e-11)
+
+
+@pytest.mark.parametrize("values", [LIMITED, COMMANDED], ids=["voltage", "current"])
+def test_a_coil_moves_by_the_equations(form, values):
+    f = open_fmu(path_of(COIL, form)).start(**values).step(0.5)
+    shaker = Shaker(**values)
+    start = [values["position_start"], *[0.0] * 6]
+    shaker.begin(0.0, start)
+    state = shaker.run(start, 0.0, 0.5)
+    current, _, voltage = shaker.electric(0.5, state)
+    assert shaker.changes >= 3
+    found = f.get("box_position", "box_velocity", "current", "voltage", "energy")
+    assert found == pytest.approx([*state[:2], current, voltage, state[3]], rel=1e-10)
+
+
+@pytest.mark.parametrize("form", ["fmi2", "fmi3"])
+def test_the_motor_turns_in_a_default_run(form):
+    """What a checker runs with nothing set shows a motion."""
+    f, positions = open_fmu(path_of(MOTOR, form)).start(), []
+    for k in range(1, 201):
+        positions.append(f.step(0.01 * k).one("box_position"))
+    assert f.one("speed") > 10.0
+    assert np.ptp(positions) > 1e-5
+
+
+@drives
+def test_acceleration_belongs_to_the_inputs_as_set_now(model, form):
+    """In initialisation mode and between steps, after a state was restored too; reading it changes
+    nothing.
+    """
+    name = "voltage" if model == MOTOR else "command"
+    f = open_fmu(path_of(model, form))
+    f.enter()
+    still, pushed = (f.set(box_force=force).one("box_acceleration") for force in (0.0, 11.0))
+    assert pushed - still == pytest.approx(2.0, rel=1e-2)  # 5.5 kg
+    f.set(box_force=0.0, **{name: 6.0})
+    f.leave()
+    f.step(0.1)
+    rows = []
+    for force in (2.0, 13.0):
+        state = f.set(box_force=force).save()
+        rows.append(f.one("box_acceleration"))
+        assert f.restore(*state).one("box_acceleration") == rows[-1]
+    assert 2.0 * (1.0 - 1e-12) <= rows[1] - rows[0] < 2.0 * 1.01  # an unbalance takes part
+    if model == COIL:
+        assert f.set(command=7.0).one("voltage") == 7.0
+    f.set(**{name: 3.0})
+    other = open_fmu(path_of(model, form)).start(**{name: 6.0}).step(0.1)
+    other.set(box_force=13.0, **{name: 3.0})
+    assert f.step(0.2).outputs() == other.step(0.2).outputs()
+
+
+MISTAKES = [  # a model, what is done to a new instance, and what the message must name
+    (MOTOR, lambda f: f.start(box_mass=0.0), "box_mass = 0.0 kg; 1e-30 <= box_mass <= 1e+30"),
+    (MOTOR, lambda f: f.start(armature_resistance=-1.0), "armature_resistance = -1.0 Ohm; 1e-30"),
+    (
+        MOTOR,
+        lambda f: f.start().set(voltage=math.nan),
+        "voltage = nan V; -1e+30 <= voltage <= 1e+30",
+    ),
+    (MOTOR, lambda f: f.start().set(box_force_2=math.inf), "box_force_2 = inf N/s2; expected"),
+    (MOTOR, lambda f: f.start().set(rotor_inertia=1.0), "rotor_inertia = 1.0; fixed parameter"),
+    (MOTOR, lambda f: f.start().set(speed=1.0), "speed = 1.0; output"),
+    (
+        MOTOR,
+        lambda f: f.start(rotor_inertia=1e-9),
+        "rotor_inertia = 1e-09 kg.m2; unbalance_mass = 0.025 kg; expected rotor_inertia >= ",
+    ),
+    (
+        MOTOR,
+        lambda f: f.start(armature_inductance=1e-9, voltage=5.0).step(1.0),
+        "armature_inductance = 1e-09 H; expected 0 H; cannot finish; reached 0.0 s",
+    ),
+    (
+        MOTOR,
+        lambda f: f.start().step(math.nan),
+        "communicationStepSize = nan s; expected every finite number >= 0",
+    ),
+    (MOTOR, lambda f: f.start().step(-1.0), "communicationStepSize = -1.0 s; expected"),
+    (MOTOR, lambda f: f.start(voltage=1e30).step(1.0), "range of floating-point numbers"),
+    (COIL, lambda f: f.start(table_mass=0.0), "table_mass = 0.0 kg; 1e-30 <= table_mass <= 1e+30"),
+    (COIL, lambda f: f.start(force_factor=math.nan), "force_factor = nan N/A; expected"),
+    (COIL, lambda f: f.start(voltage_limit=-5.0), "voltage_limit = -5.0 V; 0.0 <= voltage_limit"),
+    (
+        COIL,
+        lambda f: f.start().set(command=math.nan),
+        "command = nan V; -1e+30 <= command <= 1e+30",
+    ),
+    (COIL, lambda f: f.start().set(current=1.0), "current = 1.0; output"),
+    (
+        COIL,
+        lambda f: f.start(position_start=-0.02, travel_limit=0.01),
+        "position_start = -0.02 m; within travel_limit = 0.01 m",
+    ),
+    (
+        COIL,
+        lambda f: f.start(current_start=3.0, current_limit=2.0, coil_inductance=0.01),
+        "current_start = 3.0 A; within current_limit = 2.0 A",
+    ),
+    (
+        COIL,
+        lambda f: f.start(command=40.0, travel_limit=0.01).step(2.0),
+        "box_position = 0.01;  m at time = 0.0; time = 2.0 s; travel_limit = 0.01 m",
+    ),
+    (
+        COIL,
+        lambda f: f.start(coil_inductance=1e-9, command=5.0).step(1.0),
+        "coil_inductance = 1e-09 H; expected 0 H; cannot finish; reached 0.0 s",
+    ),
+]
+
+
+def test_mistakes_are_named_and_others_live_on(form):
+    living = {model: open_fmu(path_of(model, form), name="other") for model in DRIVES}
+    living[MOTOR].start(voltage=5.0)
+    living[COIL].start(command=5.0)
+    for model, fail, parts in MISTAKES:
+        with pytest.raises(Refused) as refused:
+            fail(open_fmu(path_of(model, form)))
+        text = " ".join(refused.value.messages)
+        assert [part for part in parts.split("; ") if part not in text] == [], text
+    assert living[MOTOR].step(0.1).one("angle") > 0.0
+    assert living[COIL].step(0.1).one("box_position") > 0.0
+
+
+@drives
+def test_a_failed_step_leaves_the_instance_where_it_was(model, form):
+    """A step that would not finish, and one into a stop."""
+    values = {"voltage": 5.0, "armature_inductance": 1e-4}
+    values = values if model == MOTOR else {"command": 40.0, "travel_limit": 0.01}
+    f, other = (open_fmu(path_of(model, form)).start(**values).step(0.01) for _ in range(2))
+    f.refused("doStep", 0.01, 10.0)
+    assert f.motion() == other.motion()
+    assert f.step(0.02).motion() == other.step(0.02).motion()
+
+
+@drives
+@pytest.mark.parametrize("form", ["fmi2-python", "fmi2"])
+def test_libcosim(model, form, tmp_path):
+    """Another reader of the XML and another loop: the same bits."""
+    pytest.importorskip("libcosimpy")
+    if model == MOTOR:
+        names, values = ["box_position", "angle", "motor_energy"], {"voltage": 7.0}
+    else:
+        names = ["box_position", "current", "voltage", "energy"]
+        values = {name: value for name, value in LIMITED.items() if value}
+    arguments = (values, names, 0.03125, 16)
+    (rows, known), done = run_with_output(
+        "libcosim.simulate", path_of(model, form), *arguments, cwd=tmp_path
+    )
+    f = open_fmu(path_of(model, form)).start(**values)
+    assert [row[1:] for row in rows] == [f.step(k * 0.03125).get(*names) for k in range(1, 17)]
+    assert known > 30 and "error" not in done.stderr.lower()

@@ -1,0 +1,172 @@
+"""Which function may be called when, and what a call that may not be changes: nothing."""
+
+import ctypes
+import math
+import re
+
+import pytest
+
+from fmu_src.export import native_form
+
+from ..fmu.driver import MODELS, path_of
+from ..fmu.programs.driver import ERROR, Refused, open_fmu
+from .conftest import VERSIONS
+
+NEW, INITIALIZING, STEPPING, TERMINATED, BETWEEN_EVENTS, AT_EVENT = range(6)
+INPUTS = {
+    "TwoMassImpactOscillator": ("box_amplitude", "e", "x1"),
+    "MotorShaker": ("voltage", "motor_constant", "box_position"),
+    "ElectrodynamicShaker": ("command", "force_factor", "box_position"),
+}
+
+
+def in_phase(path, phase):
+    """An instance that has come to a phase; the last two are modes of FMI 3.0."""
+    options = {"event_mode": phase >= BETWEEN_EVENTS} if phase >= BETWEEN_EVENTS else {}
+    f = open_fmu(path, **options)
+    if phase == NEW:
+        return f
+    if phase == INITIALIZING:
+        f.enter()
+        return f
+    f.start().step(20.0)
+    if phase == TERMINATED:
+        f.call("terminate")
+    if phase == AT_EVENT:
+        f.call("enterEventMode")
+    return f
+
+
+def calls(f):
+    """Function and arguments, and in which phases it is allowed."""
+    names = INPUTS[f.fmu.modelIdentifier]
+    an_input, fixed, output = ([f.reference(name)] for name in names)
+    real = f.variables[names[2]].type
+    yield "enterInitializationMode", (), {NEW}
+    yield "exitInitializationMode", (), {INITIALIZING}
+    yield "terminate", (), {STEPPING, BETWEEN_EVENTS, AT_EVENT}
+    yield f"get{real}", (output,), {*range(6)} - {NEW}
+    yield f"set{real}", (an_input, [0.5]), {*range(6)} - {TERMINATED}
+    yield f"set{real}", (fixed, [0.5]), {NEW, INITIALIZING}
+    yield f"set{real}", (output, [0.5]), set()
+    yield "doStep", (20.0, 1.0), {STEPPING, BETWEEN_EVENTS}
+    rates = "getOutputDerivatives" if f.third else "getRealOutputDerivatives"
+    yield rates, (output, [1]), {*range(6)} - {NEW}
+    if f.third:
+        yield "updateDiscreteStates", (), {AT_EVENT}
+        yield "enterStepMode", (), {AT_EVENT}
+        yield "enterEventMode", (), {BETWEEN_EVENTS}
+    else:
+        yield "setupExperiment", (), {NEW}
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("version", VERSIONS)
+def test_calls_out_of_order_are_refused_and_change_nothing(exported, version, model):
+    """Not a byte of the state; and reset forgets everything."""
+    path = path_of(model, version)
+    fresh = in_phase(path, STEPPING).save()
+    for phase in range(6 if version == "fmi3" else 4):
+        f = in_phase(path, phase)
+        before = f.save()
+        for function, given, allowed in calls(f):
+            if phase in allowed:
+                f.call(function, *given)
+                f.restore(*before)
+                continue
+            now = f.save()
+            assert f.refused(function, *given)
+            same = f.save() == now
+            assert same, (phase, function)
+        f.reset().start().step(20.0)
+        if phase < BETWEEN_EVENTS:
+            assert f.save() == fresh
+
+
+def functions_of_header(version):
+    """Every function the standard's header declares: some importers look for all of them."""
+    text = native_form.fmi_headers(version)[f"{version}Functions.h"].decode()
+    return sorted(set(re.findall(rf"_Export\s+{version}\w+TYPE\s+({version}\w+)\s*;", text)))
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("version", VERSIONS)
+def test_no_instance_and_null_pointers_are_an_error(exported, version, model):
+    """Every function without an instance, then with one and nothing else."""
+    f = open_fmu(path_of(model, version))
+    bare, nothing = ctypes.CDLL(f.fmu.dll._name), [None] * 14
+    for name in functions_of_header(version):
+        if re.search("Instantiate|GetVersion|GetTypesPlatform", name):
+            continue
+        function = getattr(bare, name)
+        if name.endswith("FreeInstance"):
+            function(*nothing)
+            continue
+        assert function(*nothing) == ERROR, name
+        component = ctypes.c_void_p(f.fmu.component)
+        assert function(component, *nothing) in range(ERROR + 1), name
+    f.reset().start().step(1.0)
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_null_pointers_where_values_are_asked_for(fmus, version):
+    """One reference, and no place for its value: an error with a message."""
+    with open_fmu(fmus[version]) as f:
+        f.start()
+        component, one = ctypes.c_void_p(f.fmu.component), ctypes.c_size_t(1)
+        kinds = ("Float64", "Int32", "Boolean") if f.third else ("Real", "Integer", "Boolean")
+        for name in (f"{version}{verb}{kind}" for verb in ("Get", "Set") for kind in kinds):
+            function = getattr(ctypes.CDLL(f.fmu.dll._name), name)
+            place = (ctypes.c_uint32 * 1)(0)
+            for given in ((place, one, None, one), (None, one, place, one)):
+                assert function(component, *given) == ERROR, name
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_only_references_of_the_model_description_are_known(fmus, version):
+    with open_fmu(fmus[version]) as f:
+        f.start()
+        before = f.save()
+        scalars = {v.valueReference: v for v in f.variables.values() if not v.dimensions}
+        arrays = {v.valueReference for v in f.variables.values() if v.dimensions}
+        types = ("Float64", "Int32", "Boolean") if f.third else ("Real", "Integer", "Boolean")
+        for reference in (*range(2100), 2**31 - 1, 2**31, 2**32 - 1):
+            known = scalars.get(reference)
+            for kind in types:
+                if known is None or known.type != kind:
+                    if reference not in arrays:
+                        f.refused(f"get{kind}", [reference])
+                else:
+                    f.call(f"get{kind}", [reference])
+                if known is None or known.causality not in ("parameter", "input"):
+                    with pytest.raises(Refused):
+                        f.call(f"set{kind}", [reference], [0])
+        assert f.save() == before
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_a_damaged_state_is_refused(fmus, version):
+    """Cut or longer, a bit of it changed anywhere, or with a number that does not fit."""
+    with open_fmu(fmus[version]) as f:
+        data, time = f.start().step(20.0).save()
+        before = f.outputs()
+        bad = [data[:size] for size in (0, 1, 63, 64, len(data) - 1)] + [data + b"\0"]
+        for place in (*range(64), *range(64, len(data), 61)):
+            bad.append(data[:place] + bytes([data[place] ^ 4]) + data[place + 1 :])
+        for one in bad:
+            with pytest.raises(Refused):
+                f.restore(one, time)
+        assert f.outputs() == before
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_a_step_of_no_length_and_the_shortest_there_is(fmus, version):
+    with open_fmu(fmus[version]) as f:
+        before = f.start().step(20.0).motion()
+        for size in (-1.0, -5e-324, math.nan, math.inf, -math.inf):
+            assert "communicationStepSize = " in f.refused("doStep", 20.0, size)
+        for point in (-20.0, 19.0, 21.0, math.nan, math.inf, 1e300):
+            told = f.refused("doStep", point, 1.0)
+            assert "currentCommunicationPoint = " in told and "20.0 s" in told
+        f.call("doStep", 20.0, 0.0)
+        assert f.motion() == before

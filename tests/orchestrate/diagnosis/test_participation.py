@@ -1,0 +1,112 @@
+"""Sensors anywhere on a beam: each reads the base and a part of the mode, and is fitted so."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import orchestrate
+from orchestrate.diagnosis.even_orders import sensor_difference, thresholds
+from orchestrate.diagnosis.evidence import Evidence
+from orchestrate.errors import InputError
+from tools.benches.beam import DelaminatedBeam
+from tools.benches.bench import Bench
+from tools.benches.excitation import Swept
+from tools.benches.lumped import TURN, Faces
+from tools.benches.sensors import Sensor
+
+from .records import BEAM, RATE, SWEEP, guess, record
+
+TIP, MIDDLE = 1.566, 0.532  # of a uniform cantilever: Blevins, Formulas for Natural Frequency
+
+
+def seen_at(one: float, other: float | None = None, structure=BEAM):
+    """What sensors read that stand where the mode is ``one`` and ``other`` times the mass's."""
+    felt = record(structure)
+    base = felt.box_acceleration
+    read = {"box_acceleration": base.values}
+    for name, factor in (("acceleration1", one), ("acceleration2", other)):
+        if factor is not None:
+            read[name] = (base + factor * (felt[name] - base)).values
+    return orchestrate.record(time=felt.time.values, **read)
+
+
+@pytest.mark.parametrize("factor", [0.5, 1.5])
+def test_a_sensor_reads_a_part_of_the_mass(factor):
+    history = orchestrate.shake(BEAM, SWEEP, sample_rate=RATE, progress=False)
+    usual, part = (
+        orchestrate.measure(
+            history,
+            orchestrate.Sensor(bandwidth=250.0, sample_rate=RATE, participation=share),
+            excitation=SWEEP,
+        )
+        for share in (1.0, factor)
+    )
+    np.testing.assert_array_equal(part.box_acceleration, usual.box_acceleration)
+    for name in ("acceleration1", "acceleration2"):
+        expected = usual.box_acceleration + factor * (usual[name] - usual.box_acceleration)
+        scale = float(abs(usual[name]).max())
+        np.testing.assert_allclose(part[name], expected, atol=1e-11 * scale)
+
+
+def test_a_factor_that_is_no_number_is_one_line():
+    with pytest.raises(InputError, match="participation = nan"):
+        orchestrate.Sensor(bandwidth=250.0, participation=np.nan)
+
+
+@pytest.mark.parametrize(("place", "factor"), [(1.0, TIP), (0.5, MIDDLE)])
+def test_a_sound_cantilever_is_described_wherever_its_sensor_is(place, factor):
+    """By finite elements, with four modes; the factor is that of the literature."""
+    beam = DelaminatedBeam(first=0.0, last=0.0)
+    system = beam.system(Faces(), 0.01, modes=4, sensor=place * beam.length)
+    f = float(system.frequency[0]) / TURN
+    sweep = Swept(0.7 * f, 1.4 * f, 20.0, 4.0)
+    measured, _ = Bench(excitation=sweep, box=Sensor(), face1=Sensor()).measure(system, 1)
+    near = BEAM.replace(f1=0.93 * f, f2=1.08 * f)
+    answer = orchestrate.detect(measured, near, jobs=1, progress=False)
+    assert answer.verdict == "no opening seen" and float(answer.misfit.min()) < 0.4
+    bonded = answer.sel(hypothesis="bonded", channel="acceleration1")
+    assert float(bonded.participation) == pytest.approx(factor, rel=0.03)
+    assert abs(float(bonded.participation) - factor) < 4.0 * float(bonded.participation_error)
+
+
+@pytest.mark.parametrize("factor", [MIDDLE, TIP])
+def test_a_delamination_is_found_with_its_numbers_wherever_the_sensor_is(factor):
+    answer = orchestrate.detect(seen_at(factor), guess(), jobs=1, progress=False)
+    assert answer.verdict == "delaminated" and float(answer.ratio) > 1.5
+    fitted = answer.sel(hypothesis="delaminated", channel="acceleration1")
+    assert float(fitted.participation) == pytest.approx(factor, rel=0.05)
+    for name, true in (("f1", BEAM.f1), ("f2", BEAM.f2)):
+        assert float(fitted.value.sel(parameter=name)) == pytest.approx(true, rel=0.01)
+
+
+def test_sensors_at_two_places_of_a_sound_beam_do_not_differ():
+    apart = []
+    for structure in (BEAM.as_bonded(), BEAM):
+        evidence = Evidence.from_record(seen_at(0.8, 0.65, structure))
+        apart.append(np.nanmax(sensor_difference(evidence, thresholds(evidence))))
+    assert apart[0] < 0.1 and apart[1] > 2.0
+
+
+def test_a_factor_that_is_given_is_kept():
+    measured = seen_at(0.6)
+    known = Evidence.from_record(measured)
+    assert known.given_participation(0) is None
+    free = orchestrate.fit(measured, guess(), hypothesis="bonded", jobs=1, progress=False)
+    kept = orchestrate.fit(
+        measured, guess(), hypothesis="bonded", participation=0.9, jobs=1, progress=False
+    )
+    assert kept.participation.values.tolist() == [0.9] and kept.participation_error.item() == 0.0
+    assert float(kept.misfit) > float(free.misfit)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ("much", "participation = 'much'"),
+        ({"acceleration2": 0.5}, "'acceleration2' is no sensor; the record has acceleration1"),
+    ],
+)
+def test_mistaken_factors_are_one_line(given, words):
+    with pytest.raises(InputError, match=words):
+        orchestrate.detect(seen_at(1.0), guess(), participation=given)
