@@ -1,12 +1,15 @@
 """Entry point of ``python -m orchestrate COMMAND``; ``--help`` lists the commands."""
 
-import sys
+from __future__ import annotations
 
-from .supervisor import run_supervised
+import os
+import signal
+import sys
+import threading
 
 
 def run() -> int:
-    """Run the command line in this process; return its exit code, 130 after Ctrl-C."""
+    """Run the command line; return its exit code, 130 after Ctrl-C."""
     try:
         from .cli import main as run_command_line
 
@@ -17,8 +20,35 @@ def run() -> int:
 
 
 def main() -> int:
-    """Run the command line in a supervised child process; return its exit code in any case."""
-    return run_supervised(run)
+    """Run the command line with its streams open and its signals heard; return its exit code."""
+    open_missing_streams()
+    sys.unraisablehook = resend_interrupt
+    if signal.getsignal(signal.SIGTERM) == signal.SIG_DFL:  # not ignored
+        signal.signal(signal.SIGTERM, raise_terminated)
+    return run()
+
+
+def raise_terminated(*_: object) -> None:
+    """Handle SIGTERM: raise the ``KeyboardInterrupt`` that says so."""
+    from .errors import Terminated
+
+    raise Terminated
+
+
+def resend_interrupt(lost: sys.UnraisableHookArgs) -> None:
+    """Raise Ctrl-C or SIGTERM again where Python has dropped it, in a callback."""
+    if not issubclass(lost.exc_type, KeyboardInterrupt):
+        sys.__unraisablehook__(lost)
+        return
+    number = signal.SIGINT if lost.exc_type is KeyboardInterrupt else signal.SIGTERM
+    threading.Timer(0.05, os.kill, (os.getpid(), number)).start()
+
+
+def open_missing_streams() -> None:
+    """Open closed ones of the standard streams (descriptors 0 to 2) on ``/dev/null``."""
+    while (number := os.open(os.devnull, os.O_RDWR)) <= 2:
+        os.set_inheritable(number, True)
+    os.close(number)
 
 
 if __name__ == "__main__":

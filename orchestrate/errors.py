@@ -25,3 +25,7 @@ class FmuError(VibroimpactError, RuntimeError):
 
 class WorkerError(VibroimpactError, RuntimeError):
     """Raised if a worker process ended without a message."""
+
+
+class Terminated(KeyboardInterrupt):
+    """``KeyboardInterrupt`` for SIGTERM, to tell it from Ctrl-C."""

@@ -18,7 +18,7 @@ from pathlib import Path
 
 from .files import check_path_encoding, is_process_alive
 
-PREFIX = "vibroimpact-fmu-"  # by which the supervisor of a command knows them too
+PREFIX = "vibroimpact-fmu-"
 _folders: dict[int, Path] = {}  # by process: a forked child makes its own
 
 
@@ -30,15 +30,15 @@ def process_folder() -> Path:
         check_path_encoding(tempfile.gettempdir())
         remove_leftovers()
         folder = _folders[pid] = Path(tempfile.mkdtemp(prefix=f"{PREFIX}{pid}-"))
-        atexit.register(remove_own_folder, folder, pid)
+        atexit.register(remove_process_folder)
         # processes of multiprocessing, such as Dask's workers, know nothing of atexit
-        Finalize(None, remove_own_folder, (folder, pid), exitpriority=0)
+        Finalize(None, remove_process_folder, exitpriority=0)
     return folder
 
 
-def remove_own_folder(folder: Path, pid: int) -> None:
-    """Delete a temporary folder at exit, only in the process that made it (not in a fork)."""
-    if os.getpid() == pid:
+def remove_process_folder() -> None:
+    """Delete the temporary folder of this process, if it has one (a fork's parent's is not)."""
+    if folder := _folders.get(os.getpid()):
         shutil.rmtree(folder, ignore_errors=True)
 
 

@@ -32,7 +32,6 @@ FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know bes
     "flags": set(),
     "version": set(),
     "files": {"errors"},
-    "supervisor": set(),
     "temporary": {"files"},
     "units": {"constants", "errors"},
     "structures": GROUND,
@@ -51,9 +50,8 @@ FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know bes
     "explorer": BELOW_ANSWERS,
     "cli": BELOW_ANSWERS
     | {"__init__", "laboratory", "weak_drive", "diagnosis", "figures", "reports", "paper"}
-    | {"explorer"}
-    | {"supervisor", "temporary"},
-    "__main__": {"cli", "supervisor"},
+    | {"explorer"},
+    "__main__": {"cli", "errors"},
 }
 PARTS: dict[str, set[str]] = {  # and of fmu_src
     "kernels.numerics": set(),

@@ -16,11 +16,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from ..errors import InputError, StaleError, VibroimpactError
+from ..errors import InputError, StaleError, Terminated, VibroimpactError
 from ..version import __version__
 from . import diagnosis, dynamics, laboratory, pages, responses, weak_drive
 from .options import QUANTITIES, list_shipped_sets
-from .process import Terminated, handled_signals, safe_outputs
+from .safe_output import safe_outputs
 from .table import DEBUG, parse_options
 
 COMMANDS = (
@@ -91,7 +91,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     code.
     """
     try:
-        with safe_outputs() as output, handled_signals():
+        with safe_outputs() as output:
             code = run_command(sys.argv[1:] if arguments is None else arguments)
             output.flush()
             if output.failure():
@@ -153,9 +153,6 @@ def with_option_names(message: str, chosen: argparse.Namespace) -> str:
 
 def report_interruption(ended: KeyboardInterrupt) -> int:
     """Print that SIGINT or SIGTERM has ended the command; return the exit code, 130 or 143."""
-    from ..temporary import remove_leftovers
-
-    remove_leftovers()  # of workers that were ended in the middle of a chunk
     terminated = isinstance(ended, Terminated)
     print_error(f"{'terminated' if terminated else 'interrupted'}: {describe_progress_kept()}")
     return TERMINATED if terminated else INTERRUPTED

@@ -109,7 +109,7 @@ class AttractorsJob(SeriesQuestion):
 
     def progress_note(self, first: int) -> str:
         """Return a note for the progress bar while the last item gathers attractors, else none."""
-        return "attractors carried to neighbours" if first == self.count() - 1 else ""
+        return "attractors at neighbours" if first == self.count() - 1 else ""
 
     def work(
         self, fmus: Mapping[str, Path], items: Sequence[RandomStart | None], previous: Table | None

@@ -11,8 +11,9 @@ module              idea
 :mod:`.checksum`    checksum of a result, however it is stored
 :mod:`.formats`     export of a result: CSV, MATLAB, Excel
 :mod:`.provenance`  attributes that say where a dataset comes from
-:mod:`.executors`   this process, or worker processes of this machine
-:mod:`.cluster`     the workers of a Dask scheduler
+:mod:`.executors`   this process, its threads, or processes of this machine
+:mod:`.cluster`     the workers of a Dask scheduler, or any executor
+:mod:`.bar`         progress bar
 :mod:`.progress`    chunks done, under way, guessed; what may be computed next
 :mod:`.runner`      keeps the workers busy until every result is there
 ==================  =========================================================================

@@ -1,97 +1,90 @@
-"""The workers of a Dask scheduler, on any machine."""
+"""Workers elsewhere: those of a Dask scheduler, or of any executor of ``concurrent.futures``."""
 
 from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Mapping
-from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
-from contextlib import suppress
+from collections.abc import Iterator
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, ThreadPoolExecutor
+from contextlib import contextmanager, suppress
 from typing import Any
 
-from ..errors import InputError
-from .executors import workers_ended_on_error
+from ..errors import InputError, VibroimpactError, WorkerError
+from .executors import RESUMES, Workers, format_end
 
-DASK_LOGGERS = (
-    *("distributed.batched", "distributed.client", "distributed.comm.core", "distributed.comm.tcp"),
-    *("distributed.core", "distributed.utils", "distributed.utils_comm", "tornado.application"),
-)
-CONNECTION_ERRORS = (OSError, CancelledError, asyncio.CancelledError, asyncio.TimeoutError)
 CONNECT_TIMEOUT = "5s"
+CONNECTION_ERRORS = (OSError, CancelledError, asyncio.CancelledError)
 RETRIES = 3  # a chunk whose worker is lost is computed by others
+NO_DASK = 'cluster: needs Dask; pip install "vibroimpact[cluster]" brings it'
 
 
-def is_worth_logging(record: logging.LogRecord) -> bool:
-    """Return whether one of Dask's log records is kept; lost connections are reported by us."""
-    kind = record.exc_info[0] if record.exc_info else None
-    lost = kind is not None and issubclass(kind, CONNECTION_ERRORS)
-    message = record.getMessage()
-    return (
-        not lost
-        and "CommClosedError" not in message
-        and not message.startswith("Failed to reconnect")
-    )
-
-
-class Cluster:
-    """Computes chunks on the workers of a Dask scheduler."""
-
-    remote = True
-
-    def __init__(self, address: str) -> None:
-        try:
-            from distributed import Client, KilledWorker
-        except ImportError:
-            raise InputError(
-                'cluster: needs Dask; pip install "vibroimpact[cluster]" brings it'
-            ) from None
-        self.losses: Mapping[type[BaseException], str] = {
-            CancelledError: "the scheduler of the cluster has ended",
-            KilledWorker: "workers of the cluster ended without a word (killed, or out of memory)",
-        }
-        for name in DASK_LOGGERS:
-            logging.getLogger(name).addFilter(is_worth_logging)
-        connect: Any = Client
-        try:
-            with ThreadPoolExecutor(1) as thread_pool:  # a notebook has a loop in this thread
-                thread_pool.submit(asyncio.run, check_scheduler(address)).result()
-            self._client = connect(address, timeout=CONNECT_TIMEOUT, set_as_default=False)
-        except Exception as error:  # of whatever answers there, and however
-            raise InputError(
-                f"cluster {address}: no scheduler answers there ({str(error) or 'silence'}); "
-                "`dask scheduler` starts one"
-            ) from None
-        self.executor: Executor = DaskExecutor(
-            self._client.get_executor(pure=False, retries=RETRIES), self._client
-        )
-        with workers_ended_on_error(self):
-            if not self._cores():
+@contextmanager
+def cluster(where: Any, count: int) -> Iterator[Workers]:
+    """Provide workers by a scheduler's address, a Dask client, or an executor of ``count``."""
+    if isinstance(where, str):
+        with dask_client(where) as client, dask_workers(client) as workers:
+            if not client.ncores():
                 raise InputError(
-                    f"cluster {address}: the scheduler has no workers; "
-                    f"`dask worker {address} --nthreads 1` starts one"
+                    f"cluster {where}: the scheduler has no workers; "
+                    f"`dask worker {where} --nthreads 1` starts one"
                 )
-
-    def _cores(self) -> int:
-        """Return the number of cores of all Dask workers together."""
+            yield workers
+    elif isinstance(where, Executor):
         try:
-            return int(sum(self._client.ncores().values()))
-        except Exception as error:  # one of many, where the connection is lost
-            raise CancelledError from error
+            yield Workers(where, lambda: count + 1, remote=True)
+        except BrokenExecutor as error:
+            raise WorkerError(f"{format_end(error)}; {RESUMES}") from None
+    else:
+        with dask_workers(where) as workers:
+            yield workers
 
-    def max_in_flight(self) -> int:
-        """Return how many chunks to submit at once: two per core of the Dask workers."""
-        return 2 * max(1, self._cores())
 
-    def close(self, in_haste: bool) -> None:
-        """Shut down the Dask client; running chunks are cancelled ``in_haste``, else awaited."""
+@contextmanager
+def dask_workers(client: Any) -> Iterator[Workers]:
+    """Provide the workers of a Dask client; on an error their chunks are cancelled."""
+    executor = client.get_executor(pure=False, retries=RETRIES)
+    try:
+        yield Workers(executor, lambda: 2 * max(1, sum(client.ncores().values())), remote=True)
+    except BaseException as error:
         with suppress(Exception):
-            self.executor.shutdown(wait=not in_haste)
+            executor.shutdown(wait=False)
+        lost = isinstance(error, CONNECTION_ERRORS) or client.status != "running"
+        if lost and not isinstance(error, (VibroimpactError, KeyboardInterrupt)):
+            raise WorkerError(f"the scheduler of the cluster has ended; {RESUMES}") from None
+        if type(error).__name__ == "KilledWorker":
+            raise WorkerError(
+                f"workers of the cluster ended without a word (killed, or out of memory); {RESUMES}"
+            ) from None
+        raise
+
+
+@contextmanager
+def dask_client(address: str) -> Iterator[Any]:
+    """Provide a Dask client of its own for a scheduler's address, whose log is silent."""
+    try:
+        from distributed import Client
+    except ImportError:
+        raise InputError(NO_DASK) from None
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what is lost is told by us
+    connect: Any = Client
+    try:
+        with ThreadPoolExecutor(1) as thread:  # a notebook has a loop in this thread
+            thread.submit(asyncio.run, check_scheduler(address)).result()
+        client = connect(address, timeout=CONNECT_TIMEOUT, set_as_default=False)
+    except Exception as error:  # of whatever answers there, and however
+        raise InputError(
+            f"cluster {address}: no scheduler answers there ({str(error) or 'silence'}); "
+            "`dask scheduler` starts one"
+        ) from None
+    try:
+        yield client
+    finally:
         with suppress(Exception):
-            self._client.close()
+            client.close()
 
 
 async def check_scheduler(address: str) -> None:
-    """Try to connect to a Dask scheduler's address; raise unless it answers within the timeout."""
+    """Try to connect to a scheduler's address, as a client waits for ever where one is silent."""
     from dask.utils import parse_timedelta
     from distributed.comm import connect
     from distributed.security import Security
@@ -101,24 +94,3 @@ async def check_scheduler(address: str) -> None:
     answer = call(address, timeout=CONNECT_TIMEOUT, **security().get_connection_args("client"))
     reached = await asyncio.wait_for(answer, 1.0 + parse_timedelta(CONNECT_TIMEOUT))
     reached.abort()
-
-
-class DaskExecutor(Executor):
-    """Wrapper of Dask's executor that raises ``CancelledError`` if the scheduler is lost."""
-
-    def __init__(self, pool: Any, client: Any) -> None:
-        self._pool, self._client = pool, client
-
-    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Submit a call to Dask; return its future; ``CancelledError`` without scheduler."""
-        try:
-            future: Future[Any] = self._pool.submit(fn, *args, **kwargs)
-        except Exception as error:
-            if self._client.status == "running":
-                raise
-            raise CancelledError from error
-        return future
-
-    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Shut down Dask's executor, after its running calls if ``wait``, else cancelling them."""
-        self._pool.shutdown(wait=wait)

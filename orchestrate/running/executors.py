@@ -1,7 +1,10 @@
-"""Executors: this process, its threads, processes of this machine, or others (:mod:`.cluster`).
+"""Executors: where chunks are computed. A chunk is the same call for all of them.
 
-Processes are loky's: they start without running the caller's script again, so a script needs no
-``__main__`` guard and a notebook works. A chunk is the same call for all.
+- Threads compute where the work is in our own FMUs, past Python, where no interrupt is heard.
+- The present thread computes what else is short (:func:`in_this_process`).
+- Processes of this machine, loky's, compute what else is long (:func:`processes`), and whatever an
+  FMU of somebody else computes: it may crash, exit or hang there.
+- Workers of a Dask scheduler, or any executor of ``concurrent.futures`` (:mod:`.cluster`).
 """
 
 from __future__ import annotations
@@ -9,25 +12,29 @@ from __future__ import annotations
 import functools
 import hashlib
 import os
+import re
 import signal
 import sys
 import threading
 import time
-from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import BrokenExecutor, Executor, Future
 from contextlib import contextmanager
+from dataclasses import dataclass
 from multiprocessing import resource_tracker
 from pathlib import Path
-from typing import Any, ClassVar, Protocol
+from queue import SimpleQueue
+from typing import Any
 
 from ..errors import WorkerError
 from ..files import write_whole
-from ..temporary import process_folder
+from ..temporary import process_folder, remove_leftovers
 from .identity import changed_modules, code_digests
 from .job import Job, Table, last_entries
 
 IDLE_TIMEOUT = 30  # s that worker processes wait for the next question before they end
+RESUMES = "what was stored is kept, the same call goes on from there"
+_writing = threading.Lock()  # workers may be threads of one process
 
 
 def compute(
@@ -38,17 +45,16 @@ def compute(
     warmup_items: Sequence[Any],
     code: Mapping[str, str] | None = None,
 ) -> tuple[bytes, Table]:
-    """Compute a chunk of a job in a worker; return its table, and the start state used, as
-    bytes.
-    """
+    """Compute a chunk of a job; return the start state used, as bytes, and the chunk's table."""
     own_code = code_digests(type(job).__module__) if code is not None else {}
     if code is not None and own_code != code:
         names = changed_modules(own_code, code)
         raise WorkerError(f"a worker has other sources ({names}); expected the same version there")
-    paths = {
-        model: write_fmu_once(model, fmu) if isinstance(fmu, bytes) else fmu
-        for model, fmu in fmus.items()
-    }
+    with _writing:
+        paths = {
+            model: write_fmu_once(model, fmu) if isinstance(fmu, bytes) else fmu
+            for model, fmu in fmus.items()
+        }
     if warmup_items:
         previous = last_entries(job.work(paths, warmup_items, None))
     start = job.boundary_state(previous) if job.warmup_items and previous is not None else b""
@@ -63,120 +69,109 @@ def write_fmu_once(model: str, content: bytes) -> Path:
     return write_whole(folder / f"{model}.fmu", lambda path: path.write_bytes(content))
 
 
-class Workers(Protocol):
-    """Protocol of what computes chunks: this process, worker processes or a Dask cluster."""
+@dataclass(frozen=True)
+class Workers:
+    """An executor, and how it is used."""
 
-    @property
-    def executor(self) -> Executor:
-        """The ``concurrent.futures`` executor to which chunks are submitted."""
-
-    @property
-    def remote(self) -> bool:
-        """Return whether the workers share no disk with this process."""
-
-    @property
-    def losses(self) -> Mapping[type[BaseException], str]:
-        """Return a dict from exception types that mean lost workers to texts for the user."""
-
-    def max_in_flight(self) -> int:
-        """Return how many chunks should be submitted at once."""
-
-    def close(self, in_haste: bool) -> None:
-        """Release the workers; ``in_haste`` kills them in the middle of their chunks."""
+    executor: Executor
+    max_in_flight: Callable[[], int]  # chunks to submit at once
+    remote: bool = False  # whether they share no disk with this process, and may have other sources
 
 
 class InlineExecutor(Executor):
-    """Executor without workers: runs each call in this process as soon as it is submitted."""
-
-    remote = False
-    losses: ClassVar[Mapping[type[BaseException], str]] = {}
-
-    @property
-    def executor(self) -> Executor:
-        """Return itself: it is its own ``concurrent.futures`` executor."""
-        return self
+    """Executor without workers: runs each call in this thread as soon as it is submitted."""
 
     def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Run a call at once in this process; return a finished future, or raise its exception."""
+        """Run a call at once; return a finished future, or raise its exception."""
         future: Future[Any] = Future()
         future.set_result(fn(*args, **kwargs))
         return future
 
-    def max_in_flight(self) -> int:
-        """Return 1, the number of chunks to submit at once."""
-        return 1
 
-    def close(self, in_haste: bool) -> None:
-        """Do nothing: there are no worker processes to release."""
+@contextmanager
+def in_this_process() -> Iterator[Workers]:
+    """Provide the present thread as the one worker."""
+    yield Workers(InlineExecutor(), lambda: 1)
 
 
-class Processes:
-    """Workers that are processes of this machine, from a reusable loky pool."""
-
-    remote = False
-    losses: ClassVar[Mapping[type[BaseException], str]] = {
-        BrokenProcessPool: "a worker process ended without a word (an FMU has crashed or ended "
-        "it, it was killed, or out of memory)"
-    }
+class ThreadExecutor(Executor):
+    """Executor of daemon threads, which an interrupted process does not wait for at its end."""
 
     def __init__(self, count: int) -> None:
-        import loky
-
         self.count = count
-        self.executor: Executor = SigintMaskedExecutor(
-            loky.get_reusable_executor(
-                count, timeout=IDLE_TIMEOUT, initializer=initialize_worker, initargs=(os.getpid(),)
-            )
-        )
+        self.calls: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
+        for _ in range(count):
+            threading.Thread(target=self._work, daemon=True).start()
 
-    def max_in_flight(self) -> int:
-        """Return how many chunks to submit at once: one more than there are processes."""
-        return self.count + 1
-
-    def close(self, in_haste: bool) -> None:
-        """Kill the worker processes if ``in_haste``; else keep them for the next computation."""
-        if in_haste:
-            self.executor.shutdown(wait=True, cancel_futures=True)
-
-
-class Threads:
-    """Workers that are threads of this process, for work that is done past Python."""
-
-    remote = False
-    losses: ClassVar[Mapping[type[BaseException], str]] = {}
-
-    def __init__(self, count: int) -> None:
-        self.count, self.executor = count, ThreadPoolExecutor(count)
-
-    def max_in_flight(self) -> int:
-        """Return how many chunks to submit at once: one more than there are threads."""
-        return self.count + 1
-
-    def close(self, in_haste: bool) -> None:
-        """End the threads after their present chunks."""
-        self.executor.shutdown(wait=True, cancel_futures=True)
-
-
-class SigintMaskedExecutor(Executor):
-    """Wrapper of a process pool whose workers ignore Ctrl-C from their first instruction on."""
-
-    def __init__(self, pool: Any) -> None:
-        self._pool = pool
+    def _work(self) -> None:
+        """Run calls until there is a None in place of one."""
+        for call in iter(self.calls.get, None):
+            call()
 
     def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Submit a call to the pool with SIGINT blocked; return its future."""
-        with sigint_masked():
-            future: Future[Any] = self._pool.submit(fn, *args, **kwargs)
-            return future
+        """Run a call as soon as a thread is free; return its future."""
+        future: Future[Any] = Future()
+
+        def call() -> None:
+            """Run the call unless it was cancelled."""
+            if future.set_running_or_notify_cancel():
+                try:
+                    future.set_result(fn(*args, **kwargs))
+                except BaseException as error:
+                    future.set_exception(error)
+
+        self.calls.put(call)
+        return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Shut down the pool's processes; ``cancel_futures`` kills them while they work."""
-        self._pool.shutdown(wait=wait, kill_workers=cancel_futures)
+        """Let the threads end after what was submitted; nobody waits for them."""
+        for _ in range(self.count):
+            self.calls.put(None)
 
 
 @contextmanager
-def sigint_masked() -> Iterator[None]:
-    """Block SIGINT (Ctrl-C) in a ``with`` block, so that processes started in it inherit that."""
+def threads(count: int) -> Iterator[Workers]:
+    """Provide threads of this process."""
+    with ThreadExecutor(count) as executor:
+        yield Workers(executor, lambda: count + (count > 1))
+
+
+@contextmanager
+def processes(count: int) -> Iterator[Workers]:
+    """Provide loky's processes, which stay for the next question; on an error they are killed.
+
+    They start without running the caller's script again, so a script needs no ``__main__`` guard.
+    """
+    import loky
+
+    with sigint_blocked():
+        pool = loky.get_reusable_executor(
+            count, timeout=IDLE_TIMEOUT, initializer=initialize_worker, initargs=(os.getpid(),)
+        )
+        pool.submit(int)  # starts them
+    try:
+        yield Workers(pool, lambda: count + 1)
+    except BaseException as error:
+        pool.shutdown(wait=True, kill_workers=True)
+        remove_leftovers()
+        if isinstance(error, BrokenExecutor):
+            raise WorkerError(f"{format_end(error)}; {RESUMES}") from None
+        raise
+
+
+def format_end(error: BrokenExecutor) -> str:
+    """Return what is known of the end of a worker process, from loky's message."""
+    names = dict.fromkeys(re.findall(r"(SIG[A-Z]+)\(|EXIT\((\d+)\)", str(error)))
+    ends = [f"by {name}" if name else f"with exit code {code}" for name, code in names]
+    return (
+        f"a worker process ended without a word{''.join(f' ({end})' for end in ends)}: an FMU has "
+        "crashed or ended it, it was killed, or out of memory"
+    )
+
+
+@contextmanager
+def sigint_blocked() -> Iterator[None]:
+    """Block Ctrl-C in a ``with`` block: processes started in it ignore it from the beginning."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -189,7 +184,8 @@ def sigint_masked() -> Iterator[None]:
 
 
 def initialize_worker(parent: int) -> None:
-    """Set up a worker process: ignore Ctrl-C, and exit when the parent process has ended."""
+    """Set up a worker process: no Ctrl-C, no report of a crash, an end when its parent ends."""
+    os.environ.setdefault("PYTHONFAULTHANDLER", "0")  # or loky's report of a crash has many lines
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if sys.platform == "win32":  # there a process does not learn of it
         return
@@ -201,26 +197,3 @@ def initialize_worker(parent: int) -> None:
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()
-
-
-@contextmanager
-def workers_ended_on_error(workers: Workers) -> Iterator[None]:
-    """Kill the workers if the ``with`` block raises; turn lost workers into ``WorkerError``."""
-    try:
-        yield
-    except BaseException as error:
-        workers.close(True)
-        for kind, explanation in workers.losses.items():
-            if isinstance(error, kind):
-                raise WorkerError(
-                    f"{explanation}; what was stored is kept, the same call goes on from there"
-                ) from None
-        raise
-
-
-@contextmanager
-def running_workers(workers: Workers) -> Iterator[Workers]:
-    """Provide workers for a ``with`` block; release them at its end, kill them on an error."""
-    with workers_ended_on_error(workers):
-        yield workers
-    workers.close(False)

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from concurrent.futures import Executor
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TypedDict
+from typing import TYPE_CHECKING, TypedDict
 
 from ..checks import checked_integer
 from ..errors import InputError
+
+if TYPE_CHECKING:
+    from distributed import Client
 
 MAX_JOBS = 1024  # processes of one machine
 FmuFiles = str | os.PathLike[str] | Mapping[str, str | os.PathLike[str]]
@@ -22,8 +26,9 @@ class Running(TypedDict, total=False):
     ----------
     jobs : int, optional
         Processes at once; all cores by default. Small questions are computed in this process.
-    cluster : str, optional
-        Address of a Dask scheduler whose workers compute instead, such as ``"tcp://host:8786"``.
+    cluster : str, distributed.Client or concurrent.futures.Executor, optional
+        What computes instead: the workers of a Dask scheduler, by its address, such as
+        ``"tcp://host:8786"``, or by a client of it; or any executor of ``jobs`` workers.
     progress : bool
         Whether what takes longer than a second shows a progress bar; true by default.
     store : path, optional
@@ -41,7 +46,7 @@ class Running(TypedDict, total=False):
     """
 
     jobs: int | None
-    cluster: str | None
+    cluster: str | Client | Executor | None
     progress: bool
     store: str | os.PathLike[str] | None
     force: bool
@@ -55,7 +60,7 @@ class RunOptions:
     """Checked keywords on how to compute (jobs, cluster, progress, store), with their defaults."""
 
     jobs: int | None = None
-    cluster: str | None = None
+    cluster: str | Client | Executor | None = None
     progress: bool = True
     store: str | os.PathLike[str] | None = None
     force: bool = False
@@ -66,8 +71,12 @@ class RunOptions:
     def __post_init__(self) -> None:
         if self.jobs is not None:
             object.__setattr__(self, "jobs", checked_integer("jobs", self.jobs, 1, MAX_JOBS))
-        if self.cluster is not None and not isinstance(self.cluster, str):
-            raise InputError(f"cluster = {self.cluster!r}: expected the address of a scheduler")
+        is_dask_client = hasattr(self.cluster, "get_executor")
+        if not (is_dask_client or isinstance(self.cluster, (str, Executor, type(None)))):
+            raise InputError(
+                f"cluster = {self.cluster!r}: expected the address of a Dask scheduler, a client "
+                "of it, or an executor of concurrent.futures"
+            )
 
     @classmethod
     def from_keywords(cls, running: Mapping[str, object]) -> RunOptions:

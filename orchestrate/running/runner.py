@@ -1,8 +1,9 @@
 """Runner: submits chunks of jobs to workers, stores what returns, shows the progress bar.
 
 Any worker may take any chunk that is ready, the earliest job's first. Small questions are answered
-in this process; where much is left after the first chunks, processes are started. Who computes
-never changes a bit: a chunk's result depends on its items and on what it starts from alone.
+in this process; where much is left after the first chunks, threads or processes are started. An
+FMU of somebody else always runs in a process, where it may crash, exit or hang.
+Who computes never changes a bit: a chunk's result depends on its items and on what it starts from.
 """
 
 from __future__ import annotations
@@ -10,10 +11,9 @@ from __future__ import annotations
 import logging
 import threading
 import time
-import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
-from contextlib import suppress
+from contextlib import AbstractContextManager, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,7 +21,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..files import open_folder
-from .executors import InlineExecutor, Processes, Threads, Workers, compute, running_workers
+from .bar import DELAY, progress_bar, relabel
+from .executors import Workers, compute, in_this_process, processes, threads
 from .identity import Fmu, Identity, identity_of
 from .job import Job, Table
 from .options import RunOptions
@@ -35,12 +36,13 @@ log = logging.getLogger(__name__)
 FmuFinder = Callable[[str], Fmu]  # from a model's name to its FMU
 MIN_PARALLEL_SECONDS = 2.0  # estimated work left from which starting processes pays
 POLL_SECONDS = 0.5  # between two looks at the clock while chunks are computed
-BAR_DELAY = 1.0  # s until the progress bar shows: shorter work needs none
 
 
-def answer(job: Job, running: Mapping[str, object], find: FmuFinder) -> xr.Dataset:
-    """Compute one job in parallel chunks, or read its stored result; return the dataset."""
-    return Runner([job], RunOptions.from_keywords(running), find).run()[job.name]
+def answer(
+    job: Job, running: Mapping[str, object], find: FmuFinder, foreign: bool = False
+) -> xr.Dataset:
+    """Compute one job, or read its stored result; ``foreign``: it has an FMU of somebody else."""
+    return Runner([job], RunOptions.from_keywords(running), find, foreign).run()[job.name]
 
 
 def answer_all(
@@ -55,8 +57,12 @@ def answer_all(
 class Runner:
     """Compute several jobs, which may need each other's results, with common workers."""
 
-    def __init__(self, jobs: Sequence[Job], options: RunOptions, find: FmuFinder) -> None:
+    def __init__(
+        self, jobs: Sequence[Job], options: RunOptions, find: FmuFinder, foreign: bool = False
+    ) -> None:
         self.jobs, self.options = jobs, options
+        self.foreign = foreign or options.fmu is not None
+        self.in_threads = all(job.in_threads for job in jobs)
         self.fmus: dict[str, Fmu] = {model: find(model) for job in jobs for model in job.models}
         self.states: dict[str, Progress] = {}
         self.futures: dict[Future[tuple[bytes, Table]], tuple[Progress, Task]] = {}
@@ -72,6 +78,8 @@ class Runner:
             results = ((name, state.result) for name, state in self.states.items())
             return {name: result for name, result in results if result is not None}
         finally:
+            for future in self.futures:  # of a call that is interrupted or fails
+                future.cancel()
             for state in self.states.values():
                 state.store.close()
 
@@ -95,24 +103,26 @@ class Runner:
     def compute_all(self) -> None:
         """Compute all jobs: in this process while little is left, then with parallel workers."""
         with self.bar() as bar:
-            if not self.options.cluster:
-                with running_workers(InlineExecutor()) as workers:
+            if not (self.options.cluster or self.foreign):
+                with threads(1) if self.in_threads else in_this_process() as workers:
                     self.work(workers, self.fmus_to_send(workers), bar, self.little_left)
             if not self.finished():
-                with running_workers(self.start_workers()) as workers:
+                with self.workers() as workers:
                     fmus = self.fmus_to_send(workers)
                     self.hand_out(workers, fmus, bar)  # workers start while this process imports
                     threading.Thread(target=import_xarray, daemon=True).start()
                     self.work(workers, fmus, bar, lambda: True)
 
-    def start_workers(self) -> Workers:
-        """Return new workers: of a Dask cluster if one is given, else threads or processes."""
+    def workers(self) -> AbstractContextManager[Workers]:
+        """Return new workers: of a cluster if one is given, else threads or processes."""
+        count = self.options.processes
         if self.options.cluster:
-            from .cluster import Cluster  # brings asyncio, which worker processes do without
+            from .cluster import cluster  # brings asyncio, which worker processes do without
 
-            return Cluster(self.options.cluster)
-        in_threads = all(job.in_threads for job in self.jobs)
-        return (Threads if in_threads else Processes)(self.options.processes)
+            return cluster(self.options.cluster, count)
+        if self.foreign:
+            return processes(min(count, max(1, self.busy_workers())))
+        return (threads if self.in_threads else processes)(count)
 
     def done(self) -> int:
         """Return the number of computed items of all jobs together."""
@@ -131,31 +141,15 @@ class Runner:
         return sum(state.open_tasks() for state in self.states.values() if self.ready(state))
 
     def bar(self) -> Any:
-        """Return a tqdm progress bar over the items of all jobs."""
-        tqdm = progress_bar(self.options.progress)
+        """Return a progress bar over the items of all jobs."""
         total = sum(state.job.count() for state in self.states.values())
-        single = self.jobs[0] if len(self.jobs) == 1 else None
-        return tqdm(
-            total=total,
-            initial=self.done(),
-            desc=self.title(),
-            unit=single.item if single else "item",
-            disable=not self.options.progress,
-            delay=BAR_DELAY,
-            dynamic_ncols=True,
-            smoothing=0.1,
-            unit_scale=total > 100_000,
-        )
+        unit = self.jobs[0].item if len(self.jobs) == 1 else "item"
+        shown = self.options.progress
+        return progress_bar(self.title(), shown, total=total, initial=self.done(), unit=unit)
 
     def title(self) -> str:
         """Return the progress bar's title: the job's name, or the number of jobs."""
         return self.jobs[0].name if len(self.jobs) == 1 else f"{len(self.jobs)} results"
-
-    def describe(self, bar: Any, note: str) -> None:
-        """Show a note beside the progress bar's title, once the bar is visible."""
-        if time.perf_counter() - self.start_time > BAR_DELAY:
-            bar.delay = 0.0  # it is shown from now on, or tqdm would not end its line
-            bar.set_description(f"{self.title()}, {note}" if note else self.title())
 
     def work(
         self,
@@ -194,7 +188,8 @@ class Runner:
                     break
                 chosen = {model: fmus[model] for model in state.job.models}
                 state.under_way.add(task.chunk.index)
-                self.describe(bar, state.job.progress_note(task.chunk.start))
+                if time.perf_counter() - self.start_time > DELAY:
+                    relabel(bar, state.job.progress_note(task.chunk.start) or self.title())
                 code = state.identity["code"] if workers.remote else None
                 future = workers.executor.submit(
                     compute, state.job, chosen, task.items, task.previous, task.warmup_items, code
@@ -219,19 +214,6 @@ def import_xarray() -> None:
         import xarray as xr
 
         xr.Dataset({"number": ("place", np.zeros(1))})
-
-
-def progress_bar(shown: bool) -> Any:
-    """Return tqdm's class for progress bars, of notebooks or terminals as it fits."""
-    if not shown:
-        from tqdm import tqdm
-
-        return tqdm
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of a notebook without widgets: it gets a line of text
-        from tqdm.auto import tqdm as automatic
-
-        return automatic
 
 
 def gather(jobs: Iterable[Job], running: Mapping[str, object], find: FmuFinder) -> list[xr.Dataset]:

@@ -7,7 +7,6 @@ import logging
 import os
 import re
 import time
-from abc import ABC, abstractmethod
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -46,47 +45,8 @@ def now() -> str:
     return time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(int(fixed) if fixed else time.time()))
 
 
-class Store(ABC):
-    """Interface of the storage of one job's computed chunks and its final dataset."""
-
-    begun: str
-
-    @abstractmethod
-    def result(self) -> xr.Dataset | None:
-        """Return the job's finished dataset, or None before it is finished."""
-
-    @abstractmethod
-    def indices(self) -> set[int]:
-        """Return the numbers of the chunks that are stored."""
-
-    @abstractmethod
-    def get(self, index: int) -> Table:
-        """Return a stored chunk, by its number, as a dict of arrays."""
-
-    @abstractmethod
-    def put(self, index: int, table: Table) -> None:
-        """Store a computed chunk, a dict of arrays, under its number."""
-
-    @abstractmethod
-    def drop(self, index: int, reason: str) -> None:
-        """Delete a chunk that cannot be used, so that it is computed again."""
-
-    @abstractmethod
-    def finish(self, dataset: xr.Dataset) -> xr.Dataset:
-        """Write the final dataset and delete the chunks; return the dataset as it reads back."""
-
-    @abstractmethod
-    def close(self) -> None:
-        """Release all files and locks of the store."""
-
-    def table(self, count: int) -> Table:
-        """Return the first ``count`` chunks as one dict of arrays, joined along the first axis."""
-        parts = [self.get(index) for index in range(count)]
-        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-
-
-class Memory(Store):
-    """Storage of one job's chunks and dataset in memory; nothing is left when the process ends."""
+class Store:
+    """Storage of one job's computed chunks and its final dataset, in memory."""
 
     def __init__(self) -> None:
         self.begun = now()
@@ -98,7 +58,7 @@ class Memory(Store):
         return self._result
 
     def indices(self) -> set[int]:
-        """Return the numbers of the chunks that are stored."""
+        """Return the numbers of the intact chunks that are stored."""
         return set(self._chunks)
 
     def get(self, index: int) -> Table:
@@ -110,26 +70,31 @@ class Memory(Store):
         self._chunks[index] = table
 
     def drop(self, index: int, reason: str) -> None:
-        """Delete a stored chunk by its number; the reason is not used."""
+        """Delete a chunk that cannot be used for a reason, so that it is computed again."""
         del self._chunks[index]
 
     def finish(self, dataset: xr.Dataset) -> xr.Dataset:
-        """Keep the final dataset in memory, delete the chunks; return the dataset."""
+        """Keep the final dataset and delete the chunks; return the dataset as it reads back."""
         self._chunks.clear()
         self._result = dataset
         return dataset
 
     def close(self) -> None:
-        """Do nothing: there are no files to release."""
+        """Release all files and locks of the store."""
+
+    def table(self, count: int) -> Table:
+        """Return the first ``count`` chunks as one dict of arrays, joined along the first axis."""
+        parts = [self.get(index) for index in range(count)]
+        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
 class Disk(Store):
     """Storage of one job on disk: an SQLite journal of chunks, then a NetCDF file of the result."""
 
     def __init__(self, path: Path, identity: Identity, options: RunOptions) -> None:
+        super().__init__()
         self.path, self.identity, self.options = path, identity, options
         check_path_encoding(path)
-        self.begun = now()
         open_folder(path.parent)
         if path.is_dir():
             raise InputError(
@@ -137,7 +102,6 @@ class Disk(Store):
             )
         self._lock = Lock(path)
         self._journal: Journal | None = None
-        self._result: xr.Dataset | None = None
         try:
             if path.exists() and options.force:
                 read_identity(path)  # of another's file there is nothing to replace
@@ -195,10 +159,6 @@ class Disk(Store):
             )
         log.warning("%s: stale (%s), taken as it is", path, reason)
 
-    def result(self) -> xr.Dataset | None:
-        """Return the finished dataset read from the NetCDF file, or None before it is finished."""
-        return self._result
-
     @property
     def journal(self) -> Journal:
         """The open journal of a job that is not finished."""
@@ -246,7 +206,7 @@ class Disk(Store):
 def open_store(name: str, identity: Identity, options: RunOptions) -> Store:
     """Return a job's storage: on disk if the options name a ``store`` path, else in memory."""
     path = options.path(name)
-    return Memory() if path is None else Disk(path, identity, options)
+    return Store() if path is None else Disk(path, identity, options)
 
 
 def load(path: Path) -> xr.Dataset:

@@ -356,6 +356,7 @@ def cosimulate(
     >>> run.x1.dims, bool(run.coupling_error.max() < 1e-6)
     (('time',), True)
     """
+    foreign = not isinstance(drive, (Drive, Shaker))
     if isinstance(drive, (Drive, Shaker)):
         parameters = {**drive.parameters(), **(parameters or {})}
         model = SHAKER if isinstance(drive, Drive) else ELECTRODYNAMIC_SHAKER
@@ -380,7 +381,7 @@ def cosimulate(
         start=checked_state("start", start, structure),
         estimate=bool(estimate),
     )
-    return answer(job, running, finder(running))
+    return answer(job, running, finder(running), foreign)
 
 
 def checked_step_count(duration: float, step: float, drive: Description) -> int:

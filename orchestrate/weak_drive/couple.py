@@ -104,7 +104,7 @@ class CoupleJob(CoupledRun):
 
     def progress_note(self, first: int) -> str:
         """Return the progress bar's note for the chunk of the hysteresis loop."""
-        return "voltages held where the speed may jump" if first == self.steps() else ""
+        return "voltages held at jumps" if first == self.steps() else ""
 
     def decide_jumps(self, fmus: Mapping[str, Path], table: Table, every: int) -> Table:
         """Hold voltages where the ramp's record suggests jumps; return those, in rows."""

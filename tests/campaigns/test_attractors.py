@@ -100,7 +100,7 @@ class ReportedMotion:
         """Yield texts on what Newton's method from its state at phase 0 does not confirm."""
         if not math.isfinite(float(self.reported.multiplier)):
             return
-        quiet: Any = {"progress": False, "jobs": 1, "fmu": self.fmu}
+        quiet: Any = {"progress": False, "jobs": 1}
         asked: Any = {"eta": self.eta, "period": self.periods, "guess": self.state}
         try:
             orbit = orchestrate.orbit(self.structure, **asked, **quiet)
@@ -127,7 +127,7 @@ def problems(
     fmu: Path, structure: Structure, etas: Sequence[float], seed: int, counts: Counter[str]
 ) -> Iterator[str]:
     """Yield what is wrong with the attractors of one structure."""
-    quiet: Any = {"progress": False, "jobs": 1, "fmu": fmu}
+    quiet: Any = {"progress": False, "jobs": 1}
     answer = orchestrate.attractors(structure, eta=list(etas), starts=STARTS, seed=seed, **quiet)
     words = flag_words(answer.decided_by.attrs)
     for place, eta in enumerate(etas):

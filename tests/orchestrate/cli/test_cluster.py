@@ -19,8 +19,11 @@ from orchestrate.cli import main
 from .commands import PATIENCE, ROOT, end, wait_for
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="process groups")
-RUN = ("paper", "--quick", "--figures", "maps")
-PLACE = ("--nthreads", "1", "--no-nanny", "--no-dashboard", "--local-directory")
+RUN = (
+    *("map", "--eta", "1.1:1.3:0.01", "--over", "e", "--values", "0.3:0.8:0.05"),
+    *("--transient", "2000", "--plot", "none"),
+)
+OPTIONS = ("--nthreads", "1", "--no-dashboard", "--local-directory")
 Dask = tuple[subprocess.Popen[bytes], IO[str]]
 Nodes = tuple[str, list[Dask]]
 
@@ -60,14 +63,16 @@ def end_all(started):
 
 @pytest.fixture
 def cluster(tmp_path: Path) -> Iterator[Nodes]:
-    """Address of a scheduler on loopback; the scheduler and its two workers."""
+    """Address of a scheduler on loopback; the scheduler and its two workers, one with a nanny."""
     pytest.importorskip("distributed")
     options = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard")
     started = [start(tmp_path, "scheduler", "scheduler", *options)]
     try:
         address = read(started[0], r"tcp://127\.0\.0\.1:\d+")
-        for name in ("one", "two"):
-            started.append(start(tmp_path, name, "worker", address, *PLACE, str(tmp_path)))
+        for nanny in ("--no-nanny", "--nanny"):
+            (folder := tmp_path / nanny).mkdir()
+            arguments = ("worker", address, nanny, *OPTIONS, str(tmp_path))
+            started.append(start(tmp_path, nanny, *arguments, temporary=folder))
         for dask in started[1:]:
             read(dask, "Registered to")
         yield address, started
@@ -75,19 +80,24 @@ def cluster(tmp_path: Path) -> Iterator[Nodes]:
         end_all(started)
 
 
-def test_a_lost_worker_loses_nothing(commands, cluster, tmp_path, monkeypatch):
+def test_a_lost_worker_loses_nothing_and_the_other_leaves_no_fmu(
+    commands, cluster, tmp_path, monkeypatch
+):
     address, (_, *workers) = cluster
     process = commands.start(*RUN, "--cluster", address)
     wait_for(lambda: commands.chunks() >= 2, process, "two chunks were on disk")
     os.kill(workers[0][0].pid, signal.SIGKILL)
     done = end(process)
     assert done.code == 0, done.err
-    assert workers[1][0].poll() is None
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
-    monkeypatch.setattr("orchestrate.paper.reproduce.draw_all", lambda *_: {})
     assert main([*RUN, "--output", str(tmp_path / "here")]) == 0
     here = {path.name: path.read_bytes() for path in (tmp_path / "here").glob("*.nc")}
-    assert commands.results() == here and len(here) == 3
+    assert commands.results() == here and len(here) == 1
+    temporary = tmp_path / "--nanny"
+    assert list(temporary.glob("vibroimpact*")), "the worker had no FMU"
+    workers[1][0].send_signal(signal.SIGTERM)
+    workers[1][0].wait(60.0)
+    assert not list(temporary.glob("vibroimpact*"))
 
 
 @pytest.mark.slow  # 6 s
@@ -97,33 +107,3 @@ def test_a_scheduler_that_ends_is_told_in_one_line(commands, cluster):
     read(scheduler, "Receive client connection")
     os.kill(scheduler[0].pid, signal.SIGKILL)
     end(process).complaint("scheduler", "has ended", "the same call goes on", code=1)
-
-
-QUESTION = """
-import sys
-from orchestrate import Structure, sweep
-sweep(Structure(), eta=[1.0, 1.1], transient=2, samples=2, cluster=sys.argv[1], progress=False)
-"""
-
-
-@pytest.mark.parametrize("nanny", ["--nanny", pytest.param("--no-nanny", marks=pytest.mark.slow)])
-def test_workers_leave_no_fmu_behind(tmp_path, nanny):
-    pytest.importorskip("distributed")
-    temporary = tmp_path / "temporary"
-    temporary.mkdir()
-    options = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard")
-    place = ("--nthreads", "1", nanny, "--no-dashboard", "--local-directory", str(tmp_path))
-    started = [start(tmp_path, "scheduler", "scheduler", *options)]
-    try:
-        address = read(started[0], r"tcp://127\.0\.0\.1:\d+")
-        started.append(start(tmp_path, "one", "worker", address, *place, temporary=temporary))
-        read(started[1], "Registered to")
-        command = [sys.executable, "-c", QUESTION, address]
-        subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
-        assert list(temporary.iterdir()), "the worker had no FMU"
-        started[1][0].send_signal(signal.SIGTERM)
-        started[1][0].wait(60.0)
-        left = [path.name for path in temporary.iterdir() if "vibroimpact" in path.name]
-        assert left == []
-    finally:
-        end_all(started)

@@ -12,14 +12,13 @@ import pytest
 
 from orchestrate.cli import main
 
-from ...sparing import ordinary
 from .commands import all_end, below, end, kill, wait_for
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="process groups and /proc")
 INTERRUPTED = "interrupted: what was stored is kept; repeat the command to resume"
 BEGINS_ANEW = "interrupted: nothing was stored; repeat the command to start again"
 RUNS = {  # long enough to be ended by force, chaotic, so that a wrong start is seen
-    "sweep": ("sweep", "--eta", "1.1:1.4:0.0005", "--transient", "2000", "--samples", "20"),
+    "sweep": ("sweep", "--eta", "1.1:1.4:0.0005", "--transient", "700", "--plot", "none"),
     "couple": (
         "couple",
         "--only",
@@ -67,29 +66,67 @@ def killed_at_a_random_moment(commands, name: str, chance: random.Random) -> boo
     return True
 
 
-@pytest.mark.parametrize(
-    ("name", "kills"),
-    [("sweep", 1), *(pytest.param(name, 3, marks=pytest.mark.slow) for name in RUNS)],
+def results_left(commands):
+    """Names in the folder of the results but for results."""
+    kinds = (".nc", ".png", ".pdf", ".html")
+    return [name for name in commands.files() if not name.endswith(kinds)]
+
+
+def test_ctrl_c_is_one_line_and_after_a_kill_the_bytes_are_equal(commands, uninterrupted):
+    """A sweep, in threads."""
+    for number in (signal.SIGINT, signal.SIGKILL):
+        kept, process = commands.chunks(), commands.start(*RUNS["sweep"])
+        wait_for(lambda kept=kept: commands.chunks() > kept, process, "a chunk was on disk")
+        done = kill(process, number)
+        assert commands.chunks() > kept, "chunks are lost"
+        if number == signal.SIGINT:
+            assert done.complaint(code=130) == INTERRUPTED
+            assert list(commands.temporary.iterdir()) == []
+    commands.run(*RUNS["sweep"]).success()
+    assert commands.results() == uninterrupted("sweep")
+    assert results_left(commands) == []
+
+
+MAP = (
+    *("map", "--eta", "1.1:1.4:0.005", "--over", "e", "--values", "0.3:0.9:0.005"),
+    "--jobs",
+    "2",
 )
-def test_kill_9_at_random_moments(commands, uninterrupted, name, kills):
+RECORD = ("docs/records/beam_a.csv", "--structure", "docs/records/beam.toml")
+ALONE = ("sweep", "--eta", "1.1:1.2:0.001", "--transient", "1000000", "--jobs", "1")  # in one chunk
+
+
+@pytest.mark.parametrize(
+    ("number", "command", "processes"),
+    [
+        (signal.SIGINT, (*MAP, "--transient", "20000"), 4),
+        pytest.param(signal.SIGTERM, (*MAP, "--transient", "20000"), 4, marks=pytest.mark.slow),
+        pytest.param(signal.SIGINT, ALONE, 0, marks=pytest.mark.slow),
+        pytest.param(signal.SIGINT, ("diagnose", *RECORD), 0, marks=pytest.mark.slow),
+    ],
+)
+def test_a_signal_ends_a_command_whatever_computes(commands, number, command, processes):
+    process = commands.start(*command, "--plot", "none")
+    wait_for(lambda: commands.files(), process, "it computed", pause=0.05)
+    wait_for(lambda: len(list(below(process.pid))) >= processes, process, "workers were there")
+    time.sleep(1.0)
+    started = list(below(process.pid))
+    begun = time.monotonic()
+    os.killpg(process.pid, number)
+    word = "interrupted" if number == signal.SIGINT else "terminated"
+    assert end(process).complaint(code=128 + number).startswith(f"{word}: ")
+    assert time.monotonic() - begun < 10.0
+    assert all_end(started) and list(commands.temporary.iterdir()) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", RUNS)
+def test_kill_9_at_random_moments(commands, uninterrupted, name):
     chance = random.Random(name)
-    killed = [killed_at_a_random_moment(commands, name, chance) for _ in range(kills)]
-    assert any(killed)
+    assert any(killed_at_a_random_moment(commands, name, chance) for _ in range(3))
     commands.run(*RUNS[name]).success()
     assert commands.results() == uninterrupted(name)
-    left = [
-        name for name in commands.files() if not name.endswith((".nc", ".png", ".pdf", ".html"))
-    ]
-    assert left == []
-
-
-def test_ctrl_c_is_one_line_and_leaves_nothing_behind(commands):
-    process = commands.start(*RUNS["sweep"])
-    wait_for(lambda: commands.chunks() >= 1, process, "a chunk was on disk")
-    started = list(below(process.pid))
-    assert kill(process, signal.SIGINT).complaint(code=130) == INTERRUPTED
-    assert all_end(started)
-    assert [path.name for path in commands.temporary.iterdir()] == []
+    assert results_left(commands) == []
 
 
 def interrupt(*_, **__):
@@ -125,17 +162,7 @@ def test_an_interrupted_command_without_a_store_says_so(tmp_path, capsys, monkey
     assert capsys.readouterr().err.splitlines() == [BEGINS_ANEW]
 
 
-@pytest.mark.parametrize("number", ordinary([signal.SIGKILL, signal.SIGTERM]))
-def test_no_worker_outlives_the_main_process(commands, number):
-    ranges = "--eta", "1.1:1.4:0.005", "--over", "e", "--values", "0.3:0.9:0.005"
-    process = commands.start("map", *ranges, "--jobs", "2", "--transient", "20000")
-    wait_for(lambda: len(list(below(process.pid))) >= 3, process, "workers were there")
-    workers = list(below(process.pid))
-    os.kill(process.pid, number)
-    process.wait()
-    assert all_end(workers)
-
-
+@pytest.mark.slow
 def test_the_same_command_twice_at_once_spoils_nothing(commands, uninterrupted):
     first = commands.start(*RUNS["sweep"])
     wait_for(lambda: commands.chunks() >= 1, first, "a chunk was on disk")

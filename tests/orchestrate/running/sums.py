@@ -1,4 +1,4 @@
-"""A job of this test suite: squares of whole numbers, and their running sum."""
+"""Jobs of this test suite: squares of whole numbers, and what starts from others of them."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ class Squares(Job):
     def count(self) -> int:
         return self.size
 
-    def items(self, inputs: Inputs) -> range:
-        return range(self.size)
+    def items(self, inputs: Inputs) -> Any:
+        return range(self.count())
 
     def work(self, fmus: Any, items: Any, previous: Table | None) -> Table:
         time.sleep(self.pause)
@@ -34,7 +34,8 @@ class Squares(Job):
         return {"square": np.array([float(item * item) for item in items])}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        return xr.Dataset({"square": ("number", table["square"])}, attrs={"title": "Squares"})
+        dims = "number", "part"
+        return xr.Dataset({name: (dims[: a.ndim], a) for name, a in table.items()})
 
 
 @dataclass(frozen=True)
@@ -50,9 +51,6 @@ class Sums(Squares):
         squares = super().work(fmus, items, None)["square"]
         return {"sum": np.cumsum(squares) + (previous["sum"][-1] if previous else 0.0)}
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        return xr.Dataset({"sum": ("number", table["sum"])})
-
 
 @dataclass(frozen=True)
 class Gathered(Squares):
@@ -63,20 +61,18 @@ class Gathered(Squares):
     def count(self) -> int:
         return self.size + 1
 
-    def items(self, inputs: Inputs) -> range:
-        return range(self.size + 1)
-
     def work(self, fmus: Any, items: Any, previous: Table | None) -> Table:
         if previous is None:
             return super().work(fmus, items, None)
         return {"whole": previous["square"].sum(keepdims=True)}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        return xr.Dataset({"square": ("number", table["square"]), "whole": table["whole"][0]})
+        whole = table.pop("whole")[0]
+        return super().dataset(table, inputs).assign(whole=whole)
 
 
 @dataclass(frozen=True)
-class Roots(Job):
+class Roots(Squares):
     """Roots of the squares of another job."""
 
     source: str = "squares"
@@ -84,60 +80,33 @@ class Roots(Job):
     def needs(self) -> tuple[str, ...]:
         return (self.source,)
 
-    def count(self) -> int:
-        return 10
-
     def items(self, inputs: Inputs) -> list[float]:
         return [float(value) for value in inputs[self.source].square.values]
 
     def work(self, fmus: Any, items: Any, previous: Table | None) -> Table:
         return {"root": np.sqrt(np.array(items))}
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        return xr.Dataset({"root": ("number", table["root"])})
-
 
 @dataclass(frozen=True)
-class Model:
-    """An FMU's description as the runner needs it."""
-
-    path: Path
-    name: str = "TwoMassImpactOscillator"
-    guid: str = "{1}"
-    fmi_version: str = "3.0"
-
-
-@dataclass(frozen=True)
-class Forgetful(Job):
+class Forgetful(Squares):
     """A sequence that forgets its beginning, but for items in ``stubborn`` that double what was."""
 
     size: int = 240
     stubborn: tuple[int, int] = (0, 0)
-    pause: float = 0.0
     chunk_size: ClassVar[int] = 10
     sequential: ClassVar[bool] = True
     warmup_items: ClassVar[int] = 8
-
-    def count(self) -> int:
-        return self.size
-
-    def items(self, inputs: Inputs) -> range:
-        return range(self.size)
 
     def boundary_state(self, table: Table) -> bytes:
         return table["value"][-1].tobytes()
 
     def work(self, fmus: Any, items: Any, previous: Table | None) -> Table:
-        time.sleep(self.pause * len(items))
         value, values = float(previous["value"][-1]) if previous else 0.3, []
         for item in items:
             chaotic = self.stubborn[0] <= item < self.stubborn[1]
             value = 3.9 * value * (1.0 - value) if chaotic else 1.0 / (item + 2.0) + 1e-9 * value
             values.append(value)
         return {"value": np.array(values)}
-
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        return xr.Dataset({"value": ("number", table["value"])})
 
 
 @dataclass(frozen=True)
@@ -150,5 +119,12 @@ class Noise(Squares):
         rows = [np.random.default_rng(item).uniform(size=1000) for item in items]
         return {"noise": np.array(rows)}
 
-    def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
-        return xr.Dataset({"noise": (("number", "part"), table["noise"])})
+
+@dataclass(frozen=True)
+class Model:
+    """An FMU's description as the runner needs it."""
+
+    path: Path
+    name: str = "TwoMassImpactOscillator"
+    guid: str = "{1}"
+    fmi_version: str = "3.0"

@@ -2,75 +2,65 @@
 
 from __future__ import annotations
 
+import random
+from dataclasses import replace
+from unittest.mock import patch
+
 import numpy as np
 import pytest
 
-from orchestrate.running import runner
+from orchestrate.access import OSCILLATOR, find
+from orchestrate.response.questions import series_arguments
+from orchestrate.response.sweep import SweepJob
 from orchestrate.running.executors import compute
 from orchestrate.running.journal import Journal, journal_path
 from orchestrate.running.options import RunOptions
 from orchestrate.running.progress import Progress
-from orchestrate.running.runner import answer
-from orchestrate.running.store import Memory
+from orchestrate.running.store import Store, open_store
+from orchestrate.structures import Structure
+from tests.sparing import ordinary
 
-from .sums import Forgetful, Squares
-from .workers import play
+from .sums import Forgetful, Model
 
 RANGES = [(0, 0), (100, 140), (55, 200), (0, 240), (119, 121)]
+MODELS = {OSCILLATOR: Model(None)}
 
 
-def sequential(job):
-    """The values, one chunk after the other."""
-    return job.work({}, job.items({}), None)["value"]
-
-
-@pytest.fixture
-def models(find):
-    """The FMUs of a job."""
-    return {model: find(model) for model in Squares.models}
+def play(progress: Progress, workers: int, seed: int, stop: int = -1) -> None:
+    """Compute a job, or so many chunks of it, as if by workers that end in a random order."""
+    draw, busy = random.Random(seed), []
+    fmus = {model: fmu.path for model, fmu in progress.fmus.items()}
+    progress.start({})
+    while not progress.complete and stop != 0:
+        while len(busy) < workers and (task := progress.next_task()) is not None:
+            progress.under_way.add(task.chunk.index)
+            busy.append(task)
+        task = busy.pop(draw.randrange(len(busy)))
+        chunk = compute(progress.job, fmus, task.items, task.previous, task.warmup_items)
+        progress.add_result(task, *chunk)
+        stop -= 1
 
 
 @pytest.mark.parametrize("stubborn", RANGES)
-@pytest.mark.parametrize("workers", [1, 2, 3, 7, 40])
-def test_guesses_never_change_a_bit(models, stubborn, workers):
+@pytest.mark.parametrize("workers", ordinary([1, 2, 3, 7, 40], kept=[1, 2, 7]))
+def test_guesses_never_change_a_bit(stubborn, workers):
+    """In vain are those alone where the beginning is not forgotten, and the chunks next to it."""
     job = Forgetful("job", stubborn=stubborn)
-    for seed in range(5):
-        progress = Progress(job, Memory(), {}, models)
+    alone = job.work({}, job.items({}), None)["value"]
+    for seed in range(3):
+        progress = Progress(job, Store(), {}, MODELS)
         play(progress, workers, seed)
-        assert np.array_equal(progress.result.value, sequential(job))
-        assert workers > 1 or progress.wasted == 0
+        assert np.array_equal(progress.result.value, alone)
+        assert progress.wasted == 0 or (workers > 1 and stubborn != (0, 0))
+        assert stubborn != (100, 140) or workers != 2 or 0 < progress.wasted <= 60
 
 
-def test_where_the_beginning_is_forgotten_nothing_is_wasted(models):
-    progress = Progress(Forgetful("job"), Memory(), {}, models)
-    play(progress, 7, 1)
-    assert progress.wasted == 0
-
-
-def test_what_does_not_forget_is_guessed_in_vain_and_no_more(models):
-    progress = Progress(Forgetful("job", stubborn=(100, 140)), Memory(), {}, models)
-    play(progress, 2, 1)
-    assert 0 < progress.wasted <= 60  # the range itself and the chunks it touches
-
-
-@pytest.mark.parametrize("stubborn", RANGES[:3])
-def test_processes_give_equal_files(find, tmp_path, monkeypatch, stubborn):
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
-    job = Forgetful("job", stubborn=stubborn, pause=1e-4)
-    one, many = tmp_path / "one.nc", tmp_path / "many.nc"
-    answer(job, {"jobs": 1, "store": one}, find)
-    monkeypatch.setattr(runner, "MIN_PARALLEL_SECONDS", 0.0)
-    answer(job, {"jobs": 3, "store": many}, find)
-    assert one.read_bytes() == many.read_bytes()
-
-
-def test_what_is_on_disk_is_certain(find, tmp_path, models):
+def test_what_is_on_disk_is_certain(tmp_path):
     path = tmp_path / "job.nc"
-    options = RunOptions(store=path)
-    store = runner.open_store("job", {}, options)
-    progress = Progress(Forgetful("job"), store, {}, models)
+    store = open_store("job", {}, RunOptions(store=path))
+    progress = Progress(Forgetful("job"), store, {}, MODELS)
     progress.start({})
-    certain, guess = progress.next_task(), None
+    certain = progress.next_task()
     progress.under_way.add(certain.chunk.index)
     guess = progress.next_task()
     assert (certain.guess, guess.guess) == (False, True)
@@ -82,3 +72,52 @@ def test_what_is_on_disk_is_certain(find, tmp_path, models):
     journal = Journal(journal_path(path), {}, "")
     assert journal.indices() == set()
     journal.close()
+
+
+# -- orbit diagrams of the paper, at fewer frequencies over fewer periods --------------------------
+
+FIGURES = {"6": (0.7, 0.005), "10": (0.7, 0.05), "11": (0.3, 0.005)}  # e and D
+CHAOS = (1.0, 1.3)  # of Figure 6: irregular from 1.09 on
+
+
+def job(figure: str, direction: str, low: float = 0.1, high: float = 8.0, step: float = 0.05):
+    """A figure's sweep."""
+    e, D = FIGURES[figure]
+    etas = np.round(np.arange(low, high + 0.5 * step, step), 3)
+    asked = series_arguments(Structure.nondimensional(e=e, D=D), etas, None, None)
+    return SweepJob(**asked, name="sweep", direction=direction, transient=40, samples=40)
+
+
+def played(sweep: SweepJob, workers: int, store=None):
+    """The result, and how many values were guessed in vain."""
+    progress = Progress(sweep, store or Store(), {}, {OSCILLATOR: find(OSCILLATOR)})
+    with patch.object(SweepJob, "chunk_size", 10):
+        progress.chunks = sweep.chunks()
+        play(progress, workers, 1)
+    return progress.result.drop_attrs(), progress.wasted
+
+
+@pytest.mark.usefixtures("exported")
+@pytest.mark.parametrize("figure", ordinary(FIGURES))
+@pytest.mark.parametrize("direction", ordinary(["both", "up", "down"]))
+def test_any_number_of_workers_gives_the_same_sweep(figure, direction):
+    sweep = job(figure, direction)
+    alone, wasted = played(sweep, 1)
+    assert wasted == 0
+    for workers in (2, 7):
+        assert played(sweep, workers)[0].identical(alone)
+
+
+@pytest.mark.usefixtures("exported")
+@pytest.mark.parametrize(
+    ("low", "high", "in_vain"),
+    [(1.4, 1.8, (0.0, 0.25)), (5.8, 6.2, (0.0, 2.0)), (*CHAOS, (0.1, 9))],
+)
+def test_what_stands_is_right_where_motions_repeat_and_where_not(low, high, in_vain):
+    """After more than one period a guess arrives in any of the phases."""
+    settled = {"transient": 500, "samples": 200} if low != CHAOS[0] else {}
+    sweep = replace(job("6", "up", low, high, 0.005), **settled)
+    alone, _ = played(sweep, 1)
+    many, wasted = played(sweep, 7)
+    assert alone.identical(many)
+    assert in_vain[0] <= wasted / alone.sizes["eta"] < in_vain[1]

@@ -1,4 +1,4 @@
-"""Processes, scripts and kills: what happens outside the test's own process."""
+"""Scripts of users on processes and threads, interrupted and killed: the same bytes in the end."""
 
 from __future__ import annotations
 
@@ -14,18 +14,41 @@ import pytest
 
 from orchestrate.running.journal import journal_path
 
+from ..cli.commands import all_end, below, chunks_in, wait_for
+
 ROOT = Path(__file__).resolve().parents[3]
-SCRIPT = Path(__file__).parent / "long_job.py"
-SIZE = 240
+HEAD = """
+import signal, sys
+from pathlib import Path
+import numpy as np
+from orchestrate import Structure, sweep
+from orchestrate.running.runner import answer
+from tests.orchestrate.running.sums import Model, Squares
+signal.signal(signal.SIGINT, signal.default_int_handler)  # where tests run in the background
+running = {"store": Path(sys.argv[1]), "jobs": int(sys.argv[2]), "progress": False}
+print("begun", flush=True)
+"""
+SQUARES = f"""{HEAD}
+fmu = running["store"].with_suffix(".fmu")
+fmu.write_bytes(b"an FMU")
+job = Squares("squares", size=120, pause=0.1)
+print(float(answer(job, running, lambda model: Model(fmu, model)).square[-1]))
+"""
+SWEEP = f"""{HEAD}
+e, D, direction = float(sys.argv[3]), float(sys.argv[4]), sys.argv[5]
+etas = np.round(np.arange(0.1, 8.0005, 0.001), 3)
+sweep(Structure.nondimensional(e=e, D=D), eta=etas, direction=direction, **running)
+"""
 
 
-def start(store: Path, jobs: int, **environment: str) -> subprocess.Popen[str]:
-    """Start a script without a ``__main__`` guard that computes on processes of its own."""
-    command = [sys.executable, str(SCRIPT), str(store), str(jobs), str(SIZE)]
+def start(script: str, store: Path, *arguments: object) -> subprocess.Popen[str]:
+    """Start a script without a ``__main__`` guard, in a session of its own."""
+    path = store.parent / "script.py"
+    path.write_text(script)
     return subprocess.Popen(
-        command,
+        [sys.executable, *map(str, (path, store, *arguments))],
         cwd=store.parent,
-        env={**os.environ, "PYTHONPATH": str(ROOT), "SOURCE_DATE_EPOCH": "0", **environment},
+        env={**os.environ, "PYTHONPATH": str(ROOT), "SOURCE_DATE_EPOCH": "0"},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -33,58 +56,49 @@ def start(store: Path, jobs: int, **environment: str) -> subprocess.Popen[str]:
     )
 
 
-def children(session: int) -> list[int]:
-    """Processes of a session that are alive."""
-    listed = subprocess.run(["ps", "-o", "pid=,stat=", "-s", str(session)], capture_output=True)
-    rows = [line.split() for line in listed.stdout.decode().splitlines()]
-    return [int(pid) for pid, state in rows if not state.startswith("Z")]
-
-
 def test_a_plain_script_needs_no_guard(tmp_path):
-    process = start(tmp_path / "result.nc", 2)
+    process = start(SQUARES, tmp_path / "result.nc", 2)
     out, err = process.communicate(timeout=60)
     assert process.returncode == 0, err
-    assert out.splitlines() == ["begun", f"{(SIZE - 1) ** 2}.0"]  # once: no worker ran the script
+    assert out.splitlines() == ["begun", f"{119**2}.0"]  # once: no worker ran the script
+
+
+@pytest.mark.parametrize(("number", "at_work"), [(signal.SIGKILL, True), (signal.SIGINT, False)])
+def test_workers_end_with_the_process_they_work_for(tmp_path, number, at_work):
+    """At work: they have computed a chunk; else they begin."""
+    process, journal = start(SQUARES, tmp_path / "result.nc", 2), tmp_path / "result.nc.journal"
+    wait_for(lambda: len(list(below(process.pid))) >= 3, process, "workers were there")
+    wait_for(lambda: not at_work or chunks_in(journal) > 3, process, "they have computed")
+    workers = list(below(process.pid))
+    begun = time.monotonic()
+    os.killpg(process.pid, number) if number == signal.SIGINT else process.kill()
+    _, err = process.communicate(timeout=20)
+    assert all_end(workers) and time.monotonic() - begun < 10
+    assert err.count("KeyboardInterrupt") == (number == signal.SIGINT), err  # none of a worker
+    assert journal.exists()
+
+
+FIGURES = {"6": (0.7, 0.005), "10": (0.7, 0.05), "11": (0.3, 0.005)}  # e and D
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("jobs", [1, 2])
-def test_killed_at_random_moments_it_goes_on_with_equal_bytes(tmp_path, jobs):
-    whole = tmp_path / "whole.nc"
-    assert start(whole, 1).wait(timeout=60) == 0
-    broken, draw = tmp_path / "broken.nc", random.Random(jobs)
-    for _ in range(3):
-        process = start(broken, jobs)
-        time.sleep(draw.uniform(0.5, 2.0))
+@pytest.mark.parametrize(
+    ("script", "arguments"),
+    [
+        (SQUARES, ()),
+        *((SWEEP, (*FIGURES[name], way)) for name in FIGURES for way in ("up", "down")),
+    ],
+)
+def test_killed_at_random_moments_it_goes_on_with_equal_bytes(tmp_path, script, arguments):
+    whole, broken, chance = tmp_path / "whole.nc", tmp_path / "broken.nc", random.Random(1)
+    assert start(script, whole, 1, *arguments).wait(timeout=300) == 0
+    for jobs in (1, 2, 7):
+        process = start(script, broken, jobs, *arguments)
+        time.sleep(chance.uniform(1.5, 3.0))
         os.killpg(process.pid, signal.SIGKILL)
         process.wait()
-    process = start(broken, jobs)
-    _, err = process.communicate(timeout=60)
+    process = start(script, broken, 3, *arguments)
+    _, err = process.communicate(timeout=300)
     assert process.returncode == 0, err
     assert broken.read_bytes() == whole.read_bytes()
     assert not journal_path(broken).exists()
-
-
-def test_workers_end_with_the_process_they_work_for(tmp_path):
-    process = start(tmp_path / "result.nc", 2)
-    stop = time.monotonic() + 30
-    while len(children(process.pid)) < 3 and time.monotonic() < stop:
-        time.sleep(0.05)
-    os.kill(process.pid, signal.SIGKILL)
-    process.wait()
-    while children(process.pid) and time.monotonic() < stop:
-        time.sleep(0.1)
-    assert children(process.pid) == []
-
-
-def test_an_interrupt_ends_it_at_once(tmp_path):
-    process = start(tmp_path / "result.nc", 2, PYTHONFAULTHANDLER="1")
-    stop = time.monotonic() + 30
-    while len(children(process.pid)) < 3 and time.monotonic() < stop:
-        time.sleep(0.05)
-    begun = time.monotonic()
-    os.killpg(process.pid, signal.SIGINT)
-    _, err = process.communicate(timeout=20)
-    assert time.monotonic() - begun < 10
-    assert err.count("KeyboardInterrupt") == 1, err  # the script's own, none of a worker
-    assert journal_path(tmp_path / "result.nc").exists()

@@ -1,0 +1,66 @@
+"""Progress bar of a computation: a line that moves, or in a log a line every ten per cent."""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from typing import Any
+
+DELAY = 1.0  # s until a progress bar shows: shorter work needs none
+MAX_LABEL = 24  # characters, or little is left for the bar
+LOG_WIDTH = 80
+
+
+class LogLines:
+    """Text stream for tqdm that writes each new state of a bar as a line of its own."""
+
+    def __init__(self) -> None:
+        self.last = ""
+
+    def write(self, text: str) -> None:
+        """Write a bar as a line, unless it says the same as the last one but for the time."""
+        state = text.strip().rpartition(" [")[0]
+        if state and state != self.last:
+            self.last = state
+            sys.stderr.write(f"{text.strip()}\n")
+
+    def flush(self) -> None:
+        """Flush standard error."""
+        sys.stderr.flush()
+
+
+def progress_bar(label: str, shown: bool, *, total: int, initial: int, unit: str) -> Any:
+    """Return a tqdm progress bar for a notebook, a terminal or a log, as it fits."""
+    from tqdm import tqdm
+
+    options: dict[str, Any] = {
+        **{"total": total, "initial": initial, "unit": unit, "desc": shortened(label)},
+        **{"delay": DELAY, "smoothing": 0.1, "unit_scale": total > 100_000},
+    }
+    if not shown:
+        return tqdm(disable=True, **options)
+    if sys.stderr.isatty() or "ipykernel" in sys.modules:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of a notebook without widgets: it gets a line of text
+            from tqdm.auto import tqdm as automatic
+        return automatic(dynamic_ncols=True, **options)
+    every = {"miniters": max(1.0, total / 10), "mininterval": 0.0, "maxinterval": float("inf")}
+    return tqdm(file=LogLines(), ncols=LOG_WIDTH, **every, **options)
+
+
+def relabel(bar: Any, label: str) -> None:
+    """Change a bar's label; it is shown from now on, or tqdm would not end its line."""
+    if not bar.disable and bar.desc != f"{shortened(label)}: ":
+        bar.delay = 0.0
+        bar.set_description(shortened(label))
+
+
+def shortened(label: str) -> str:
+    """Return a label of at most ``MAX_LABEL`` characters.
+
+    Examples
+    --------
+    >>> shortened("sweep_e0.7_D0.005_eta0.1-8_up")
+    'sweep_e0.7_D0.005_eta...'
+    """
+    return label if len(label) <= MAX_LABEL else f"{label[: MAX_LABEL - 3]}..."

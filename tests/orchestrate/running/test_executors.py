@@ -1,0 +1,158 @@
+"""Who computes changes no bit; workers that are lost are told in a line, and nothing is lost."""
+
+from __future__ import annotations
+
+import os
+import threading
+from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
+from typing import ClassVar
+
+import numpy as np
+import pytest
+
+from orchestrate.access import OSCILLATOR
+from orchestrate.errors import InputError, WorkerError
+from orchestrate.running import cluster, runner
+from orchestrate.running.executors import compute, threads
+from orchestrate.running.runner import answer
+
+from .sums import Forgetful, Gathered, Squares, Sums
+
+JOB = Squares("squares", size=40)
+JOBS = [JOB, Sums("job", size=40), Gathered("job", size=40), Forgetful("job", stubborn=(100, 140))]
+
+
+@pytest.fixture(scope="module")
+def dask():
+    """A client of a scheduler with two workers in threads."""
+    distributed = pytest.importorskip("distributed")
+    options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
+    with distributed.Client(processes=False, set_as_default=False, **options) as client:
+        yield client
+
+
+@pytest.mark.parametrize("where", ["processes", "threads", "executor", "client", "address"])
+def test_all_give_what_this_process_gives(find, monkeypatch, where, dask):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
+    alone = [answer(job, {"jobs": 1}, find) for job in JOBS]
+    monkeypatch.setattr(runner, "MIN_PARALLEL_SECONDS", 0.0)
+    monkeypatch.setattr(Squares, "in_threads", where == "threads")
+    with ThreadPoolExecutor(2) as executor:
+        clusters = {"executor": executor, "client": dask, "address": dask.scheduler.address}
+        running = {"jobs": 2, "cluster": clusters.get(where)}
+        for job, expected in zip(JOBS, alone, strict=True):
+            assert answer(job, running, find).identical(expected)
+
+
+def test_threads_compute_at_once_and_no_more_than_so_many():
+    meeting = threading.Barrier(2, timeout=20.0)
+    running, most = [], []
+
+    def work(number):
+        running.append(number)
+        most.append(len(running))
+        meeting.wait()
+        running.remove(number)
+
+    with threads(2) as workers:
+        futures = [workers.executor.submit(work, number) for number in range(6)]
+        assert [future.result() for future in futures] == [None] * 6
+    assert max(most) == 2
+
+
+class Dying(Squares):
+    """Kills the process that computes its last chunks."""
+
+    def work(self, fmus, items, previous):
+        if items[0] > 6:
+            os.kill(os.getpid(), 9)
+        return super().work(fmus, items, previous)
+
+
+def test_a_worker_that_dies_is_told_and_what_it_did_before_is_kept(find, monkeypatch, tmp_path):
+    monkeypatch.setattr(runner, "MIN_PARALLEL_SECONDS", 0.0)
+    with pytest.raises(WorkerError, match=r"ended without a word \(by SIGKILL\).*kept"):
+        answer(Dying("dying", size=30), {"jobs": 2, "store": tmp_path / "dying.nc"}, find)
+    assert (tmp_path / "dying.nc.journal").is_file()
+
+
+def test_a_worker_with_other_sources_computes_nothing():
+    with pytest.raises(WorkerError, match=r"other sources \(orchestrate/version\.py\)"):
+        compute(JOB, {}, [1], None, (), {"orchestrate.version": "other"})
+    assert compute(JOB, {}, [3], None, (), None)[1]["square"] == [9.0]
+
+
+def test_an_fmu_of_somebody_else_runs_in_a_process(find, monkeypatch, tmp_path):
+    running = {"jobs": 1, "fmu": {OSCILLATOR: tmp_path / "model.fmu"}}
+    assert answer(Where("where"), {"jobs": 1}, find).square == os.getpid()
+    for other in (answer(Where("a"), running, find), answer(Where("b"), {"jobs": 1}, find, True)):
+        assert other.square != os.getpid()
+
+
+class Where(Squares):
+    """The process that computes it."""
+
+    in_threads: ClassVar[bool] = True
+
+    def count(self):
+        return 1
+
+    def work(self, fmus, items, previous):
+        return {"square": np.array([float(os.getpid())])}
+
+
+# -- a Dask scheduler that is lost ----------------------------------------------------------------
+
+
+class Lost:
+    """A client of Dask whose scheduler ends while it is asked for something."""
+
+    status = "running"
+
+    def __init__(self, when="", error=None):
+        self.when, self.error = when, error
+
+    def asked(self, name):
+        if name == self.when:  # the client itself may not know yet
+            self.status = self.status if name == "ncores" else "connecting"
+            raise OSError(f"in <TCP (closed)> {name}")
+
+    def ncores(self):
+        self.asked("ncores")
+        return {"one": 1}
+
+    def get_executor(self, **_):
+        return self
+
+    def submit(self, *_):
+        self.asked("submit")
+        future = Future()
+        future.set_exception(self.error or CancelledError())
+        return future
+
+    def shutdown(self, wait):
+        raise OSError("in <TCP (closed)>")
+
+
+@pytest.mark.parametrize("when", ["ncores", "submit", ""])
+def test_a_scheduler_that_ends_is_told(find, when):
+    with pytest.raises(WorkerError, match=r"has ended; .* the same call goes on from there"):
+        answer(JOB, {"cluster": Lost(when)}, find)
+
+
+def test_workers_of_a_cluster_that_die_are_told(find):
+    distributed = pytest.importorskip("distributed")
+    died = distributed.KilledWorker("compute", None, 3)
+    with pytest.raises(WorkerError, match=r"workers of the cluster ended without a word"):
+        answer(JOB, {"cluster": Lost(error=died)}, find)
+
+
+@pytest.mark.parametrize("error", [OSError("refused"), MemoryError("an array of 3 EiB")])
+def test_where_no_scheduler_answers(find, monkeypatch, error):
+    async def greet(address):
+        raise error
+
+    pytest.importorskip("distributed")
+    monkeypatch.setattr(cluster, "check_scheduler", greet)
+    with pytest.raises(InputError, match="no scheduler answers there"):
+        answer(JOB, {"cluster": "tcp://127.0.0.1:1"}, find)
