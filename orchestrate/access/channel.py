@@ -19,8 +19,8 @@ class Pointers(NamedTuple):
     """Addresses that compiled code needs to call an FMI 3.0 instance directly."""
 
     instance: int
-    # addresses of `fmi3SetFloat64`, `fmi3GetFloat64`, `fmi3DoStep`, `fmi3GetFMUState` and
-    # `fmi3SetFMUState`
+    # addresses of `fmi3SetFloat64`, `fmi3GetFloat64`, `fmi3GetInt32`, `fmi3DoStep`,
+    # `fmi3GetFMUState` and `fmi3SetFMUState`
     functions: tuple[int, ...]
     # value references
     inputs: Array[c_uint]
@@ -90,7 +90,7 @@ class Channel:
 
     def pointers(self) -> Pointers:
         """Return C addresses of an FMI 3.0 instance, its functions and its saved state."""
-        names = ("SetFloat64", "GetFloat64", "DoStep", "GetFMUState", "SetFMUState")
+        names = ("SetFloat64", "GetFloat64", "GetInt32", "DoStep", "GetFMUState", "SetFMUState")
         instance, *addresses = function_addresses(self.instance, names)
         saved_state = self._states.setdefault(0, c_void_p())
         inputs, outputs = self._puts[-1][1], self._gets[1]

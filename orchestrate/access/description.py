@@ -33,6 +33,8 @@ class Description:
     units: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
     factors: Mapping[str, float] = field(default_factory=dict)  # of units: in SI, what one of it is
     has_fixed_step: bool = False  # whether all communication steps have to be of one length
+    has_states: bool = False  # whether it can go back to a state, and give one as bytes
+    saves_states: bool = False
     digest: str = ""  # of the file's bytes
 
     @property
@@ -105,6 +107,8 @@ def read_description(path: Path) -> Description:
             has_fixed_step=bool(
                 co_simulation and not co_simulation.canHandleVariableCommunicationStepSize
             ),
+            has_states=bool(co_simulation and co_simulation.canGetAndSetFMUstate),
+            saves_states=bool(co_simulation and co_simulation.canSerializeFMUstate),
             digest=digest,
         )
     return dataclasses.replace(_known[digest], path=path)

@@ -171,8 +171,7 @@ def make_jobs(arguments: argparse.Namespace, structure: Structure, drive: Drive)
     control = make_controller(arguments, structure, drive)
     schedule = make_schedule(arguments, structure, drive, control)
     step, hold = times_in_seconds(arguments, structure, "step", "hold").values()
-    settings = (arguments.algorithm, arguments.tolerance, control is not None)
-    scheme = scheme_from_arguments(structure, step, *settings)
+    scheme = scheme_from_arguments(structure, step, arguments.tolerance, control is not None)
     base_name = result_name(arguments, structure, drive, (schedule, scheme, control, hold))
     return [
         replace(
@@ -350,9 +349,7 @@ A ramp shows its jumps late: voltages are those of rate 0, at which the motion i
                 HOLD,
                 """
                 --tolerance X  step-size tolerance: largest defect over the work exchanged in a step
-                    (default: 1e-8)
-                --algorithm WORD = rollback  co-simulation algorithm: jacobi, jacobi-derivative,
-                    gauss-seidel, rollback or iterated
+                    (default: 1e-7)
                 """,
             ),
         ),

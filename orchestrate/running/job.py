@@ -44,9 +44,6 @@ class Job(ABC):
     models: ClassVar[tuple[str, ...]] = ("TwoMassImpactOscillator",)
     chunk_size: ClassVar[int] = 1
     sequential: ClassVar[bool] = False
-    has_final_chunk: ClassVar[bool] = (
-        False  # a sequential job's last chunk starts from all before it
-    )
     gathers: ClassVar[bool] = False  # the last item starts from all others, in a chunk of its own
     warmup_items: ClassVar[int] = (
         0  # items after which a sequential job has forgotten its beginning

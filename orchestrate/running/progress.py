@@ -128,11 +128,11 @@ class Progress:
     def previous_table(self, chunk: Chunk) -> Table | None:
         """Return the rows that a chunk continues from; None for a chunk that starts by itself.
 
-        A final or gathering chunk gets all preceding tables.
+        A gathering chunk gets all preceding tables.
         """
         if chunk.after is None:
             return None
-        if (self.job.has_final_chunk or self.job.gathers) and chunk.index == len(self.chunks) - 1:
+        if self.job.gathers and chunk.index == len(self.chunks) - 1:
             return self.store.table(chunk.index)
         return self.end_of(chunk.after)
 

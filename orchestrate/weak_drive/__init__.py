@@ -3,10 +3,11 @@
 ======================  ============================================================
 module                  idea
 ======================  ============================================================
-:mod:`.exchange`        the variables that the master exchanges with the two FMUs
 :mod:`.polynomials`     polynomials over one communication step
-:mod:`.master`          the master: algorithms, and where the communication step is chosen
+:mod:`.connection`      any drive's variables by our names, checked
+:mod:`.master`          the one master: what a step is, and where its length is chosen
 :mod:`.compiled`        the same steps in compiled code, with the same bits
+:mod:`.record`          what a run leaves of its steps, by columns
 :mod:`.extremes`        largest displacements within a communication step
 :mod:`.energy_balance`  where energies are balanced, and the coupling's energy defect
 :mod:`.schedule`        the voltage over time
@@ -16,7 +17,6 @@ module                  idea
 :mod:`.ramp_record`     where a ramp's record suggests a jump of the speed, and what it shows
 :mod:`.settled`         whether the speed at a held voltage has settled
 :mod:`.hysteresis`      the rule that decides about jumps: voltages held there and back
-:mod:`.connection`      any drive's variables by our names, checked; the box's motion from them
 :mod:`.cosimulate`      the oscillator and any drive that is an FMU
 :mod:`.couple`          a run of both FMUs under a varying voltage, and its jumps
 :mod:`.couple_all`      many coupled runs at once

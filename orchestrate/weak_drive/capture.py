@@ -96,7 +96,7 @@ class CaptureJob(Job):
 
     def run_from_rest(self, fmus: Mapping[str, Path], system: System, voltage: float) -> Outcome:
         """Simulate one start from rest at a voltage until the speed has settled."""
-        test = settling_test(*system, self.stay)
+        test = settling_test(*system, self.stay, self.distance(system))
         if voltage <= system.drive.motor_constant * test.threshold:
             return Outcome(NO_LOAD)
         schedule = Constant(voltage, self.time_limit(system))
@@ -106,8 +106,11 @@ class CaptureJob(Job):
 
     def time_limit(self, system: System) -> float:
         """Return the longest simulated time of a start, s; after it it is undecided."""
-        distance = self.tolerance / system.drive.volts(system.structure)
-        return self.time or usual_limit(*system, distance)
+        return self.time or usual_limit(*system, self.distance(system))
+
+    def distance(self, system: System) -> float:
+        """Return the tolerance of the border over K omega."""
+        return self.tolerance / system.drive.volts(system.structure)
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Build the dataset of outcomes over voltage and of the threshold voltages."""
@@ -317,7 +320,7 @@ def capture(
     xarray.Dataset
         Over the parameter and ``voltage`` (V): ``passes`` (0 or 1), ``passage_time`` (s), ``speed``
         (rad/s) where the motor has settled, and ``decision``, how it was decided: the speed
-        "converged", or stayed "bounded" as an irregular or a swinging motion does, or the
+        "converged", or stayed "bounded" as an irregular motion does, or the
         "no-load speed" lies below the resonance. Neither passed nor captured are "undecided" starts
         (not settled within ``time``) and those "settled at the resonance"; ``passes`` is 0 then.
 

@@ -8,16 +8,14 @@ computed: each has to exist, to be a real input or output, and to have the unit 
 from __future__ import annotations
 
 import difflib
-import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from ..access.description import Description
 from ..access.instance import INTEGER_TYPES, REAL_TYPES
 from ..errors import InputError
-from .exchange import Cubic
 
 MOTION = ("box_acceleration", "box_velocity", "box_position")  # outputs of a drive
 FORCE = ("box_force", "box_force_1", "box_force_2", "box_force_3")  # inputs: with its derivatives
@@ -37,6 +35,25 @@ class Link:
 
     theirs: str
     scale: float
+
+
+@dataclass(frozen=True)
+class Connection:
+    """What a master sets and reads of a drive."""
+
+    links: Mapping[str, Link]  # by our names
+    inputs: tuple[str, ...] = ()  # its others, by its names
+    outputs: tuple[str, ...] = ()
+
+
+MOTOR = Connection(  # the first two outputs are what the step control needs
+    {name: Link(name, 1.0) for name in OURS},
+    ("voltage",),
+    (
+        *("box_force_work", "motor_energy", "box_damper_energy", "stored_energy"),
+        *("angle", "speed"),
+    ),
+)
 
 
 def checked_links(connect: Mapping[str, str], drive: Description) -> dict[str, Link]:
@@ -127,68 +144,3 @@ def similarity(word: str, name: str) -> float:
     if any(word.startswith(part) or part.startswith(word) for part in parts):
         return 1.0
     return difflib.SequenceMatcher(None, word, name.lower()).ratio()
-
-
-# -- the motion of the box over a step ------------------------------------------------------------
-
-
-@dataclass
-class BoxMotion:
-    """What is known of the box at communication points: times, and the drive's outputs there."""
-
-    times: list[float]
-    values: dict[str, list[float]]  # by our names
-
-    def add(self, time: float, outputs: Mapping[str, float]) -> None:
-        """Append a communication point; keep the last four."""
-        self.times = [*self.times, time][-4:]
-        for name, value in outputs.items():
-            self.values[name] = [*self.values.get(name, []), value][-4:]
-
-    def over_step(self, ahead: float, outputs: Mapping[str, float]) -> Cubic:
-        """Return the box acceleration from the last point to one ahead: value and derivatives.
-
-        From accelerations it is a line, with velocities a parabola that has their mean. From
-        velocities or positions alone it is the derivative of the polynomial through the points.
-        """
-        h = ahead - self.times[-1]
-        if "box_acceleration" in outputs:
-            first, last = self.values["box_acceleration"][-1], outputs["box_acceleration"]
-            mean = 0.5 * (first + last)
-            if "box_velocity" in outputs:
-                mean = (outputs["box_velocity"] - self.values["box_velocity"][-1]) / h
-            bend = 3.0 * (first + last) - 6.0 * mean
-            return first, (last - first - bend) / h, 2.0 * bend / (h * h), 0.0
-        times = [time - self.times[-1] for time in (*self.times, ahead)]
-        name, count = ("box_velocity", 3) if "box_velocity" in outputs else ("box_position", 4)
-        known = [*self.values[name], outputs[name]]
-        order = 1 if name == "box_velocity" else 2
-        return (*derivatives(times[-count:], known[-count:], order), 0.0, 0.0)
-
-    def ahead(self) -> Cubic:
-        """Return the box acceleration extrapolated over the coming step, as a line."""
-        if "box_acceleration" in self.values:
-            known = self.values["box_acceleration"]
-            if len(known) < 2:
-                return known[-1], 0.0, 0.0, 0.0
-            slope = (known[-1] - known[-2]) / (self.times[-1] - self.times[-2])
-            return known[-1], slope, 0.0, 0.0
-        times = [time - self.times[-1] for time in self.times]
-        name = "box_velocity" if "box_velocity" in self.values else "box_position"
-        order = 1 if name == "box_velocity" else 2
-        return (*derivatives(times, self.values[name], order), 0.0, 0.0)
-
-
-def derivatives(times: Sequence[float], values: Sequence[float], order: int) -> tuple[float, float]:
-    """Return two derivatives at time 0, from an order on, of the polynomial through points."""
-    table = list(values)  # of divided differences
-    for level in range(1, len(times)):
-        for i in range(len(times) - 1, level - 1, -1):
-            table[i] = (table[i] - table[i - 1]) / (times[i] - times[i - level])
-    polynomial = [0.0] * (len(times) + 3)  # coefficients, by Horner's scheme in Newton's form
-    for i in range(len(times) - 1, -1, -1):
-        for k in range(len(times) + 2, 0, -1):
-            polynomial[k] = polynomial[k - 1] - times[i] * polynomial[k]
-        polynomial[0] = table[i] - times[i] * polynomial[0]
-    first, second = (math.factorial(k) * polynomial[k] for k in (order, order + 1))
-    return first, second

@@ -1,12 +1,8 @@
 """Couple the oscillator to any drive that is an FMU for co-simulation, ``orchestrate.cosimulate``.
 
-The drive steps once: most cannot go back. The oscillator goes back instead. It first steps under an
-extrapolated acceleration, which gives the force on the box; the drive steps with the mean of that
-force, exact through impacts; then the oscillator does the step again under the acceleration between
-both ends. So the coupling is of second order, of a drive of which nothing is asked but a step.
-
-Once the accelerations over all steps are known, the motion is computed again by the FMU with
-events: its impacts are exact, and it does not depend on communication points.
+The drive steps once: most cannot go back (:mod:`.master`). Once the accelerations over all steps
+are known, the motion is computed again by the FMU with events: its impacts are exact, and it does
+not depend on communication points.
 """
 
 from __future__ import annotations
@@ -17,31 +13,34 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..access.begin import REST, begin
-from ..access.channel import Channel
 from ..access.description import Description, describe
 from ..access.exported import finder
 from ..access.instance import REAL_TYPES, Instance
 from ..access.models import ELECTRODYNAMIC_SHAKER, OSCILLATOR, SHAKER
-from ..access.play import CUBIC, PLAYED, Player
+from ..access.play import PLAYED, Player
 from ..checks import checked_integer
 from ..errors import InputError
 from ..response.labels import variable, yes_or_no
 from ..response.questions import Question, checked_state, checked_structure
 from ..response.simulate import IN_TIME, impact_columns, impact_variables
-from ..running.job import Inputs, Table, brief, plain
+from ..running.job import Chunk, Inputs, Table, brief, plain
 from ..running.runner import answer
 from ..structures import Excitation
 from ..structures.drive import Drive
 from ..structures.shaker import Shaker
 from ..structures.structure import Structure
-from .connection import FORCE, MOTION, OURS, BoxMotion, checked_links, checked_variable
-from .polynomials import Cubic, integrate_work, matched_cubic
+from .compiled import create_master
+from .connection import OURS, Connection, checked_links, checked_variable
+from .energy_balance import given_work
+from .master import Scheme
+from .polynomials import end_value
+from .record import Floats, Record, joined
 from .schedule import Course, check
 
 if TYPE_CHECKING:
@@ -51,7 +50,6 @@ if TYPE_CHECKING:
     from ..running.options import Running
 
 OUTPUTS = (*PLAYED, "box_force", "impact_energy")
-EXCHANGED = ("box_force", "box_impulse", "box_impulse_moment")
 IN_TIME_TOO = {
     "box_force": ("N", "force of springs and dampers on the box"),
     "impact_energy": ("J", "energy lost in impacts since the start"),
@@ -59,102 +57,79 @@ IN_TIME_TOO = {
     "box_work": ("J", "work of that force on the drive since the start"),
     "coupling_error": ("m", "estimated error of x1 and x2 by the coupling, the larger one"),
 }
-BEGINNING = (1, 1, 2, 4, 8, 16, 32)  # parts of the first step where velocities are not known
+BEGINNING = (1, 1, 2, 4, 8, 16, 32)  # parts of the first step where no acceleration is known
 MAX_STEPS = 10_000_000
-Floats = NDArray[np.float64]
+NOTHING = np.empty((0, 0))
 Values = tuple[tuple[str, float | bool], ...]
 
 
-class Force(NamedTuple):
-    """The force on the box over a step: at both ends, its mean, and its first moment over h^2."""
+class Coupling:
+    """Both FMUs of a job, stepped together at its step or a part of it."""
 
-    first: float
-    last: float
-    mean: float
-    moment: float
-
-
-class DriveSide:
-    """The drive's FMU: what is set, what is read, by our names and in SI."""
-
-    def __init__(self, job: CosimulateJob, description: Description) -> None:
-        self.job, self.links = job, checked_links(dict(job.connect), description)
-        self.inputs = dict(job.inputs)
-        self.instance = Instance(description.path, "drive")
-        self.theirs = {name: self.links[name].theirs for name in MOTION if name in self.links}
-        self.instance.initialize(
-            **dict(job.start_values), **self.inputs_at(0.0), **self.force_inputs()
-        )
+    def __init__(
+        self, job: CosimulateJob, oscillator: Instance, drive: Instance, parts: int
+    ) -> None:
+        self.job, self.parts, self.oscillator, self.drive = job, parts, oscillator, drive
+        self.inputs, links = dict(job.inputs), checked_links(dict(job.connect), drive.description)
+        still = Excitation(frequency=job.structure.omega, amplitude=0.0)
+        begin(oscillator, job.structure, still, job.start)
+        drive.initialize(**dict(job.start_values), **self.inputs_at(0.0))
+        connection = Connection(links, tuple(self.inputs))
+        self.h = job.step / parts
+        self.master = create_master(oscillator, drive, Scheme(self.h), connection)
+        knows = "box_acceleration" in links
+        self.divides_first = not knows and not drive.description.has_fixed_step
 
     def inputs_at(self, time: float) -> dict[str, float]:
         """Return the drive's other inputs at a time."""
         return {name: course.voltage(time) for name, course in self.inputs.items()}
 
-    def force_inputs(self, *derivatives: float) -> dict[str, float]:
-        """Return the force, and those of its derivatives that are connected, by their names."""
-        values = dict(zip(FORCE, (*derivatives, 0.0, 0.0, 0.0, 0.0), strict=False))
-        links = {name: self.links[name] for name in FORCE if name in self.links}
-        return {link.theirs: values[name] / link.scale for name, link in links.items()}
+    def advance(self, items: Sequence[int]) -> Table:
+        """Do the steps of some items; return nodes, cubics, work, and what is recorded."""
+        steps = range(items[0] * self.parts, (items[-1] + 1) * self.parts)
+        stops = self.job.record if self.parts == 1 else ()
+        recorded = [] if steps.start or not stops else [self.recorded()]
+        records = []
+        for piece in [range(i, i + 1) for i in steps] if stops else [steps]:
+            records.append(self.run(piece))
+            recorded += [self.recorded()] if stops else []
+        record = joined(records)
+        nodes = record["time"].copy()
+        nodes[record.ends] = self.job.times(self.parts)[steps.start + 1 : steps.stop + 1]
+        after = record.after
+        table = {"nodes": nodes[1:], "cubics": np.transpose(after.acceleration())}
+        table |= {"work": given_work(record)}
+        table = {f"{name} {self.parts}": values for name, values in table.items()}
+        return {**table, "recorded": np.array(recorded, dtype=float)} if stops else table
 
-    def step(self, time: float, ahead: float, force: Force) -> None:
-        """Step the drive once under a force: its cubic where it takes one, else its mean."""
-        derivatives: Sequence[float] = (force.mean,)
-        if FORCE[-1] in self.links:
-            derivatives = matched_cubic(*force, ahead - time)
-        inputs = self.inputs_at(0.5 * (time + ahead))
-        self.instance.set(**inputs, **self.force_inputs(*derivatives))
-        self.instance.step(time, ahead)
-
-    def motion(self, time: float, force: float) -> dict[str, float]:
-        """Return the motion of the box at a time, under the force there."""
-        self.instance.set(**self.inputs_at(time), **self.force_inputs(force))
-        values = self.instance.get(*self.theirs.values())
-        return {
-            name: self.links[name].scale * value
-            for name, value in zip(self.theirs, values, strict=True)
-        }
+    def run(self, steps: range) -> Record:
+        """Run both FMUs over some steps, with the drive's inputs in the middle of each."""
+        inputs = [[*self.inputs_at((i + 0.5) * self.h).values()] for i in steps]
+        records = []
+        if steps.start == 0 and self.divides_first:  # nothing is known of the acceleration
+            short = self.h / sum(BEGINNING)
+            pieces = joined([self.master.run(inputs[:1], part * short) for part in BEGINNING])
+            records, inputs = [replace(pieces, ends=pieces.ends[-1:])], inputs[1:]
+        return joined([*records, self.master.run(inputs)])
 
     def recorded(self) -> list[float]:
-        """Return what is recorded of the drive, in its own units."""
-        return [float(value) for value in self.instance.get(*self.job.record)]
+        """Return what is recorded of the drive, in its own units, under its inputs at the time."""
+        force = (self.master["box_force"], 0.0, 0.0, 0.0)
+        self.master.drive.put(force, [*self.inputs_at(self.master.time).values()])
+        return [float(value) for value in self.drive.get(*self.job.record)]
 
+    def get_state(self) -> Table:
+        """Return the state of both FMUs and of the master, a row of each."""
+        states = (self.oscillator.save_state().hex(), self.drive.save_state().hex())
+        memory = {"states": np.array([states]), "memory": np.array([self.master.get_state()])}
+        return {f"{name} {self.parts}": values for name, values in memory.items()}
 
-class Coupling:
-    """Both FMUs, stepped together: the accelerations of the box over all steps come of it."""
-
-    def __init__(self, job: CosimulateJob, oscillator: Instance, drive: DriveSide) -> None:
-        self.drive, self.time = drive, 0.0
-        still = Excitation(frequency=job.structure.omega, amplitude=0.0)
-        begin(oscillator, job.structure, still, job.start)
-        self.channel = Channel(oscillator, CUBIC, EXCHANGED)
-        self.force = self.channel.get()[0]
-        self.box = BoxMotion([], {})
-        self.box.add(0.0, drive.motion(0.0, self.force))
-        self.work = 0.0
-
-    def step(self, ahead: float) -> Cubic:
-        """Do one communication step to a time; return the box acceleration over it."""
-        h = ahead - self.time
-        self.channel.save()
-        force = self.try_step(self.box.ahead(), h)
-        self.drive.step(self.time, ahead, force)
-        acceleration = self.box.over_step(ahead, self.drive.motion(ahead, force.last))
-        self.channel.restore()
-        force = self.try_step(acceleration, h)
-        outputs = self.drive.motion(ahead, force.last)
-        if "box_velocity" in outputs:
-            velocity = self.box.values["box_velocity"][-1]
-            self.work += integrate_work(matched_cubic(*force, h), velocity, acceleration, h)
-        self.box.add(ahead, outputs)
-        self.time, self.force = ahead, force.last
-        return acceleration
-
-    def try_step(self, acceleration: Sequence[float], h: float) -> Force:
-        """Step the oscillator under an acceleration of the box; return the force over the step."""
-        self.channel.put(*acceleration)
-        self.channel.step(self.time, h)
-        last, impulse, moment = self.channel.get()
-        return Force(self.force, last, impulse / h, moment / (h * h))
+    def set_state(self, table: Table) -> None:
+        """Set both FMUs and the master back to the last state of a table."""
+        oscillator, drive = (bytes.fromhex(text) for text in table[f"states {self.parts}"][-1])
+        self.oscillator.restore_state(oscillator)
+        self.drive.restore_state(drive)
+        self.master.set_state(table[f"memory {self.parts}"][-1].tolist())
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -172,6 +147,10 @@ class CosimulateJob(Question):
     start: tuple[float, ...] = REST
     estimate: bool = True
     asked: ClassVar[str] = "cosimulate"
+    chunk_size: ClassVar[int] = 1_000
+    sequential: ClassVar[bool] = True
+    gathers: ClassVar[bool] = True
+    item: ClassVar[str] = "step"
 
     def call_text(self) -> str:
         """Return Python source of the call that repeats this job."""
@@ -181,61 +160,72 @@ class CosimulateJob(Question):
         structure = f"Structure{brief(plain(self.structure))}"
         return f"{self.asked}({structure}, {self.drive!r}, {', '.join(texts)})"
 
-    def items(self, inputs: Inputs) -> Sequence[int]:
-        """Return the one item: the whole run."""
-        return [0]
+    def count(self) -> int:
+        """Return the number of items: all steps, and the motion under their accelerations."""
+        return round(self.duration / self.step) + 1
 
-    def times(self) -> Floats:
-        """Return the communication points, s."""
-        count = math.ceil(self.duration / self.step - 1e-9)
-        return np.append(self.step * np.arange(count), self.duration)
+    def times(self, parts: int = 1) -> Floats:
+        """Return the communication points, s, of steps divided into equal parts."""
+        return np.linspace(0.0, self.duration, parts * (self.count() - 1) + 1)
+
+    def items(self, inputs: Inputs) -> Sequence[int]:
+        """Return the numbers of the steps, and of the motion."""
+        return range(self.count())
+
+    def chunks(self) -> list[Chunk]:
+        """Split the steps into chunks if the drive can give its state, to go on from."""
+        if describe(self.drive).saves_states:
+            return super().chunks()
+        last = self.count() - 1
+        return [Chunk(0, 0, last, None), Chunk(1, last, last + 1, 0)]
+
+    def progress_note(self, first: int) -> str:
+        """Return the progress bar's note where a run cannot be resumed."""
+        if first or describe(self.drive).saves_states:
+            return ""
+        return "not resumable: the drive cannot save its state"
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
-        """Run both FMUs; return the columns over time, and the impacts."""
-        times, columns, impacts = self.times(), *self.run(fmus[OSCILLATOR])
-        if self.estimate:
-            finer, _ = replace(self, step=0.5 * self.step, record=()).run(fmus[OSCILLATOR])
-            shared = finer["time"].searchsorted(times)
-            away = [np.abs(columns[name] - finer[name][shared]) for name in ("x1", "x2")]
-            columns["coupling_error"] = 4.0 / 3.0 * np.max(away, axis=0)
-        return {**columns, **impact_columns(impacts, self.structure)}
+        """Do some steps, of half the length too; or compute the motion at the end."""
+        if items[0] == self.count() - 1:
+            assert previous is not None
+            return self.motion(fmus[OSCILLATOR], previous)
+        table: Table = {}
+        for parts in self.finenesses():
+            with Instance(fmus[OSCILLATOR]) as oscillator, Instance(self.drive, "drive") as drive:
+                coupling = Coupling(self, oscillator, drive, parts)
+                if previous is not None:
+                    coupling.set_state(previous)
+                table |= coupling.advance(items)
+                if drive.description.saves_states:
+                    table |= coupling.get_state()
+                coupling.master.close()
+        return table
 
-    def run(self, oscillator: Path) -> tuple[dict[str, Floats], Any]:
-        """Run both FMUs at the job's step; return columns over time, and the impacts."""
-        drive = DriveSide(self, describe(self.drive))
+    def finenesses(self) -> tuple[int, ...]:
+        """Return into how many parts each step is divided: none, and two for the error."""
+        return (1, 2) if self.estimate else (1,)
+
+    def motion(self, oscillator: Path, steps: Table) -> Table:
+        """Return the motion under the accelerations of all steps, over time, and its impacts."""
         times = self.times()
-        try:
-            with Instance(oscillator) as plain:
-                coupling = Coupling(self, plain, drive)
-                nodes, cubics = [0.0], []
-                recorded, work = [drive.recorded()], [0.0]
-                for index, target in enumerate(times[1:].tolist()):
-                    for end in self.ends(index, target, coupling):
-                        cubics.append(coupling.step(end))
-                        nodes.append(end)
-                    recorded.append(drive.recorded())
-                    work.append(coupling.work)
-        finally:
-            drive.instance.close()
+        motions = []
         with Player(oscillator) as player:
-            player.start(self.structure, self.start)
-            rows, touching, impacts = player.play(np.array(nodes), np.array(cubics), times, OUTPUTS)
-        accelerations = dict(zip(nodes, cubics, strict=False))
-        box = [accelerations[time][0] for time in times[:-1].tolist()]
-        columns = dict(zip(OUTPUTS, rows.T, strict=True))
-        columns |= {"time": times, "in_contact": touching, "box_work": np.array(work)}
-        box.append(acceleration_at(cubics[-1], nodes[-1] - nodes[-2]))
-        columns["box_acceleration"] = np.array(box)
-        names = (f"drive {name}" for name in self.record)
-        columns |= dict(zip(names, np.array(recorded).T, strict=True))
-        return columns, impacts
-
-    def ends(self, index: int, target: float, coupling: Coupling) -> list[float]:
-        """Return the ends of a step's parts: the first has some without an acceleration."""
-        is_fixed = coupling.drive.instance.description.has_fixed_step
-        if index or is_fixed or "box_acceleration" in coupling.box.values:
-            return [target]
-        return [target * part for part in np.cumsum(BEGINNING) / sum(BEGINNING)]
+            for parts in self.finenesses():
+                nodes = np.append(0.0, steps[f"nodes {parts}"])
+                player.start(self.structure, self.start)
+                motions.append(player.play(nodes, steps[f"cubics {parts}"], times, OUTPUTS))
+        rows, touching, impacts = motions[0]
+        columns = dict(zip(OUTPUTS, rows.T, strict=True)) | {"time": times, "in_contact": touching}
+        if self.estimate:
+            away = np.abs(rows - motions[1][0])[:, [OUTPUTS.index(name) for name in ("x1", "x2")]]
+            columns["coupling_error"] = 4.0 / 3.0 * away.max(axis=1)
+        nodes, cubics = np.append(0.0, steps["nodes 1"]), steps["cubics 1"]
+        last = end_value(cubics[-1], nodes[-1] - nodes[-2])
+        at_times = nodes.searchsorted(times)
+        columns["box_acceleration"] = np.append(cubics[at_times[:-1], 0], last)
+        columns["box_work"] = np.append(0.0, np.cumsum(steps["work 1"]))[at_times]
+        return {**columns, **impact_columns(impacts, self.structure)}
 
     def dataset(self, table: Table, inputs: Inputs) -> xr.Dataset:
         """Return the dataset over communication points, and of the impacts."""
@@ -244,10 +234,10 @@ class CosimulateJob(Question):
         names = {**IN_TIME, **IN_TIME_TOO}
         description = describe(self.drive)
         theirs = {}
-        for name in self.record:
+        for name, values in zip(self.record, table.get("recorded", NOTHING).T, strict=True):
             about = description.variable(name)
             text = about.description or f"{name} of the drive"
-            theirs[name] = variable("time", table[f"drive {name}"], about.unit or "1", text)
+            theirs[name] = variable("time", values, about.unit or "1", text)
         knows_velocity = any(ours == "box_velocity" for ours, _ in self.connect)
         shown = [n for n in names if n in table and (n != "box_work" or knows_velocity)]
         contact = "whether the masses are in permanent contact"
@@ -263,14 +253,9 @@ class CosimulateJob(Question):
                 "title": f"{self.structure.label()} on {description.name}",
                 "drive": description.name,
                 "recorded": ",".join(self.record),
+                "resumable": "yes" if description.saves_states else "no: the drive has no states",
             },
         )
-
-
-def acceleration_at(cubic: Sequence[float], h: float) -> float:
-    """Return a cubic of value and derivatives, a time later."""
-    a0, a1, a2, a3 = cubic
-    return a0 + h * (a1 + 0.5 * h * (a2 + h * a3 / 3.0))
 
 
 def cosimulate(
@@ -308,7 +293,7 @@ def cosimulate(
     inputs : mapping, optional
         Its other inputs: a number, times in s with values, or a :class:`orchestrate.Course`.
     duration, step : float
-        Of the run, and the communication step, s.
+        Of the run, and the communication step, s: the longest, where the duration is no multiple.
     record : sequence of str, optional
         Variables of the drive that are stored.
     start : array_like of 4 floats, optional
@@ -337,13 +322,16 @@ def cosimulate(
 
     Notes
     -----
-    The drive does each step once, so it need not be able to go back; the oscillator does it twice.
-    Its second step is under the acceleration between both ends of the step, a line (with a velocity
-    a parabola of the same mean), and the drive is under the force's mean, which is exact through
-    impacts. Errors are of second order in the step as long as the drive's acceleration follows its
-    force at once when it is read; of a drive whose outputs change in steps alone they are of first
-    order, unless its velocity is connected. After impacts that one of the two runs has and the
-    other not, or in chaos, the estimated error is as large as the motion.
+    The drive does each step once, so it need not be able to go back; the oscillator does it twice,
+    see :mod:`orchestrate.weak_drive.master`. With acceleration, velocity and position connected,
+    and the force with its derivatives, errors are of fourth order in the step, else of second order
+    as long as the drive's acceleration follows its force at once when it is read; of a drive whose
+    outputs change in steps alone they are of first order, unless its velocity is connected. After
+    impacts that one of the two runs has and the other not, or in chaos, the estimated error is as
+    large as the motion.
+
+    An interrupted run resumes where the drive can save its state (``canSerializeFMUstate``); else
+    it begins anew, as ``resumable`` in the attributes says.
 
     Examples
     --------
@@ -376,7 +364,7 @@ def cosimulate(
         start_values=checked_parameters(parameters or {}, description),
         inputs=checked_inputs(inputs or {}, description, duration),
         duration=float(duration),
-        step=float(duration) / count if description.has_fixed_step else float(step),
+        step=float(duration) / count,
         record=checked_record(record or (), description),
         start=checked_state("start", start, structure),
         estimate=bool(estimate),
@@ -386,13 +374,13 @@ def cosimulate(
 
 def checked_step_count(duration: float, step: float, drive: Description) -> int:
     """Return the number of steps; raise ``InputError`` if a drive of equal steps has a rest."""
-    count = round(duration / step)
+    count = max(1, math.ceil(duration / step - 1e-9))
     if drive.has_fixed_step and not math.isclose(count * step, duration, rel_tol=1e-9):
         raise InputError(
             f"duration = {duration} s, step = {step} s: the FMU {drive.name} takes steps of one "
             "length alone; expected a duration that is a whole number of steps"
         )
-    return checked_integer("duration/step", max(count, 1), 1, MAX_STEPS)
+    return checked_integer("duration/step", count, 1, MAX_STEPS)
 
 
 def checked_parameters(parameters: Mapping[str, Any], drive: Description) -> Values:

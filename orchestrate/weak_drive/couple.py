@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from ..access.instance import Instance
 from ..access.models import OSCILLATOR, SHAKER
 from ..errors import InputError
 from ..response.labels import Variable, variable
-from ..running.job import Chunk, Inputs, Table
+from ..running.job import Inputs, Table
 from ..running.options import Running
 from ..structures.drive import Drive
 from ..structures.structure import Structure
@@ -36,10 +36,9 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 MAX_STEPS = 1e9  # more is a typing error: it would run for weeks
-TOLERANCE = 1e-8  # of the step control: errors of the displacements are about ten times as large
+TOLERANCE = 1e-7  # of the step control: errors of the displacements are about half as large
 LONGEST, FIXED = 0.4, 0.1  # steps with the control and without, in 1/omega
 DIRECTIONS = ("up", "down")
-SLOTS = 12  # jumps of a direction that are stored, by their voltages
 MIRRORED = {  # where the motor turns backward
     *("jumps", "jump_low", "jump_high", "ramp_voltage", "jump_lag", "averaged_jumps"),
     *("jump_speed", "jump_speed_before", "jump_speed_after", "jump_rate"),
@@ -55,7 +54,7 @@ class CoupleJob(CoupledRun):
 
     chunk_size: ClassVar[int] = 4_000
     sequential: ClassVar[bool] = True
-    has_final_chunk: ClassVar[bool] = True
+    gathers: ClassVar[bool] = True  # the hysteresis loop is a chunk of its own
     item: ClassVar[str] = "step"
 
     def count(self) -> int:
@@ -66,19 +65,15 @@ class CoupleJob(CoupledRun):
         """Return the item indices: all communication steps, then the hysteresis loop."""
         return range(self.count())
 
-    def chunks(self) -> list[Chunk]:
-        """Split the items into chunks; the hysteresis loop is its own last chunk."""
-        return with_final_chunk(super().chunks())
-
     def run_here(self, fmus: Mapping[str, Path]) -> Table:
         """Run all chunks one after the other in this process and join their tables."""
-        chunks: list[Table] = []
-        for chunk in self.chunks():
-            previous = chunks[-1] if chunks else None
-            if chunk.start == self.steps():
-                previous = concatenate_tables(chunks)
-            chunks.append(self.work(fmus, range(chunk.start, chunk.stop), previous))
-        return concatenate_tables(chunks)
+        *chunks, _ = self.chunks()
+        tables: list[Table] = []
+        for chunk in chunks:
+            previous = tables[-1] if tables else None
+            tables.append(self.work(fmus, range(chunk.start, chunk.stop), previous))
+        table = {name: np.concatenate([part[name] for part in tables]) for name in tables[0]}
+        return {**table, **self.decide_jumps(fmus, table, self.chunk_size)}
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Compute one chunk of communication steps, or the hysteresis loop at the end."""
@@ -95,12 +90,11 @@ class CoupleJob(CoupledRun):
         """Compute one chunk with a given stepping function and return its final state too."""
         if items[0] == self.steps():
             assert previous is not None
-            nothing = {name: values[:0] for name, values in previous.items()}
-            return {**nothing, **self.decide_jumps(fmus, previous, every)}
+            return self.decide_jumps(fmus, previous, every)
         with begin_run(self, fmus) as run:
             if previous is not None:
                 run.set_state(previous)
-            return {**revolve(run), **run.get_state(), **no_jumps()}
+            return {**revolve(run), **run.get_state()}
 
     def progress_note(self, first: int) -> str:
         """Return the progress bar's note for the chunk of the hysteresis loop."""
@@ -108,7 +102,8 @@ class CoupleJob(CoupledRun):
 
     def decide_jumps(self, fmus: Mapping[str, Path], table: Table, every: int) -> Table:
         """Hold voltages where the ramp's record suggests jumps; return those, in rows."""
-        rows = np.full((1, len(DIRECTIONS), SLOTS, len(Jump._fields) + 2), math.nan)
+        slots = self.hysteresis.slots
+        rows = np.full((1, len(DIRECTIONS), slots, len(Jump._fields) + 2), math.nan)
         if self.control is not None:
             return {"jump_rows": rows}
         with Instance(fmus[OSCILLATOR]) as oscillator, Instance(fmus[SHAKER]) as shaker:
@@ -125,7 +120,7 @@ class CoupleJob(CoupledRun):
             loop.add_checkpoints(table, every, self.steps())
             for i, up in enumerate((True, False)):
                 jumps = loop.decide(RampRecord(self, table, up))
-                for j, jump in enumerate(jumps[:SLOTS]):
+                for j, jump in enumerate(jumps[:slots]):
                     rows[0, i, j] = (*jump[:-1], *jump.shown)
         return {"jump_rows": rows}
 
@@ -138,26 +133,21 @@ class CoupleJob(CoupledRun):
                 f"the motor completed no revolution in {self.schedule.duration:g} s: "
                 "raise the voltage or the duration"
             )
-        variables: dict[str, Any] = {
-            name: ("revolution", table[name], {"units": unit, "long_name": text})
-            for name, (unit, text) in COLUMNS.items()
+        variables = {
+            name: variable("revolution", table[name], *text) for name, text in COLUMNS.items()
         }
         eta0 = table["voltage"] / self.drive.volts(self.structure)
         Omega = table["speed"] / self.structure.omega
-        count = {"units": "1", "long_name": "revolution of the motor"}
-        coordinates = {
-            "revolution": ("revolution", np.arange(1, len(eta0) + 1), count),
-            "eta0": (
-                "revolution",
-                eta0,
-                {"units": "1", "long_name": "no-load speed over omega, U/(K omega)"},
-            ),
-            "Omega": ("revolution", Omega, {"units": "1", "long_name": "mean speed over omega"}),
+        texts = {
+            "revolution": (np.arange(1, len(eta0) + 1), "1", "revolution of the motor"),
+            "eta0": (eta0, "1", "no-load speed over omega, U/(K omega)"),
+            "Omega": (Omega, "1", "mean speed over omega"),
         }
+        coordinates = {name: variable("revolution", *text) for name, text in texts.items()}
         threshold = own_resonance.dividing_speed(self.structure, self.drive)
         text = "time from which the mean speed stays beyond the resonance; NaN where it does not"
         passed = time_beyond(table["time"], np.abs(Omega), threshold)
-        variables["passage_time"] = ((), passed, {"units": "s", "long_name": text})
+        variables["passage_time"] = variable((), passed, "s", text)
         labels, jump_columns = self.jump_variables(table)
         names = {"long_name": "direction in which the speed jumps; further jumps are numbered"}
         coordinates["jump"] = ("jump", np.array(labels), names)
@@ -210,7 +200,7 @@ class CoupleJob(CoupledRun):
         direction, rule = "rise" if record.up else "fall", self.hysteresis
         if not record.rows().size:
             return "", f"the voltage does not {direction}"
-        if any(record.suspects(leg, rule.shown, rule.share) for leg in record.legs()):
+        if any(record.suspects(leg, *rule.of_a_record) for leg in record.legs()):
             return "by held voltages", "no jump: held voltages lead back to the same speeds"
         return "by the record", "no jump: the speed follows the voltage"
 
@@ -259,25 +249,6 @@ def bracket_variables(
         "jump_high": variable("jump", highs, "V", "first at which it is lost, or may be"),
         "jump_lag": variable("jump", late, "V", "how late the ramp shows the jump"),
     }
-
-
-def no_jumps() -> Table:
-    """Return an empty array of jumps, for chunks that consist of communication steps."""
-    return {"jump_rows": np.empty((0, len(DIRECTIONS), SLOTS, len(Jump._fields) + 2))}
-
-
-def concatenate_tables(tables: Sequence[Table]) -> Table:
-    """Join the tables of successive chunks."""
-    return {name: np.concatenate([part[name] for part in tables]) for name in tables[0]}
-
-
-def with_final_chunk(chunks: list[Chunk]) -> list[Chunk]:
-    """Split the last item, the hysteresis loop, into a chunk of its own."""
-    last = chunks[-1]
-    if last.stop - last.start == 1:
-        return chunks
-    steps = Chunk(last.index, last.start, last.stop - 1, last.after)
-    return [*chunks[:-1], steps, Chunk(last.index + 1, last.stop - 1, last.stop, last.index)]
 
 
 def require_motor(drive: Drive) -> None:
@@ -330,21 +301,19 @@ def schedule_from_arguments(
 def scheme_from_arguments(
     structure: Structure,
     step: float | None,
-    algorithm: str = "rollback",
     tolerance: float | None = None,
     sampled: bool = False,
 ) -> Scheme:
-    """Choose algorithm, communication step and tolerance from :func:`couple` arguments."""
+    """Choose communication step and tolerance from :func:`couple` arguments."""
     omega = structure.omega
     if tolerance is None:
-        controlled = step is None and Scheme(algorithm).goes_back
-        tolerance = TOLERANCE if controlled else 0.0
+        tolerance = TOLERANCE if step is None else 0.0
     if step is None:
         step = (LONGEST if tolerance and not sampled else FIXED) / omega
     rounding = 1.0 + 1e-12
     if not 1e-4 / rounding <= step * omega <= rounding:
         raise InputError(f"step = {step} s: expected {1e-4 / omega:g} <= step <= {1.0 / omega:g}")
-    return Scheme(algorithm, float(step), tolerance=float(tolerance))
+    return Scheme(float(step), float(tolerance))
 
 
 def couple_job(
@@ -401,7 +370,6 @@ def couple(
     hold: float | None = None,
     hysteresis: Settings | None = None,
     step: float | None = None,
-    algorithm: str = "rollback",
     tolerance: float | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
@@ -449,12 +417,10 @@ def couple(
         :mod:`orchestrate.weak_drive.hysteresis`.
     step : float, optional
         Communication step, s. By default its defect controls it, up to 0.4/omega; with a controller
-        up to 0.1/omega, with an ``algorithm`` that cannot go back it is that.
-    algorithm : str
-        Of :data:`orchestrate.weak_drive.master.ALGORITHMS`.
+        up to 0.1/omega.
     tolerance : float, optional
         Of the control: halve a step whose defect is a larger part of the work exchanged in it, and
-        take longer ones again where they will do. 1e-8 by default, where no ``step`` is given, else
+        take longer ones again where they will do. 1e-7 by default, where no ``step`` is given, else
         0: no control.
     **running
         ``jobs``, ``cluster``, ``progress``, ``store`` and so on, see
@@ -508,6 +474,6 @@ def couple(
         spin_up = 0.0
     settings = (duration, rate, settle, increment, back, spin_up)
     schedule = schedule_from_arguments(structure, drive, voltage, *settings)
-    scheme = scheme_from_arguments(structure, step, algorithm, tolerance, control is not None)
+    scheme = scheme_from_arguments(structure, step, tolerance, control is not None)
     job = couple_job(structure, drive, schedule, scheme, speed_start, control, hold, hysteresis)
     return answer(job, running, finder(running))

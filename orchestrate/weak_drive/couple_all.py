@@ -16,6 +16,7 @@ import numpy as np
 
 from ..access.exported import finder
 from ..errors import InputError
+from ..response.labels import variable
 from ..running.runner import gather
 from ..structures.drive import Drive
 from ..structures.structure import Structure
@@ -155,14 +156,12 @@ def couple_all(
         data_vars="all",
         fill_value=missing,
     )
-    texts = ("name of the set", "structure", "change of the no-load speed over omega per 1/omega")
-    units = (None, None, "1")
-    for position, name in enumerate(("system", "structure", "rate")):
-        values = np.array([run[position] for run in runs])
-        attributes = {"long_name": texts[position]}
-        unit = units[position]
-        if unit:
-            attributes["units"] = unit
-        result = result.assign_coords({name: ("run", values, attributes)})
+    names, states, speeds = (np.array(column) for column in zip(*runs, strict=True))
+    text = "change of the no-load speed over omega per 1/omega"
+    result = result.assign_coords(
+        system=("run", names, {"long_name": "name of the set"}),
+        structure=("run", states, {"long_name": "structure"}),
+        rate=variable("run", speeds, "1", text),
+    )
     result.attrs["title"] = "Weak drive: many runs"
     return result

@@ -12,7 +12,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from ..dynamics.bifurcations import FLIP, FOLD, GRAZING, KINDS, TORUS, TOUCHING
 from ..dynamics.continuation import SOLVER_ERRORS
 from ..dynamics.tracer import LIMIT, Bifurcation, BranchSegment, ContinuationSettings
 from ..errors import InputError
+from ..response.labels import Variable, variable
 from ..running.job import Inputs, Job, Table
 from ..running.runner import answer
 from ..structures.drive import Drive
@@ -63,7 +64,6 @@ COLUMNS: dict[str, tuple[str, str]] = {  # numbers of a motion, with units
     "impacts": ("1", "impacts in a revolution"),
     "revolutions": ("1", "revolutions after which the motion repeats"),
 }
-Variable = tuple[Any, np.ndarray, dict[str, str]]
 Leg = BranchSegment[Motion]
 
 
@@ -204,24 +204,17 @@ class DriveBranchJob(Job):
         variables = motion_variables(along, points)
         largest = np.nan_to_num(np.abs(points[..., len(COLUMNS)]), nan=np.inf)
         text = "whether the motion is stable"
-        variables["stable"] = (along, largest < 1.0 - ON_CIRCLE, variable_attributes("1", text))
+        variables["stable"] = variable(along, largest < 1.0 - ON_CIRCLE, "1", text)
         ends = np.array(ENDS)[table["ends"]]
-        variables["end"] = (along[:2], ends, variable_attributes("1", "why the branch ends"))
+        variables["end"] = variable(along[:2], ends, "1", "why the branch ends")
         kinds = table["kinds"]
         located = kinds >= 0
         located_motions = motion_variables(("bifurcation",), table["events"][located])
         structures = np.array(STRUCTURES)[np.argwhere(located)[:, 0]]
         names = np.array([KINDS[kind] for kind in BIFURCATIONS])[kinds[located]]
-        located_motions["structure"] = (
-            ("bifurcation",),
-            structures,
-            variable_attributes("1", "structure"),
-        )
-        located_motions["kind"] = (
-            ("bifurcation",),
-            names,
-            variable_attributes("1", "kind of bifurcation"),
-        )
+        at = ("bifurcation",)
+        located_motions["structure"] = variable(at, structures, "1", "structure")
+        located_motions["kind"] = variable(at, names, "1", "kind of bifurcation")
         variables |= {f"bifurcation_{name}": values for name, values in located_motions.items()}
         coordinates = {
             "structure": ("structure", list(STRUCTURES), {"long_name": "structure"}),
@@ -230,25 +223,17 @@ class DriveBranchJob(Job):
         return xr.Dataset(variables, coordinates, {"title": "Branches of the weak drive"})
 
 
-def variable_attributes(unit: str, text: str) -> dict[str, str]:
-    """Return the unit and the long name of a variable as its attributes."""
-    return {"units": unit, "long_name": text}
-
-
 def motion_variables(dims: tuple[str, ...], numbers: np.ndarray) -> dict[str, Variable]:
     """Convert a table of motions to the variables of a dataset."""
     variables: dict[str, Variable] = {
-        name: (dims, numbers[..., i].real, variable_attributes(unit, text))
+        name: variable(dims, numbers[..., i].real, unit, text)
         for i, (name, (unit, text)) in enumerate(COLUMNS.items())
     }
     largest = numbers[..., len(COLUMNS) :]
     text = "Floquet multipliers of the largest size"
-    for part, name, values in (
-        ("real", "real", largest.real),
-        ("imag", "imaginary", largest.imag),
-    ):
-        attributes = variable_attributes("1", f"{text}, {name} part")
-        variables[f"multiplier_{part}"] = ((*dims, "multiplier"), values, attributes)
+    for part, name in (("real", "real"), ("imag", "imaginary")):
+        values = getattr(largest, part), "1", f"{text}, {name} part"
+        variables[f"multiplier_{part}"] = variable((*dims, "multiplier"), *values)
     return variables
 
 

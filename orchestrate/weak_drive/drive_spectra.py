@@ -20,6 +20,7 @@ from ..access.models import OSCILLATOR, SHAKER
 from ..checks import checked_integer
 from ..constants import TURN
 from ..errors import InputError
+from ..response.labels import variable
 from ..response.spectra import amplitude_spectrum
 from ..running.job import Inputs, Job, Table
 from ..running.runner import answer
@@ -27,7 +28,6 @@ from ..structures.drive import Drive
 from ..structures.structure import Structure
 from . import averaged, own_resonance
 from .couple import couple_job, scheme_from_arguments
-from .master import split_state
 from .run import Run, begin_run
 from .schedule import Ramp, check
 
@@ -82,7 +82,7 @@ class DriveSpectraJob(Job):
         self, fmus: Mapping[str, Path], structure: Structure
     ) -> tuple[np.ndarray, float]:
         """Hold the voltage; return displacements (2, samples), m, and speed, rad/s."""
-        scheme = scheme_from_arguments(structure, self.step, "rollback", 0.0)
+        scheme = scheme_from_arguments(structure, self.step, 0.0)
         job = couple_job(structure, self.drive, self.approach, scheme)
         steps = range(math.ceil((self.approach.duration + self.hold) / self.step))
         with begin_run(job, fmus) as run:
@@ -101,13 +101,10 @@ class DriveSpectraJob(Job):
         A preload's own displacements would leak into the lowest lines.
         """
         count = self.revolutions * self.points
-        kept = np.empty((count, len(run.master.get_state())))
-        run.master.revolution = None
-        run.master.run([self.approach.last] * count, h=interval, kept=kept)
-        _, motion, shaking, _ = split_state(kept.T)
+        found = run.master.run([self.approach.last] * count, h=interval).at_ends()
         rest_1, rest_2 = run.job.structure.at_rest
-        box = shaking.box_position
-        return np.array([motion.x1 - rest_1 + box, motion.x2 - rest_2 + box])
+        box = found["box_position"]
+        return np.array([found["x1"] - rest_1 + box, found["x2"] - rest_2 + box])
 
     def hangs_at_resonance(self, fmus: Mapping[str, Path]) -> bool:
         """Return whether the delaminated structure still hangs at the resonance."""
@@ -120,23 +117,17 @@ class DriveSpectraJob(Job):
         import xarray as xr
 
         orders, speeds = self.orders(), table["speed"]
+        text, along = "amplitude of the absolute acceleration", ("kind", "mass", "order")
+        lines = np.outer(speeds, orders)
         variables = {
-            "acceleration": (
-                ("kind", "mass", "order"),
-                table["acceleration"],
-                {"units": "m/s2", "long_name": "amplitude of the absolute acceleration"},
-            ),
-            "speed": ("kind", speeds, {"units": "rad/s", "long_name": "mean speed of the motor"}),
+            "acceleration": variable(along, table["acceleration"], "m/s2", text),
+            "speed": variable("kind", speeds, "rad/s", "mean speed of the motor"),
         }
         coordinates = {
             "kind": ("kind", list(KINDS), {"long_name": "structure"}),
-            "mass": ("mass", [1, 2], {"units": "1", "long_name": "mass"}),
-            "order": ("order", orders, {"units": "1", "long_name": "multiple of the speed"}),
-            "line": (
-                ("kind", "order"),
-                np.outer(speeds, orders),
-                {"units": "rad/s", "long_name": "frequency of the line"},
-            ),
+            "mass": variable("mass", [1, 2], "1", "mass"),
+            "order": variable("order", orders, "1", "multiple of the speed"),
+            "line": variable(("kind", "order"), lines, "rad/s", "frequency of the line"),
         }
         title = f"Spectra of the weak drive at {self.approach.last:g} V"
         return xr.Dataset(variables, coordinates, {"title": title})
@@ -224,7 +215,7 @@ def drive_spectra(
     points = checked_integer("points", points, 4)
     if not 0.0 < highest <= points / 2:
         raise InputError(f"highest = {highest}: expected 0 < highest <= points/2 = {points / 2:g}")
-    step = scheme_from_arguments(structure, step, "rollback", 0.0).h
+    step = scheme_from_arguments(structure, step, 0.0).h
     record = (revolutions, points, float(highest))
     tried = (
         [voltage_at_resonance(structure, drive, share) for share in SHARES]

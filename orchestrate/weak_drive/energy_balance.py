@@ -5,88 +5,92 @@ from the work that the box's acceleration did on it, as it was told it, less the
 stored: the momentum P of the masses is known at both ends of a step with its rate and mean, so the
 integral of P times acceleration is.
 
-The defect of a step is the difference between the work that one side gives and the other takes. A
-small defect is necessary, not sufficient: two sides may agree on a wrong motion.
+The defect of a step is the difference between the work that one side gives and the other takes.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from ..structures.structure import Structure
-from .exchange import Cubic, OscillatorOutputs, ShakerOutputs
-from .polynomials import end_value, integrate_product, matched_quartic, normalized_coefficients
+from .polynomials import (
+    Cubic,
+    end_value,
+    integrate_product,
+    integrate_work,
+    matched_cubic,
+    matched_quartic,
+    normalized_coefficients,
+)
+from .record import Floats, OscillatorOutputs, Record
+
+ENDS = 5  # accounts that count from the start: the first of `Energies`
 
 
 class Energies(NamedTuple):
     """Store the energies since the start, J: the motor's work and where it has gone."""
 
-    motor: float  # mechanical work of the motor
+    motor: Any  # mechanical work of the motor
     # lost in the damper of the box, in impacts, in the dampers of the masses
-    box_damper: float
-    impact_loss: float
-    stored: float  # kinetic energy, and energy of the springs
-    dampers: float
-    missing: float  # motor less all others: what the coupling has lost (negative: fed in)
+    box_damper: Any
+    impact_loss: Any
+    stored: Any  # kinetic energy, and energy of the springs
+    dampers: Any
+    missing: Any  # motor less all others: what the coupling has lost (negative: fed in)
     # sum of the steps' defects (work that the box takes less work that the masses give), and sum of
     # their sizes
-    defect: float
-    defect_sizes: float
+    defect: Any
+    defect_sizes: Any
 
 
 class EnergyBalance:
-    """Sum up the energies of a coupled run, step by step."""
+    """Sum up the energies of a coupled run, record after record."""
 
-    def __init__(
-        self, structure: Structure, motion: OscillatorOutputs, shaking: ShakerOutputs
-    ) -> None:
-        """Record the energies at the start, from both FMUs' outputs."""
-        self._masses = structure.m1, structure.m2
-        self._stiffnesses = structure.k1, structure.k2
-        self._rest, self._preload = structure.at_rest, structure.preload
-        self.lost = self.defect = self.defect_sizes = 0.0
-        self.start = self._accounts(motion, shaking)
+    def __init__(self, structure: Structure) -> None:
+        """Begin with nothing lost; the energies at the start are those of the first record."""
+        self.structure = structure
+        self.sums = np.zeros(3)  # lost by the structure, defects, and their sizes
+        self.start = np.full(ENDS, np.nan)
 
-    def relative_energy(self, motion: OscillatorOutputs) -> float:
+    def add(self, record: Record) -> Energies:
+        """Return the energies since the start at all rows of a record, and add them up."""
+        steps = np.stack([self.lost(record), defects(record)])
+        steps = np.vstack([steps, np.abs(steps[1])])
+        sums = np.cumsum(np.hstack([self.sums[:, np.newaxis], steps]), axis=1)
+        accounts = self._accounts(record, sums[0])
+        if np.isnan(self.start[0]):
+            self.start = accounts[:, 0].copy()
+        self.sums = sums[:, -1].copy()
+        since = accounts - self.start[:, np.newaxis]
+        missing = since[0] - sum(since[1:])
+        return Energies._make([*since, missing, sums[1], sums[2]])
+
+    def lost(self, record: Record) -> Floats:
+        """Return the energy that the structure loses in each step, in dampers and impacts."""
+        before, after = record.before.motion(), record.after.motion()
+        h, acceleration = record.after["h"], record.after.acceleration()
+        momentum = self._momentum(before, after, acceleration, h)
+        work = h * integrate_product(momentum, normalized_coefficients(acceleration, h))
+        return np.asarray(self.relative_energy(before) - self.relative_energy(after) - work)
+
+    def relative_energy(self, motion: OscillatorOutputs) -> Any:
         """Return the structure's energy by its motion relative to the box, J.
 
         A preload F adds F times the gap to the springs' energy by the displacements from rest; so
         little is lost of a motion that is small beside it.
         """
-        (m1, m2), (k1, k2) = self._masses, self._stiffnesses
-        (rest_1, rest_2), (v1, v2) = self._rest, motion[2:4]
-        x1, x2 = motion.x1 - rest_1, motion.x2 - rest_2
-        own = 0.5 * (m1 * v1 * v1 + m2 * v2 * v2 + k1 * x1 * x1 + k2 * x2 * x2)
-        return own + self._preload * motion.x_rel
-
-    def absolute_energy(self, motion: OscillatorOutputs, velocity: float) -> float:
-        """Return the structure's energy by its absolute motion, for a box velocity, J."""
-        m1, m2 = self._masses
-        momentum = m1 * motion.v1 + m2 * motion.v2
-        return self.relative_energy(motion) + velocity * (momentum + 0.5 * (m1 + m2) * velocity)
-
-    def add(
-        self,
-        before: OscillatorOutputs,
-        after: OscillatorOutputs,
-        acceleration: Cubic,
-        defect: float,
-        h: float,
-    ) -> None:
-        """Add the energy lost in the structure over one step, and the step's defect."""
-        work = h * integrate_product(
-            self._momentum(before, after, acceleration, h), normalized_coefficients(acceleration, h)
-        )
-        self.lost += self.relative_energy(before) - self.relative_energy(after) - work
-        self.defect += defect
-        self.defect_sizes += abs(defect)
+        s, (rest_1, rest_2) = self.structure, self.structure.at_rest
+        x1, x2, v1, v2 = motion.x1 - rest_1, motion.x2 - rest_2, motion.v1, motion.v2
+        own = 0.5 * (s.m1 * v1 * v1 + s.m2 * v2 * v2 + s.k1 * x1 * x1 + s.k2 * x2 * x2)
+        return own + s.preload * motion.x_rel
 
     def _momentum(
-        self, before: OscillatorOutputs, after: OscillatorOutputs, acceleration: Cubic, h: float
-    ) -> tuple[float, ...]:
+        self, before: OscillatorOutputs, after: OscillatorOutputs, acceleration: Cubic, h: Any
+    ) -> tuple[Any, ...]:
         """Return the masses' relative momentum over a step as a quartic in t/h."""
-        m1, m2 = self._masses
+        m1, m2 = self.structure.m1, self.structure.m2
         mass = m1 + m2
         ends = (m1 * before.v1 + m2 * before.v2, m1 * after.v1 + m2 * after.v2)
         first = -h * (before.box_force + mass * acceleration[0])
@@ -94,28 +98,33 @@ class EnergyBalance:
         mean = (m1 * (after.x1 - before.x1) + m2 * (after.x2 - before.x2)) / h
         return matched_quartic(ends, (first, last), mean)
 
-    def _accounts(self, motion: OscillatorOutputs, shaking: ShakerOutputs) -> tuple[float, ...]:
-        """Return motor work, box damping, impact loss, stored energy, mass damping."""
-        return (
-            shaking.motor_energy,
-            shaking.box_damper_energy,
-            motion.impact_energy,
-            shaking.stored_energy + self.absolute_energy(motion, shaking.box_velocity),
-            self.lost - motion.impact_energy,
-        )
-
-    def energies(self, motion: OscillatorOutputs, shaking: ShakerOutputs) -> Energies:
-        """Return all energies since the start, given both FMUs' present outputs."""
-        now = self._accounts(motion, shaking)
-        motor, *others = (value - start for value, start in zip(now, self.start, strict=True))
-        accounts = (motor, *others, motor - sum(others), self.defect, self.defect_sizes)
-        return Energies._make(accounts)
+    def _accounts(self, record: Record, lost: Floats) -> Floats:
+        """Return motor work, box damping, impact loss, stored energy, mass damping at all rows."""
+        motion, velocity, s = record.motion(), record["box_velocity"], self.structure
+        momentum = s.m1 * motion.v1 + s.m2 * motion.v2 + 0.5 * (s.m1 + s.m2) * velocity
+        stored = record["stored_energy"] + self.relative_energy(motion) + velocity * momentum
+        loss = np.asarray(motion.impact_energy)
+        motor, damper = record["motor_energy"], record["box_damper_energy"]
+        return np.stack([motor, damper, loss, stored, lost - loss])
 
     def get_state(self) -> list[float]:
         """Return the sums as a list of floats, to be restored later."""
-        return [self.lost, self.defect, self.defect_sizes, *self.start]
+        return [*self.sums.tolist(), *self.start.tolist()]
 
-    def set_state(self, numbers: Sequence[float]) -> None:
+    def set_state(self, numbers: list[float]) -> None:
         """Restore the sums that :meth:`get_state` returned."""
-        self.lost, self.defect, self.defect_sizes = numbers[:3]
-        self.start = tuple(numbers[3:])
+        self.sums, self.start = np.array(numbers[:3]), np.array(numbers[3:])
+
+
+def given_work(record: Record) -> Floats:
+    """Return the work that the masses do on the box in each step."""
+    before, after, h = record.before, record.after, record.after["h"]
+    mean, moment = after["box_impulse"] / h, after["box_impulse_moment"] / (h * h)
+    force = matched_cubic(before["box_force"], after["box_force"], mean, moment, h)
+    return np.asarray(integrate_work(force, before["box_velocity"], after.acceleration(), h))
+
+
+def defects(record: Record) -> Floats:
+    """Return the work that the box takes, by the drive's account, less what the masses give."""
+    taken: Floats = np.diff(record["box_force_work"])
+    return taken - given_work(record)

@@ -15,7 +15,7 @@ import numpy as np
 from ..dynamics.bifurcations import GRAZING, KINDS, TOUCHING, BifurcationKind
 from ..dynamics.closed_form import Floats
 from ..structures.structure import Structure
-from .exchange import OscillatorOutputs
+from .record import OscillatorOutputs
 from .shooting import Shooter
 
 IMPACT, FLIGHT = KINDS[GRAZING], KINDS[TOUCHING]

@@ -40,7 +40,7 @@ from .settled import SettledSettings, settled_speed
 NONE, LOST, UNDECIDED = range(3)
 SAVED = (
     *("oscillator_state", "shaker_state", "master_memory"),
-    *("revolution_memory", "control_memory"),
+    *("balance_memory", "revolution_memory", "control_memory"),
 )
 
 
@@ -50,6 +50,7 @@ class Settings(SettledSettings):
 
     shown: float = 4e-3  # fall of the slip in a ramp's record that suggests a jump
     share: float = 0.1  # of that fall, before and after the stretch over which voltages are held
+    apart: int = 12  # widths of the record's mean: falls of the slip that are closer are one
     grid: float = 4e-3  # longest first step of the voltage
     rate: float = 5e-5  # of the voltage from one step to the next, in a time 1/omega
     width: float = 1e-4  # widest bracket of a jump
@@ -64,6 +65,13 @@ class Settings(SettledSettings):
     lag: float = 2.0  # rotor times 1/b by which a speed follows a ramp late, without a jump
     lead: float = 6.0  # how much earlier than the record a course begins, in rotor times 1/b
     max_holds: int = 150  # of a course
+    left: float = 0.1  # of the way between two motions' speeds: with less to go, the first is left
+    slots: int = 12  # jumps of a direction that are stored, by their voltages
+
+    @property
+    def of_a_record(self) -> tuple[float, float, float]:
+        """Return what of the rule concerns a ramp's record."""
+        return self.shown, self.share, self.apart
 
 
 class HeldPoint(NamedTuple):
@@ -120,7 +128,7 @@ class VoltageHolder:
             try:
                 if last:
                     run.set_state(self.checkpoints[last])
-                run.revolve(range(last, step))
+                run.speeds(range(last, step))
                 self.checkpoints[step] = run.get_state()
             finally:
                 run.master.close()
@@ -159,14 +167,14 @@ class VoltageHolder:
         try:
             if state is not None:
                 run.set_state(state)
-            run.revolve(range(moves))
+            run.speeds(range(moves))
             for begin in range(moves, count, piece):
-                rows = run.revolve(range(begin, min(begin + piece, count)))
-                speeds = np.append(speeds, np.abs(rows["speed"]) / self.omega)
+                found = run.speeds(range(begin, min(begin + piece, count)))
+                speeds = np.append(speeds, np.abs(found) / self.omega)
                 speed, error = settled_speed(speeds, settings)
                 if math.isfinite(speed):
                     break
-                if ends and has_left(speeds[-settings.block :], *ends):
+                if ends and has_left(speeds[-settings.block :], *ends, settings.left):
                     speed = ends[1]
                     break
             return HeldPoint(voltage, speed, error, run.get_state())
@@ -181,7 +189,7 @@ class HysteresisLoop(VoltageHolder):
         """Return all jumps of a run in one direction, by their voltages."""
         jumps = []
         for leg in record.legs():
-            suspects = record.suspects(leg, self.settings.shown, self.settings.share)
+            suspects = record.suspects(leg, *self.settings.of_a_record)
             if not self.longest:
                 ends = ((record.eta0(at.before), record.eta0(at.after), at) for at in suspects)
                 jumps += [Jump(UNDECIDED, *end) for end in ends]
@@ -364,9 +372,9 @@ class HysteresisLoop(VoltageHolder):
         return distance <= self.settings.same
 
 
-def has_left(speeds: np.ndarray, first: float, second: float) -> bool:
-    """Return whether the last speeds have come nine tenths of the way between two speeds."""
-    return speeds.size > 0 and abs(float(speeds.mean()) - second) < 0.1 * abs(first - second)
+def has_left(speeds: np.ndarray, first: float, second: float, rest: float) -> bool:
+    """Return whether the last speeds have come all but a part of the way between two speeds."""
+    return speeds.size > 0 and abs(float(speeds.mean()) - second) < rest * abs(first - second)
 
 
 def merge_overlapping(jumps: list[Jump], sign: float) -> list[Jump]:

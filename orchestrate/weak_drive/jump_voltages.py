@@ -16,11 +16,13 @@ import numpy as np
 from ..access.exported import finder
 from ..access.models import OSCILLATOR, SHAKER
 from ..errors import InputError
+from ..response.labels import variable
 from ..running.job import Inputs, Job, Table
 from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
-from .couple import SLOTS, couple_job, require_motor, schedule_from_arguments, scheme_from_arguments
+from .couple import couple_job, require_motor, schedule_from_arguments, scheme_from_arguments
+from .hysteresis import Settings
 from .master import Scheme
 from .schedule import Ramp, Schedule
 
@@ -34,6 +36,7 @@ KINDS = ("bonded", "delaminated")
 DIRECTIONS = ("up", "down")
 USUAL_RATES = (1e-4, 5e-5, 2.5e-5)  # of eta0 in a time 1/omega
 COLUMNS = ("jumps", "jump_low", "jump_high")
+SLOTS = Settings().slots
 EARLY = 1e-3  # of the voltage at rate 0: a ramp shows its jump no earlier
 SHOWN = ("ramp_voltage", "jump_speed_before")
 
@@ -83,23 +86,17 @@ class JumpVoltagesJob(Job):
         late = "voltage at which the speed jumps on the ramp"
         before = "mean speed where it leaves its branch"
         error = "half of the bracket of that voltage, by held voltages"
+        halves = np.where(np.isfinite(jumps[0]), 0.5 * np.abs(high[0] - low[0]), np.nan)
+        how = "how jump or none was decided"
         variables = {
-            "voltage": (every, voltages, {"units": "V", "long_name": late}),
-            "speed_before": (every, speeds, {"units": "rad/s", "long_name": before}),
-            "jumps": (each, jumps[0], {"units": "V", "long_name": "the same at rate 0"}),
-            "standard_error": (
-                each,
-                np.where(np.isfinite(jumps[0]), 0.5 * np.abs(high[0] - low[0]), np.nan),
-                {"units": "V", "long_name": error},
-            ),
-            "decided": (
-                each,
-                table["decided"][: len(KINDS)],
-                {"long_name": "how jump or none was decided"},
-            ),
+            "voltage": variable(every, voltages, "V", late),
+            "speed_before": variable(every, speeds, "rad/s", before),
+            "jumps": variable(each, jumps[0], "V", "the same at rate 0"),
+            "standard_error": variable(each, halves, "V", error),
+            "decided": (each, table["decided"][: len(KINDS)], {"long_name": how}),
         }
         coordinates = {
-            "rate": ("rate", rates, {"units": "V/s", "long_name": "change of the voltage"}),
+            "rate": variable("rate", rates, "V/s", "change of the voltage"),
             "structure": ("structure", list(KINDS), {"long_name": "structure"}),
             "jump": ("jump", list(DIRECTIONS), {"long_name": "direction in which the speed jumps"}),
         }

@@ -1,138 +1,103 @@
-"""Step the two coupled FMUs (co-simulation master) and choose the communication step.
+"""Step the oscillator and its drive together: the oscillator alone goes back.
 
 The structure's ``box_force`` depends on its states only, the box's acceleration on the force: there
 is no algebraic loop, but what each side assumes of the other over a step decides everything.
-``ALGORITHMS`` has the schemes by name.
 
-The cubic that is exchanged has the ends, the mean and the first moment that ``box_impulse`` and
-``box_impulse_moment`` give: exact on average through impacts too, where the force jumps. With
-``matched=False`` it is a parabola through communication points instead, as schemes that only know
-values have.
+- The oscillator does the step under an extrapolated acceleration: the cubic of the last step goes
+  on from the present value.
+- The drive does it under the force that came of it: the cubic with its ends, mean and first moment,
+  which are exact through impacts. A drive that takes the force alone is given its mean.
+- The oscillator goes back and does it again, under the acceleration between both ends: the cubic
+  with the changes of the box's velocity and position, or what is known of it.
+- Where nothing is known to extrapolate, at the start, both go back `first_passes` times before, if
+  the drive can.
+- With a `tolerance` a step is halved, for both, where the energy defect is a larger part of the
+  work exchanged in it; one with less than `easy` of that is followed by one twice as long.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..access.channel import Channel
 from ..access.instance import Instance
-from ..constants import TURN
 from ..errors import InputError
-from ..structures.structure import Structure
-from .energy_balance import EnergyBalance
-from .exchange import (
+from .connection import FORCE, MOTOR, Connection
+from .polynomials import (
     Cubic,
-    OscillatorInputs,
-    OscillatorOutputs,
-    ShakerInputs,
-    ShakerOutputs,
-    Step,
+    derivatives,
+    end_derivatives,
+    integrate_work,
+    matched_cubic,
+    matched_parabola,
 )
-from .extremes import Revolution
-from .polynomials import end_slope, integrate_work, matched_cubic, parabola_through_points
+from .record import BOX, LEADING, PLACE, OscillatorOutputs, Record
 
-MASTER_STATE = (
-    *("time", "voltage", "slope", "force_before", "h_before"),
-    *("acceleration_before", "jerk_before", "level"),
+CUBIC = ("box_acceleration", "box_jerk", "box_snap", "box_crackle")
+TIME, H, LEVEL, THEN, IMPACTS = (
+    PLACE[name] for name in ("time", "h", "level", "acceleration_then", "impacts")
 )
-STATE_INDEX = {  # of what is remembered
-    name: place
-    for place, name in enumerate(
-        (*MASTER_STATE, *OscillatorOutputs._fields, *ShakerOutputs._fields)
-    )
-}
-
-
-def split_state(
-    numbers: Any,
-) -> tuple[Any, OscillatorOutputs, ShakerOutputs, Any]:
-    """Split a saved state into master, structure, motor and energy balance."""
-    motion, shaking = (
-        STATE_INDEX[OscillatorOutputs._fields[0]],
-        STATE_INDEX[ShakerOutputs._fields[0]],
-    )
-    rest = len(STATE_INDEX)
-    ends = OscillatorOutputs(*numbers[motion:shaking]), ShakerOutputs(*numbers[shaking:rest])
-    return numbers[:motion], *ends, numbers[rest:]
-
-
-class Algorithm(NamedTuple):
-    """Describe a coupling algorithm: passes per step and order of extrapolation."""
-
-    # how often a step is done, one side after the other, the structure first; 0: both sides at
-    # once. From 2 on the states are saved and restored
-    passes: int
-    # of the acceleration that the structure is told in the first pass: 1 held constant, 2 a line, 3
-    # a parabola, 4 a cubic
-    terms: int
-    text: str
-
-
-ALGORITHMS = {
-    "jacobi": Algorithm(0, 1, "both at once, each with the other's last value: negative damping"),
-    "jacobi-derivative": Algorithm(0, 2, "both at once, with the last value and derivative"),
-    "gauss-seidel": Algorithm(
-        1, 3, "structure first with an extrapolation, shaker with what came of it"
-    ),
-    "rollback": Algorithm(
-        2, 4, "as gauss-seidel, then back and once more with the acceleration found"
-    ),
-    "iterated": Algorithm(40, 4, "the same until nothing changes: the reference"),
-}
+MOTION, DRIVE = PLACE["x1"], PLACE[BOX[0]]
+VELOCITY, ACCELERATION, END = DRIVE + 1, DRIVE + 2, DRIVE + 3
+FORCE_PLACE = OscillatorOutputs._fields.index("box_force")
+PAST = 3  # communication points that are remembered where no acceleration is connected
 
 
 @dataclass(frozen=True)
 class Scheme:
-    """Set the coupling algorithm, the communication step and its error control."""
+    """Set the communication step and its error control."""
 
-    algorithm: str = "rollback"  # of `ALGORITHMS`
     # communication interval, s: the longest step, and all of them without `tolerance`
     h: float = 0.1
-    # exchange forces and accelerations that are exact on average; else through points only
-    matched: bool = True
-    # step control: a step is halved whose defect is larger than this part of the work exchanged in
-    # it, and the next is twice as long where it may be, up to `h`; 0: all are `h`. Needs an
-    # algorithm that goes back
-    tolerance: float = 0.0
+    tolerance: float = 0.0  # of the step control; 0: all steps are `h`
     halvings: int = 6  # how often `h` is halved at most
-    # part of the tolerance: after a step with a smaller defect the length is doubled
-    easy: float = 1.0 / 64.0
-    # change of the force between two iterations, over its size, that counts as none
-    converged: float = 1e-14
-    # relative lengths of the parts of the first step, for algorithms that cannot go back: nothing
-    # is known yet to extrapolate from
-    beginning: tuple[int, ...] = (1, 1, 2, 4, 8)
+    easy: float = 1.0 / 64.0  # part of the tolerance
+    first_passes: int = 3  # of the first step, where the drive can go back
 
     def __post_init__(self) -> None:
-        """Check algorithm, step length and tolerance."""
-        if self.algorithm not in ALGORITHMS:
-            raise InputError(f"algorithm {self.algorithm}: expected one of {', '.join(ALGORITHMS)}")
+        """Check step length and tolerance."""
         if not (math.isfinite(self.h) and self.h > 0.0):
             raise InputError(f"step {self.h}: expected a number > 0, in s")
         if not (math.isfinite(self.tolerance) and self.tolerance >= 0.0):
             raise InputError(
                 f"tolerance {self.tolerance}: expected a number >= 0; 0 leaves steps as they are"
             )
-        if self.tolerance and not self.goes_back:
-            raise InputError(
-                f"tolerance {self.tolerance} with algorithm {self.algorithm}, which cannot go "
-                "back: expected 0, or algorithm rollback or iterated"
-            )
 
-    @property
-    def passes(self) -> int:
-        """Return how often each communication step is computed; 0 for Jacobi."""
-        return ALGORITHMS[self.algorithm].passes
+    def most_rows(self, intervals: int) -> int:
+        """Return how many steps a number of intervals may take."""
+        return intervals << self.halvings if self.tolerance else intervals
 
-    @property
-    def goes_back(self) -> bool:
-        """Return whether the algorithm rolls the FMUs back to repeat a step."""
-        return self.passes > 1
+
+class DriveSide:
+    """The drive's FMU: what is set and read, by our names and in SI."""
+
+    def __init__(self, instance: Instance, connection: Connection) -> None:
+        links, self.instance = connection.links, instance
+        self.forces = [(i, links[name]) for i, name in enumerate(FORCE) if name in links]
+        self.motions = [(i, links[name]) for i, name in enumerate(BOX) if name in links]
+        self.is_whole = len(self.forces) == len(FORCE)
+        self.channel = Channel(
+            instance,
+            (*(link.theirs for _, link in self.forces), *connection.inputs),
+            (*(link.theirs for _, link in self.motions), *connection.outputs),
+        )
+
+    def put(self, force: Sequence[float], inputs: Sequence[float]) -> None:
+        """Set the force, with the derivatives that are connected, and the other inputs."""
+        self.channel.put(*(force[i] / link.scale for i, link in self.forces), *inputs)
+
+    def get(self) -> list[float]:
+        """Return the box's motion, NaN for what is not connected, and the other outputs."""
+        values = self.channel.get()
+        box = [math.nan] * len(BOX)
+        for (i, link), value in zip(self.motions, values, strict=False):
+            box[i] = link.scale * value
+        return [*box, *values[len(self.motions) :]]
 
 
 class Master:
@@ -144,245 +109,204 @@ class Master:
     def __init__(
         self,
         oscillator: Instance,
-        shaker: Instance,
-        structure: Structure,
+        drive: Instance,
         scheme: Scheme,
+        connection: Connection = MOTOR,
         start_time: float = 0.0,
     ) -> None:
         """Connect both instances and read their initial outputs."""
-        self.oscillator = Channel(oscillator, OscillatorInputs._fields, OscillatorOutputs._fields)
-        self.shaker = Channel(shaker, ShakerInputs._fields, ShakerOutputs._fields)
-        self.scheme, self._algorithm = scheme, ALGORITHMS[scheme.algorithm]
-        self.structure, self.time, self.voltage = structure, start_time, math.nan
-        self.level = 0
-        self.motion, self.shaking = self._read_structure(), self._read_motor()
-        self.revolution: Revolution | None = None
-        self.slope = 0.0  # of the force, at the present communication point
-        self.force_before = self.h_before = 0.0
-        self.acceleration_before = self.jerk_before = 0.0
-        self.balance = EnergyBalance(structure, self.motion, self.shaking)
-        self._do = self._gauss_seidel_step if scheme.passes else self._jacobi_step
+        self.oscillator = Channel(oscillator, CUBIC, OscillatorOutputs._fields)
+        self.drive, self.scheme = DriveSide(drive, connection), scheme
+        self.goes_back = drive.description.has_states
+        self.names = (*LEADING, *connection.outputs, *connection.inputs)
+        self.inputs = slice(END + len(connection.outputs), len(self.names))
+        unknown = [math.nan] * len(connection.inputs)
+        step = [start_time, *[0.0] * (IMPACTS - TIME)]
+        self.row = [*step, *self.oscillator.get(), *self.drive.get(), *unknown]
+        self.points: list[float] = []  # times and values, where no acceleration is connected
+        self._remember()
 
-    def step(self, voltage: float, h: float | None = None) -> None:
-        """Run one communication interval at a constant voltage, V."""
-        h = h or self.scheme.h
-        begin = self.time
-        if self.scheme.tolerance:
-            self._substeps_by_defect(voltage, h)
-        else:
-            known = self.h_before or self.scheme.goes_back
-            beginning = (1,) if known else self.scheme.beginning
-            for part in beginning:
-                self._try_step(voltage, h * part / sum(beginning))
-        self.time = begin + h
+    @property
+    def time(self) -> float:
+        """Return the time reached, s."""
+        return self.row[TIME]
 
-    def run(
-        self,
-        voltages: Sequence[float],
-        first: int = 0,
-        h: float | None = None,
-        kept: np.ndarray | None = None,
-    ) -> int:
-        """Run communication intervals until a revolution ends; return the next index."""
-        for i in range(first, len(voltages)):
-            self.step(voltages[i], h)
-            if kept is not None:
-                kept[i] = self.get_state()
-            if self.revolution and self.revolution.is_complete(self.shaking.angle / TURN):
-                return i + 1
-        return len(voltages)
+    @property
+    def motion(self) -> OscillatorOutputs:
+        """Return the oscillator's outputs at the present time."""
+        return OscillatorOutputs._make(self.row[MOTION:DRIVE])
 
-    def _substeps_by_defect(self, voltage: float, h: float) -> None:
-        """Choose communication substeps so that each energy defect is small.
+    def __getitem__(self, name: str) -> float:
+        """Return a value at the present time, by the name of its column in a record."""
+        return self.row[self.names.index(name)]
 
-        A step is halved where its defect is too large. After one with a defect that twice the
-        length would still do with, the next is twice as long, where that ends on its own grid: so
-        the interval's end is met without a rest, and all lengths are exact.
+    def step(self, *inputs: float, h: float | None = None) -> Record:
+        """Run one communication interval with constant inputs of the drive."""
+        return self.run([inputs], h)
+
+    def run(self, inputs: ArrayLike, h: float | None = None) -> Record:
+        """Run an interval for each row of the drive's inputs, held constant; return the record."""
+        values = np.asarray(inputs, dtype=float)
+        rows = values.reshape(len(values), len(self.names) - self.inputs.start)
+        return self.run_controlled(rows.tolist(), len(values), h)
+
+    def run_controlled(
+        self, inputs: Iterable[Sequence[float]], count: int, h: float | None = None
+    ) -> Record:
+        """Run a number of intervals; the inputs of each are asked for when it begins."""
+        rows, ends = [list(self.row)], []
+        for values in inputs:
+            rows += self._interval(list(values), h or self.scheme.h)
+            ends.append(len(rows) - 1)
+        return Record.of_rows(self.names, rows, ends)
+
+    def _interval(self, inputs: list[float], h: float) -> list[list[float]]:
+        """Run one communication interval; return the rows of its steps."""
+        end = self.time + h
+        if inputs != self.row[self.inputs]:  # the acceleration belongs to the inputs as set now
+            self.row[self.inputs] = inputs
+            force = self.row[MOTION + FORCE_PLACE]
+            self.row[DRIVE : self.inputs.start] = self._outputs_at(force, inputs)
+        rows = self._steps(h, self.scheme.halvings if self.scheme.tolerance else 0)
+        rows[-1][TIME] = self.row[TIME] = end
+        return rows
+
+    def _steps(self, h: float, halvings: int) -> list[list[float]]:
+        """Run an interval in steps of its length halved, so that each defect is small.
+
+        Steps are doubled where that ends on their own grid: so the interval's end is met without a
+        rest, and all lengths are exact.
         """
-        max_parts = 1 << self.scheme.halvings
-        done = 0
-        while done < max_parts:
-            size, last_impact = max_parts >> self.level, self.motion.impact_time
-            defect = self._try_step(
-                voltage, h / (1 << self.level), self.level < self.scheme.halvings
-            )
-            if defect > self.scheme.tolerance and self.level < self.scheme.halvings:
-                self.level += 1
-                continue
-            done += size
-            even = done % (2 * size) == 0
-            if defect < self.scheme.tolerance * self.scheme.easy and even and self.level:
-                self.level -= 1
-            if self.motion.impact_time != last_impact:
-                self._restart_extrapolation()
+        level, rows, most, done = int(self.row[LEVEL]), [], 1 << halvings, 0
+        while done < most:
+            size = most >> level
+            row, defect = self._attempt(h / (1 << level), level < halvings)
+            if row:
+                rows.append(row)
+                done += size
+                is_easy = defect < self.scheme.tolerance * self.scheme.easy
+                level -= is_easy and done % (2 * size) == 0 and level > 0
+            else:
+                level += 1
+            self.row[LEVEL] = float(level)
+        return rows
 
-    def _restart_extrapolation(self) -> None:
-        """Restart the extrapolation after an impact, where the force may jump."""
-        self.slope = self.h_before = 0.0
-        self.shaking = self._outputs_with_force(self.motion)
-
-    def _try_step(self, voltage: float, h: float, may_refuse: bool = False) -> float:
-        """Try one communication step; return its relative energy defect."""
-        if voltage != self.voltage:  # the acceleration belongs to the inputs as set now
-            self.voltage = voltage
-            self.shaking = self._outputs_with_force(self.motion)
-        done = self._do(h)
-        force = self.fit_force(done.motion, h)
-        taken = done.shaking.box_force_work - self.shaking.box_force_work
-        defect = taken - integrate_work(force, self.shaking.box_velocity, done.acceleration, h)
-        size = self._relative_defect(done, taken, defect)
-        if may_refuse and size > self.scheme.tolerance:
-            self.oscillator.restore()
-            self.shaker.restore()
-            return size
-        self.slope = end_slope(force, h)
-        self.balance.add(self.motion, done.motion, done.acceleration, defect, h)
-        self._accept_step(done, h)
-        return size
-
-    def _relative_defect(self, done: Step, taken: float, defect: float) -> float:
-        """Return a step's energy defect relative to the work exchanged in it."""
-        work = done.shaking.motor_energy - self.shaking.motor_energy
-        exchanged = abs(taken) + abs(work)
-        return abs(defect) / exchanged if exchanged else 0.0
-
-    def _accept_step(self, done: Step, h: float) -> None:
-        """Accept a finished step: move time, outputs and extrapolation to its end."""
-        if self.revolution:
-            ends = self.motion, self.shaking
-            self.revolution.add(self.structure, ends, done, self.time, h)
-        # at the start the force's slope was not known, nor the jerk
-        self.jerk_before = self.shaking.box_jerk if self.h_before else done.acceleration[1]
-        self.acceleration_before = self.shaking.box_acceleration
-        self.force_before, self.h_before = self.motion.box_force, h
-        self.time += h
-        self.motion, self.shaking = done.motion, self._outputs_with_force(done.motion)
-
-    def _read_structure(self) -> OscillatorOutputs:
-        """Read the outputs of the structure FMU."""
-        return tuple.__new__(OscillatorOutputs, self.oscillator.get())  # as _make, in half its time
-
-    def _read_motor(self) -> ShakerOutputs:
-        """Read the outputs of the motor FMU."""
-        return tuple.__new__(ShakerOutputs, self.shaker.get())
-
-    def _outputs_with_force(self, motion: OscillatorOutputs) -> ShakerOutputs:
-        """Set force and voltage of the present point; return the motor's outputs."""
-        self.shaker.put(motion.box_force, self.slope, 0.0, 0.0, self.voltage)
-        return self._read_motor()
-
-    # -- what each side assumes of the other --
-
-    def fit_force(self, motion: OscillatorOutputs, h: float) -> Cubic:
-        """Fit the force over a step by a cubic with exact mean and first moment."""
-        mean, moment = motion.box_impulse / h, motion.box_impulse_moment / (h * h)
-        return matched_cubic(self.motion.box_force, motion.box_force, mean, moment, h)
-
-    def _force_for_shaker(self, motion: OscillatorOutputs, h: float) -> Cubic:
-        """Return the force over a step as the cubic that the motor FMU gets."""
-        if self.scheme.matched:
-            return self.fit_force(motion, h)
-        return parabola_through_points(
-            self.force_before, self.motion.box_force, motion.box_force, self.h_before, h
-        )
-
-    def _acceleration_for_structure(self, after: ShakerOutputs, h: float) -> Cubic:
-        """Fit the box acceleration over a step for the structure FMU."""
-        now = self.shaking
-        first, last = now.box_acceleration, after.box_acceleration
-        if not self.scheme.matched:
-            return parabola_through_points(self.acceleration_before, first, last, self.h_before, h)
-        mean = (after.box_velocity - now.box_velocity) / h
-        moment = mean - ((after.box_position - now.box_position) / h - now.box_velocity) / h
-        return matched_cubic(first, last, mean, moment, h)
-
-    def _extrapolated_acceleration(self) -> Cubic:
-        """Extrapolate the box acceleration over the coming step."""
-        value, jerk, h = self.shaking.box_acceleration, self.shaking.box_jerk, self.h_before
-        terms = self._algorithm.terms
-        if terms == 1:
-            return value, 0.0, 0.0, 0.0
-        if terms == 2 or not h:
-            return value, jerk, 0.0, 0.0
-        bend = (self.acceleration_before - value + jerk * h) / (h * h)
-        if terms == 3:
-            return value, jerk, 2.0 * bend, 0.0
-        twist = ((self.jerk_before - jerk) / h + 2.0 * bend) / h
-        return value, jerk, 2.0 * (bend + twist * h), 6.0 * twist
-
-    def _extrapolated_force(self) -> Cubic:
-        """Extrapolate the force over the coming step, for the Jacobi algorithms."""
-        force, h = self.motion.box_force, self.h_before
-        line = self._algorithm.terms > 1 and h
-        return force, (force - self.force_before) / h if line else 0.0, 0.0, 0.0
-
-    # -- the schemes --
-
-    def _jacobi_step(self, h: float) -> Step:
-        """Step both FMUs at once, each with extrapolated inputs (Jacobi)."""
-        acceleration = self._extrapolated_acceleration()
-        self.oscillator.put(*acceleration)
-        self.oscillator.step(self.time, h)
-        self.shaker.put(*self._extrapolated_force(), self.voltage)
-        self.shaker.step(self.time, h)
-        return Step(acceleration, self._read_structure(), self._read_motor())
-
-    def _gauss_seidel_step(self, h: float) -> Step:
-        """Step the structure, then the motor; roll back and repeat if asked."""
-        passes = self._algorithm.passes
-        if self.scheme.goes_back:
-            self.oscillator.save()
-            self.shaker.save()
-            if not self.h_before:
-                passes = ALGORITHMS["iterated"].passes
-        acceleration, last = self._extrapolated_acceleration(), None
+    def _attempt(self, h: float, may_refuse: bool) -> tuple[list[float] | None, float]:
+        """Try one step; return its row, None where it is refused, and its relative defect."""
+        now, inputs, drive = self.row, self.row[self.inputs], self.drive
+        passes = self.scheme.first_passes if self.goes_back and now[H] == 0.0 else 1
+        self.oscillator.save()
+        if may_refuse or passes > 1:
+            drive.channel.save()
+        acceleration = self._run_on()
         for i in range(passes):
             if i:
                 self.oscillator.restore()
-                self.shaker.restore()
-            motion, force = self._step_both(acceleration, h)
-            if i + 1 == passes or (last and self._converged(motion, last)):
-                break
-            last = motion
-            self.shaker.put(motion.box_force, end_slope(force, h), 0.0, 0.0, self.voltage)
-            acceleration = self._acceleration_for_structure(self._read_motor(), h)
-        return Step(acceleration, motion, self._read_motor())
+                drive.channel.restore()
+            motion = self._oscillate(acceleration, h)
+            drive.put(self._force_over(motion, h), inputs)
+            drive.channel.step(now[TIME], h)
+            acceleration = self._acceleration_over(self._outputs_at(motion[FORCE_PLACE], inputs), h)
+        self.oscillator.restore()
+        motion = self._oscillate(acceleration, h)
+        outputs = self._outputs_at(motion[FORCE_PLACE], inputs)
+        defect = 0.0
+        if self.scheme.tolerance:
+            defect = self._defect(self._force_over(motion, h), acceleration, outputs, h)
+        if may_refuse and defect > self.scheme.tolerance:
+            self.oscillator.restore()
+            drive.channel.restore()
+            return None, defect
+        count = float(self.oscillator.instance.get("impact_count")[0])
+        step = (now[TIME] + h, h, now[LEVEL], *acceleration, count)
+        self.row = [*step, *motion, *outputs, *inputs]
+        self._remember()
+        return list(self.row), defect
 
-    def _step_both(self, acceleration: Cubic, h: float) -> tuple[OscillatorOutputs, Cubic]:
-        """Step the structure and then the motor once; return motion and force."""
+    def _oscillate(self, acceleration: Cubic, h: float) -> list[float]:
+        """Step the oscillator under an acceleration of the box; return its outputs."""
         self.oscillator.put(*acceleration)
         self.oscillator.step(self.time, h)
-        motion = self._read_structure()
-        force = self._force_for_shaker(motion, h)
-        self.shaker.put(*force, self.voltage)
-        self.shaker.step(self.time, h)
-        return motion, force
+        return self.oscillator.get()
 
-    def _converged(self, motion: OscillatorOutputs, last: OscillatorOutputs) -> bool:
-        """Return whether two iterations of a step agree up to rounding."""
-        now, then = (
-            (state.box_force, state.box_impulse, state.box_impulse_moment)
-            for state in (motion, last)
+    def _outputs_at(self, force: float, inputs: Sequence[float]) -> list[float]:
+        """Return the drive's outputs under the force at a communication point."""
+        self.drive.put((force, 0.0, 0.0, 0.0), inputs)
+        return self.drive.get()
+
+    def _force_over(self, motion: Sequence[float], h: float) -> Cubic:
+        """Return the force over a step, exact in its mean and first moment if these are taken."""
+        _, _, _, _, force, impulse, moment, *_ = motion
+        first = self.row[MOTION + FORCE_PLACE]
+        if not self.drive.is_whole:
+            return impulse / h, 0.0, 0.0, 0.0
+        return matched_cubic(first, force, impulse / h, moment / (h * h), h)
+
+    def _acceleration_over(self, after: Sequence[float], h: float) -> Cubic:
+        """Return the box acceleration over a step, from what is known of the box at both ends."""
+        position, velocity, first = self.row[DRIVE:END]
+        if math.isnan(first):
+            return self._slopes_of_points(after, h)
+        knows_velocity = not math.isnan(velocity)
+        mean = (after[1] - velocity) / h if knows_velocity else 0.5 * (first + after[2])
+        if math.isnan(position) or not knows_velocity:
+            return matched_parabola(first, after[2], mean, h)
+        moment = mean - ((after[0] - position) / h - velocity) / h
+        return matched_cubic(first, after[2], mean, moment, h)
+
+    def _slopes_of_points(self, after: Sequence[float], h: float) -> Cubic:
+        """Return the acceleration over a step from velocities or positions alone, as a line.
+
+        It is the derivative of the polynomial through the last points and the end.
+        """
+        from_position = math.isnan(after[1])
+        times = [*self.points[::2][-2 - from_position :], self.row[TIME] + h]
+        values = [*self.points[1::2][-2 - from_position :], after[0 if from_position else 1]]
+        return (
+            *derivatives([t - self.row[TIME] for t in times], values, 1 + from_position),
+            0.0,
+            0.0,
         )
-        limit = self.scheme.converged
-        return all(abs(a - b) <= limit * (abs(a) + abs(b)) for a, b in zip(now, then, strict=True))
+
+    def _remember(self) -> None:
+        """Keep the last points of velocity or position where no acceleration is connected."""
+        position, velocity, acceleration = self.row[DRIVE:END]
+        if math.isnan(acceleration):
+            value = position if math.isnan(velocity) else velocity
+            self.points = [*self.points, self.row[TIME], value][-2 * PAST :]
+
+    def _run_on(self) -> Cubic:
+        """Extrapolate the box acceleration over the coming step: its last cubic goes on."""
+        h, value = self.row[H], self.row[ACCELERATION]
+        slopes: Cubic = (0.0, 0.0, 0.0, 0.0)
+        if h != 0.0:
+            slopes = end_derivatives(tuple(self.row[THEN:IMPACTS]), h)
+        return slopes if math.isnan(value) else (value, *slopes[1:])
+
+    def _defect(
+        self, force: Cubic, acceleration: Cubic, outputs: Sequence[float], h: float
+    ) -> float:
+        """Return the energy that a step loses or makes, over the work exchanged in it."""
+        work, energy = END, END + 1  # by the drive's own account
+        taken = outputs[work - DRIVE] - self.row[work]
+        given = outputs[energy - DRIVE] - self.row[energy]
+        lost = taken - integrate_work(force, self.row[VELOCITY], acceleration, h)
+        exchanged = abs(taken) + abs(given)
+        return abs(lost) / exchanged if exchanged else 0.0
 
     # -- to go on elsewhere --
 
     def get_state(self) -> list[float]:
         """Return the master's own state as a list of floats, to be restored later."""
-        own_state = [float(getattr(self, name)) for name in MASTER_STATE]
-        return [*own_state, *self.motion, *self.shaking, *self.balance.get_state()]
+        missing = [math.nan] * (2 * PAST - len(self.points))
+        return [*self.row, *self.points, *missing]
 
     def set_state(self, numbers: Sequence[float]) -> None:
         """Restore the state that :meth:`get_state` returned."""
-        own_state, self.motion, self.shaking, balance = split_state(numbers)
-        for name, value in zip(MASTER_STATE, own_state, strict=True):
-            setattr(self, name, value)
-        self.level = int(self.level)
-        self.balance.set_state(balance)
+        count = len(self.names)
+        self.row, self.points = list(numbers[:count]), [x for x in numbers[count:] if x == x]
 
     def close(self) -> None:
-        """Free the FMU states saved for rollback."""
+        """Free the FMU states saved to go back."""
         self.oscillator.close()
-        self.shaker.close()
+        self.drive.channel.close()

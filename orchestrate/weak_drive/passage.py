@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from copy import copy
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -21,7 +20,7 @@ from ..checks import checked_integer
 from ..constants import TURN
 from ..errors import InputError
 from ..response.labels import variable
-from ..running.job import Chunk, Inputs, Job, Table
+from ..running.job import Inputs, Job, Table
 from ..running.runner import answer
 from ..structures.drive import Drive
 from ..structures.structure import Structure
@@ -32,9 +31,7 @@ from .couple import (
     require_motor,
     schedule_from_arguments,
     scheme_from_arguments,
-    with_final_chunk,
 )
-from .master import STATE_INDEX, Master, split_state
 from .revolutions import COLUMNS
 from .run import Run
 from .schedule import Schedule, check
@@ -76,27 +73,24 @@ class PassageJob(Job):
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
     chunk_size: ClassVar[int] = 10_000
     sequential: ClassVar[bool] = True
-    has_final_chunk: ClassVar[bool] = True
+    gathers: ClassVar[bool] = True
     item: ClassVar[str] = "step"
 
     def items(self, inputs: Inputs) -> Sequence[int]:
         """Return the item indices: all communication steps, then the hysteresis loop."""
         return self.run.items(inputs)
 
-    def chunks(self) -> list[Chunk]:
-        """Split the items into chunks; the hysteresis loop is its own last chunk."""
-        return with_final_chunk(super().chunks())
-
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
         """Compute one chunk of steps with all samples, or the hysteresis loop."""
 
         def revolve_with_samples(run: Run) -> Table:
-            """Run the steps; return revolutions and the samples after every step."""
-            kept = np.empty((len(items), len(run.master.get_state())))
-            revolutions = run.revolve(items, kept)
-            columns = sample_columns(run.master, kept)
+            """Run the steps; return revolutions and the samples after every interval."""
+            record = run.record(items)
+            revolutions, energies = run.revolutions.add(record)
+            own = energies._asdict()
+            every = ((own[name] if name in own else record[name])[record.ends] for name in SAMPLES)
             names = (KEPT + name for name in SAMPLES)
-            return {**revolutions, **dict(zip(names, columns, strict=True))}
+            return {**revolutions, **dict(zip(names, every, strict=True))}
 
         return self.run.work_on(fmus, items, previous, self.chunk_size, revolve_with_samples)
 
@@ -131,26 +125,6 @@ class PassageJob(Job):
         if math.isfinite(passed):
             return np.array([passed]), "around the passage, there is no jump"
         return np.array([self.run.schedule.duration - self.around]), "the end, there is no jump"
-
-
-def sample_columns(master: Master, kept: np.ndarray) -> tuple[Any, ...]:
-    """Convert saved master states to columns of samples, in the order of ``SAMPLES``."""
-    own_state, motion, shaking, balance = split_state(kept.T)
-    accounts = copy(master.balance)
-    accounts.set_state(balance)
-    energies = accounts.energies(motion, shaking)
-    return (
-        *(
-            own_state[STATE_INDEX["time"]],
-            own_state[STATE_INDEX["voltage"]],
-            shaking.speed,
-            shaking.angle,
-        ),
-        *(motion.x1, motion.x2, motion.v1, motion.v2),
-        *(shaking.box_position, shaking.box_velocity, shaking.box_acceleration),
-        *(energies.motor, energies.box_damper, energies.impact_loss),
-        *(energies.stored, energies.dampers),
-    )
 
 
 def passage(

@@ -1,18 +1,19 @@
 """Fit and integrate the polynomials that the FMUs exchange over a communication step.
 
-A cubic is kept as the FMUs take it: value and three time derivatives at the step's beginning.
+A cubic is kept as the FMUs take it: value and three time derivatives at the step's beginning. All
+of it may be arrays, of many steps.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from typing import Any
 
-from .exchange import Cubic
-
-POWERS = [[i + k + 1.0 for k in range(5)] for i in range(5)]  # of s in the integral of s^i s^k
+Cubic = tuple[Any, ...]  # four: value and first to third time derivative at a step's beginning
 
 
-def matched_cubic(first: float, last: float, mean: float, moment: float, h: float) -> Cubic:
+def matched_cubic(first: Any, last: Any, mean: Any, moment: Any, h: Any) -> Cubic:
     """Return the cubic with given end values, mean and first moment over a step."""
     a1, a2, a3 = last - first, mean - first, moment - 0.5 * first
     b = 3.0 * a1 + 36.0 * a2 - 60.0 * a3
@@ -21,57 +22,65 @@ def matched_cubic(first: float, last: float, mean: float, moment: float, h: floa
     return first, b / h, 2.0 * c / (h * h), 6.0 * d / (h * h * h)
 
 
-def parabola_through_points(
-    before: float, first: float, last: float, h_before: float, h: float
-) -> Cubic:
-    """Return the parabola through three communication points; a line without the first."""
-    rise = (last - first) / h
-    if h_before == 0.0:
-        return first, rise, 0.0, 0.0
-    curve = (rise - (first - before) / h_before) / (h + h_before)
-    return first, rise - curve * h, 2.0 * curve, 0.0
+def matched_parabola(first: float, last: float, mean: float, h: float) -> Cubic:
+    """Return the parabola with given end values and mean over a step."""
+    bend = 3.0 * (first + last) - 6.0 * mean
+    return first, (last - first - bend) / h, 2.0 * bend / (h * h), 0.0
 
 
-def end_value(cubic: Cubic, h: float) -> float:
+def end_value(cubic: Cubic, h: Any) -> Any:
     """Return the value of a cubic at the end of a step."""
     f0, f1, f2, f3 = cubic
     return f0 + h * (f1 + 0.5 * h * (f2 + h * f3 / 3.0))
 
 
-def end_slope(cubic: Cubic, h: float) -> float:
-    """Return the first derivative of a cubic at the end of a step."""
+def end_derivatives(cubic: Cubic, h: Any) -> Cubic:
+    """Return the value and the derivatives of a cubic at the end of a step."""
     _, f1, f2, f3 = cubic
-    return f1 + h * (f2 + 0.5 * h * f3)
+    return end_value(cubic, h), f1 + h * (f2 + 0.5 * h * f3), f2 + h * f3, f3
 
 
-def normalized_coefficients(cubic: Cubic, h: float) -> Cubic:
+def normalized_coefficients(cubic: Cubic, h: Any) -> Cubic:
     """Convert a cubic's time derivatives to coefficients in s = t/h."""
     f0, f1, f2, f3 = cubic
     return f0, f1 * h, f2 * h * h / 2.0, f3 * h * h * h / 6.0
 
 
-def integrate_work(force: Cubic, velocity: float, acceleration: Cubic, h: float) -> float:
+def integrate_work(force: Cubic, velocity: Any, acceleration: Cubic, h: Any) -> Any:
     """Integrate a cubic force times a velocity over a step; return the work, J."""
     a0, a1, a2, a3 = acceleration
     speeds = (velocity, a0 * h, a1 * h * h / 2.0, a2 * h * h * h / 6.0, a3 * h * h * h * h / 24.0)
     return h * integrate_product(normalized_coefficients(force, h), speeds)
 
 
-def integrate_product(f: Sequence[float], g: Sequence[float]) -> float:
+def integrate_product(f: Sequence[Any], g: Sequence[Any]) -> Any:
     """Integrate the product of two polynomials in s from 0 to 1."""
     total = 0.0
-    for a, powers in zip(f, POWERS):  # noqa: B905 the table is as long as needed
-        for b, power in zip(g, powers):  # noqa: B905
-            total += a * b / power
+    for i, a in enumerate(f):
+        for k, b in enumerate(g):
+            total = total + a * b / (i + k + 1.0)
     return total
 
 
-def matched_quartic(
-    ends: tuple[float, float], slopes: tuple[float, float], mean: float
-) -> tuple[float, ...]:
+def matched_quartic(ends: tuple[Any, Any], slopes: tuple[Any, Any], mean: Any) -> tuple[Any, ...]:
     """Return the quartic in s with given end values, end slopes and mean."""
     p0, p1 = ends
     d0, d1 = slopes
     rise = p1 - p0
     q = 30.0 * (mean - 0.5 * (p0 + p1) - (d0 - d1) / 12.0)
     return p0, d0, 3.0 * rise - 2.0 * d0 - d1 + q, d0 + d1 - 2.0 * rise - 2.0 * q, q
+
+
+def derivatives(times: Sequence[float], values: Sequence[float], order: int) -> tuple[float, float]:
+    """Return two derivatives at time 0, from an order on, of the polynomial through points."""
+    table = list(values)  # of divided differences
+    for level in range(1, len(times)):
+        for i in range(len(times) - 1, level - 1, -1):
+            table[i] = (table[i] - table[i - 1]) / (times[i] - times[i - level])
+    polynomial = [0.0] * (len(times) + 3)  # coefficients, by Horner's scheme in Newton's form
+    for i in range(len(times) - 1, -1, -1):
+        for k in range(len(times) + 2, 0, -1):
+            polynomial[k] = polynomial[k - 1] - times[i] * polynomial[k]
+        polynomial[0] = table[i] - times[i] * polynomial[0]
+    first, second = (math.factorial(k) * polynomial[k] for k in (order, order + 1))
+    return first, second

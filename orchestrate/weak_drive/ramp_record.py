@@ -20,7 +20,6 @@ from ..response.labels import Variable, variable
 from ..running.job import Table
 from .run import CoupledRun
 
-APART = 12  # widths of the mean: falls of the slip that are closer are one
 COLUMNS_SHOWN = ("time", "voltage", "speed", "amplitude")
 
 
@@ -97,7 +96,7 @@ class RampRecord:
         row = float(np.interp(self.sign * eta0, self.sign * self.eta0(leg), leg))
         return Suspect(math.floor(row), row, math.ceil(row))
 
-    def suspects(self, leg: np.ndarray, shown: float, share: float) -> list[Suspect]:
+    def suspects(self, leg: np.ndarray, shown: float, share: float, apart: float) -> list[Suspect]:
         """Return the stretches of one ramp over which the slip falls by at least `shown`."""
         b, omega = self.job.drive.b(self.job.structure), self.job.structure.omega
         turn = float(np.median(np.diff(self.table["time"][leg]))) if len(leg) > 1 else math.inf
@@ -107,7 +106,7 @@ class RampRecord:
         slip = np.convolve(self.slip(leg), np.full(width, 1.0 / width), "valid")
         groups: list[list[tuple[int, int]]] = []
         for fall in find_falls(slip, shown):
-            if groups and fall[0] - groups[-1][-1][1] < APART * width:
+            if groups and fall[0] - groups[-1][-1][1] < apart * width:
                 groups[-1].append(fall)
             else:
                 groups.append([fall])

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import astuple
+from collections.abc import Sequence
+
+import numpy as np
 
 from ..constants import TURN
-from .extremes import Revolution
-from .master import Master
+from ..running.job import Table
+from ..structures.structure import Structure
+from .energy_balance import Energies, EnergyBalance
+from .extremes import range_of_box, range_of_mass
+from .record import Floats, Record
 
 COLUMNS = {
     "time": ("s", "time at the revolution's end"),
@@ -33,41 +37,68 @@ COLUMNS = {
     ),
     "defect_sizes": ("J", "sum of the sizes of the steps' defects"),
 }
+NOTHING = -math.inf  # largest values before the first step
 
 
 class Revolutions:
-    """Collect a run's steps into rows, one per revolution of the motor."""
+    """Collect a run's records into rows, one per revolution of the motor."""
 
-    def __init__(self, master: Master, impact_count: Callable[[], float]) -> None:
+    def __init__(self, structure: Structure) -> None:
         """Start the record of the first revolution."""
-        self._master, self._impact_count = master, impact_count
-        self._now = master.revolution = Revolution.begin(master.motion, master.shaking)
+        self.structure, self.balance = structure, EnergyBalance(structure)
+        # full turns, s, and impacts so far, at the beginning of the revolution
+        self.turn = self.time = self.impacts = 0.0
+        # largest since: x1, -x1, position of the box, its negative, and its acceleration's size
+        self.largest = np.full(5, NOTHING)
 
-    def add(self) -> tuple[float, ...] | None:
-        """Return the row of a revolution if the last step completed one, else None."""
-        master, now = self._master, self._now
-        turns = master.shaking.angle / TURN
-        if not now.is_complete(turns):
-            return None
-        turn = math.floor(turns) if turns > now.turn else math.ceil(turns)
-        time = master.time - (master.shaking.angle - turn * TURN) / master.shaking.speed
-        impacts = self._impact_count()
-        row = self._row(time, (turn - now.turn) * TURN / (time - now.time), impacts - now.impacts)
-        ends = master.motion, master.shaking
-        self._now = master.revolution = Revolution.begin(*ends, turn, time, impacts)
-        return row
+    def add(self, record: Record) -> tuple[Table, Energies]:
+        """Return the revolutions that a record completes, and the energies at its rows."""
+        energies = self.balance.add(record)
+        largest = largest_in_steps(self.structure, record)
+        voltage, x1, y = record["voltage"], record["x1"], record["box_position"]
+        rows, begin = [], 0
+        for end, time, speed, impacts in self.completed(record):
+            self._widen(largest[:, begin:end])
+            x_high, x_low, y_high, y_low, acceleration = self.largest.tolist()
+            ranges = 0.5 * (x_high + x_low), 0.5 * (y_high + y_low)
+            row = (time, voltage[end], speed, *ranges, impacts, acceleration)
+            rows.append((*row, *(account[end] for account in energies)))
+            self.largest, begin = np.array([x1[end], -x1[end], y[end], -y[end], 0.0]), end
+        self._widen(largest[:, begin:])
+        table = np.array(rows, dtype=float).reshape(-1, len(COLUMNS))
+        return dict(zip(COLUMNS, table.T.copy(), strict=True)), energies
 
-    def _row(self, time: float, speed: float, impacts: float) -> tuple[float, ...]:
-        """Build the row of a revolution from its end time, speed and impacts."""
-        master, now = self._master, self._now
-        ranges = 0.5 * (now.x1_high - now.x1_low), 0.5 * (now.box_high - now.box_low)
-        energies = master.balance.energies(master.motion, master.shaking)
-        return (time, master.voltage, speed, *ranges, impacts, now.acceleration, *energies)
+    def completed(self, record: Record) -> list[tuple[int, float, float, float]]:
+        """Return where a record completes revolutions: place, time, mean speed, and impacts."""
+        found = []
+        for end, angle in zip(
+            record.ends.tolist(), record["angle"][record.ends].tolist(), strict=True
+        ):
+            turns = angle / TURN
+            if abs(turns - self.turn) < 1.0:
+                continue
+            turn = math.floor(turns) if turns > self.turn else math.ceil(turns)
+            time = float(record["time"][end] - (angle - turn * TURN) / record["speed"][end])
+            mean, impacts = (turn - self.turn) * TURN / (time - self.time), record["impacts"][end]
+            found.append((end, time, mean, float(impacts - self.impacts)))
+            self.turn, self.time, self.impacts = turn, time, float(impacts)
+        return found
+
+    def _widen(self, largest: Floats) -> None:
+        """Add the largest values of some steps to the present revolution."""
+        self.largest = np.maximum(self.largest, largest.max(axis=1, initial=NOTHING))
 
     def get_state(self) -> list[float]:
         """Return the unfinished revolution as a list of floats, to be restored later."""
-        return list(astuple(self._now))
+        return [self.turn, self.time, self.impacts, *self.largest.tolist()]
 
     def set_state(self, numbers: Sequence[float]) -> None:
         """Restore the state that :meth:`get_state` returned."""
-        self._now = self._master.revolution = Revolution(*numbers)
+        self.turn, self.time, self.impacts = numbers[:3]
+        self.largest = np.array(numbers[3:])
+
+
+def largest_in_steps(structure: Structure, record: Record) -> Floats:
+    """Return by steps the largest x1, -x1, box position, its negative, and its acceleration."""
+    x, y = range_of_mass(structure, record), range_of_box(record)
+    return np.stack([x.high, -x.low, y.high, -y.low, np.abs(record.after["box_acceleration"])])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from array import array
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -20,7 +19,8 @@ from ..structures.structure import Structure
 from .compiled import create_master
 from .controllers import Controller, Measurement
 from .master import Scheme
-from .revolutions import COLUMNS, Revolutions
+from .record import Record
+from .revolutions import Revolutions
 from .schedule import Schedule
 
 
@@ -60,13 +60,9 @@ class Run:
         oscillator.initialize(**oscillator_start(job.structure))
         voltage = job.schedule.voltage(0.0)
         shaker.initialize(**job.drive.parameters(), speed_start=job.speed_start, voltage=voltage)
-        self.master = create_master(oscillator, shaker, job.structure, job.scheme)
-        self.revolutions = Revolutions(self.master, self.impact_count)
+        self.master = create_master(oscillator, shaker, job.scheme)
+        self.revolutions = Revolutions(job.structure)
         self.control_memory = job.control.begin(job.speed_start) if job.control else ()
-
-    def impact_count(self) -> float:
-        """Return the number of impacts so far."""
-        return float(self.oscillator.get("impact_count")[0])
 
     def step_voltage(self, i: int) -> float:
         """Return the motor's voltage in a step, from the schedule or the controller, V."""
@@ -74,31 +70,25 @@ class Run:
         available = self.job.schedule.voltage((i + 0.5) * h)
         if control is None:
             return available
-        seen = Measurement(self.master.time, self.master.shaking.speed, available, h)
+        seen = Measurement(self.master.time, self.master["speed"], available, h)
         voltage, self.control_memory = control.update(seen, self.control_memory)
         return voltage
 
-    def revolve(self, steps: Sequence[int], kept: np.ndarray | None = None) -> Table:
-        """Run some communication steps; return the table of completed revolutions."""
-        rows, begin = [], 0
-        for voltages in self.voltage_batches(steps):
-            piece = None if kept is None else kept[begin : begin + len(voltages)]
-            done = 0
-            while done < len(voltages):
-                done = self.master.run(voltages, done, kept=piece)
-                row = self.revolutions.add()
-                if row:
-                    rows.append(row)
-            begin += done
-        table = np.array(rows, dtype=float).reshape(-1, len(COLUMNS))
-        return dict(zip(COLUMNS, table.T.copy(), strict=True))
-
-    def voltage_batches(self, steps: Sequence[int]) -> Iterator[array[float]]:
-        """Yield batches of voltages: all steps at once, or single steps under control."""
+    def record(self, steps: Sequence[int]) -> Record:
+        """Run some communication steps; return their record."""
         if self.job.control is None:
-            yield array("d", map(self.step_voltage, steps))
-        else:
-            yield from (array("d", (self.step_voltage(i),)) for i in steps)
+            return self.master.run([self.step_voltage(i) for i in steps])
+        return self.master.run_controlled(([self.step_voltage(i)] for i in steps), len(steps))
+
+    def revolve(self, steps: Sequence[int]) -> Table:
+        """Run some communication steps; return the table of completed revolutions."""
+        return self.revolutions.add(self.record(steps))[0]
+
+    def speeds(self, steps: Sequence[int]) -> np.ndarray:
+        """Run some steps; return the mean speeds of completed revolutions alone, rad/s."""
+        return np.array(
+            [speed for _, _, speed, _ in self.revolutions.completed(self.record(steps))]
+        )
 
     def get_state(self) -> Table:
         """Return the complete state of the run as a table of one row."""
@@ -106,6 +96,7 @@ class Run:
             "oscillator_state": np.frombuffer(self.oscillator.save_state(), dtype=np.uint8),
             "shaker_state": np.frombuffer(self.shaker.save_state(), dtype=np.uint8),
             "master_memory": np.array(self.master.get_state()),
+            "balance_memory": np.array(self.revolutions.balance.get_state()),
             "revolution_memory": np.array(self.revolutions.get_state()),
             "control_memory": np.array(self.control_memory),
         }
@@ -116,6 +107,7 @@ class Run:
         self.oscillator.restore_state(table["oscillator_state"][-1].tobytes())
         self.shaker.restore_state(table["shaker_state"][-1].tobytes())
         self.master.set_state(table["master_memory"][-1].tolist())
+        self.revolutions.balance.set_state(table["balance_memory"][-1].tolist())
         self.revolutions.set_state(table["revolution_memory"][-1].tolist())
         self.control_memory = tuple(table["control_memory"][-1].tolist())
 

@@ -7,7 +7,6 @@ motions make a curve, which :mod:`orchestrate.dynamics.continuation` follows rou
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -21,8 +20,9 @@ from ..errors import FmuError
 from ..structures.drive import Drive
 from ..structures.structure import Structure
 from .compiled import create_master
-from .extremes import Revolution
-from .master import STATE_INDEX, Master, Scheme
+from .extremes import range_of_mass
+from .master import Master, Scheme
+from .record import Record
 from .run import oscillator_start
 
 STARTS = {  # start values of the shaker and of the structure by the outputs that they are
@@ -153,7 +153,7 @@ class Shooter:
         oscillator.initialize(**oscillator_start(self.structure), **structure_starts)
         more = {"angle_start": self.angle, "voltage": voltage}
         shaker.initialize(**self.drive.parameters(), **starts, **more)
-        return create_master(oscillator, shaker, self.structure, Scheme("rollback", h))
+        return create_master(oscillator, shaker, Scheme(h))
 
     def begin_period(self, unknowns: Floats) -> tuple[Master, float]:
         """Initialise both FMUs at a period's start; return master and voltage, V."""
@@ -163,7 +163,7 @@ class Shooter:
 
     def scaled_state(self, master: Master) -> Floats:
         """Return the present state of both FMUs, scaled by its units."""
-        values = {**master.motion._asdict(), **master.shaking._asdict()}
+        values = dict(zip(master.names, master.row, strict=True))
         for name, at_rest in zip(("x1", "x2"), self.structure.at_rest, strict=True):
             values[name] -= at_rest
         if "motor_current" in self.names:
@@ -190,13 +190,12 @@ class Shooter:
             while master.time < time or (self._touching(master) and master.time < longest):
                 master.step(voltage)
             if self.structure.preload > 0.0:  # once more round, to where a period is best begun
-                kept = np.empty((self.count, len(master.get_state())))
                 h = self.turns * TURN / speed / self.count
-                master.run([voltage] * self.count, h=h, kept=kept)
+                kept = master.run([voltage] * self.count, h=h).after
                 master.run([voltage] * (1 + self.best_start(kept)[0]), h=h)
         finally:
             self.drive = own_drive
-        self.angle = master.shaking.angle % TURN
+        self.angle = master["angle"] % TURN
         self.begin_together(self._touching(master) or self.structure.bonded)
         state_at_end = self.scaled_state(master)
         master.close()
@@ -210,35 +209,31 @@ class Shooter:
         """Simulate one period from given unknowns; return the final state and impacts."""
         try:
             master, voltage = self.begin_period(unknowns)
-            kept = np.empty((self.count, len(master.get_state())))
-            master.run([voltage] * self.count, kept=kept)
+            kept = master.run([voltage] * self.count).after
         except FmuError as error:
             raise NoConvergenceError(str(error)) from None
-        turned = master.shaking.angle - self.angle - self.turns * TURN
+        turned = master["angle"] - self.angle - self.turns * TURN
         end = np.append(self.scaled_state(master), turned)
         apart = self.together and master.motion.x_rel > 0.0
         master.close()
         if apart:
             raise NoConvergenceError("the masses are apart at the end of a period")
-        contact = bool((kept[:, STATE_INDEX["x_rel"]] == 0.0).any())
+        contact = bool((kept["x_rel"] == 0.0).any())
         return Shot(end, int(self.fmus[0].get("impact_count")[0]), contact)
 
     def observe_period(self, unknowns: Floats) -> Period:
         """Simulate one period; return its amplitude, impacts and best start."""
         master, voltage = self.begin_period(unknowns)
-        ends = master.motion, master.shaking
-        revolution = master.revolution = Revolution.begin(*ends, turn=math.nan)  # never complete
-        kept = np.empty((self.count + 1, len(master.get_state())))
-        kept[0] = master.get_state()
-        master.run([voltage] * self.count, kept=kept[1:])
+        record = master.run([voltage] * self.count)
         master.close()
         impacts = int(self.fmus[0].get("impact_count")[0])
-        amplitude = 0.5 * (revolution.x1_high - revolution.x1_low)
-        return Period(amplitude, impacts, self.turns, *self.best_start(kept[:-1]))
+        reached = range_of_mass(self.structure, record)
+        amplitude = 0.5 * float(reached.high.max() - reached.low.min())
+        return Period(amplitude, impacts, self.turns, *self.best_start(record.before))
 
-    def best_start(self, kept: Floats) -> tuple[int, float, bool, bool]:
+    def best_start(self, kept: Record) -> tuple[int, float, bool, bool]:
         """Find the point of a period that is farthest from impacts, to begin there."""
-        sizes = kept[:, STATE_INDEX["x_rel"]]
+        sizes = kept["x_rel"]
         together, sticks = self.together and not sizes.any(), False
         if self.structure.preload > 0.0:
             sticks = bool((sizes == 0.0).any())
@@ -249,12 +244,10 @@ class Shooter:
         share = float(sizes[0] / sizes[clear]) if sizes[clear] > 0.0 else 1.0
         return clear, share, together, sticks
 
-    def contact_forces(self, kept: Floats) -> Floats:
+    def contact_forces(self, kept: Record) -> Floats:
         """Compute the contact force at each communication point, N."""
         s = self.structure
-        x1, v1, x2, v2, gap = (
-            kept[:, STATE_INDEX[name]] for name in ("x1", "v1", "x2", "v2", "x_rel")
-        )
+        x1, v1, x2, v2, gap = (kept[name] for name in ("x1", "v1", "x2", "v2", "x_rel"))
         parting = (s.k1 * x1 + s.d1 * v1) / s.m1 - (s.k2 * x2 + s.d2 * v2) / s.m2
         touching = (gap == 0.0) & (v1 == v2)
         inside = touching & np.roll(touching, 1) & np.roll(touching, -1)
@@ -265,7 +258,7 @@ class Shooter:
         """Shift the period's start by some steps; return the unknowns there."""
         master, voltage = self.begin_period(unknowns)
         master.run([voltage] * steps)
-        self.angle = master.shaking.angle % TURN
+        self.angle = master["angle"] % TURN
         self.begin_together(together)
         shifted = np.append(self.scaled_state(master), unknowns[-2:])
         master.close()

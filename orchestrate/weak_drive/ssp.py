@@ -5,8 +5,8 @@ system; connections between components only; no connector for the voltage, which
 set to 0 where nothing is connected to it; a Boolean only where it is true, since FMPy takes any
 other for true as well.
 
-What a tool makes of it depends on its master. Most hold inputs constant over a fixed step (Jacobi,
-see :mod:`.master`): negative damping, and the step has to be very short. OMSimulator reads the step
+What a tool makes of it depends on its master. Most hold inputs constant over a fixed step
+(Jacobi): negative damping, and the step has to be very short. OMSimulator reads the step
 from an annotation of its own, without which its C interface cannot load a package.
 """
 

@@ -1,20 +1,19 @@
-/** Structure and motor coupled: the scheme `rollback` of the project's master, step by step. */
+/** Structure and motor coupled as by the project's master, in fixed steps. */
 
 /**
  * @typedef {import("./kernel.js").Instance} Instance
  * @typedef {[number, number, number, number]} Cubic value and three derivatives at the beginning
  * @typedef {Record<string, number>} Outputs
  * @typedef {{structure: Record<string, number>, drive: Record<string, number>, h: number}} Start
- * @typedef {{oscillator: Float64Array, shaker: Float64Array, stale: boolean,
+ * @typedef {{oscillator: Float64Array, shaker: Float64Array, told: Cubic | null,
  *   numbers: Record<string, number>, motion: Outputs, shaking: Outputs, h: number}} Run
  */
 
 const MOTION = ["x1", "box_force", "box_impulse", "box_impulse_moment"];
-const SHAKING = ["box_position", "box_velocity", "box_acceleration", "box_jerk", "angle", "speed"];
+const SHAKING = ["box_position", "box_velocity", "box_acceleration", "angle", "speed"];
 const TOLD = ["box_acceleration", "box_jerk", "box_snap", "box_crackle"];
 const FORCE = ["box_force", "box_force_1", "box_force_2", "box_force_3"];
-const MOST = 40; // passes of the first step
-const CONVERGED = 1e-14;
+const FIRST = 3; // passes of the first step
 const TURN = 2 * Math.PI;
 
 /** The cubic with given ends, mean and first moment. @param {number} first @param {number} last @param {number} mean @param {number} moment @param {number} h @returns {Cubic} */
@@ -27,7 +26,7 @@ export function matchedCubic(first, last, mean, moment, h) {
 }
 
 /** First derivative of a cubic at a step's end. @param {Cubic} cubic @param {number} h */
-export function endSlope([, f1, f2, f3], h) {
+function endSlope([, f1, f2, f3], h) {
   return f1 + h * (f2 + 0.5 * h * f3);
 }
 
@@ -38,8 +37,8 @@ function read(instance, names) {
 
 /**
  * The structure goes first with an extrapolated acceleration of the box, the shaker with the force
- * that came of it; then both go back and once more with the acceleration found. What is exchanged is
- * a cubic with the ends, the mean and the first moment that both sides know exactly.
+ * that came of it; then the structure goes back and once more with the acceleration found. What is
+ * exchanged is a cubic with the ends, the mean and the first moment that both sides know exactly.
  */
 export class Coupled {
   /** @param {Instance} oscillator @param {Instance} shaker @param {number} h communication step, s */
@@ -47,11 +46,12 @@ export class Coupled {
     this.oscillator = oscillator;
     this.shaker = shaker;
     this.h = h;
-    this.stale = false; // the shaker's outputs do not belong to its inputs
     this.numbers = {
-      ...{ time: 0, voltage: NaN, slope: 0, hBefore: 0, accelerationBefore: 0, jerkBefore: 0 },
+      ...{ time: 0, voltage: NaN },
       ...{ turn: 0, turnTime: 0, impacts: 0, high: -Infinity, low: Infinity },
     };
+    /** @type {Cubic | null} the acceleration over the last step */
+    this.told = null;
     /** @type {Outputs} */
     this.motion = {};
     /** @type {Outputs} */
@@ -73,84 +73,61 @@ export class Coupled {
     const one = new Coupled(oscillator, shaker, run.h);
     oscillator.memory.set(run.oscillator);
     shaker.memory.set(run.shaker);
-    const { stale, numbers, motion, shaking } = run;
-    return Object.assign(one, { stale, numbers: { ...numbers }, motion, shaking });
+    const { told, numbers, motion, shaking } = run;
+    return Object.assign(one, { told, numbers: { ...numbers }, motion, shaking });
   }
 
   /** All that a run goes on from. @returns {Run} */
   memory() {
-    const { stale, numbers, motion, shaking, h } = this;
+    const { told, numbers, motion, shaking, h } = this;
     const [oscillator, shaker] = [this.oscillator.memory.slice(), this.shaker.memory.slice()];
-    return { oscillator, shaker, stale, numbers, motion, shaking, h };
+    return { oscillator, shaker, told, numbers, motion, shaking, h };
   }
 
   /** @param {Cubic} cubic */
   put([f0, f1, f2, f3]) {
     const values = { voltage: this.numbers.voltage };
     this.shaker.set({ ...values, [FORCE[0]]: f0, [FORCE[1]]: f1, [FORCE[2]]: f2, [FORCE[3]]: f3 });
-    this.stale = true;
   }
 
-  /** The shaker's outputs with its inputs as they are set. */
-  look() {
-    if (this.stale) this.shaker.call("kernel_refresh", this.shaker.get("TIME"));
-    this.stale = false;
+  /** The shaker's outputs under a force. @param {number} force */
+  look(force) {
+    this.put([force, 0, 0, 0]);
+    this.shaker.call("kernel_refresh", this.shaker.get("TIME"));
     return read(this.shaker, SHAKING);
   }
 
   /** One communication step. @param {number} voltage */
   step(voltage) {
-    const { numbers, h } = this;
-    const begin = numbers.time;
+    const { numbers, oscillator, shaker, h } = this;
     if (voltage !== numbers.voltage) {
       numbers.voltage = voltage;
-      this.put([this.motion.box_force, numbers.slope, 0, 0]);
-      this.shaking = this.look();
+      this.shaking = this.look(this.motion.box_force);
     }
-    const [told, motion] = this.passes();
-    const force = this.forceOf(motion);
-    numbers.slope = endSlope(force, h);
-    numbers.jerkBefore = numbers.hBefore ? this.shaking.box_jerk : told[1];
-    numbers.accelerationBefore = this.shaking.box_acceleration;
-    numbers.hBefore = h;
-    this.motion = motion;
-    this.put([motion.box_force, numbers.slope, 0, 0]);
-    this.shaking = this.look();
-    numbers.time = begin + h;
-  }
-
-  /** Structure, then shaker; twice, the first step until the force does not change. @returns {[Cubic, Outputs]} */
-  passes() {
-    const { oscillator, shaker, h } = this;
-    const [kept, other, stale] = [oscillator.memory.slice(), shaker.memory.slice(), this.stale];
-    const count = this.numbers.hBefore ? 2 : MOST;
+    const [kept, other] = [oscillator.memory.slice(), shaker.memory.slice()];
     let told = this.extrapolated();
-    /** @type {Outputs | null} */
-    let last = null;
-    for (let i = 0; ; i++) {
+    for (let i = 0; i < (this.told ? 1 : FIRST); i++) {
       if (i) {
         oscillator.memory.set(kept);
         shaker.memory.set(other);
-        this.stale = stale;
       }
-      const motion = this.pass(told);
-      if (i + 1 === count || (last && settled(motion, last))) return [told, motion];
-      last = motion;
-      this.put([motion.box_force, endSlope(this.forceOf(motion), h), 0, 0]);
-      told = this.found(this.look());
+      const motion = this.oscillate(told);
+      this.put(this.forceOf(motion));
+      shaker.stepBy(numbers.time, h);
+      told = this.found(this.look(motion.box_force));
     }
+    oscillator.memory.set(kept);
+    this.motion = this.oscillate(told);
+    this.shaking = this.look(this.motion.box_force);
+    this.told = told;
+    numbers.time += h;
   }
 
-  /** @param {Cubic} told */
-  pass(told) {
-    const { oscillator, shaker, h } = this;
-    const { time } = this.numbers;
-    TOLD.forEach((name, i) => oscillator.set({ [name]: told[i] }));
-    oscillator.stepBy(time, h);
-    const motion = read(oscillator, MOTION);
-    this.put(this.forceOf(motion));
-    shaker.stepBy(time, h);
-    return motion;
+  /** The structure's motion after a step. @param {Cubic} told */
+  oscillate(told) {
+    TOLD.forEach((name, i) => this.oscillator.set({ [name]: told[i] }));
+    this.oscillator.stepBy(this.numbers.time, this.h);
+    return read(this.oscillator, MOTION);
   }
 
   /** The force over a step to `motion`. @param {Outputs} motion */
@@ -168,14 +145,12 @@ export class Coupled {
     return matchedCubic(now.box_acceleration, after.box_acceleration, mean, moment, h);
   }
 
-  /** From what is known at this point and the one before. @returns {Cubic} */
+  /** The last step's cubic goes on from the present value. @returns {Cubic} */
   extrapolated() {
-    const { box_acceleration: value, box_jerk: jerk } = this.shaking;
-    const { hBefore: h, accelerationBefore, jerkBefore } = this.numbers;
-    if (!h) return [value, jerk, 0, 0];
-    const bend = (accelerationBefore - value + jerk * h) / (h * h);
-    const twist = ((jerkBefore - jerk) / h + 2 * bend) / h;
-    return [value, jerk, 2 * (bend + twist * h), 6 * twist];
+    const value = this.shaking.box_acceleration;
+    if (!this.told) return [value, 0, 0, 0];
+    const [, , f2, f3] = this.told;
+    return [value, endSlope(this.told, this.h), f2 + this.h * f3, f3];
   }
 
   /** When a revolution is complete: its end, the voltage, mean speed, half range of x1 at the communication points, impacts. */
@@ -198,11 +173,4 @@ export class Coupled {
     Object.assign(numbers, { turn, turnTime: time, impacts, high: motion.x1, low: motion.x1 });
     return row;
   }
-}
-
-/** Whether an iteration has changed nothing but roundings. @param {Outputs} now @param {Outputs} then */
-function settled(now, then) {
-  return ["box_force", "box_impulse", "box_impulse_moment"].every(
-    (name) => Math.abs(now[name] - then[name]) <= CONVERGED * (Math.abs(now[name]) + Math.abs(then[name])),
-  );
 }

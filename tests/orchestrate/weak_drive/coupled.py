@@ -9,6 +9,7 @@ import numpy as np
 from orchestrate import Drive, Structure
 from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.weak_drive.compiled import create_master
+from orchestrate.weak_drive.energy_balance import Energies, EnergyBalance
 from orchestrate.weak_drive.master import Scheme
 from orchestrate.weak_drive.run import oscillator_start
 
@@ -85,20 +86,19 @@ def master(system, scheme, state, form="fmi3", kind=create_master):
     with Instance(oscillator) as one, Instance(shaker) as other:
         one.initialize(**oscillator_start(system.structure), **starts)
         other.initialize(**system.drive.parameters(), **shaker_starts)
-        made = kind(one, other, system.structure, scheme)
+        made = kind(one, other, scheme)
         yield made
         made.close()
 
 
 def state_of(m):
     """State of a master, in the order of :func:`master`."""
-    values = {**m.motion._asdict(), **m.shaking._asdict()}
-    return [*(values[name] for name in ORDER), *m.shaker.instance.get("motor_current")]
+    return [*(m[name] for name in ORDER), *m.drive.instance.get("motor_current")]
 
 
 def settled(system, voltage, speed, time=600.0):
     """A state of the settled motion, in flight unless bonded, with the angle in the first turn."""
-    with master(system, Scheme("rollback", 0.2), rest(speed, system.structure)) as m:
+    with master(system, Scheme(0.2), rest(speed, system.structure)) as m:
         while m.time < time or (m.motion.x_rel == 0.0 and not system.structure.bonded):
             m.step(voltage)
         state = state_of(m)
@@ -108,10 +108,11 @@ def settled(system, voltage, speed, time=600.0):
 def history(system, scheme, voltage, state, time, form="fmi3"):
     """States on the grid, shape (points, 9), and the energies at the end."""
     every = max(1, round(GRID / scheme.h))
+    balance = EnergyBalance(system.structure)
     with master(system, scheme, state, form) as m:
         rows = [state]
         for k in range(round(time / scheme.h)):
-            m.step(voltage)
+            energies = balance.add(m.step(voltage))
             if (k + 1) % every == 0:
                 rows.append(state_of(m))
-        return np.array(rows), m.balance.energies(m.motion, m.shaking)
+        return np.array(rows), Energies(*(float(one[-1]) for one in energies))

@@ -127,7 +127,7 @@ def test_a_border_above_the_fold_is_said_to_be(low, flag):
     """Made-up borders of ``quick``, whose fold the averaged theory has at 1.58306."""
     job = CaptureJob(
         *("capture", *QUICK.as_bonded(), "", (), (1.4, 1.6)),
-        *(1e-4, 0.0, 100, Scheme("rollback", 0.4)),
+        *(1e-4, 0.0, 100, Scheme(0.4)),
     )
     outcomes = np.array([[Outcome(CONVERGED), Outcome(CONVERGED, True, 5.0, 1.6)]], dtype=float)
     borders = np.array([[low, 1.25, low + 1e-4, 1.6]])

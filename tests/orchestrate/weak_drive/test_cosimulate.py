@@ -9,7 +9,9 @@ from scipy.integrate import solve_ivp
 import orchestrate
 from orchestrate.access.description import describe
 from orchestrate.errors import InputError
-from orchestrate.weak_drive.connection import derivatives, proposals
+from orchestrate.weak_drive import cosimulate
+from orchestrate.weak_drive.connection import proposals
+from orchestrate.weak_drive.polynomials import derivatives
 
 from .drives import table
 
@@ -132,18 +134,49 @@ def test_a_sign_and_two_runs_with_the_same_bits(drive):
     assert np.abs(other.x1 - twice[0].x1).max() > 1e-4
 
 
+BEAM = tuple(kind.from_file("beam") for kind in (orchestrate.Structure, orchestrate.Drive))
+MOTOR = {"inputs": {"voltage": 4.0}, "parameters": {"speed_start": 60.0}, "progress": False}
+
+
 @pytest.mark.usefixtures("exported")
-def test_our_own_drive_is_what_couple_has(exported):
-    """Of fourth order, since it takes the force's derivatives: compare with half the step."""
-    beam, motor = (kind.from_file("beam") for kind in (orchestrate.Structure, orchestrate.Drive))
-    run = {"inputs": {"voltage": 4.0}, "parameters": {"speed_start": 60.0}, "duration": 1.0}
-    errors = [
-        float(
-            orchestrate.cosimulate(beam, motor, step=h, progress=False, **run).coupling_error.max()
-        )
+def test_our_own_drive_is_what_couple_has():
+    """Of fourth order, compared with half the step; the error that is stated is that of couple."""
+    runs = [
+        orchestrate.cosimulate(*BEAM, step=h, duration=1.0, record=["speed"], **MOTOR)
         for h in (0.008, 0.004)
     ]
-    assert errors[0] / errors[1] > 8.0
+    coarse, fine = (float(run.coupling_error.max()) for run in runs)
+    assert coarse / fine > 11.0
+    other = orchestrate.couple(
+        *BEAM, voltage=4.0, duration=1.0, speed_start=60.0, step=0.004, hold=0.0, progress=False
+    )
+    at = np.interp(other.time[5:], runs[1].time, runs[1].speed)
+    assert other.speed[5:].values == pytest.approx(at, rel=0.02)
+
+
+@pytest.mark.usefixtures("exported")
+def test_a_run_resumes_from_the_states_of_both_fmus(monkeypatch):
+    run = {"step": 0.004, "duration": 0.4, "record": ["speed"], **MOTOR}
+    whole = orchestrate.cosimulate(*BEAM, **run)
+    monkeypatch.setattr(cosimulate.CosimulateJob, "chunk_size", 30)
+    parts = orchestrate.cosimulate(*BEAM, **run)
+    assert whole.attrs["resumable"] == "yes"
+    for name in ("x1", "speed", "coupling_error", "box_work", "box_acceleration"):
+        assert parts[name].values.tobytes() == whole[name].values.tobytes(), name
+
+
+@pytest.mark.usefixtures("exported")
+def test_a_drive_without_states_is_said_to_begin_anew(drive, monkeypatch):
+    monkeypatch.setattr(cosimulate.CosimulateJob, "chunk_size", 10)
+    run = {**RUN, "duration": 0.4, "step": 0.01}
+    found = orchestrate.cosimulate(STRUCTURE, drive, connect=CONNECT, **run)
+    assert found.attrs["resumable"].startswith("no")
+    job = cosimulate.CosimulateJob(
+        **{"name": "run", "structure": STRUCTURE, "drive": str(drive), "drive_sha256": ""},
+        **{"connect": (), "duration": 0.4, "step": 0.01},
+    )
+    assert [(chunk.start, chunk.stop) for chunk in job.chunks()] == [(0, 40), (40, 41)]
+    assert "not resumable" in job.progress_note(0)
 
 
 @pytest.mark.usefixtures("exported")

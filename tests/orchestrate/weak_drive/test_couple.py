@@ -133,9 +133,7 @@ def test_a_motor_that_turns_backward():
 
 def test_it_goes_on_with_the_same_bits():
     """A run in one go, and one handed over from chunk to chunk with the states of both FMUs."""
-    job = couple_job(
-        *QUICK, Ramp(1.4, 1.41, 2e-4, 50.0), Scheme("rollback", 0.4, tolerance=1e-8), 1.25
-    )
+    job = couple_job(*QUICK, Ramp(1.4, 1.41, 2e-4, 50.0), Scheme(0.4, tolerance=1e-8), 1.25)
     fmus = {model: find(model).path for model in (OSCILLATOR, SHAKER)}
     steps = job.items({})
     expected, parts, carry = job.work(fmus, steps, None), [], None
@@ -149,7 +147,7 @@ def test_it_goes_on_with_the_same_bits():
     for name, values in expected.items():
         if values.shape[0] != 1:
             assert np.array_equal(np.concatenate([table[name] for table, _ in parts]), values), name
-    assert np.array_equal(carry["master_memory"], expected["master_memory"])
+    assert carry["master_memory"].tobytes() == expected["master_memory"].tobytes()
 
 
 def test_a_finished_result_is_read(tmp_path):
@@ -178,7 +176,6 @@ def test_a_finished_result_is_read(tmp_path):
         ({"settle": -1.0}, ["settle = -1.0", "0 <= settle"]),
         ({"hold": -1.0}, ["hold = -1.0 s", "0 <= hold"]),
         ({"speed_start": float("inf")}, ["speed_start = inf", "finite"]),
-        ({"algorithm": "euler"}, ["euler", "jacobi", "rollback"]),
         ({"tolerance": -1.0}, ["tolerance", ">= 0"]),
         ({"voltage": 1.5, "duration": 1e-10}, ["duration = 1e-10 s", "one communication step"]),
         ({"voltage": 1.5, "duration": 0.0}, ["duration = 0 s", "duration >= "]),

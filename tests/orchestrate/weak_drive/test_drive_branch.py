@@ -164,6 +164,7 @@ def test_a_branch_ends_where_the_masses_touch():
     assert gap[slow].min() < 1e-4 * length
 
 
+@pytest.mark.slow
 def test_a_branch_ends_where_an_impact_vanishes():
     """Both parts of the branch of `rig` end there, one with an impact more than the other."""
     rig = System(Structure.from_file("rig"), Drive.from_file("rig"))

@@ -86,7 +86,7 @@ def test_lines_are_those_of_the_whole_system(quick):
     """The monolithic solution from the end of the same approach, sampled eight times as densely."""
     voltage, revolutions, points = voltage_at_resonance(*QUICK), 8, 2048
     ramp = Ramp(0.85 * voltage, voltage, SHORT["rate"], settle=300.0, back=False)
-    job = couple_job(*QUICK, ramp, Scheme("rollback", 0.1))
+    job = couple_job(*QUICK, ramp, Scheme(0.1))
     with Instance(find(OSCILLATOR).path) as oscillator, Instance(find(SHAKER).path) as shaker:
         run = Run(job, oscillator, shaker)
         run.revolve(range(round((ramp.duration + SHORT["hold"]) / 0.1)))
@@ -115,6 +115,7 @@ def test_the_default_voltage_is_at_the_resonance(system):
     assert np.all(Omega < up.Omega)
 
 
+@pytest.mark.slow
 def test_a_structure_that_jumps_earlier_is_still_at_the_resonance(tmp_path):
     """Delaminated this motor has jumped at 0.6 of the way between the bonded one's folds."""
     (tmp_path / "fan.toml").write_text(FAN)

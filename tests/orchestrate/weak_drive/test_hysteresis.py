@@ -27,14 +27,14 @@ class Rotor:
         self.stiff = stiff
         self.master = SimpleNamespace(close=lambda: None)
 
-    def revolve(self, steps):
+    def speeds(self, steps):
         speeds = []
         for i in steps:
             x = self.speed - 1.3
             needed = 1.5 + self.slope * x + self.stiff * x**3
             self.speed += 0.02 * H * (self.schedule.voltage((i + 0.5) * H) - needed)
             speeds.append(self.speed)
-        return {"speed": np.array(speeds)}
+        return np.array(speeds)
 
     def get_state(self):
         return {"speed": np.array([self.speed])}
@@ -220,9 +220,9 @@ def test_falls_close_to_each_other_are_one_stretch():
     )
     ramp = RampRecord(job, {"time": time, "voltage": eta0, "speed": eta0 - slip}, up=True)
     (leg,) = ramp.legs()
-    (suspect,) = ramp.suspects(leg, 4e-3, 0.1)
+    (suspect,) = ramp.suspects(leg, 4e-3, 0.1, 12)
     assert time[suspect.before] < 830.0 and time[suspect.after] > 990.0
-    assert ramp.suspects(leg, 0.03, 0.1) == []
+    assert ramp.suspects(leg, 0.03, 0.1, 12) == []
 
 
 SETTLED = Settings()

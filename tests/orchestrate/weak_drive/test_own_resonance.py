@@ -68,23 +68,12 @@ def test_halves_that_swing_alike_never_part():
     assert own_resonance.resonance_shift(alike, QUICK.drive) == 0.0
 
 
-def decided(found, way):
-    """That there is no false none; where the motion is lost, over K omega."""
-    at = found.sel(jump=way)
-    assert at.decided == "undecided" or np.isfinite(at.jumps)
-    if np.isfinite(at.jumps):
-        place = float(at.jumps) / APART.drive.volts(APART.structure)
-        assert OWN_LOSSES[0] < place < OWN_LOSSES[1]
-
-
-def test_a_jump_beyond_the_bonded_resonance():
-    """It was said that the speed passes the resonance without a gap."""
-    decided(run(APART, (1.37, 1.5), 2e-4, back=False, settle=100.0, step=None), "up")
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize("rate", [2e-4, 1e-4, 5e-5, 2e-5])
+@pytest.mark.parametrize("rate", [2e-4, 5e-5])
 def test_jumps_beyond_the_bonded_resonance_both_ways(rate):
+    """There is no false none: lost where held voltages lose its motion, or undecided."""
     found = run(APART, (1.3, 1.6), rate, step=None)
     for way in ("up", "down"):
-        decided(found, way)
+        at = found.sel(jump=way)
+        place = float(at.jumps) / APART.drive.volts(APART.structure)
+        assert at.decided == "undecided" or OWN_LOSSES[0] < place < OWN_LOSSES[1]

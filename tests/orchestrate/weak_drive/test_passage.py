@@ -9,7 +9,7 @@ from orchestrate import InputError, capture, couple, passage, waterfall
 from .coupled import QUICK
 
 FAST = {"voltage": (1.5, 1.7), "rate": 4e-4, "back": False, "settle": 50.0, "step": 0.1}
-FAST |= {"progress": False}
+FAST |= {"hold": 0.0, "progress": False}
 
 
 @pytest.fixture(scope="module")
@@ -21,7 +21,7 @@ def whole():
 def test_it_is_the_run_that_couple_makes(whole):
     """Jumps, energies, and the speed of each revolution are the same."""
     run = couple(*QUICK, **FAST)
-    for name in ("jumps", "jump_time", "jump_speed_before"):
+    for name in ("jump_low", "jump_time", "jump_speed_before"):
         assert whole[name].values == pytest.approx(run[name].values, nan_ok=True), name
     assert np.isfinite(whole.jump_time[0])
     ends = np.interp(2.0 * np.pi * run.revolution, whole.angle, whole.time)

@@ -1,24 +1,20 @@
 """Random sets against one system of equations: trajectories, folds, Neimark-Sacker points, jumps.
 
-``python -m tests.orchestrate.weak_drive.validation`` prints a table, which docs/coupling_scheme.md
-summarises. The truth is :class:`.monolithic.Monolith`, with shooting of its own: nothing of it
-knows the FMUs but the state that it starts from.
+The truth is :class:`.monolithic.Monolith`, with shooting of its own: nothing of it knows the FMUs
+but the state that it starts from.
 """
-
-import argparse
-import time
 
 import numpy as np
 
 from orchestrate import Drive, Structure, jump_voltages
 from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
-from orchestrate.dynamics.bifurcations import FLIP, FOLD, TORUS
+from orchestrate.dynamics.bifurcations import FLIP, FOLD
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple import scheme_from_arguments
 from orchestrate.weak_drive.drive_branch import DriveBranchJob
 from orchestrate.weak_drive.ramp_record import find_falls
 
-from .coupled import BEAM, QUICK, System, master, rest, state_of
+from .coupled import System, master, rest, state_of
 from .monolithic import Monolith
 
 SEED = 13
@@ -255,7 +251,7 @@ def coupled_jump(system, state, voltages, rate):
         while m.time * omega * rate < last - first:
             m.step(volts * (first + rate * omega * (m.time + 0.5 * scheme.h)))
             times.append(m.time)
-            angles.append(m.shaking.angle)
+            angles.append(m["angle"])
     eta0 = lambda time: first + rate * omega * time  # noqa: E731
     return jump_of(system, np.array(times), np.array(angles), eta0)
 
@@ -283,60 +279,7 @@ def extrapolated_jumps(system, fold):
     return [float(value) / volts for value in found.jumps.sel(jump="up")]
 
 
-# -- the table -------------------------------------------------------------------------------------
-
-
 def first_fold(found):
     """The fold that a run up meets first."""
     folds = [row for row in found if row[0] == FOLD]
     return folds[0] if folds else None
-
-
-def report(system, jumps=True):
-    """Lines of one set."""
-    lines = []
-    known = {}
-    for name, one in (("bonded", system.as_bonded()), ("delaminated", system)):
-        error, impacts = trajectory_error(one)
-        lines.append(f"{name}: trajectory {error:.1e}, {impacts} impacts")
-        found = bifurcations(one)
-        known[name] = first_fold(found)
-        exact = {}
-        if name == "bonded":
-            exact = {FOLD: averaged.folds(*one), TORUS: averaged.neimark_sacker_points(*one)}
-        for kind, speed, eta0, truth in found:
-            near = [abs(place.eta0 - eta0) for place in exact.get(kind, [])]
-            theory = f", averaged {min(near):.1e}" if near else ""
-            text = f"{kind.label} at {speed:.5f}, eta0 {eta0:.5f}, monolithic {eta0 - truth:+.1e}"
-            lines.append(f"{name}: {text}{theory}")
-        if jumps and known[name]:
-            here, whole = ramp_jumps(one, known[name][2])
-            lines.append(f"{name}: jump up on a ramp {here:.5f}, monolithic {here - whole:+.1e}")
-    if jumps and all(known.values()):
-        folds = [row[2] for row in known.values()]
-        for name, fold, value in zip(
-            known, folds, extrapolated_jumps(system, max(folds)), strict=True
-        ):
-            lines.append(f"{name}: jump up at rate 0 {value:.5f}, fold {value - fold:+.1e}")
-    return lines
-
-
-def main():
-    """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--count", type=int, default=5)
-    parser.add_argument("--seed", type=int, default=SEED)
-    parser.add_argument("--only", help="numbers of sets from 0, or quick, beam", default="")
-    parser.add_argument("--no-jumps", action="store_true")
-    arguments = parser.parse_args()
-    random = random_sets(arguments.count, arguments.seed)
-    systems = {**{str(i): one for i, one in enumerate(random)}, "quick": QUICK, "beam": BEAM}
-    for name in arguments.only.split(",") if arguments.only else systems:
-        begin = time.process_time()
-        for line in report(systems[name], not arguments.no_jumps):
-            print(f"{name}: {line}", flush=True)
-        print(f"{name}: {time.process_time() - begin:.0f} s", flush=True)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,0 +1,91 @@
+"""Store what a coupled run leaves of its steps: a row for each, with names for the columns."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .polynomials import Cubic
+
+Floats = NDArray[np.float64]
+BOX = ("box_position", "box_velocity", "box_acceleration")
+
+
+class OscillatorOutputs(NamedTuple):
+    """Store the outputs of the structure FMU at a communication point, SI units.
+
+    Displacements count from the unloaded springs; the gap ``x_rel`` is 0 in contact.
+    """
+
+    x1: float
+    x2: float
+    v1: float
+    v2: float
+    box_force: float
+    box_impulse: float
+    box_impulse_moment: float
+    impact_energy: float
+    impact_time: float
+    x_rel: float
+
+
+STEP = (  # of the step that ends here: its length, how often that was halved, its cubic
+    *("time", "h", "level", "acceleration_then", "jerk_then", "snap_then", "crackle_then"),
+    "impacts",  # since the start
+)
+LEADING = (*STEP, *OscillatorOutputs._fields, *BOX)  # then come the drive's outputs and inputs
+PLACE = {name: i for i, name in enumerate(LEADING)}
+
+
+@dataclass(frozen=True)
+class Record:
+    """Hold the columns of a run: the state before it, then one value for the end of each step."""
+
+    names: tuple[str, ...]
+    columns: Floats  # (names, 1 + steps)
+    ends: NDArray[np.integer[Any]]  # places in a column at which communication intervals end
+
+    @classmethod
+    def of_rows(cls, names: tuple[str, ...], rows: Any, ends: Any) -> Record:
+        """Make a record of rows, one for the state before and for each step."""
+        return cls(names, np.ascontiguousarray(np.transpose(rows)), np.asarray(ends, dtype=np.intp))
+
+    @property
+    def before(self) -> Record:
+        """Return the states at which the steps begin."""
+        return replace(self, columns=self.columns[:, :-1])
+
+    @property
+    def after(self) -> Record:
+        """Return the states at which the steps end."""
+        return replace(self, columns=self.columns[:, 1:])
+
+    def at_ends(self) -> Record:
+        """Return the states at the ends of communication intervals only."""
+        return replace(self, columns=self.columns[:, self.ends])
+
+    def __getitem__(self, name: str) -> Floats:
+        """Return a column."""
+        return self.columns[self.names.index(name)]
+
+    def motion(self) -> OscillatorOutputs:
+        """Return the oscillator's outputs, an array for each."""
+        first = PLACE["x1"]
+        return OscillatorOutputs._make(self.columns[first : first + len(OscillatorOutputs._fields)])
+
+    def acceleration(self) -> Cubic:
+        """Return the box acceleration over the steps that end here, as cubics."""
+        first = PLACE["acceleration_then"]
+        return tuple(self.columns[first : first + 4])
+
+
+def joined(records: Sequence[Record]) -> Record:
+    """Join the records of runs that follow each other."""
+    starts = np.cumsum([0, *(record.columns.shape[1] - 1 for record in records)])
+    columns = [records[0].columns[:, :1], *(record.after.columns for record in records)]
+    ends = [start + record.ends for start, record in zip(starts, records, strict=False)]
+    return Record(records[0].names, np.concatenate(columns, axis=1), np.concatenate(ends))
