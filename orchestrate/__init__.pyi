@@ -69,3 +69,5 @@ from .weak_drive.passage import passage as passage
 from .weak_drive.passage import waterfall as waterfall
 from .weak_drive.schedule import Course as Course
 from .weak_drive.ssp import write_ssp as write_ssp
+
+PLACES: dict[str, str]

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
 
 def flag_words(attributes: Mapping[Any, Any]) -> dict[int, str]:
     """Return a dict from number to word, read from ``flag_values`` and ``flag_meanings`` (CF).
@@ -16,6 +14,8 @@ def flag_words(attributes: Mapping[Any, Any]) -> dict[int, str]:
     >>> flag_words({"flag_values": [0, 1], "flag_meanings": "irregular period_doubling"})
     {0: 'irregular', 1: 'period doubling'}
     """
+    import numpy as np  # a help needs none
+
     words = str(attributes["flag_meanings"]).split()
     numbers = np.atleast_1d(attributes["flag_values"]).tolist()
     return {int(n): word.replace("_", " ") for n, word in zip(numbers, words, strict=True)}

@@ -1,7 +1,6 @@
 """Command line's entry: parse the arguments, run one command, turn errors into exit codes.
 
-A command's module has ``add_parser``, which declares its options, and ``run``, which carries it
-out; :mod:`.options` has what commands share.
+A command is a row of a :mod:`.table`; the rows stand in one module for each family of commands.
 """
 
 from __future__ import annotations
@@ -19,42 +18,15 @@ from typing import Any
 
 from ..errors import InputError, StaleError, Terminated, VibroimpactError
 from ..version import __version__
-from . import (
-    analyse,
-    attractors,
-    basin,
-    border,
-    branch,
-    build,
-    capture,
-    cosimulate,
-    couple,
-    diagnose,
-    drive_branch,
-    explore,
-    jump_voltages,
-    lyapunov,
-    manifold,
-    map,
-    orbit,
-    paper,
-    passage,
-    poincare,
-    report,
-    resonance,
-    shake,
-    simulate,
-    spectra,
-    sweep,
-)
-from .options import Commands, list_shipped_sets
+from . import diagnosis, dynamics, laboratory, pages, responses, weak_drive
+from .options import QUANTITIES, list_shipped_sets
 from .safe_output import safe_outputs
+from .table import DEBUG, parse_options
 
 COMMANDS = (
-    *(build, simulate, shake, analyse, diagnose, resonance, spectra, sweep, map),
-    *(lyapunov, poincare, attractors, basin, orbit, manifold, branch, border),
-    *(cosimulate, couple, capture, passage, jump_voltages, drive_branch),
-    *(explore, report, paper),
+    *(pages.BUILD, responses.SIMULATE, *laboratory.COMMANDS, *diagnosis.COMMANDS),
+    *(responses.RESONANCE, responses.SPECTRA, responses.SWEEP, responses.MAP),
+    *(*dynamics.COMMANDS, *weak_drive.COMMANDS, pages.EXPLORE, pages.REPORT, pages.PAPER),
 )
 SUCCESS, FAILURE, MISTAKE, INTERRUPTED, TERMINATED = 0, 1, 2, 130, 143
 STORE = "orchestrate.running.store"
@@ -76,24 +48,23 @@ def program_name() -> str:
 
 
 def make_parser(words: Collection[str] | None = None) -> argparse.ArgumentParser:
-    """Return the ``argparse`` parser of the command line, with one subparser per command."""
+    """Return the command line's parser; options of those commands alone that are among words."""
     program = program_name()
     parser = argparse.ArgumentParser(
         prog=program,
-        description="Ask a vibro-impacting structure, through its FMUs: what its response is, "
-        "where it is irregular, what a motor does to it.",
+        description="Simulate and analyse a vibro-impacting structure through its FMUs: its "
+        "responses, where they are irregular, and how a motor of limited power drives it.",
         epilog=EXAMPLES.format(program=program, sets=list_shipped_sets()),
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
     parser.add_argument("--version", action="version", version=__version__)
-    debug = "show where in the program an error came from"
-    parser.add_argument("--debug", action="store_true", help=debug)
+    (debug,) = parse_options(DEBUG)
+    parser.add_argument(debug.flag, **debug.details)
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
-    adding = Commands(commands, program, words)
     for command in COMMANDS:
-        command.add_parser(adding)
-    adding.add_common_options()
+        complete = words is None or command.name in words
+        command.add_parser(commands, program, QUANTITIES, complete)
     return parser
 
 
@@ -150,9 +121,9 @@ def run_command(arguments: Sequence[str]) -> int:
     except (MemoryError, ImportError) as error:
         if chosen.debug:
             raise
-        reason = (str(error).strip().splitlines() or ["out of memory"])[0]
-        expected = "expected more memory, or an installation that is whole"
-        print_error(f"error: {reason}; {expected}; {describe_progress_kept()}")
+        reason = (str(error).strip().splitlines() or [type(error).__name__])[0]
+        text = "out of memory, or the installation is incomplete"
+        print_error(f"error: {reason}: {text}; {describe_progress_kept()}")
         return FAILURE
     except (VibroimpactError, RuntimeError, OSError) as error:
         if chosen.debug:
@@ -188,13 +159,13 @@ def report_interruption(ended: KeyboardInterrupt) -> int:
 
 
 def describe_progress_kept() -> str:
-    """Return a text for the user: what an interrupted command has stored, and how to go on."""
+    """Return a text for the user: what an interrupted command has stored, and how to resume."""
     store = sys.modules.get(STORE)  # not imported only to say that nothing is in it
     if store and store.STARTED:
-        return "what was stored is kept, the same command goes on from there"
+        return "what was stored is kept; repeat the command to resume"
     if store and store.FINISHED:
-        return "the result is stored, the same command (without --force) goes on from there"
-    return "nothing was stored, the same command begins anew"
+        return "the result is stored; repeat the command (without --force) to resume"
+    return "nothing was stored; repeat the command to start again"
 
 
 @contextmanager

@@ -6,13 +6,14 @@ What is wrong is an :class:`InputError` that names the option, its text and what
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterable
 from decimal import Decimal, InvalidOperation
 from typing import TypeVar
 
 from ..errors import InputError
 
 Parsed = TypeVar("Parsed")
+Reader = Callable[[str, str], Parsed]
 AxisSpec = tuple[str, float, float, int]
 MAX_VALUES = 10_000_000
 RANGE = "expected FIRST:LAST:STEP with 0 < FIRST <= LAST and STEP > 0, or a list such as 0.4,1.047"
@@ -58,90 +59,96 @@ def parse(option: str, text: str, expected: str, reader: Callable[[str], Parsed]
         raise InputError(f"{option} {text}: expected {expected}") from None
 
 
-def parse_floats(
-    text: str, separator: str, counts: Collection[int] = (), positive: bool = False
-) -> tuple[float, ...]:
-    """Parse numbers between separators; raise unless there are as many as one of ``counts``."""
-    numbers = tuple(plain_float(part) for part in text.split(separator))
-    if counts and len(numbers) not in counts:
-        raise ValueError(text)
-    if positive and not all(math.isfinite(number) and number > 0.0 for number in numbers):
-        raise ValueError(text)
-    return numbers
+def floats(
+    expected: str, separator: str = ",", counts: Collection[int] = (), positive: bool = False
+) -> Reader[tuple[float, ...]]:
+    """Return a reader of numbers between separators: as many as one of ``counts``, if given."""
+
+    def split(text: str) -> tuple[float, ...]:
+        """Split a text into numbers; raise ``ValueError`` for a wrong count or sign."""
+        numbers = tuple(plain_float(part) for part in text.split(separator))
+        if counts and len(numbers) not in counts:
+            raise ValueError(text)
+        if positive and not all(math.isfinite(number) and number > 0.0 for number in numbers):
+            raise ValueError(text)
+        return numbers
+
+    return lambda option, text: parse(option, text, expected, split)
+
+
+parse_ends = floats("FIRST:LAST, two numbers such as 1.2:1.65", ":", (2,))
+parse_number_or_ends = floats("a number, or FIRST:LAST such as 1.2:1.65", ":", (1, 2))
+parse_state = floats("X1,X2,V1,V2, four numbers in m and m/s", ",", (4,))
+parse_numbers = floats("a number, or a list such as 0.5,1,2")
+parse_rates = floats("a number > 0, or several such as 1e-4,5e-5,2.5e-5", positive=True)
 
 
 def positive_number(option: str, text: str) -> float:
-    """Parse an option's text as one number > 0; raise ``InputError`` that names the option."""
-    expected = f"a number > 0, such as {option} 0.5"
-    return parse(option, text, expected, lambda part: parse_floats(part, ",", (1,), positive=True))[
-        0
-    ]
+    """Parse an option's text as one number > 0."""
+    reader = floats(f"a number > 0, such as {option} 0.5", counts=(1,), positive=True)
+    return reader(option, text)[0]
 
 
 def whole_number(option: str, text: str) -> int:
-    """Parse an option's text as an integer; raise ``InputError`` that names the option."""
+    """Parse an option's text as an integer."""
     return parse(option, text, "a whole number >= 0", plain_int)
 
 
-def parse_ends(option: str, text: str) -> tuple[float, float]:
-    """Parse ``FIRST:LAST`` into two numbers."""
-    expected = "FIRST:LAST, two numbers such as 1.2:1.65"
-    first, last = parse(option, text, expected, lambda part: parse_floats(part, ":", (2,)))
-    return first, last
-
-
-def parse_number_or_ends(option: str, text: str) -> tuple[float, ...]:
-    """Parse ``VALUE`` or ``FIRST:LAST`` into a tuple of one or two numbers."""
-    expected = "a number, or FIRST:LAST such as 1.2:1.65"
-    return parse(option, text, expected, lambda part: parse_floats(part, ":", (1, 2)))
-
-
-def parse_rates(option: str, text: str, one: bool = False) -> tuple[float, ...]:
-    """Parse a list of rates > 0 into a tuple; with ``one``, exactly one rate."""
-    several = "" if one else ", or several as A,B,..., such as 1e-4,5e-5,2.5e-5"
-    expected = f"a number > 0{several}"
-    rates = parse(option, text, expected, lambda part: parse_floats(part, ",", positive=True))
-    if one and len(rates) > 1:
+def parse_rate(option: str, text: str) -> float:
+    """Parse one rate > 0; name the command that takes several."""
+    rates = parse_rates(option, text)
+    if len(rates) > 1:
         raise InputError(
             f"{option} {text}: {len(rates)} rates; expected one (jump-voltages takes several)"
         )
-    return rates
+    return rates[0]
 
 
 def parse_orders(option: str, text: str) -> float | tuple[float, ...]:
     """Parse ``N`` or a list of orders such as ``0.5,1,2``; return the number or the list."""
-    orders = parse(option, text, "a whole number, or 0.5,1,2", lambda part: parse_floats(part, ","))
+    orders = parse_numbers(option, text)
     return orders if "," in text else orders[0]
-
-
-def parse_state(option: str, text: str) -> tuple[float, ...]:
-    """Parse a state ``X1,X2,V1,V2`` into its four numbers."""
-    expected = "X1,X2,V1,V2, four numbers in m and m/s"
-    return parse(option, text, expected, lambda part: parse_floats(part, ",", (4,)))
 
 
 def parse_plane_side(option: str, text: str) -> AxisSpec:
     """Parse one side of a basin's plane, ``NAME,FIRST,LAST,COUNT``."""
 
-    def read(text: str) -> AxisSpec:
+    def split(text: str) -> AxisSpec:
         """Split the text into name, two numbers and a count; raise ``ValueError`` otherwise."""
         name, first, last, count = (part.strip() for part in text.split(","))
         return name, plain_float(first), plain_float(last), plain_int(count)
 
-    return parse(option, text, "NAME,FIRST,LAST,COUNT such as x_rel,0,0.8,60", read)
+    return parse(option, text, "NAME,FIRST,LAST,COUNT such as x_rel,0,0.8,60", split)
 
 
 def parse_breakpoints(option: str, text: str) -> tuple[tuple[float, float], ...]:
     """Parse ``HZ:VALUE,HZ:VALUE,...`` into pairs of frequency and value."""
 
-    def read(text: str) -> tuple[tuple[float, float], ...]:
-        """Split the text into pairs of numbers; raise ``ValueError`` otherwise."""
-        pairs = [parse_floats(part, ":", (2,)) for part in text.split(",")]
-        if not all(math.isfinite(number) for pair in pairs for number in pair):
+    def split(text: str) -> tuple[tuple[float, float], ...]:
+        """Split the text into pairs of finite numbers; raise ``ValueError`` otherwise."""
+        pairs = [tuple(map(plain_float, part.split(":"))) for part in text.split(",")]
+        if not all(len(pair) == 2 and all(map(math.isfinite, pair)) for pair in pairs):
             raise ValueError(text)
         return tuple((first, last) for first, last in pairs)
 
-    return parse(option, text, "HZ:VALUE,HZ:VALUE,... such as 10:0.5,200:0.5", read)
+    return parse(option, text, "HZ:VALUE,HZ:VALUE,... such as 10:0.5,200:0.5", split)
+
+
+def parse_columns(option: str, text: str) -> dict[str, str | int]:
+    """Parse ``CHANNEL=COLUMN,...`` into a dict from channel to column name or number."""
+    pairs = read_pairs(option, text.split(","), "CHANNEL=COLUMN,... such as acceleration1=4")
+    return {name: int(column) if column.isdecimal() else column for name, column in pairs.items()}
+
+
+def read_pairs(option: str, texts: Iterable[str], expected: str) -> dict[str, str]:
+    """Return ``NAME=VALUE`` texts as a dict; raise where a part is missing or a name repeats."""
+    pairs: dict[str, str] = {}
+    for text in texts:
+        name, _, value = (part.strip() for part in text.partition("="))
+        if not (name and value) or name in pairs:
+            raise InputError(f"{option} {text}: expected {expected}, each name once")
+        pairs[name] = value
+    return pairs
 
 
 # -- ranges and lists -----------------------------------------------------------------------------
@@ -195,20 +202,13 @@ def parse_single_number(option: str, text: str) -> float:
 # -- names and values -----------------------------------------------------------------------------
 
 
-def parse_changes(texts: list[str]) -> dict[str, float | bool]:
+def parse_changes(texts: Iterable[str]) -> dict[str, float | bool]:
     """Parse the texts ``NAME=VALUE`` of ``--set`` into a dict from parameter to value."""
-    changes: dict[str, float | bool] = {}
-    for text in texts:
-        name, equals, value = (part.strip() for part in text.partition("="))
-        if not (name and equals):
-            raise InputError(f"--set {text}: expected NAME=VALUE, such as e=0.3")
-        if name in changes:
-            raise InputError(f"--set {text}: {name} is set twice; expected once")
-        changes[name] = parse_changed_value(text, name, value)
-    return changes
+    pairs = read_pairs("--set", texts, "NAME=VALUE such as e=0.3")
+    return {name: parse_changed_value(name, value) for name, value in pairs.items()}
 
 
-def parse_changed_value(text: str, name: str, value: str) -> float | bool:
+def parse_changed_value(name: str, value: str) -> float | bool:
     """Parse the VALUE of ``--set NAME=VALUE``: a number, with a unit if the parameter allows it."""
     if value in ("true", "false"):
         return value == "true"
@@ -223,5 +223,5 @@ def parse_changed_value(text: str, name: str, value: str) -> float | bool:
     except (ValueError, InvalidOperation):
         words = f", with {' or '.join(known)} if you like" if known else ", or true or false"
         raise InputError(
-            f"--set {text}: {value or 'nothing'} is no number; expected one{words}"
+            f"--set {name}={value}: {value} is not a number; expected one{words}"
         ) from None

@@ -1,31 +1,29 @@
-"""Options that several commands share: structure, drive, excitation, varied parameter."""
+"""Options that several commands share: structure, the box's motion, a varied parameter."""
 
 from __future__ import annotations
 
 import argparse
 import math
 import textwrap
-from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field, fields
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from ..structures.ranges import ADDED, STRUCTURE
-from .declared_options import option_keywords
 from .grammar import (
     is_single_number,
     parse_changes,
     parse_ends,
     parse_one_or_more,
     parse_values,
-    plain_float,
     positive_number,
 )
-from .output import add_result_options, add_units_option
+from .output import result_groups
+from .table import Group
 
 if TYPE_CHECKING:
-    from ..structures import Drive, Structure
+    from ..structures import Structure
 
 SETS = Path(__file__).resolve().parents[1] / "structures" / "sets"
 UNITS = {"hz": "hz", "rpm": "rpm", "frequency": "rad_s"}  # of a frequency's options
@@ -43,7 +41,8 @@ ASSUMED = {  # what a beam needs beside what is set, with the names that set it 
 CONTINUED = (  # what a continuation varies, for help texts
     "eta, hz, rpm, frequency, amplitude, box_acceleration or a parameter of the structure"
 )
-ETA0 = "eta0 = U/(K omega) is the voltage as no-load speed over omega = sqrt(k1/m1)."
+START = "--start X1,X2,V1,V2  state at the start, m and m/s (default: rest)"
+BESIDE = "--beside  the same of the bonded structure, beside it"
 
 
 def parameter_help(name: str, width: int = 94, indent: int = 24) -> str:
@@ -75,112 +74,6 @@ QUANTITIES = f"""quantities:
 """
 
 
-@dataclass(frozen=True)
-class Commands:
-    """Registry of the commands' parsers: adds each command with its help and common options."""
-
-    subparsers: Any
-    program: str  # how the command line was called, for examples
-    # commands whose functions are imported for their options; all by default
-    wanted: Collection[str] | None = None
-    # parsers to which the options of a result are to be added, after their own
-    asked: list[argparse.ArgumentParser] = field(default_factory=list)
-
-    def add(
-        self, name: str, run: Callable[[argparse.Namespace], None], text: str, examples: str
-    ) -> argparse.ArgumentParser:
-        """Add a command with its help text, examples and run function; return its parser."""
-        parser: argparse.ArgumentParser = self.subparsers.add_parser(
-            name,
-            help=text,
-            description=f"{text[0].upper()}{text[1:]}.",
-            epilog=f"{QUANTITIES}examples:\n{examples.format(program=self.program)}",
-            formatter_class=argparse.RawDescriptionHelpFormatter,
-            allow_abbrev=False,
-        )
-        debug = "show where in the program an error came from"
-        parser.add_argument("--debug", action="store_true", default=argparse.SUPPRESS, help=debug)
-        parser.set_defaults(run=run, command=name)
-        return parser
-
-    def add_response_command(
-        self,
-        name: str,
-        run: Callable[[argparse.Namespace], None],
-        text: str,
-        examples: str,
-        several: bool = True,
-        usual: str = "",
-        from_file: bool = False,
-    ) -> FunctionOptions:
-        """Add a command on responses to harmonic excitation; return its ``FunctionOptions``."""
-        parser = self.add(name, run, text, examples)
-        add_structure_options(parser, "--start" if from_file else "")
-        add_excitation_options(parser, several, usual)
-        self.asked.append(parser)
-        return self.add_function_options(parser)
-
-    def add_drive_command(
-        self, name: str, run: Callable[[argparse.Namespace], None], text: str, examples: str
-    ) -> argparse.ArgumentParser:
-        """Add a command on a structure driven by a motor; return its parser."""
-        parser = self.add(name, run, text, examples.replace("{eta0}", ETA0))
-        add_drive_options(parser)
-        add_units_option(parser)
-        return parser
-
-    def add_common_options(self) -> None:
-        """Add the options of output and units, last, to all commands on responses."""
-        for parser in self.asked:
-            add_units_option(parser)
-            add_result_options(parser)
-
-    def add_function_options(
-        self, parser: argparse.ArgumentParser, title: str = "question"
-    ) -> FunctionOptions:
-        """Add a group for the options that are the public function's arguments; return it."""
-        command = parser.get_default("command")
-        question = FunctionOptions(command, self.wanted is None or command in self.wanted)
-        question.group = parser.add_argument_group(title)
-        parser.set_defaults(question=question)
-        return question
-
-
-@dataclass
-class FunctionOptions:
-    """Options of a command that are arguments of the public function of the same name."""
-
-    command: str
-    wanted: bool  # whether the function is imported for its options
-    group: Any = None
-    # what reads the texts of options, by their names; None where they stand as they are
-    readers: dict[str, Callable[[str, Any], Any] | None] = field(default_factory=dict)
-
-    def add(
-        self, name: str, reader: Callable[[str, Any], Any] | None = None, **details: Any
-    ) -> None:
-        """Add an option for a function's argument; ``reader`` parses its text."""
-        self.readers[name] = reader
-        self.group.add_argument(option_name(name), **details)
-
-    def declare(self, *names: str) -> None:
-        """Add options for arguments, their type, default and help read from the function."""
-        if self.wanted:
-            import orchestrate
-
-            function = getattr(orchestrate, self.command.replace("-", "_"))
-            for name in names:
-                self.add(name, **option_keywords(function, name))
-
-    def keywords(self, arguments: argparse.Namespace) -> dict[str, Any]:
-        """Return the options' values as keywords of the public function."""
-        keywords = {name: getattr(arguments, name) for name in self.readers}
-        for name, reader in self.readers.items():
-            if reader is not None and keywords[name] is not None:
-                keywords[name] = reader(option_name(name), keywords[name])
-        return keywords
-
-
 def option_name(name: str) -> str:
     """Return the command-line option of an argument: ``--max-points`` for ``max_points``."""
     return f"--{name.replace('_', '-')}"
@@ -196,29 +89,62 @@ def list_shipped_sets() -> str:
     return "\n".join(lines)
 
 
-# -- structures -----------------------------------------------------------------------------------
+# -- tables of options ----------------------------------------------------------------------------
 
 
-def add_structure_options(parser: argparse.ArgumentParser, stored: str = "") -> None:
-    """Add ``--structure`` and ``--set``."""
-    group = parser.add_argument_group("structure")
-    usual = f"that of {stored}, else paper" if stored else "%(default)s"
-    group.add_argument(
+def structure_group(stored: str = "") -> Group:
+    """Return ``--structure`` and ``--set``; ``stored``: the option of a result that has one."""
+    default, usual = (
+        ("", f" (default: that of {stored}, else paper)") if stored else (" = paper", "")
+    )
+    return Group(
+        "structure",
+        f"""
+        --structure SET|FILE{default}  TOML file with a [structure], or the name of a set{usual}
+        --set NAME=VALUE ...  one of its parameters, SI ({" ".join(STRUCTURE)}), of each half
+            (f1 f2 in Hz, zeta1 zeta2) or the paper's (mu kappa D D1 D2 omega); may be repeated
+        """,
+    )
+
+
+def box_group(several: bool = True, usual: str = "") -> Group:
+    """Return the options of the box's harmonic motion."""
+    values = "VALUES" if several else "VALUE"
+    form = ", FIRST:LAST:STEP with both ends or a list A,B,..." if several else ""
+    levels = "; several levels at one frequency" if several else ""
+    default = f" (default: {usual})" if usual else ""
+    return Group(
+        "the box's motion",
+        f"""
+        --hz {values}  frequency in Hz{form}
+        --rpm {values}  the same in turns per minute
+        --frequency {values}  the same as Omega in rad/s
+        --eta {values}  the same as frequency ratio Omega/omega{default}
+        --amplitude A  amplitude a in m (default with --eta: 1/eta^2 m)
+        --g G  the same as peak acceleration in g, held at all frequencies{levels}
+        """,
+        description="one frequency and one amplitude of these, or the [excitation] of the file of "
         "--structure",
-        default=None if stored else "paper",
-        metavar="FILE",
-        help=f"TOML file with a [structure], or the name of a set (default: {usual})",
-    )
-    add_set_option(
-        group,
-        f"one of its parameters, SI ({' '.join(STRUCTURE)}), of each half (f1 f2 in "
-        "Hz, zeta1 zeta2) or the paper's (mu kappa D D1 D2 omega); may be repeated",
     )
 
 
-def add_set_option(group: Any, text: str) -> None:
-    """Add ``--set NAME=VALUE``."""
-    group.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help=text)
+def response_groups(
+    question: Group, several: bool = True, usual: str = "", stored: str = ""
+) -> tuple[Group, ...]:
+    """Return the groups of a command on responses to harmonic excitation."""
+    return structure_group(stored), box_group(several, usual), question, *result_groups()
+
+
+def over_options(twice: bool = False) -> str:
+    """Return ``--over`` and ``--values``, which may be repeated if ``twice``."""
+    more, where = (" ...", "; twice at") if twice else ("", ", at")
+    return f"""
+    --over NAME{more}  a parameter of the structure that varies, as for --set{where} one frequency
+    --values VALUES{more}  its values, FIRST:LAST:STEP or a list A,B,...
+    """
+
+
+# -- structures -----------------------------------------------------------------------------------
 
 
 def read_structure_options(arguments: argparse.Namespace) -> Structure:
@@ -253,111 +179,7 @@ def format_assumed(name: str, value: float) -> str:
     return f"{value:.4g}{units.get(name[0], '')}"
 
 
-# -- motor and box ---------------------------------------------------------------------------------
-
-
-def add_drive_options(parser: argparse.ArgumentParser) -> None:
-    """Add ``--drive``, ``--structure``, ``--set`` and the motor's datasheet options."""
-    group = parser.add_argument_group("structure, motor and box")
-    text = (
-        "TOML file with [motor], [box] and [structure], or a set: quick, beam, rig (default: "
-        "%(default)s)"
-    )
-    group.add_argument("--drive", default="quick", metavar="FILE", help=text)
-    other = "file or set with another [structure] than that of --drive"
-    group.add_argument("--structure", metavar="FILE", help=other)
-    add_set_option(
-        group, "a parameter of the structure, or of motor and box in SI; may be repeated"
-    )
-    sheet = parser.add_argument_group(
-        "a motor by its datasheet", "in place of motor_constant and armature_resistance: all three"
-    )
-    sheet.add_argument("--rated-voltage", type=plain_float, metavar="V", help="of the motor, V")
-    sheet.add_argument(
-        "--no-load-rpm", type=plain_float, metavar="RPM", help="its speed without load"
-    )
-    sheet.add_argument(
-        "--stall-torque", type=plain_float, metavar="N.M", help="its torque at rest, N m"
-    )
-
-
-def read_drive_options(arguments: argparse.Namespace) -> tuple[Structure, Drive]:
-    """Return structure and drive of the options, with the changes of ``--set`` to either."""
-    from ..structures import Drive, Structure
-
-    drive = Drive.from_file(arguments.drive)
-    structure = Structure.from_file(arguments.structure or arguments.drive)
-    changes = parse_changes(arguments.set)
-    drive_names = {field.name for field in fields(Drive)}
-    of_drive = {name: float(value) for name, value in changes.items() if name in drive_names}
-    of_structure = {name: value for name, value in changes.items() if name not in drive_names}
-    of_drive |= read_datasheet(arguments, of_drive)
-    check_masses(arguments.structure or arguments.drive, of_structure)
-    changed = structure.replace(**of_structure)
-    print_assumptions(changed, arguments.structure or arguments.drive, of_structure)
-    return changed, drive.replace(**of_drive)
-
-
-def check_masses(source: str, changes: Mapping[str, Any]) -> None:
-    """Raise if a beam's frequencies are set but its masses are not: the motor feels them."""
-    unknown = {"m1", "m2"} - changes.keys() - ({"m2"} if "mu" in changes else set())
-    named = next((name for name in ("f1", "f2") if name in changes), None)
-    if named and unknown and source in ("paper", "quick"):
-        raise InputError(
-            f"--set {named}={changes[named]:g}: the motor feels the masses, and those of {source} "
-            "are no beam's; expected --set m1=KG --set m2=KG too, or a --structure with them"
-        )
-
-
-def read_datasheet(arguments: argparse.Namespace, changes: Mapping[str, float]) -> dict[str, float]:
-    """Return motor constant and resistance from the datasheet's options; empty without them."""
-    from ..structures.drive import torque_line
-
-    names = ("rated_voltage", "no_load_rpm", "stall_torque")
-    values = {name: getattr(arguments, name) for name in names}
-    options = {name: option_name(name) for name in names}
-    present = [name for name in names if values[name] is not None]
-    if not present:
-        return {}
-    if len(present) < len(names):
-        missing = next(name for name in names if name not in present)
-        text = f"{options[present[0]]} {values[present[0]]:g}: without {options[missing]}"
-        raise InputError(f"{text}; expected {', '.join(options.values())} together")
-    for name, option in options.items():
-        if not (math.isfinite(values[name]) and values[name] > 0.0):
-            raise InputError(f"{option} {values[name]:g}: expected a number > 0")
-    for name in ("motor_constant", "armature_resistance"):
-        if name in changes:
-            text = f"--set {name}={changes[name]:g}: beside {options['rated_voltage']}"
-            raise InputError(f"{text}; expected one of them")
-    speed = 2.0 * math.pi * values["no_load_rpm"] / 60.0
-    line = torque_line(values["rated_voltage"], speed, values["stall_torque"])
-    return dict(zip(("motor_constant", "armature_resistance"), line, strict=True))
-
-
 # -- the box's motion -----------------------------------------------------------------------------
-
-
-def add_excitation_options(
-    parser: argparse.ArgumentParser, several: bool = True, usual: str = ""
-) -> None:
-    """Add ``--hz``, ``--rpm``, ``--frequency``, ``--eta``, ``--amplitude`` and ``--g``."""
-    values = "VALUES" if several else "VALUE"
-    levels = "; several levels at one frequency" if several else ""
-    form = ", FIRST:LAST:STEP with both ends or a list A,B,..." if several else ""
-    group = parser.add_argument_group(
-        "the box's motion",
-        "one frequency and one amplitude of these, or the [excitation] of the file of --structure",
-    )
-    option = group.add_argument
-    default = f" (default: {usual})" if usual else ""
-    option("--hz", metavar=values, help=f"frequency in Hz{form}")
-    option("--rpm", metavar=values, help="the same in turns per minute")
-    option("--frequency", metavar=values, help="the same as Omega in rad/s")
-    option("--eta", metavar=values, help=f"the same as frequency ratio Omega/omega{default}")
-    option("--amplitude", metavar="A", help="amplitude a in m (default with --eta: 1/eta^2 m)")
-    text = "the same as peak acceleration in g, held at all frequencies"
-    option("--g", metavar="G", help=f"{text}{levels}")
 
 
 def read_excitation(
@@ -365,17 +187,14 @@ def read_excitation(
     structure: Structure,
     si: bool = False,
     one: bool = False,
-    level: bool = True,
 ) -> dict[str, Any]:
     """Return frequency and amplitude of the box's motion as keywords of the public API."""
     from ..constants import GRAVITY
     from ..structures.sections import TO_RAD_S
 
-    name = frequency_option(arguments)
-    amplitude = read_amplitude(arguments)
-    described_too = excitation_from_file(arguments) if name is None and amplitude is None else None
-    if described_too:
-        return described_too
+    name, amplitude = frequency_option(arguments), read_amplitude(arguments)
+    if not is_shaken(arguments) and (described := excitation_from_file(arguments)):
+        return described
     if name is None:
         raise InputError(
             f"frequency: nothing given; expected one of {join_option_names(FREQUENCIES)}"
@@ -390,8 +209,7 @@ def read_excitation(
             )
         return {"eta": values}
     if amplitude is None:
-        either = "--amplitude in m or --g" if level else "--amplitude in m"
-        raise InputError(f"--{name} {text}: expected {either} with it")
+        raise InputError(f"--{name} {text}: expected --amplitude in m or --g with it")
     omega = structure.omega
     frequencies = apply_to_each(
         TO_RAD_S[UNITS[name]] if name in UNITS else lambda eta: eta * omega, values
@@ -406,7 +224,7 @@ def read_question(arguments: argparse.Namespace) -> tuple[Structure, dict[str, A
     """Return the structure, and all keywords of a public function at one frequency."""
     structure = read_structure_options(arguments)
     excitation = read_excitation(arguments, structure, si=True, one=True)
-    return structure, {**excitation, **arguments.question.keywords(arguments)}
+    return structure, {**excitation, **arguments.row.keywords(arguments)}
 
 
 def excitation_from_file(arguments: argparse.Namespace) -> dict[str, Any] | None:
@@ -421,28 +239,35 @@ def excitation_from_file(arguments: argparse.Namespace) -> dict[str, Any] | None
     return {"frequency": excitation.frequency, "amplitude": excitation.amplitude}
 
 
+def one_of(arguments: argparse.Namespace, *names: str) -> str | None:
+    """Return which of some options is given, None if none is; raise if several are."""
+    given = [name for name in names if getattr(arguments, name) not in (None, False)]
+    if len(given) > 1:
+        raise InputError(f"{' and '.join(map(option_name, given))}: expected one of them")
+    return given[0] if given else None
+
+
 def frequency_option(arguments: argparse.Namespace) -> str | None:
-    """Return which option gives the frequency, None if none does; raise if several do."""
-    present = [name for name in FREQUENCIES if getattr(arguments, name) is not None]
-    if len(present) > 1:
-        raise InputError(f"{join_option_names(present, ' and ')}: expected one of them")
-    return present[0] if present else None
-
-
-def check_one_level(arguments: argparse.Namespace) -> None:
-    """Raise if both ``--amplitude`` and ``--g`` are given."""
-    if arguments.amplitude is not None and arguments.g is not None:
-        raise InputError("--amplitude and --g: expected one of them")
+    """Return which option gives the frequency, None if none does."""
+    return one_of(arguments, *FREQUENCIES)
 
 
 def read_amplitude(arguments: argparse.Namespace) -> float | None:
     """Return the number of ``--amplitude`` (m) or ``--g`` (g); None if neither is given."""
-    check_one_level(arguments)
-    for name in ("amplitude", "g"):
-        text = getattr(arguments, name)
-        if text is not None:
-            return positive_number(f"--{name}", text)
-    return None
+    name = one_of(arguments, "amplitude", "g")
+    return None if name is None else positive_number(f"--{name}", getattr(arguments, name))
+
+
+def is_shaken(arguments: argparse.Namespace) -> bool:
+    """Return whether an option gives a frequency or an amplitude of the box."""
+    return frequency_option(arguments) is not None or read_amplitude(arguments) is not None
+
+
+def read_over(arguments: argparse.Namespace) -> tuple[tuple[float, ...], bool] | None:
+    """Return the values of ``--over``, and whether they are a range; None without it."""
+    if (arguments.over is None) != (arguments.values is None):
+        raise InputError("--over and --values: expected both, or none of them")
+    return parse_values("--values", arguments.values, zero=True) if arguments.over else None
 
 
 def join_option_names(names: Any, joint: str = ", ") -> str:
@@ -458,38 +283,19 @@ def apply_to_each(change: Callable[[float], float], values: float | tuple[float,
 # -- a parameter that varies ----------------------------------------------------------------------
 
 
-def add_over_options(question: FunctionOptions, twice: bool = False) -> None:
-    """Add ``--over`` and ``--values``, which may be repeated if ``twice``."""
-    option = question.group.add_argument
-    action: dict[str, Any] = {"action": "append", "default": []} if twice else {}
-    more = "; twice at one frequency" if twice else ", at one frequency"
-    text = f"a parameter of the structure that varies, as for --set{more}"
-    option("--over", metavar="NAME", help=text, **action)
-    text = "its values, FIRST:LAST:STEP or a list A,B,..."
-    option("--values", metavar="VALUES", help=text, **action)
-
-
 def varied_arguments(
     arguments: argparse.Namespace, structure: Structure, usual: str | None = None
 ) -> tuple[dict[str, Any], bool]:
     """Return excitation and varied parameter as keywords, and whether a range was given."""
-    over, values = arguments.over, arguments.values
-    if over is None and arguments.g is not None and not is_single_number(arguments.g):
+    if arguments.over is None and arguments.g is not None and not is_single_number(arguments.g):
         box = excitation_by_level(arguments, structure, one=True)
         levels = {"over": "level", "values": box["level"]}
         return {"frequency": box["frequency"], **levels}, ":" in arguments.g
-    if (over is None) != (values is None):
-        raise InputError("--over and --values: expected both, or none of them")
-    if over is not None:
-        numbers, is_range = parse_values("--values", values, zero=True)
-        check_over(over, arguments)
+    if (values := read_over(arguments)) is not None:
+        check_over(arguments.over, arguments)
         fixed = read_excitation(arguments, structure, one=True)
-        return {**fixed, "over": over, "values": numbers}, is_range
-    if (
-        usual is not None
-        and frequency_option(arguments) is None
-        and read_amplitude(arguments) is None
-    ):
+        return {**fixed, "over": arguments.over, "values": values[0]}, values[1]
+    if usual is not None and not is_shaken(arguments):
         arguments.eta = usual
     excitation = read_excitation(arguments, structure)
     return excitation, ":" in str(getattr(arguments, frequency_option(arguments) or "eta"))
@@ -501,7 +307,7 @@ def excitation_by_level(
     """Return frequency and level (m/s2) of the box from ``--g``, each a number or a tuple."""
     from ..constants import GRAVITY
 
-    check_one_level(arguments)
+    one_of(arguments, "amplitude", "g")
     levels = parse_one_or_more("--g", arguments.g)
     plain = argparse.Namespace(**{**vars(arguments), "g": None, "amplitude": "1"})
     frequency = read_excitation(plain, structure, one=one)["frequency"]
@@ -519,12 +325,6 @@ def parse_varied(name: str, limits: str) -> tuple[str, tuple[float, float]]:
         to_rad_s = TO_RAD_S[UNITS[name]]
         return "frequency", (to_rad_s(first), to_rad_s(last))
     return name, (first, last)
-
-
-def add_beside_option(question: FunctionOptions) -> None:
-    """Add ``--beside``: compute and draw the bonded structure too."""
-    text = "the same of the bonded structure, beside it"
-    question.group.add_argument("--beside", action="store_true", help=text)
 
 
 def check_over(over: str, arguments: argparse.Namespace) -> None:

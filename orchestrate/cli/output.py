@@ -1,4 +1,4 @@
-"""Output options of all commands, and the files they write: names, tables, pictures."""
+"""Options of results and how they are computed; names, tables and pictures of results."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from .grammar import plain_int
+from .table import Group
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,69 +28,56 @@ FORMATS = ("nc", "csv", "mat", "xlsx")
 PLOTS = ("png", "pdf", "svg")
 DIGITS = 6  # of the digest in a file's name
 PREPARE_AFTER = 1.0  # s: after so much computing, a picture is prepared beside it
-
+OWN_NAME = re.compile(rf"[a-z-]+_(.+)_[0-9a-f]{{{DIGITS}}}")  # of a result's file
 
 # -- options --------------------------------------------------------------------------------------
 
-
-def add_result_options(
-    parser: argparse.ArgumentParser, store: bool = True, several: bool = False
-) -> None:
-    """Add the options of files (``--format`` ...) and of running (``--jobs`` ...)."""
-    add_file_options(parser, store)
-    add_running_options(parser, several=several)
-
-
-def add_running_options(
-    parser: argparse.ArgumentParser,
-    output: Path | None = Path("results"),
-    shown: str = "results",
-    several: bool = False,
-) -> None:
-    """Add ``--output``, ``--force``, ``--jobs``, ``--cluster``, ``--fmu`` and the like."""
-    option = parser.add_argument_group("results and running").add_argument
-    text = f"folder of the results (default: {shown})"
-    option("--output", type=Path, default=output, metavar="FOLDER", help=text)
-    option("--force", action="store_true", help="compute anew what is there already")
-    stale = "take results that older code or another FMU has made"
-    option("--keep-stale", action="store_true", help=stale)
-    option("--jobs", type=plain_int, metavar="N", help="processes at once (default: all cores)")
-    cluster = "compute on the workers of a Dask scheduler, such as tcp://host:8786"
-    option("--cluster", metavar="ADDRESS", help=cluster)
-    own = "own FMU (default: the one of the present sources)"
-    more: dict[str, Any] = {"action": "append"} if several else {}
-    option("--fmu", type=Path, metavar="FILE", help=own + "; may be repeated" * several, **more)
-    build_help = "where FMUs are looked for and exported to"
-    option("--build-folder", type=Path, metavar="FOLDER", help=build_help)
+UNITS = Group(
+    "units",
+    """
+    --units A,B,...  of prints, pictures, tables and their names: Hz, rpm, rad/s or eta; m, mm or
+        um; m/s2 or g; s or periods, a list such as Hz,mm,g (default: as the question is asked; nc
+        is in SI)
+    """,
+)
+STORE = """
+--store FILE.nc  the result's own file (default: a name of its own for each question in --output)
+"""
+FORMAT = f"""
+--format A,B,... = nc  also as {", ".join(FORMATS[1:])}, a list; nc is always written (default: nc)
+--plot A,B,... = png  pictures: {", ".join(PLOTS)}, a list, or none (default: png)
+"""
+OUTPUT = "--output FOLDER = results  folder of the results (default: results)"
 
 
-def add_file_options(parser: argparse.ArgumentParser, store: bool = True) -> None:
-    """Add ``--format`` and ``--plot``, and ``--store`` for a single result."""
-    option = parser.add_argument_group("files").add_argument
-    if store:
-        text = "the result's own file (default: a name of its own for each question in --output)"
-        option("--store", type=Path, metavar="FILE.nc", help=text)
-    text = f"also as {', '.join(FORMATS[1:])}, a list; nc is always written (default: nc)"
-    option("--format", default="nc", metavar="A,B,...", help=text)
-    text = f"pictures: {', '.join(PLOTS)}, a list, or none (default: png)"
-    option("--plot", default="png", metavar="A,B,...", help=text)
-
-
-def add_units_option(parser: argparse.ArgumentParser) -> None:
-    """Add ``--units``: display units of prints, pictures and tables."""
-    text = (
-        "of prints, pictures, tables and their names: Hz, rpm, rad/s or eta; m, mm or um; m/s2 or "
-        "g; s or periods, a list such as Hz,mm,g (default: as the question is asked; nc is in SI)"
+def running_group(output: str = OUTPUT, several: bool = False) -> Group:
+    """Return the options of how results are computed; of ``several`` FMUs or of one."""
+    repeat, again = (" ...", "; may be repeated") if several else ("", "")
+    return Group(
+        "results and running",
+        f"""
+        {output}
+        --force  compute anew what is there already
+        --keep-stale  take results that older code or another FMU has made
+        --jobs N  processes at once (default: all cores)
+        --cluster ADDRESS  compute on the workers of a Dask scheduler, such as tcp://host:8786
+        --fmu FILE{repeat}  own FMU (default: the one of the present sources){again}
+        --build-folder FOLDER  where FMUs are looked for and exported to
+        """,
     )
-    option = parser.add_argument_group("units").add_argument
-    option("--units", default="", metavar="A,B,...", help=text)
+
+
+def result_groups(store: bool = True, several: bool = False) -> tuple[Group, ...]:
+    """Return the groups of units, files and running, which end most commands' options."""
+    files = Group("files", (STORE if store else "", FORMAT))
+    return UNITS, files, running_group(several=several)
 
 
 def read_units(arguments: argparse.Namespace) -> Units:
     """Return the display units of ``--units``; none chosen where a command lacks the option."""
     from ..units import Units
 
-    return Units.from_text(getattr(arguments, "units", ""), "--units")
+    return Units.from_text(getattr(arguments, "units", None) or "", "--units")
 
 
 def read_record_units(arguments: argparse.Namespace) -> Units:
@@ -112,16 +99,6 @@ def refuse_units(arguments: argparse.Namespace, reason: str) -> None:
     """Raise if ``--units`` is given to a command whose output has no units."""
     if str(read_units(arguments)):
         raise InputError(f"--units {arguments.units}: {reason}; expected the command without it")
-
-
-def units_ending(arguments: argparse.Namespace) -> str:
-    """Return the units of ``--units`` as an ending of file names: ``Hz-mm-g``."""
-    return str(read_units(arguments)).replace(", ", "-").replace("/", "_")
-
-
-def with_ending(path: Path, *endings: str) -> Path:
-    """Return a path with endings joined to its stem by ``_``; empty ones are left out."""
-    return path.with_stem("_".join(filter(None, [path.stem, *endings])))
 
 
 def print_units_note(arguments: argparse.Namespace, *answers: xr.Dataset) -> None:
@@ -193,49 +170,26 @@ def check_output(folder: Path, option: str = "--output") -> None:
         raise InputError(f"{option} {folder}: {reason}; expected a folder that can be written")
 
 
-def check_file_options(arguments: argparse.Namespace) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Check ``--format``, ``--plot``, ``--output``; return formats and picture endings."""
-    formats = parse_endings("--format", arguments.format, FORMATS)
-    plots = parse_endings("--plot", arguments.plot, PLOTS)
-    check_output(arguments.output)
-    return formats, plots
-
-
 # -- names ----------------------------------------------------------------------------------------
 
 
 def result_name(
-    command: str, structure: Structure, question: Mapping[str, Any], unit: str = "Hz"
+    command: str, structure_file: str, structure: Structure, question: Mapping[str, Any]
 ) -> str:
-    """Return a result's file name: command, structure, main arguments and a digest of all.
+    """Return a result's file name: command, the structure's name, and a digest of all.
 
     Examples
     --------
     >>> from orchestrate.structures import Structure
-    >>> result_name("simulate", Structure(), {"eta": 0.4, "periods": 2})
-    'simulate_e0.7_D0.005_eta0.4_7ed5cb'
-    >>> result_name("branch", Structure(), {"over": "frequency", "limits": (31.4159265, 62.831853)})
-    'branch_e0.7_D0.005_5-10Hz_e71461'
+    >>> result_name("simulate", "own/beam.toml", Structure(), {"eta": 0.4, "periods": 2})[:-6]
+    'simulate_beam_'
+    >>> result_name("border", "branch_beam_7ed5cb.nc", Structure(), {})[:-6]
+    'border_beam_'
     """
-    in_hertz = question.get("over") == "frequency"  # then its values and limits are in Hz too
-    named = (
-        "frequency" if in_hertz and name in ("values", "limits") else name for name in question
-    )
-    pairs = zip(named, question.values(), strict=True)
-    parts = [
-        command,
-        structure.label(),
-        *(argument_in_file_name(*item, unit, structure) for item in pairs),
-    ]
-    return "_".join(filter(None, [*parts, digest(nonzero_parameters(structure), question)]))
-
-
-def nonzero_parameters(structure: Structure) -> dict[str, float]:
-    """Return a structure's parameters by name; those added in later versions unless 0."""
-    from ..structures.ranges import ADDED
-
-    parameters = structure.parameters()
-    return {n: v for n, v in parameters.items() if n not in ADDED or v != 0.0}
+    stem = Path(structure_file).stem
+    own = OWN_NAME.fullmatch(stem)
+    digits = digest(structure.parameters(), question)
+    return f"{command}_{own[1] if own else stem}_{digits}"
 
 
 def digest(*arguments: Any) -> str:
@@ -248,33 +202,6 @@ def digest(*arguments: Any) -> str:
 
     text = json.dumps(arguments, sort_keys=True, default=other)
     return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
-
-
-def argument_in_file_name(name: str, value: Any, unit: str, structure: Structure) -> str:
-    """Return how an argument appears in a file name: ends of a range, a word, or nothing."""
-    from ..structures import PARAMETERS
-    from ..units import FACTORS
-
-    if name in ("direction", "over") and value != "frequency":
-        return "-".join(value) if isinstance(value, tuple) else str(value)
-    if name == "excitation":  # of the laboratory
-        return re.sub(r"[^a-zA-Z0-9.]+", "-", value.label)
-    if name in ("bifurcation", "switch"):
-        return "" if value is None else f"{name}{value}"
-    varied = isinstance(value, tuple) and name in (*PARAMETERS, "values", "limits")
-    if name not in ("eta", "frequency") and not varied:
-        return ""
-    by_ratio = unit == "eta"
-    scale = structure.omega if by_ratio else FACTORS["frequency"][unit]
-    scale = scale if name == "frequency" else 1.0
-    ends = (value[0], value[-1]) if isinstance(value, tuple) else (value,)
-    if isinstance(ends[0], tuple):  # limits of two parameters
-        return ""
-    text = "-".join(f"{end / scale:.6g}" for end in dict.fromkeys(ends))
-    letters = "" if name in ("values", "limits") else name
-    if name == "frequency":
-        return f"eta{text}" if by_ratio else f"{text}{unit.replace('/', '_')}"
-    return f"{letters}{text}"
 
 
 # -- files ----------------------------------------------------------------------------------------
@@ -293,7 +220,9 @@ class Files:
     over: str = ""  # suffix of the pictures' names, where other data lie over the result
 
     @classmethod
-    def from_options(cls, arguments: argparse.Namespace, name: str, over: str = "") -> Files:
+    def from_options(
+        cls, arguments: argparse.Namespace, name: str, over: str = "", fresh: bool | None = None
+    ) -> Files:
         """Return the ``Files`` of a result by the options; raise if they cannot be written."""
         formats = parse_endings("--format", arguments.format, FORMATS)
         plots = parse_endings("--plot", arguments.plot, PLOTS)
@@ -302,48 +231,58 @@ class Files:
             raise InputError(f"--store {store}: expected a name that ends in .nc")
         result = store or arguments.output / f"{name}.nc"
         check_output(result.parent)
-        fresh = arguments.force or not result.exists()
-        files = cls(result, formats, plots, fresh, units_ending(arguments), over)
-        others = [path for path in files.beside() if existing_files(path)]
-        if store is not None and others and not result.exists():
+        if fresh is None:
+            fresh = arguments.force or not result.exists()
+        units = str(read_units(arguments)).replace(", ", "-").replace("/", "_")
+        files = cls(result, formats, plots, fresh, units, over)
+        others = [*files.table_paths(), *files.picture_paths()]
+        existing = [path for path in others if existing_files(path)]
+        if store is not None and existing and not result.exists():
             raise InputError(
-                f"{others[0]} already exists but {result.name} does not; "
+                f"{existing[0]} already exists but {result.name} does not; "
                 "choose another --store or delete it"
             )
         return files
 
-    def beside(self) -> list[Path]:
-        """Return the paths of the tables and pictures that belong beside the NetCDF file."""
-        others = [ending for ending in self.formats if ending != "nc"]
-        files = [self.table_path.with_suffix(f".{ending}") for ending in others]
-        return [*files, *self.picture_paths()]
+    def beside(self, *endings: str) -> Path:
+        """Return a path beside the result, with further endings of its name."""
+        return self.result.with_stem("_".join(filter(None, [self.result.stem, *endings])))
 
-    @property
-    def table_path(self) -> Path:
-        """Path of the result's tables, without their endings: it names the display units."""
-        return with_ending(self.result, self.units)
+    def table_paths(self) -> list[Path]:
+        """Return the paths of the result's tables: their names have the display units."""
+        table = self.beside(self.units)
+        return [table.with_suffix(f".{ending}") for ending in self.formats if ending != "nc"]
 
-    @property
-    def picture_path(self) -> Path:
-        """Path of the result's pictures, without their endings: it names units and overlay."""
-        return with_ending(self.result, self.units, self.over)
-
-    def picture_paths(self) -> list[Path]:
-        """Return the paths of the result's pictures, one for each format of ``--plot``."""
-        return [self.picture_path.with_suffix(f".{ending}") for ending in self.plots]
+    def picture_paths(self, *endings: str) -> list[Path]:
+        """Return the paths of a picture: its name has units and overlay."""
+        picture = self.beside(self.units, self.over, *endings)
+        return [picture.with_suffix(f".{ending}") for ending in self.plots]
 
     def lacks_pictures(self) -> bool:
         """Return whether a picture has to be drawn: the result is new or a picture is missing."""
         return any(self.fresh or not path.exists() for path in self.picture_paths())
 
-    def write(self, data: xr.Dataset, draw: Callable[[], Any] | None) -> None:
-        """Write missing tables and pictures beside the NetCDF file; print the paths of all
-        files.
-        """
+    def write(self, data: xr.Dataset, draw: Callable[[], Any] | None = None) -> None:
+        """Write missing tables and pictures beside the NetCDF file; print all paths."""
+        from ..running.formats import write
+
         print(f"{self.result}{'' if self.fresh else ': complete already'}")
-        others = export_formats(data, self.table_path, self.formats, self.fresh)
-        pictures = draw_picture(self.picture_path, self.plots, self.fresh, draw) if draw else []
-        for path in (*others, *pictures):
+        for path in self.table_paths():
+            existing = [] if self.fresh else existing_files(path)
+            for file in existing or sorted(write(data, path)):
+                print(file)
+        if draw is not None:
+            self.write_pictures(draw)
+
+    def write_pictures(self, draw: Callable[[], Any], *endings: str) -> None:
+        """Draw a picture if it is new or missing; print its paths."""
+        paths = self.picture_paths(*endings)
+        missing = [path for path in paths if self.fresh or not path.exists()]
+        if missing:
+            from ..figures.files import save
+
+            save(draw(), paths[0].with_suffix(""), [path.suffix[1:] for path in missing])
+        for path in paths:
             print(path)
 
 
@@ -369,37 +308,9 @@ def importing_matplotlib(needed: bool) -> Iterator[None]:
         timer.join()
 
 
-def export_formats(
-    data: xr.Dataset, result: Path, formats: tuple[str, ...], fresh: bool
-) -> list[Path]:
-    """Write a result as CSV, MAT or Excel if it is new or they are missing; return the paths."""
-    from ..running.formats import write
-
-    paths = [result.with_suffix(f".{ending}") for ending in formats if ending != "nc"]
-    files: list[Path] = []
-    for path in paths:
-        files += (
-            sorted(write(data, path)) if fresh or not existing_files(path) else existing_files(path)
-        )
-    return files
-
-
 def existing_files(path: Path) -> list[Path]:
     """Return the existing files of a table that may be several: ``x.csv``, ``x.eta.csv``."""
     from ..files import escape_glob
 
     several = path.parent.glob(f"{escape_glob(path.stem)}.*{path.suffix}")
     return [*([path] if path.exists() else []), *sorted(several)]
-
-
-def draw_picture(
-    path: Path, plots: tuple[str, ...], fresh: bool, draw: Callable[[], Any]
-) -> list[Path]:
-    """Call ``draw`` and save its figure if new or missing; return the pictures' paths."""
-    files = [path.with_suffix(f".{ending}") for ending in plots]
-    missing = [file.suffix.lstrip(".") for file in files if fresh or not file.exists()]
-    if missing:
-        from ..figures.files import save
-
-        save(draw(), path.with_suffix(""), missing)
-    return files

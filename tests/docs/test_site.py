@@ -57,7 +57,7 @@ def test_the_public_face_is_described(site):
 @pytest.mark.slow
 def test_every_command_has_its_help(site):
     page = (site / "commands.html").read_text(encoding="utf-8")
-    names = [command.__name__.rpartition(".")[2].replace("_", "-") for command in cli.COMMANDS]
+    names = [command.name for command in cli.COMMANDS]
     assert [name for name in names if f">{name}<" not in page] == []
 
 

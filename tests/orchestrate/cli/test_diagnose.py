@@ -13,6 +13,7 @@ import xarray as xr
 
 import orchestrate
 from orchestrate.cli import main
+from orchestrate.cli.options import read_structure_options
 
 from .commands import ROOT
 
@@ -33,34 +34,23 @@ def sine(tmp_path):
     return write_csv(tmp_path / "sine.csv", time, np.sin(60.0 * time), np.cos(60.0 * time))
 
 
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        (["FILE"], ["--structure: nothing given", "guess of the beam"]),
-        (["lost.csv", "--structure", GUESS], ["lost.csv", "expected a file to read"]),
-        (["FILE", "--structure", "lost.toml"], ["lost.toml"]),
-        (["FILE", "--structure", GUESS, "--columns", "0"], ["--columns 0", "time, base, face 1"]),
-        (["FILE", "--structure", GUESS, "--columns", "0,1,9"], ["9"]),
-        (
-            ["FILE", "--structure", GUESS, "--columns", "0,1"],
-            ["no acceleration of a face in time", "base", "--columns"],
-        ),
-        (["FILE", "FILE", "--structure", GUESS, "--other", "FILE"], ["--other: of one beam"]),
-        (["FILE", "--structure", GUESS, "--set", "f1=-3"], ["f1 = -3"]),
-        (["FILE", "--structure", GUESS, "--plot", "gif"], ["--plot gif"]),
-        (["FILE", "--structure", GUESS, "--unit", "furlong"], ["furlong", "give it by --unit"]),
-    ],
-)
-def test_mistakes_are_one_line_and_nothing_is_written(ask, tmp_path, sine, options, words):
-    given = [sine if option == "FILE" else option for option in options]
-    ask("diagnose", *given).complaint(*words)
+MISTAKES = """
+    FILE : --structure is missing | guess of the beam
+    lost.csv GUESS : lost.csv | expected a file to read
+    FILE --structure lost.toml : lost.toml
+    FILE GUESS --columns 0 : --columns 0 | time, base, face 1
+    FILE GUESS --columns 0,1 : no acceleration of a face in time | base | --columns
+    FILE FILE GUESS --other FILE : --other: of one beam
+    FILE GUESS --unit furlong : furlong | give it by --unit
+"""
+
+
+@pytest.mark.parametrize("line", MISTAKES.strip().splitlines())
+def test_mistakes_are_one_line_and_nothing_is_written(ask, tmp_path, sine, line):
+    options, _, words = line.strip().partition(" : ")
+    options = options.replace("GUESS", f"--structure {GUESS}").replace("FILE", str(sine))
+    ask("diagnose", *options.split()).complaint(*(word.strip() for word in words.split("|")))
     assert not (tmp_path / "results").exists() or not any((tmp_path / "results").iterdir())
-
-
-def test_the_help_teaches_what_is_needed_and_what_comes_out(ask):
-    text = ask("diagnose", "--help").out
-    for words in ("swept sine", "guess", "no opening seen", 'never "intact"', "--other", "--notes"):
-        assert words in text
 
 
 # -- two small records, from their files to pages --------------------------------------------------
@@ -86,24 +76,21 @@ def make_records(folder):
 
 @pytest.fixture(scope="module")
 def run(exported, tmp_path_factory):
-    """A function that diagnoses both records, and returns what was printed."""
+    """The folder of both records, and what their diagnosis printed."""
     folder = tmp_path_factory.mktemp("diagnosed")
     make_records(folder)
 
-    def diagnose():
-        said = io.StringIO()
-        records = [str(folder / f"{name}.csv") for name in ("parted", "whole")]
-        options = ["--structure", str(folder / "beam.toml"), "--notes", "Tested <here>"]
-        with redirect_stdout(said):
-            code = main(["diagnose", *records, *options, "--output", str(folder), "--jobs", "1"])
-        assert code == 0
-        return said.getvalue()
-
-    return folder, diagnose, diagnose()
+    said = io.StringIO()
+    records = [str(folder / f"{name}.csv") for name in ("parted", "whole")]
+    options = ["--structure", str(folder / "beam.toml"), "--notes", "Tested <here>"]
+    with redirect_stdout(said):
+        code = main(["diagnose", *records, *options, "--output", str(folder), "--jobs", "1"])
+    assert code == 0
+    return folder, said.getvalue()
 
 
 def test_each_record_has_a_verdict_with_its_reason(run):
-    _, _, said = run
+    _, said = run
     assert "parted.csv: Delaminated. The record is that of two halves that part" in said
     assert "whole.csv: No opening seen. No opening of the faces was seen up to 4" in said
     assert said.count("decided by: ") == said.count("to settle it: ") == 2
@@ -111,7 +98,7 @@ def test_each_record_has_a_verdict_with_its_reason(run):
 
 
 def test_each_record_has_a_page_with_its_evidence(run):
-    folder, _, said = run
+    folder, said = run
     for name, word in (("parted", "Delaminated."), ("whole", "No opening seen.")):
         (page,) = folder.glob(f"diagnose_{name}_*.html")
         assert str(page) in said
@@ -127,7 +114,7 @@ def test_each_record_has_a_page_with_its_evidence(run):
 
 
 def test_a_page_says_what_the_record_is_and_how_the_page_was_made(run):
-    folder, _, said = run
+    folder, said = run
     (stored,) = (path for path in folder.glob("diagnose_parted_*.nc") if "signs" not in path.stem)
     again = io.StringIO()
     with redirect_stdout(again):
@@ -157,7 +144,7 @@ def test_a_unit_in_place_of_the_file_s_own_is_told(ask, tmp_path, sine):
 
 
 def test_numbers_are_told_where_the_record_holds_them(run):
-    folder, _, _ = run
+    folder, _ = run
     pages = {
         name: next(folder.glob(f"diagnose_{name}_*.html")).read_text(encoding="utf-8")
         for name in ("parted", "whole")
@@ -168,31 +155,36 @@ def test_numbers_are_told_where_the_record_holds_them(run):
     assert not re.search(row, pages["whole"])
 
 
-def test_answers_are_stored_and_taken_again(run):
-    folder, diagnose, said = run
+def test_answers_are_stored_and_taken_again_beside_a_refused_record(run, sine, capsys):
+    folder, said = run
     verdicts = [path for path in folder.glob("diagnose_*.nc") if not path.stem.endswith("_signs")]
     assert len(verdicts) == 2
-    before = {path: path.read_bytes() for path in verdicts}
-    assert diagnose() == said
-    assert {path: path.read_bytes() for path in verdicts} == before
-    for path in verdicts:
-        stored = xr.load_dataset(path)
-        assert "identity" in stored.attrs and "fmu_guid" in stored.attrs
-        assert len(orchestrate.plot(stored).axes) == stored.sizes["order"]
+    before = {path: xr.load_dataset(path) for path in verdicts}
+    options = ["--structure", str(folder / "beam.toml"), "--output", str(folder), "--jobs", "1"]
+    code = main(["diagnose", str(sine), str(folder / "whole.csv"), *options])
+    out, err = capsys.readouterr()
+    (verdict,) = [line for line in said.splitlines() if "whole.csv: " in line]
+    assert code == 2 and verdict in out
+    (line,) = [line for line in err.splitlines() if line.startswith("error")]
+    assert line.startswith(f"error: 1 of 2 records refused: {sine}: ")
+    assert all(xr.load_dataset(path).equals(data) for path, data in before.items())
+    stored = xr.load_dataset(verdicts[0])
+    assert "identity" in stored.attrs and "fmu_guid" in stored.attrs
+    assert len(orchestrate.plot(stored).axes) == stored.sizes["order"]
 
 
 def test_another_guess_has_files_of_its_own(run):
-    folder, _, _ = run
+    folder, _ = run
     (signs,) = folder.glob("diagnose_parted_*_signs.nc")
     assert xr.load_dataset(signs).exceeds.sel(sign="order_2").item() == 1
     names = set()
     for setting in ("e=0.4", "e=0.6"):
-        from orchestrate.cli import diagnose, make_parser
+        from orchestrate.cli import diagnosis, make_parser
 
         words = ["diagnose", str(folder / "parted.csv"), "--structure", "beam", "--set", setting]
         arguments = make_parser().parse_args(words)
         names.add(
-            diagnose.file_stem(arguments.records[0], diagnose.read_guess(arguments), arguments)
+            diagnosis.file_stem(arguments.records[0], read_structure_options(arguments), arguments)
         )
     assert len(names) == 2
 
@@ -203,16 +195,6 @@ def test_a_record_that_is_no_sweep_is_refused_by_its_name(ask, sine, tmp_path):
     write_csv(still, np.arange(400) / 200.0, *rows.T[1:])
     line = ask("diagnose", still, "--structure", GUESS).complaint("still", "sine")
     assert "expected" in line
-
-
-def test_a_refused_record_does_not_keep_the_others_from_their_verdicts(run, sine, capsys):
-    folder, _, _ = run
-    options = ["--structure", str(folder / "beam.toml"), "--output", str(folder), "--jobs", "1"]
-    code = main(["diagnose", str(sine), str(folder / "whole.csv"), *options])
-    out, err = capsys.readouterr()
-    assert code == 2 and "whole.csv: No opening seen." in out
-    (line,) = [line for line in err.splitlines() if line.startswith("error")]
-    assert line.startswith(f"error: 1 of 2 records refused: {sine}: ")
 
 
 # -- stored results --------------------------------------------------------------------------------

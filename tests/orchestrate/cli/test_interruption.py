@@ -15,8 +15,8 @@ from orchestrate.cli import main
 from .commands import all_end, below, end, kill, wait_for
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="process groups and /proc")
-INTERRUPTED = "interrupted: what was stored is kept, the same command goes on from there"
-BEGINS_ANEW = "interrupted: nothing was stored, the same command begins anew"
+INTERRUPTED = "interrupted: what was stored is kept; repeat the command to resume"
+BEGINS_ANEW = "interrupted: nothing was stored; repeat the command to start again"
 RUNS = {  # long enough to be ended by force, chaotic, so that a wrong start is seen
     "sweep": ("sweep", "--eta", "1.1:1.4:0.0005", "--transient", "700", "--plot", "none"),
     "couple": (
@@ -139,9 +139,8 @@ def interrupt(*_, **__):
         ("orchestrate.response.sweep.SweepJob.work", BEGINS_ANEW),
         ("orchestrate.running.store.Disk.finish", INTERRUPTED),
         (
-            "orchestrate.cli.question.Files.write",
-            "interrupted: the result is stored, the same command (without --force) goes on from "
-            "there",
+            "orchestrate.cli.output.Files.write",
+            "interrupted: the result is stored; repeat the command (without --force) to resume",
         ),
     ],
 )

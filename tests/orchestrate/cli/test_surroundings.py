@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import io
 import os
 import random
@@ -17,7 +18,7 @@ import pytest
 
 from orchestrate import __main__, cli
 from orchestrate.__main__ import resend_interrupt, run
-from orchestrate.cli import main
+from orchestrate.cli import main, responses
 from orchestrate.cli.grammar import plain_float, plain_int
 from orchestrate.cli.safe_output import SafeStream
 from tests.faults import Surroundings
@@ -105,11 +106,12 @@ def test_too_little_memory_is_a_line(monkeypatch, capsys, error):
     def fail(_):
         raise error
 
-    monkeypatch.setattr("orchestrate.cli.sweep.run", fail)
+    failing = dataclasses.replace(responses.SWEEP, run=fail)
+    monkeypatch.setattr(cli, "COMMANDS", (failing,))
     assert main(["sweep"]) == 1
     told = capsys.readouterr().err
     assert told.count("\n") == 1
-    assert "expected more memory" in told
+    assert "out of memory, or the installation is incomplete" in told
 
 
 @pytest.mark.parametrize("text", ["１.２", "1_0", "٣"])
@@ -165,9 +167,10 @@ def test_paper_ends_on_ctrl_c(commands):
 
 
 IN_A_CALLBACK = """
-import signal, sys, time, weakref
+import dataclasses, signal, sys, time, weakref
 from orchestrate import cli
 from orchestrate.__main__ import main
+from orchestrate.cli import responses
 
 class Thing:
     pass
@@ -179,7 +182,7 @@ def run(_):
     time.sleep(60)
 
 signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in the background
-cli.sweep.run = run
+cli.COMMANDS = (dataclasses.replace(responses.SWEEP, run=run),)
 sys.argv = ["vibroimpact", "sweep"]
 sys.exit(main())
 """

@@ -1,6 +1,10 @@
 """Units at the command line: as the question is asked, or as ``--units`` says; the result in SI."""
 
+from __future__ import annotations
+
+import functools
 import hashlib
+import json
 import re
 
 import numpy as np
@@ -8,84 +12,145 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from orchestrate.cli import map as map_command
-from orchestrate.cli import orbit as orbit_command
-from orchestrate.cli.question import print_attractors
+import orchestrate
+from orchestrate import cli
+from orchestrate.cli import diagnosis, dynamics, responses, weak_drive
+from orchestrate.cli.text import attractor_table
 from orchestrate.dynamics.orbit_records import STABILITY
+from orchestrate.figures import weak_drive as figures
 from orchestrate.response.labels import flags
-from orchestrate.units import with_units
+from orchestrate.units import Units, with_units
+
+from ...exports import BUILD
 
 BEAM = ("--structure", "beam", "--set", "clearance=-2e-5")
-ASKED = ("--hz", "11:13:1", "--g", "0.02")
-SHORT = ("--transient", "20", "--samples", "6", "--direction", "up")
+BOX = ("--structure", "beam", "--hz", "12", "--g", "0.02")
+SWEPT = ("--structure", "beam", "--hz", "12:13:1", "--g", "0.02", "--direction", "up")
+SHORT = ("--transient", "10", "--samples", "4")
+PLANE = ("--x", "x_rel,0,1e-3,3", "--y", "v_rel,-0.1,0.1,3")
 FOREIGN = r"\bHz\b|rad/s|\d m\b|\d mm\b| m\b|m/s2|\beta\b"
+ASKED = {  # command, a unit, what is printed in it
+    "simulate": ((*BOX, "--periods", "3"), "mm", r"[\d.]+ mm\b"),
+    "shake": (
+        ("--structure", "beam", "--shock", "sawtooth", "--length", "0.01", "--g", "2"),
+        "um",
+        r"gap x2 - x1.* to [\d.e+]+ um\b",
+    ),
+    "cosimulate": (
+        (
+            *("--structure", "beam", "--duration", "0.2", "--step", "0.01"),
+            *("--drive", str(BUILD / "fmi2" / "MotorShaker.fmu")),
+            *("--connect", "box_acceleration=box_acceleration", "box_force=box_force"),
+        ),
+        "mm",
+        r"displacement of mass 1.* to [\d.e+-]+ mm\b",
+    ),
+    "resonance": ((*SWEPT, *SHORT), "rpm", r"frequency rpm"),
+    "sweep": ((*SWEPT, *SHORT), "rpm", r"at 7[28]0 rpm"),
+    "spectra": ((*BOX, "--transient", "5", "--periods", "8"), "rpm", r"at 720 rpm"),
+    "map": (
+        (*BOX[:2], "--hz", "12,13", *BOX[4:], "--over", "e", "--values", "0.3,0.7", *SHORT),
+        "rpm",
+        r"7[28]0 rpm",
+    ),
+    "lyapunov": (("--eta", "0.8", "--transient", "20", "--periods", "40"), "Hz", r"frequency Hz"),
+    "poincare": (
+        (*BOX, "--transient", "5", "--periods", "9"),
+        "mm",
+        r"gap .*: [\d.e-]+ to [\d.]+ mm\b",
+    ),
+    "attractors": (
+        ("--eta", "1.4", "--starts", "2", *SHORT, "--settle", "5"),
+        "Hz",
+        r"at 0\.222817 Hz",
+    ),
+    "basin": ((*BOX, *PLANE, *SHORT), "um", r"v_rel -1e\+05 to 1e\+05 um/s, x_rel 0 to 1000 um"),
+    "orbit": (("--eta", "3.0"), "mm", r"closing at [\d.]+ mm/s"),
+    "manifold": (("--eta", "3.0", "--length", "0.2"), "mm", r"[\d.e-]+ to [\d.]+ mm"),
+    "branch": (("--eta", "2.62", "--limits", "2.6:2.63"), "Hz", r"0\.4\d+ to 0\.4\d+ Hz"),
+    "couple": (
+        ("--eta0", "1.4:1.41", "--rate", "2e-4", "--step", "0.2", "--settle", "9", "--one-way"),
+        "rpm",
+        r"revolutions at [\d.]+ to [\d.]+ rpm",
+    ),
+}
+REFUSED = {"build": "FMUs are in SI", "paper": "ratios"}
+ELSEWHERE = {"analyse", "diagnose", "border", "capture", "passage", "drive-branch"}
+ELSEWHERE |= {"jump-voltages", "explore", "report"}  # tested below, or where a page is written
 
 
-def said(done):
+def printed(done):
     """What a command prints, without the names of files."""
     return "\n".join(line for line in done.out.splitlines() if not line.startswith("/"))
 
 
-@pytest.mark.parametrize("command", ["resonance", "sweep", "simulate", "poincare"])
+def sums(folder):
+    """Check sums of the stored results."""
+    return {
+        path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in folder.glob("*.nc")
+    }
+
+
+def test_every_command_is_tested():
+    assert {command.name for command in cli.COMMANDS} == set(ASKED) | set(REFUSED) | ELSEWHERE
+
+
+@pytest.mark.parametrize("command", ASKED)
+def test_a_printed_number_follows_and_the_result_stays(ask, tmp_path, command):
+    options, unit, words = ASKED[command]
+    few = ("--jobs", "1", "--plot", "none", "--format", "csv")
+    plain = ask(command, *options, *few).success().out
+    stored, tables = sums(tmp_path / "results"), set((tmp_path / "results").glob("*.csv"))
+    shown = ask(command, *options, *few, "--units", unit).success().out
+    assert not re.search(words, plain) and re.search(words, shown), (plain, shown)
+    assert sums(tmp_path / "results") == stored and stored
+    new = set((tmp_path / "results").glob("*.csv")) - tables
+    assert new and all(f"_{unit}." in path.name for path in new)
+    columns = {name for path in new for name in pd.read_csv(path).columns}
+    assert any(f"[{unit}]" in name for name in columns), columns
+
+
+@pytest.mark.parametrize("command", ["resonance", "simulate"])
 def test_prints_are_in_the_units_asked_for_and_in_no_other(ask, command):
-    box = ASKED if command in ("resonance", "sweep") else ("--hz", "12", "--g", "0.02")
-    short = SHORT if command in ("resonance", "sweep") else ("--periods", "5")
-    done = ask(command, *BEAM, *box, *short, "--plot", "none", "--units", "rpm, um, g").success()
-    text = said(done).replace("um/s", "um")
+    asked = (*SWEPT[2:], *SHORT) if command == "resonance" else (*BOX[2:], "--periods", "5")
+    options = (command, *BEAM, *asked, "--plot", "none")
+    text = printed(ask(*options, "--units", "rpm, um, g").success()).replace("um/s", "um")
     assert not re.search(FOREIGN, text), text
     assert " um" in text
-    usual = said(ask(command, *BEAM, *box, *short, "--plot", "none").success())
-    assert re.search(r" [mu]m\b", usual) and not re.search(r"\d m\b| m\b", usual)
-    plain = said(ask(command, *BEAM, *box, *short, "--plot", "none", "--units", "m").success())
-    assert " um" not in plain and re.search(r"\d m\b| m\b|m/s", plain)
-
-
-def test_every_number_of_a_length_or_an_acceleration_has_its_unit(ask):
-    """A line with a unit has one after each number, or in the head of its column."""
-    options = (*BEAM, *ASKED, *SHORT, "--plot", "none", "--units", "Hz,mm,g")
-    text = said(ask("sweep", *options).success())
-    for line in text.splitlines():
-        if re.search(r"\b(mm|g)\b", line):
-            bare = re.sub(r"mass \d|xi_Rel = [\d.e+-]+|\d+ %", "", line)
-            for number in re.finditer(r"(?<![\w.])[-+]?\d+\.?\d*(e[-+]?\d+)?", bare):
-                assert re.match(r" (mm|g|Hz)\b", bare[number.end() :]), line
-    table = said(ask("resonance", *options[:-4], "--g", "0.02,0.04", *options[-4:]))
-    assert "|x1| mm" in table and "gap mm" in table and "0.04 g" in table
+    plain = printed(ask(*options).success())
+    assert re.search(r" [mu]m\b", plain) and not re.search(r"\d m\b| m\b", plain)
 
 
 def test_the_same_question_shown_in_other_units_has_the_same_bits(ask, tmp_path):
-    folder, sums, columns = tmp_path / "results", set(), {}
-    for units in ("Hz,mm,g", "eta", "rpm, m/s2", ""):
+    folder, stored, columns = tmp_path / "results", set(), {}
+    for units in ("Hz,mm,g", "eta", ""):
         more = ("--units", units) if units else ()
-        done = ask("resonance", *BEAM, *ASKED, *SHORT, "--format", "csv", *more).success()
-        (result,) = folder.glob("*.nc")
-        sums.add(hashlib.sha256(result.read_bytes()).hexdigest())
-        tables = [line for line in done.out.splitlines() if line.endswith("frequency.csv")]
-        named = [path for path in tables if "structure" in path]
-        columns[units] = set(pd.read_csv(named[0]).columns)
+        done = ask("resonance", *SWEPT, *SHORT, "--format", "csv", *more).success()
+        stored |= set(sums(folder).values())
+        (curves,) = (line for line in done.out.splitlines() if line.endswith("n_frequency.csv"))
+        columns[units] = set(pd.read_csv(curves).columns)
         assert ("complete already" in done.out) == (units != "Hz,mm,g")
-    assert len(sums) == 1
+    assert len(stored) == 1
     assert {"frequency [Hz]", "x1_max [mm]", "a1_max [g]"} <= columns["Hz,mm,g"]
-    assert {"frequency [rpm]", "x1_max [m]", "a1_max [m/s2]"} <= columns["rpm, m/s2"]
     assert {"eta", "frequency [rad/s]", "a1_max [g]"} <= columns["eta"]
     assert {"frequency [Hz]", "x1_max [m]", "a1_max [g]"} <= columns[""]
-    pictures = {path.name.rpartition("_up_")[2][7:] for path in folder.glob("*.png")}
-    assert pictures == {"Hz-mm-g.png", "eta.png", "rpm-m_s2.png", "png"}
+    (result,) = folder.glob("*.nc")
+    endings = {path.name.removeprefix(result.stem) for path in folder.glob("*.png")}
+    assert endings == {"_Hz-mm-g.png", "_eta.png", ".png"}
 
 
 @pytest.mark.parametrize(
-    ("asked", "name", "word"),
+    ("asked", "word"),
     [
-        (("--hz", "11:13:1"), "_11-13Hz_", "Hz"),
-        (("--rpm", "660:780:60"), "_660-780rpm_", "rpm"),
-        (("--frequency", "70:80:5"), "_70-80rad_s_", "rad/s"),
-        (("--eta", "0.9:1.1:0.1"), "_eta0.9-1.1_", "eta = "),
+        (("--hz", "11:13:1"), "Hz"),
+        (("--rpm", "660:780:60"), "rpm"),
+        (("--frequency", "70:80:5"), "rad/s"),
+        (("--eta", "0.9:1.1:0.1"), "eta = "),
     ],
 )
-def test_a_question_is_answered_as_it_is_asked(ask, tmp_path, asked, name, word):
-    done = ask("sweep", *BEAM, *asked, "--amplitude", "1e-5", *SHORT, "--plot", "none").success()
-    (result,) = (tmp_path / "results").glob("*.nc")
-    assert name in result.name
+def test_a_question_is_answered_as_it_is_asked(ask, asked, word):
+    short = (*SHORT, "--direction", "up", "--amplitude", "1e-5", "--plot", "none")
+    done = ask("sweep", *BEAM, *asked, *short).success()
     assert f"at {word}" in done.out or re.search(rf"\d {word}\b", done.out)
 
 
@@ -96,15 +161,9 @@ def test_a_file_asks_in_its_own_units(ask, tmp_path):
         "[excitation]\nfrequency_rpm = 720\nacceleration_g = 0.1\n"
     )
     done = ask("simulate", "--structure", path, "--periods", "2", "--plot", "none").success()
-    assert "_720rpm_" in done.out and re.search(r"[\d.]+ g\b", done.out)
-
-
-def test_names_without_a_unit_asked_for_stay(ask, tmp_path):
-    options = ("--eta", "0.9:1.1:0.1", *SHORT, "--plot", "none", "--format", "csv")
-    ask("sweep", *options).success()
-    (table,) = (tmp_path / "results").glob("*.eta.csv")
-    names = set(pd.read_csv(table).columns)
-    assert {"eta", "frequency [rad/s]", "x1_max [m]", "a1_max [m/s2]", "amplitude [m]"} <= names
+    assert re.search(r"[\d.]+ g\b", done.out)
+    done = ask("attractors", "--structure", path, "--starts", "1", *SHORT, "--plot", "none")
+    assert "at 720 rpm" in done.out
 
 
 def test_wrong_units_are_refused_before_anything_is_computed(ask):
@@ -114,7 +173,7 @@ def test_wrong_units_are_refused_before_anything_is_computed(ask):
 
 
 @pytest.mark.parametrize("command", ["map", "orbit", "basin"])
-def test_the_largest_gap_is_a_length_where_the_motion_of_the_box_is_known(command, capsys):
+def test_the_largest_gap_is_a_length_where_the_motion_of_the_box_is_known(command):
     """1.5 times a Omega^2/omega^2, which is 0.2/100 m."""
     one = {"xi_rel_max": 1.5, "multiplicity": 1.0, "impacts_per_period": 1.0}
     over = {"map": ("e",), "orbit": (), "basin": ("attractor",)}[command]
@@ -124,22 +183,205 @@ def test_the_largest_gap_is_a_length_where_the_motion_of_the_box_is_known(comman
     )
     data = with_units(data.assign_coords({name: [0.5] for name in over}), "mm")
     if command == "map":
-        words = {"flag_values": [0, 1], "flag_meanings": "repeated undecided"}
-        map_command.print_result(data.assign(multiplicity_decided=("e", [0], words)))
+        words = {"flag_values": [0, 1, 2], "flag_meanings": "irregular repeated undecided"}
+        lines = responses.map_summary(data.assign(multiplicity_decided=("e", [1], words)))
     elif command == "orbit":
         more = {"stability": flags((), 1, "stability", STABILITY)}
         more |= {"multipliers": (("multiplier", "part"), [[0.5, 0.0]])}
         more |= {"impact_time": ("impact", []), "impact_velocity": ("impact", [])}
-        orbit_command.print_result(data.assign({**more, "state": ("sample", [])}))
+        lines = dynamics.orbit_summary(data.assign({**more, "state": ("sample", [])}))
     else:
-        more = {"share": ("attractor", [1.0]), "decided_by": ("attractor", [0])}
-        print_attractors(data.assign({**more, "state": ("coordinate", [0.0] * 4)}), "the plane")
-    assert "xi_Rel = 1.5, 3 mm" in capsys.readouterr().out
+        words = {"flag_values": [0, 1], "flag_meanings": "absent orbit"}
+        more = {"share": ("attractor", [1.0]), "decided_by": ("attractor", [1], words)}
+        more["state"] = (("attractor", "coordinate"), [[0.0] * 4])
+        lines = attractor_table(data.assign(more))
+    assert "xi_Rel = 1.5, 3 mm" in " ".join(lines)
 
 
 def test_the_picture_of_an_orbit_says_whether_it_is_stable():
     motion = xr.Dataset(attrs={"e": 0.7, "eta": 3.0})
     for number, word in STABILITY.items():
         stability = flags((), number, "stability", STABILITY)
-        title = orbit_command.orbit_title(xr.Dataset({"stability": stability}), motion)
+        title = dynamics.orbit_title(xr.Dataset({"stability": stability}), motion)
         assert title == f"{word} orbit, $e$ = 0.7, $\\eta$ = 3"
+
+
+def test_bifurcations_stand_in_the_unit_of_the_range_above_them(ask):
+    """A branch over eta that is shown in Hz has its bifurcations in Hz too, and ratios without."""
+    options = ("--eta", "2.62", "--limits", "2.62:2.66", "--jobs", "1", "--plot", "none")
+    ratios = ask("branch", *options).success().out
+    hertz = ask("branch", *options, "--units", "Hz").success().out
+    assert re.search(r"number +kind +eta\n", ratios)
+    assert re.search(r"number +kind +frequency Hz\n", hertz)
+    row = re.compile(r"^ +0  .*?([\d.]+)$", re.MULTILINE)
+    (ratio,), (frequency,) = row.findall(ratios), row.findall(hertz)
+    assert float(frequency) == pytest.approx(float(ratio) / (2.0 * np.pi), abs=1e-8)
+
+
+def test_a_command_without_such_numbers_says_why(ask):
+    ask("paper", "--units", "Hz").complaint("--units Hz: ", REFUSED["paper"])
+    assert cli.main(["build", "--units", "Hz"]) == 2
+
+
+def answer_with(monkeypatch, name, data):
+    """Let a public function give a made-up answer; its signature stays."""
+    function = functools.wraps(getattr(orchestrate, name))(lambda *_, **__: data)
+    monkeypatch.setattr(orchestrate, name, function)
+
+
+def variable(values, unit, dims=()):
+    return (dims, values, {"units": unit})
+
+
+def test_the_weak_drive_prints_speeds_in_the_unit_asked_for(ask, monkeypatch, tmp_path):
+    """Made-up answers, as their functions give them."""
+    speed = np.array([[[100.0, 110.0, 105.0]], [[101.0, 111.0, 106.0]]])
+    along = {"structure": ["bonded", "delaminated"], "leg": ["from below"]}
+    dims = (*along, "point")
+    branch = {
+        "voltage": variable(speed / 100.0, "V", dims),
+        "speed": variable(speed, "rad/s", dims),
+    }
+    branch |= {"amplitude": variable(1e-5 * speed, "m", dims), "stable": (dims, speed < 200.0)}
+    branch |= {"revolutions": (dims, np.ones_like(speed)), "end": (tuple(along), [["limit"]] * 2)}
+    at = {"structure": ["bonded"], "kind": ["period doubling"]}
+    branch |= {f"bifurcation_{name}": ("bifurcation", value) for name, value in at.items()}
+    numbers = {"voltage": (1.05, "V"), "speed": (105.0, "rad/s"), "amplitude": (1e-3, "m")}
+    for name, (value, unit) in {**numbers, "revolutions": (1.0, "1")}.items():
+        branch[f"bifurcation_{name}"] = variable([value], unit, ("bifurcation",))
+    (tmp_path / "results").mkdir()
+    about = {"k1": 8437.5, "m1": 1.5, "call": "drive_branch()"}
+    branch = xr.Dataset(branch, along, about)
+    answer_with(monkeypatch, "drive_branch", branch)
+    done = ask("drive-branch", "--drive", "beam", "--units", "rpm,um").success()
+    assert re.search(r"speed rpm.*\n.* 1002\.68", done.out) and "rad/s" not in done.out
+    assert next((tmp_path / "results").glob("*.png")).stem.endswith("_rpm-um")
+    assert "speed rad/s" in ask("drive-branch", "--drive", "beam", "--plot", "none").out
+
+    each = {"structure": ["bonded", "delaminated"], "jump": ["up", "down"]}
+    jumps = {"jumps": variable([[1.5, 1.4]] * 2, "V", tuple(each))}
+    jumps["standard_error"] = variable([[0.1, 0.1]] * 2, "V", tuple(each))
+    jumps["decided"] = (tuple(each), [["by held voltages"] * 2] * 2)
+    answer_with(monkeypatch, "jump_voltages", xr.Dataset(jumps, each))
+    asked = ("jump-voltages", "--plot", "none")
+    note = "--units rpm: these have no such numbers, only V"
+    assert note in ask(*asked, "--units", "rpm").success().out
+    assert "--units" not in ask(*asked).success().out
+
+    capture = {"passes": ("voltage", [0, 1]), "decision": ("voltage", ["converged"] * 2)}
+    capture |= {"passage_time": variable([np.nan, 5.0], "s", ("voltage",)), "above_fold": 0.0}
+    capture |= {"border": ((), 1.5, {"units": "V", "tolerance": 1.0}), "border_low": 1.4}
+    capture |= {"border_high": 1.6, "speed_low": variable(100.0, "rad/s")}
+    capture |= {"speed_high": variable(110.0, "rad/s")}
+    tried = xr.Dataset(capture, {"voltage": [1.4, 1.6]}, {"k1": 8437.5, "m1": 1.5})
+    answer_with(monkeypatch, "capture", tried)
+    options = ("capture", "--plot", "none", "--only", "bonded")
+    assert "954.9 rpm    1050 rpm" in ask(*options, "--units", "rpm").success().out
+    assert "eta = 1.333  eta = 1.467" in ask(*options, "--units", "eta").success().out
+    assert "100 rad/s    110 rad/s" in ask(*options).success().out
+    sheet = ("--rated-voltage", "2", "--no-load-rpm", "16", "--stall-torque", "60")
+    assert "1050 rpm" in ask(*options, *sheet, "--eta0", "1:2").success().out
+
+
+def test_a_passage_prints_its_motion_in_the_unit_asked_for(monkeypatch):
+    moved = {"x1": variable([1e-3, -2e-3], "m", ("time",)), "passage_time": 0.5}
+    moved["speed"] = variable([100.0, 110.0], "rad/s", ("time",))
+    moved |= {"jumps": ("jump", [np.nan]), "decided": ("jump", ["no"])}
+    data = xr.Dataset(moved, {"time": [0.0, 1.0], "jump": ["up"]}, {"kept": "all"})
+    monkeypatch.setattr("orchestrate.figures.passage.jump_texts", lambda _: [])
+    (line,) = weak_drive.passage_lines({"bonded": data})
+    assert "largest |x1| 0.002 m, speed up to 110 rad/s" in line
+    (line,) = weak_drive.passage_lines({"bonded": with_units(data, "rpm, mm")})
+    assert "largest |x1| 2 mm, speed up to 1050 rpm" in line
+
+
+def test_pictures_of_the_weak_drive_move_with_their_axes(ask, tmp_path):
+    """Runs and the averaged theory under them."""
+    short = ("--eta0", "1.4:1.41", "--rate", "2e-4", "--step", "0.2", "--settle", "9", "--one-way")
+    ask("couple", *short, "--only", "delaminated", "--units", "rpm,um").success()
+    (result,), (picture,) = ((tmp_path / "results").glob(f"*.{e}") for e in ("nc", "png"))
+    assert picture.stem == f"{result.stem}_rpm-um"
+    data = xr.load_dataset(result)
+    plain = figures.draw({"delaminated": data})
+    shown = figures.draw({"delaminated": with_units(data, "rpm, um")})
+    in_rpm = 60.0 / (2.0 * np.pi)
+    for figure, speed, length in ((plain, 1.0, 1.0), (shown, in_rpm, 1e6)):
+        x, y = figure.axes[1].lines[0].get_xydata()[-1]
+        expected = figures.drop_spin_up(data)
+        part = figures.split_directions(expected)[0][0]
+        assert x == pytest.approx(speed * float(expected.speed[part][-1]))
+        assert y == pytest.approx(length * float(expected.amplitude[part][-1]))
+    assert plain.axes[1].get_ylabel() == "amplitude of $x_1$ in m"
+    assert shown.axes[1].get_ylabel() == "amplitude of $x_1$ in µm"
+    assert shown.axes[1].get_xlabel() == shown.axes[0].get_ylabel() == "mean speed in rpm"
+    text = next(weak_drive.couple_lines({"delaminated": with_units(data, "eta")}, 1.0))
+    assert re.search(r"at eta = [\d.]+ to [\d.]+", text)
+
+
+@pytest.fixture
+def record(tmp_path):
+    """A swept sine of 2 g, and a response of twice as much."""
+    time = np.arange(4000) / 500.0
+    angle = 2.0 * np.pi * (20.0 * time + time**2)
+    box = 19.6133 * np.sin(angle)
+    data = {"time [s]": time, "base [m/s2]": box, "acc 1 [m/s2]": 2.0 * box}
+    path = tmp_path / "swept.csv"
+    pd.DataFrame(data).to_csv(path, index=False)
+    return path
+
+
+def test_what_an_analyser_shows(ask, record, tmp_path):
+    show = ("--show", "psd,orders,density", "--to", "6")
+    plain = ask("analyse", record, *show, "--plot", "none").success().out
+    stored = sums(tmp_path / "results")
+    done = ask(
+        "analyse", record, *show, "--units", "rpm,g", "--format", "csv", "--plot", "none"
+    ).success()
+    assert sums(tmp_path / "results") == stored and len(stored) == 3
+    assert "rms m/s2" in plain and "(m/s2)2/Hz at" in plain and " Hz" in plain
+    for words in (r"rms g\n.* 1\.41", r"g2/Hz at [\d.]+ rpm", r"  4(\.0\d+)? g at"):
+        assert re.search(words, done.out), words
+    assert not re.search(r"m/s2| Hz\b", done.out.replace("g2/Hz", ""))
+    tables = [path for path in (tmp_path / "results").glob("*.csv") if "_psd_" in path.name]
+    columns = {name for path in tables for name in pd.read_csv(path).columns}
+    assert {"frequency [rpm]", "psd [g2/Hz]", "rms [g]"} <= columns
+    (name,) = (n for n in stored if "_density_" in n)
+    data = xr.load_dataset(tmp_path / "results" / name)
+    curves = [
+        orchestrate.plot(data, units=units).axes[0].lines[-1].get_xydata() for units in ("", "g")
+    ]
+    np.testing.assert_allclose(*curves)
+
+
+def test_a_verdict_is_said_in_the_units_asked_for(tmp_path):
+    """Made-up: nothing opens up to 0.5 g over 40 to 56 Hz, 20 um would have been seen."""
+    numbers = {"level_high": (4.903325, "m/s2"), "smallest_opening": (2e-5, "m")}
+    numbers |= {"frequency_low": (40.0, "Hz"), "frequency_high": (56.0, "Hz")}
+    made = {name: variable(value, unit) for name, (value, unit) in numbers.items()}
+    verdict = xr.Dataset({"verdict": "no opening seen", **made})
+    for units, level, words in (
+        ("", "4.9 m/s² over 40 to 56 Hz", "20 µm"),
+        ("rpm, g, mm", "0.5 g over 2400 to 3360 rpm", "0.02 mm"),
+    ):
+        said = " ".join(diagnosis.verdict_lines(tmp_path / "a.csv", with_units(verdict, units)))
+        assert f" up to {level}. Faces at the sensor that part by {words} or more would" in said
+
+
+TOURS = {  # what the page says of the pressed beam
+    **dict.fromkeys(["", "Hz,mm,g"], "by 0.05 mm, the halves stay shut at 30 Hz and"),
+    "rad/s,um,m/s2": "by 50 µm, the halves stay shut at 188.5 rad/s and 4.903 m/s²:",
+}
+
+
+def test_the_explorer_opens_in_the_units_asked_for(ask, tmp_path):
+    page = tmp_path / "page.html"
+    asked = (("", "paper"), ("Hz,mm,g", "g"), ("rad/s,um,m/s2", "g"))
+    for units, level in asked:
+        more = ("--units", units) if units else ()
+        ask("explore", "--no-open", *more, output=page).success()
+        text = page.read_text(encoding="utf-8")
+        assert re.search(rf'"level": ?\["{level}", ?1', text), units
+        shown = json.loads(re.search(r'"shown": ?(\{[^}]*\})', text)[1])
+        words = Units.from_text(units).with_defaults(Units("Hz", "mm", "g"))
+        assert level == "paper" or Units(**shown) == words
+        assert TOURS[units] in text, units

@@ -33,26 +33,16 @@ def read_structure_and_question(
     """
     if arguments.start is None:
         arguments.structure = arguments.structure or "paper"
-        return read_structure_options(arguments), arguments.question.keywords(arguments)
+        return read_structure_options(arguments), arguments.row.keywords(arguments)
     changes = parse_changes(arguments.set)
     asked = read_structure_options(arguments) if arguments.structure else None
-    question = arguments.question.keywords(arguments)
+    question = arguments.row.keywords(arguments)
     stored = structure_of("--start", arguments.start, question["start"])
     if asked is None:
         asked = stored.replace(**changes)
         print_assumptions(asked, "", changes)
     print_difference("--start", arguments.start, stored, asked)
     return asked, question
-
-
-def keep_file_name(question: dict[str, Any]) -> dict[str, Any]:
-    """Return a question with ``box_acceleration`` 0, not None, where ``start`` has none either.
-
-    So the name of the result's file stays what it has always been.
-    """
-    stored: dict[str, Any] = {} if question["start"] is None else question["start"].attrs
-    unset = question["box_acceleration"] is None and not stored.get("box_acceleration")
-    return {**question, "box_acceleration": 0.0} if unset else question
 
 
 def structure_of(option: str, path: Path, data: xr.Dataset) -> Structure:

@@ -11,7 +11,7 @@ import pytest
 import xarray as xr
 
 import orchestrate
-from orchestrate.cli.question import asked_units
+from orchestrate.cli.answer import display_units
 from orchestrate.structures import Structure
 
 BEAM = Structure.from_file("beam")
@@ -82,7 +82,7 @@ def test_without_a_file_it_is_the_paper_s_as_before(ask, asked, command):
     limits = ("--limits", "2.4:2.8") if command == "branch" else ()
     done = ask(command, "--eta", "2.5", *limits)
     ((structure, question),) = asked
-    assert structure == Structure() and question["box_acceleration"] == 0.0
+    assert structure == Structure() and question["start"] is None
     assert done.out == ""
 
 
@@ -128,8 +128,7 @@ def test_border_says_what_is_wrong_with_its_parameters(ask, path, over, limits, 
 def test_border_says_frequencies_in_the_unit_of_the_question(path):
     for over, unit in (("hz,e", "Hz"), ("rpm,e", "rpm"), ("frequency,e", "rad/s"), ("e,hz", "Hz")):
         arguments = argparse.Namespace(command="border", over=over, structure=None, units="")
-        usual, shown = asked_units(arguments, {"over": ("frequency", "e")})
-        assert usual.frequency == shown.frequency == unit
+        assert display_units(arguments, {"over": ("frequency", "e")}).frequency == unit
 
 
 def test_the_explorer_draws_branches_over_the_diagram_of_their_structure(

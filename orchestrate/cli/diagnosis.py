@@ -4,52 +4,22 @@ from __future__ import annotations
 
 import argparse
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import orchestrate
-
 from ..errors import InputError
 from ..units import with_units
-from .options import Commands, add_set_option, plain_float, read_structure_options
-from .output import (
-    add_result_options,
-    add_units_option,
-    check_file_options,
-    digest,
-    draw_picture,
-    export_formats,
-    read_record_units,
-    read_running_options,
-    unit_note,
-    units_ending,
-    with_ending,
-)
+from .options import read_structure_options
+from .output import Files, digest, read_record_units, read_running_options, result_groups, unit_note
+from .table import Command, Group
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from ..structures import Structure
 
-EXAMPLES = """  {program} diagnose record.csv --structure beam.toml
-  {program} diagnose left.csv right.uff --structure beam.toml --set e=0.4 --jobs 2
-  {program} diagnose up.csv --other down.csv --other louder.csv --structure beam.toml
-  {program} diagnose export.txt --columns 0,3,4 --unit g --sample-rate 2000 --structure beam.toml
-
-what it needs:
-  a record of a swept sine over the beam's resonance: the acceleration of its base (the shaker's
-  table, the clamp; in Python and in files of this package box_acceleration) and of one face of
-  the beam, or of both faces (acceleration1, acceleration2); and a guess of the beam in a file,
-  within some 10 %: masses of both halves and their natural frequencies, see 'quantities'.
-  Several records are of several beams, and give a verdict each.
-what it gives:
-  delaminated      the faces part and strike each other
-  no opening seen  up to the level and over the frequencies of the record; never "intact"
-  not described    the beam, its clamp or the sensors do something else
-  undecided        this record does not tell; the report says which one would
-  and for each record a report to read, print and sign (.html), the answers (.nc), a picture"""
 LINES = {  # attributes of a verdict that are printed below it, and what stands before them
     "reason": "decided by",
     "simulated": "simulated records",
@@ -65,35 +35,15 @@ CHANNELS = {  # in the order of --columns, and what they are called towards the 
 }
 
 
-def add_parser(commands: Commands) -> None:
-    """Add the parser of the command ``diagnose`` with all its options."""
-    text = "whether a measured beam is delaminated: a verdict, its evidence, a report"
-    parser = commands.add("diagnose", run, text, EXAMPLES)
-    files = "measured: .csv, .txt, .uff, .unv, .mat, .nc; one beam each"
-    parser.add_argument("records", type=Path, nargs="+", metavar="FILE", help=files)
-    guess = parser.add_argument_group("the guess")
-    guess.add_argument(
-        "--structure", metavar="FILE", help="TOML file with a [structure], or the name of a set"
-    )
-    add_set_option(guess, "one of its parameters, such as f1=42; may be repeated")
-    option = parser.add_argument_group("records").add_argument
-    other = "record of the same beam at another level or in the other direction, for the signs"
-    option("--other", type=Path, action="append", default=[], metavar="FILE", help=other)
-    option("--unit", metavar="UNIT", help="m/s2, g ... (default: what the file says)")
-    columns = "of time, base, face 1 and face 2, by name or number from 0 (default: by usual names)"
-    option("--columns", metavar="A,B,...", help=columns)
-    rate = "where the file has no times; then --columns begins with the base"
-    option("--sample-rate", type=plain_float, metavar="HZ", help=rate)
-    option = parser.add_argument_group("report").add_argument
-    option("--notes", default="", metavar="WORDS", help="below the title: which beam, who, when")
-    add_units_option(parser)
-    add_result_options(parser, store=False)
-
-
-def run(arguments: argparse.Namespace) -> None:
+def run_diagnose(arguments: argparse.Namespace) -> None:
     """Run ``diagnose``: compute a verdict per record; print it; write results and reports."""
-    formats, plots = check_file_options(arguments)
-    guess = read_guess(arguments)
+    import orchestrate
+
+    Files.from_options(arguments, "", fresh=True)  # before records are read
+    if arguments.structure is None:
+        text = "expected a TOML file with a guess of the beam, within some 10 %"
+        raise InputError(f"--structure is missing; {text}")
+    guess = read_structure_options(arguments)
     others = [read_one_record(arguments, path) for path in arguments.other]
     if others and len(arguments.records) > 1:
         raise InputError("--other: of one beam; expected one record with it")
@@ -102,9 +52,10 @@ def run(arguments: argparse.Namespace) -> None:
     verdicts = compute_verdicts(arguments, records, names, guess) if records else {}
     units = read_record_units(arguments)
     for path, verdict in verdicts.items():
-        print_verdict(path, with_units(verdict, units))
+        for line in verdict_lines(path, with_units(verdict, units)):
+            print(line)
         signs = orchestrate.signs(records[path], other=others, structure=guess)
-        write_files(arguments, names[path], {"": verdict, "_signs": signs}, formats, plots)
+        write_files(arguments, names[path], {"": verdict, "_signs": signs})
     if refused:
         count = len(records) + len(refused)
         raise InputError(f"{len(refused)} of {count} records refused: {'; '.join(refused)}")
@@ -119,14 +70,6 @@ def file_stem(path: Path, guess: Structure, arguments: argparse.Namespace) -> st
 def file_checksum(path: Path) -> str:
     """Return a file's SHA-256 in hexadecimal digits."""
     return hashlib.sha256(path.read_bytes()).hexdigest()
-
-
-def read_guess(arguments: argparse.Namespace) -> Structure:
-    """Return the user's guess of the beam as a ``Structure``; raise without ``--structure``."""
-    if arguments.structure is None:
-        text = "expected a TOML file with a guess of the beam, within some 10 %"
-        raise InputError(f"--structure: nothing given; {text}")
-    return read_structure_options(arguments)
 
 
 def read_all_records(arguments: argparse.Namespace) -> tuple[dict[Path, xr.Dataset], list[str]]:
@@ -220,11 +163,7 @@ def origin_attributes(
 
 
 def write_files(
-    arguments: argparse.Namespace,
-    stem: str,
-    answers: Mapping[str, xr.Dataset],
-    formats: tuple[str, ...],
-    plots: tuple[str, ...],
+    arguments: argparse.Namespace, stem: str, answers: Mapping[str, xr.Dataset]
 ) -> None:
     """Write results, pictures and the HTML report of one record; print the files' paths."""
     from .. import plot, report
@@ -233,23 +172,70 @@ def write_files(
 
     folder, units = open_folder(arguments.output), read_record_units(arguments)
     for ending, answer in answers.items():
-        path = folder / f"{stem}{ending}.nc"
+        files = Files.from_options(arguments, f"{stem}{ending}", fresh=True)
         if ending:  # the verdict is stored already
-            write_netcdf(answer, path)
-        shown, named = with_units(answer, units), with_ending(path, units_ending(arguments))
-        pictures = draw_picture(named, plots, True, partial(plot, shown))
-        for file in (path, *export_formats(shown, named, formats, fresh=True), *pictures):
-            print(file)
-    page, notes = folder / f"{stem}.html", arguments.notes
-    print(report(*answers.values(), output=page, notes=notes, units=units))
+            write_netcdf(answer, files.result)
+        shown = with_units(answer, units)
+        files.write(shown, partial(plot, shown))
+    page = folder / f"{stem}.html"
+    print(report(*answers.values(), output=page, notes=arguments.notes or "", units=units))
 
 
-def print_verdict(path: Path, verdict: xr.Dataset) -> None:
-    """Print a record's verdict in a few lines: what it is, its reason, what would settle it."""
+def verdict_lines(path: Path, verdict: xr.Dataset) -> Iterator[str]:
+    """Yield a record's verdict in a few lines: what it is, its reason, what would settle it."""
     from ..reports.verdict import make_verdict
 
     shown = make_verdict(verdict)
-    print(f"{path}: {shown.word} {shown.sentence}")
+    yield f"{path}: {shown.word} {shown.sentence}"
     for name, label in LINES.items():
         if verdict.attrs.get(name):
-            print(f"  {label}: {verdict.attrs[name]}")
+            yield f"  {label}: {verdict.attrs[name]}"
+
+
+DIAGNOSE = Command(
+    "diagnose",
+    "whether a measured beam is delaminated: a verdict, its evidence, a report",
+    """  {program} diagnose record.csv --structure beam.toml
+  {program} diagnose left.csv right.uff --structure beam.toml --set e=0.4 --jobs 2
+  {program} diagnose up.csv --other down.csv --other louder.csv --structure beam.toml
+  {program} diagnose export.txt --columns 0,3,4 --unit g --sample-rate 2000 --structure beam.toml
+
+what it needs:
+  a record of a swept sine over the beam's resonance: the acceleration of its base (the shaker's
+  table, the clamp; in Python and in files of this package box_acceleration) and of one face of
+  the beam, or of both faces (acceleration1, acceleration2); and a guess of the beam in a file,
+  within some 10 %: masses of both halves and their natural frequencies, see 'quantities'.
+  Several records are of several beams, and give a verdict each.
+what it gives:
+  delaminated      the faces part and strike each other
+  no opening seen  up to the level and over the frequencies of the record; never "intact"
+  not described    the beam, its clamp or the sensors do something else
+  undecided        this record does not tell; the report says which one would
+  and for each record a report to read, print and sign (.html), the answers (.nc), a picture""",
+    (
+        Group(options="records FILE +  measured: .csv, .txt, .uff, .unv, .mat, .nc; one beam each"),
+        Group(
+            "the guess",
+            """
+            --structure SET|FILE  TOML file with a [structure], or the name of a set
+            --set NAME=VALUE ...  one of its parameters, such as f1=42; may be repeated
+            """,
+        ),
+        Group(
+            "records",
+            """
+            --other FILE ...  record of the same beam at another level or in the other direction,
+                for the signs
+            --unit UNIT  m/s2, g ... (default: what the file says)
+            --columns A,B,...  of time, base, face 1 and face 2, by name or number from 0 (default:
+                by usual names)
+            --sample-rate HZ  where the file has no times; then --columns begins with the base
+            """,
+        ),
+        Group("report", "--notes WORDS  below the title: which beam, who, when"),
+        *result_groups(store=False),
+    ),
+    run_diagnose,
+)
+
+COMMANDS = (DIAGNOSE,)

@@ -1,0 +1,384 @@
+"""Options and steps of the commands on the weak drive: motor, voltage, controller, files."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..errors import InputError
+from ..units import Units, with_readable_lengths, with_units
+from .grammar import (
+    parse_changes,
+    parse_ends,
+    parse_number_or_ends,
+    parse_rate,
+)
+from .options import one_of, option_name, print_assumptions
+from .output import Files, digest, print_units_note, read_running_options, read_units
+from .table import Group
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from ..structures import Drive, Structure
+    from ..weak_drive.controllers import Controller
+    from ..weak_drive.schedule import Schedule
+
+USUAL = {"quick": ("1.2:1.65", 1e-4), "beam": ("1.25:1.6", 5e-6), "rig": ("0.95:1.24", 5e-5)}
+USUAL_RATES = ", ".join(f"{rate:g} for {name}" for name, (_, rate) in USUAL.items())
+RATE = 1e-4  # of eta0, in a time 1/omega
+ETA0 = "eta0 = U/(K omega) is the voltage as no-load speed over omega = sqrt(k1/m1)."
+RESUME = "Repeat the command to resume an interrupted run. A finished result is left as it is."
+DATASHEET = ("rated_voltage", "no_load_rpm", "stall_torque")
+
+# -- options --------------------------------------------------------------------------------------
+
+
+DRIVE = (
+    Group(
+        "structure, motor and box",
+        """
+        --drive SET|FILE = quick  TOML file with [motor], [box] and [structure], or a set: quick,
+            beam, rig
+        --structure SET|FILE  file or set with another [structure] than that of --drive
+        --set NAME=VALUE ...  a parameter of the structure, or of motor and box in SI; may be
+            repeated
+        """,
+    ),
+    Group(
+        "a motor by its datasheet",
+        """
+        --rated-voltage V  of the motor, V
+        --no-load-rpm RPM  its speed without load
+        --stall-torque N.M  its torque at rest, N m
+        """,
+        description="in place of motor_constant and armature_resistance: all three",
+    ),
+)
+ONLY = Group(options="--only {bonded,delaminated}  one of both (default: both)")
+STEP = """
+--step X  communication step, in 1/omega (default: controlled by its defect, at most 0.4; 0.1 where
+    a controller or a picture takes samples)
+"""
+HOLD = """
+--hold TIME  longest time for which a voltage is held where the record suggests a jump, 0 for none,
+    in 1/omega (default: 4000 and 200 times the rotor's own)
+"""
+SETTLE = "--settle X = 300.0  time at the first voltage, in 1/omega"
+VOLTAGE = """
+--eta0 FIRST:LAST  voltage as no-load speed over omega (default: about the jumps of the averaged
+    theory)
+--voltage FIRST:LAST  the same in V
+"""
+SCHEDULE = Group(
+    "voltage over time: a ramp, steps, one value, or a file",
+    (
+        VOLTAGE.replace("FIRST:LAST", "FIRST:LAST|VALUE"),
+        f"""
+    --duration S  time of a single VALUE, in s
+    --course FILE  CSV file with time in s and voltage in V, a row each: straight lines between,
+        instead
+    --rate RATE  change of eta0 in a time 1/omega (default: {USUAL_RATES}, else {RATE:g})
+    --volt-rate RATE  the same in V/s
+    --increment X = 0.0  change eta0 in steps of this height, at the same mean rate (default: a
+        ramp)
+    {SETTLE}
+    --one-way  do not come back
+    """,
+    ),
+)
+CONTROLLER = Group(
+    "controller: starts from rest, takes a part of the voltage at every communication step",
+    """
+    --speed-control SPEED  hold a speed in rad/s, by PI
+    --gain X  of the PI control, V s/rad (default: 5 K)
+    --reset-time S  of it, s (default: J R_a/K^2)
+    --speed-rise X  rate at which the wanted speed rises, rad/s2 (default: at once)
+    --speed-gradient  swing the rotor across the resonance by the speed-gradient method
+    --filter-time S  of it, s (default: 30/omega)
+    --low PART  part of the voltage while slower than the mean (default: 0.6)
+    """,
+)
+
+# -- structure and motor --------------------------------------------------------------------------
+
+
+def read_drive_options(arguments: argparse.Namespace) -> tuple[Structure, Drive]:
+    """Return structure and drive of the options, with the changes of ``--set`` to either."""
+    from ..structures import Drive, Structure
+
+    drive = Drive.from_file(arguments.drive)
+    structure = Structure.from_file(arguments.structure or arguments.drive)
+    changes = parse_changes(arguments.set)
+    drive_names = {field.name for field in fields(Drive)}
+    of_drive = {name: float(value) for name, value in changes.items() if name in drive_names}
+    of_structure = {name: value for name, value in changes.items() if name not in drive_names}
+    of_drive |= read_datasheet(arguments, of_drive)
+    check_masses(arguments.structure or arguments.drive, of_structure)
+    changed = structure.replace(**of_structure)
+    print_assumptions(changed, arguments.structure or arguments.drive, of_structure)
+    return changed, drive.replace(**of_drive)
+
+
+def check_masses(source: str, changes: Mapping[str, Any]) -> None:
+    """Raise if a beam's frequencies are set but its masses are not: the motor feels them."""
+    unknown = {"m1", "m2"} - changes.keys() - ({"m2"} if "mu" in changes else set())
+    named = next((name for name in ("f1", "f2") if name in changes), None)
+    if named and unknown and source in ("paper", "quick"):
+        raise InputError(
+            f"--set {named}={changes[named]:g}: the motor feels the masses, and those of {source} "
+            "are no beam's; expected --set m1=KG --set m2=KG too, or a --structure with them"
+        )
+
+
+def read_datasheet(arguments: argparse.Namespace, changes: Mapping[str, float]) -> dict[str, float]:
+    """Return motor constant and resistance from the datasheet's options; empty without them."""
+    from ..structures.drive import torque_line
+
+    names = DATASHEET
+    values = {name: getattr(arguments, name) for name in names}
+    options = {name: option_name(name) for name in names}
+    present = [name for name in names if values[name] is not None]
+    if not present:
+        return {}
+    if len(present) < len(names):
+        missing = next(name for name in names if name not in present)
+        text = f"{options[present[0]]} {values[present[0]]:g}: without {options[missing]}"
+        raise InputError(f"{text}; expected {', '.join(options.values())} together")
+    for name, option in options.items():
+        if not (math.isfinite(values[name]) and values[name] > 0.0):
+            raise InputError(f"{option} {values[name]:g}: expected a number > 0")
+    for name in ("motor_constant", "armature_resistance"):
+        if name in changes:
+            text = f"--set {name}={changes[name]:g}: beside {options['rated_voltage']}"
+            raise InputError(f"{text}; expected one of them")
+    speed = 2.0 * math.pi * values["no_load_rpm"] / 60.0
+    line = torque_line(values["rated_voltage"], speed, values["stall_torque"])
+    return dict(zip(("motor_constant", "armature_resistance"), line, strict=True))
+
+
+# -- voltages and controllers ----------------------------------------------------------------------
+
+
+def structures_by_name(arguments: argparse.Namespace, structure: Structure) -> dict[str, Structure]:
+    """Return a dict of the bonded and the delaminated structure, or of the one ``--only`` names."""
+    both = {"bonded": structure.as_bonded(), "delaminated": structure.as_delaminated()}
+    only = getattr(arguments, "only", None)
+    return {only: both[only]} if only else both
+
+
+def parse_voltages(
+    arguments: argparse.Namespace, structure: Structure, drive: Drive
+) -> tuple[float, ...]:
+    """Return one voltage or a ramp's first and last one, V; by default around the jumps."""
+    one_of(arguments, "eta0", "voltage")
+    if arguments.voltage:
+        return parse_number_or_ends("--voltage", arguments.voltage)
+    volts = drive.volts(structure)
+    if arguments.eta0:
+        return tuple(volts * value for value in parse_number_or_ends("--eta0", arguments.eta0))
+    has_own_parameters = arguments.set or arguments.structure or arguments.rated_voltage is not None
+    if arguments.drive in USUAL and not has_own_parameters:
+        first, last = parse_ends("--eta0", USUAL[arguments.drive][0])
+        return first * volts, last * volts
+    down, up = averaged_jump_voltages(arguments, structure, drive)
+    return 0.88 * down, 1.06 * up
+
+
+def parse_ramp_ends(
+    arguments: argparse.Namespace, structure: Structure, drive: Drive
+) -> tuple[float, float]:
+    """Return the first and the last voltage of a ramp, V; raise if only one is given."""
+    voltages = parse_voltages(arguments, structure, drive)
+    if len(voltages) != 2:
+        name = "voltage" if arguments.voltage else "eta0"
+        text = getattr(arguments, name)
+        raise InputError(f"--{name} {text}: expected FIRST:LAST, two numbers such as 1.2:1.65")
+    return voltages
+
+
+def averaged_jump_voltages(
+    arguments: argparse.Namespace, structure: Structure, drive: Drive
+) -> tuple[float, float]:
+    """Return the averaged theory's jump voltages, down then up, V; raise where it has no jumps."""
+    from ..weak_drive import averaged
+    from ..weak_drive.couple import require_motor
+
+    require_motor(drive)
+    folds = averaged.folds(structure, drive)
+    if not folds:
+        raise InputError(
+            f"--drive {arguments.drive}: by the averaged theory its speed does not jump; expected "
+            "--eta0 or --voltage with it"
+        )
+    volts = drive.volts(structure)
+    return folds[-1].eta0 * volts, folds[0].eta0 * volts
+
+
+def ramp_rate(arguments: argparse.Namespace, structure: Structure, drive: Drive) -> float:
+    """Return a ramp's rate, V/s, from ``--rate`` or ``--volt-rate``."""
+    one_of(arguments, "rate", "volt_rate")
+    if arguments.volt_rate is not None:
+        return parse_rate("--volt-rate", arguments.volt_rate)
+    unit = drive.volts(structure) * structure.omega
+    if arguments.rate is None:
+        return unit * USUAL.get(arguments.drive, ("", RATE))[1]
+    return unit * parse_rate("--rate", arguments.rate)
+
+
+def times_in_seconds(
+    arguments: argparse.Namespace, structure: Structure, *names: str
+) -> dict[str, float | None]:
+    """Convert options in 1/omega, such as ``--step``, to s; return a dict, None where not given."""
+    values = {name: getattr(arguments, name) for name in names}
+    omega = structure.omega
+    return {name: None if time is None else time / omega for name, time in values.items()}
+
+
+def make_schedule(
+    arguments: argparse.Namespace, structure: Structure, drive: Drive, control: Controller | None
+) -> Schedule:
+    """Return the voltage over time (a ``Schedule``) that the options describe."""
+    from ..weak_drive.couple import schedule_from_arguments
+    from ..weak_drive.schedule import Course
+
+    rate, omega = ramp_rate(arguments, structure, drive), structure.omega
+    if arguments.course:
+        for name in ("eta0", "voltage", "duration"):
+            one_of(arguments, "course", name)
+        return Course.from_csv(arguments.course)
+    ends = parse_voltages(arguments, structure, drive)
+    if len(ends) == 1:
+        if arguments.duration is None:
+            raise InputError(f"one voltage, {ends[0]:g} V: expected --duration with it, in s")
+        return schedule_from_arguments(structure, drive, ends[0], duration=arguments.duration)
+    if arguments.duration is not None:
+        raise InputError("--duration: expected one voltage with it, not FIRST:LAST")
+    return schedule_from_arguments(
+        structure,
+        drive,
+        (ends[0], ends[1]),
+        rate=rate,
+        settle=arguments.settle / omega,
+        increment=arguments.increment * drive.volts(structure),
+        back=not arguments.one_way,
+        spin_up=0.0 if control else None,
+    )
+
+
+def make_controller(
+    arguments: argparse.Namespace, structure: Structure, drive: Drive
+) -> Controller | None:
+    """Return the controller that the options describe; None if they ask for none."""
+    from ..weak_drive import own_resonance
+    from ..weak_drive.controllers import SpeedControl, SpeedGradient
+    from ..weak_drive.couple import require_motor
+
+    of_pi = {"gain": arguments.gain, "reset_time": arguments.reset_time}
+    of_pi["rise"] = arguments.speed_rise
+    of_swing = {"filter_time": arguments.filter_time, "low": arguments.low}
+    one_of(arguments, "speed_control", "speed_gradient")
+    for needed, chosen, names in (
+        (
+            "--speed-control",
+            arguments.speed_control is not None,
+            ("gain", "reset_time", "speed_rise"),
+        ),
+        ("--speed-gradient", arguments.speed_gradient, ("filter_time", "low")),
+    ):
+        for name in names:
+            value = getattr(arguments, name)
+            if value is not None and not chosen:
+                raise InputError(f"{option_name(name)} {value:g}: expected {needed} with it")
+    require_motor(drive)
+    constant = drive.motor_constant
+    if arguments.speed_control is not None:
+        slow = drive.rotor_inertia * drive.armature_resistance / constant**2
+        usual = {"gain": 5.0 * constant, "reset_time": slow, "rise": math.inf}
+        return SpeedControl(speed=arguments.speed_control, **{**usual, **without_none(of_pi)})
+    if arguments.speed_gradient:
+        passed = own_resonance.dividing_speed(structure, drive) * structure.omega
+        swing = {"filter_time": 30.0 / structure.omega, "low": 0.6, **without_none(of_swing)}
+        return SpeedGradient(passed=passed, **swing)
+    return None
+
+
+def without_none(values: Mapping[str, float | None]) -> dict[str, float]:
+    """Return the entries of a mapping whose values are not None."""
+    return {name: value for name, value in values.items() if value is not None}
+
+
+# -- answers --------------------------------------------------------------------------------------
+
+
+def drive_units(arguments: argparse.Namespace) -> Units:
+    """Return the display units from ``--units``; rpm by default if the motor's speed is in rpm."""
+    in_rpm = arguments.no_load_rpm is not None
+    return read_units(arguments).with_defaults(Units("rpm" if in_rpm else ""))
+
+
+def display(
+    arguments: argparse.Namespace, results: Mapping[str, xr.Dataset]
+) -> tuple[dict[str, xr.Dataset], dict[str, xr.Dataset]]:
+    """Return runs in the units of ``--units``, and with readable lengths for print and picture."""
+    units = drive_units(arguments)
+    asked = {state: with_units(data, units) for state, data in results.items()}
+    return asked, dict(zip(asked, with_readable_lengths(*asked.values()), strict=True))
+
+
+def result_name(
+    arguments: argparse.Namespace, structure: Structure, drive: Drive, question: Any
+) -> str:
+    """Return a result's file name: command, the drive's name, and a digest of all."""
+    digits = digest(structure.as_delaminated().parameters(), drive.parameters(), question)
+    return f"{arguments.row.function}_{Path(arguments.drive).stem}_{digits}"
+
+
+def answer_drive(arguments: argparse.Namespace) -> None:
+    """Run a command: ask for each structure, or for both at once; print, write files, draw."""
+    import orchestrate
+
+    row, stem = arguments.row, Path(arguments.drive).stem
+    structure, drive, question = row.ask(arguments)
+    base, results = result_name(arguments, structure, drive, question), {}
+    states = structures_by_name(arguments, structure) if "only" in arguments else {"": structure}
+    names = {state: f"{base}_{state}" if state else base for state in states}
+    files = {state: Files.from_options(arguments, name) for state, name in names.items()}
+    for state, chosen in states.items():
+        running = read_running_options(arguments, files[state].result)
+        results[state] = getattr(orchestrate, row.function)(chosen, drive, **question, **running)
+    asked, shown = display(arguments, results)
+    print(*row.summary(shown), sep="\n")
+    print_units_note(arguments, *shown.values())
+    for state, data in asked.items():
+        files[state].write(data)
+    title = f"{stem}: {row.title(shown, question)}"
+    draw = row.draw or (lambda results, _, title: orchestrate.plot(*results.values(), title=title))
+    picture = common_files(arguments, base, files.values())
+    picture.write_pictures(lambda: draw(shown, arguments, title))
+
+
+def common_files(arguments: argparse.Namespace, base: str, files: Iterable[Files]) -> Files:
+    """Return the ``Files`` of the picture of both structures, or of the one of ``--only``."""
+    only = getattr(arguments, "only", None)
+    name = f"{base}_{only}" if only else base
+    return Files.from_options(arguments, name, fresh=any(one.fresh for one in files))
+
+
+def format_title(runs: Mapping[str, xr.Dataset], control: Controller | None = None) -> str:
+    """Format a part of a picture's title: the runs' voltages, rate and controller."""
+    import numpy as np
+
+    changes = [
+        np.abs(np.diff(data.voltage.values) / np.diff(data.time.values)) for data in runs.values()
+    ]
+    rates, volts = np.concatenate(changes), np.concatenate([data.voltage for data in runs.values()])
+    rate = float(np.median(rates[rates > 0.0])) if (rates > 0.0).any() else 0.0
+    low, high = float(volts.min()), float(volts.max())
+    ends = f"{high:.4g} V" if low == high else f"{low:.4g} V to {high:.4g} V"
+    moving = f", {rate:.2g} V/s" if rate and not control else ""
+    return f"{ends}{moving}{f', {type(control).__name__}' if control else ''}"

@@ -1,0 +1,537 @@
+"""Commands on nonlinear dynamics: exponents, sections, attractors, basins, orbits, branches."""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from ..errors import InputError
+from ..flags import flag_words
+from ..units import range_text, text_of, units_of, with_units
+from .answer import answer, is_curve, read_earlier_result
+from .options import (
+    CONTINUED,
+    START,
+    frequency_option,
+    is_shaken,
+    over_options,
+    parse_varied,
+    read_amplitude,
+    read_excitation,
+    read_question,
+    read_structure_options,
+    response_groups,
+    structure_group,
+    varied_arguments,
+)
+from .output import read_running_options, result_groups
+from .stored import read_structure_and_question
+from .table import Command, Group, Question
+from .text import (
+    MOST_ROWS,
+    attractor_table,
+    columns_of,
+    extents,
+    flag_word,
+    format_largest_gap,
+    format_parameter,
+    format_range,
+    format_ranges,
+    format_share,
+    has_flag,
+    parameter_column,
+    table,
+    varied_parameter,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from ..structures import Structure
+
+
+def ask_along_parameter(arguments: argparse.Namespace) -> tuple[Structure, Question]:
+    """Return structure and keywords of a function along a parameter."""
+    structure = read_structure_options(arguments)
+    excitation, _ = varied_arguments(arguments, structure)
+    return structure, {**excitation, **arguments.row.keywords(arguments)}
+
+
+def ask_lyapunov(arguments: argparse.Namespace) -> tuple[Structure, Question]:
+    """Return structure and keywords of ``lyapunov``, with the responses of a sweep if followed."""
+    structure, question = ask_along_parameter(arguments)
+    if arguments.follow:
+        import orchestrate
+
+        others = arguments.row.keywords(arguments)
+        swept: Question = {name: question[name] for name in question if name not in others}
+        swept |= {"direction": arguments.follow, "samples": 1, "transient": arguments.transient}
+        question["start"] = orchestrate.sweep(structure, **swept, **read_running_options(arguments))
+    return structure, question
+
+
+def lyapunov_summary(data: xr.Dataset) -> Iterator[str]:
+    """Yield the exponents, or the largest one and the ranges of each verdict."""
+    name = varied_parameter(data)
+    data = data.sortby(name)
+    if data.sizes[name] <= MOST_ROWS:
+        rows = parameter_column(data, name, data[name].values)
+        yield from table(rows | columns_of(data, "exponent standard_error verdict"))
+    else:
+        top = data.isel(data.exponent.argmax(...))
+        yield (
+            f"largest exponent {float(top.exponent):.5f} +- {float(top.standard_error):.5f} per "
+            f"tau at {format_parameter(data, name, top[name])}; the largest of {data.sizes[name]} "
+            "is biased by its error: repeat it alone, with more --periods and another --transient"
+        )
+        for word in flag_words(data.verdict.attrs).values():
+            holds = has_flag(data.verdict, word).values
+            where = f" at {format_ranges(data, name, holds)}" if holds.any() else ""
+            yield f"{format_share(int(holds.sum()), holds.size, word)}{where}"
+    neutral = data.isel({name: has_flag(data.verdict, "neutral").values})
+    wander = math.log(float(data.attrs["wander"]))
+    sizes = zip(abs(neutral.exponent.values), neutral.period.values, strict=True)
+    needed = max((wander / (size * period) for size, period in sizes if size > 0.0), default=0.0)
+    if needed > float(data.attrs["periods"]):
+        yield (
+            "neutral: quasi-periodic, or too few periods: exponents of these sizes take about "
+            f"--periods {math.ceil(needed)}"
+        )
+
+
+LYAPUNOV = Command(
+    "lyapunov",
+    "largest Lyapunov exponents of responses: periodic, neutral or chaotic",
+    """  {program} lyapunov --eta 2.5:3.8:0.02 --follow up        along a sweep
+  {program} lyapunov --eta 1.2 --over e --values 0.1:0.9:0.02
+  {program} lyapunov --structure beam --hz 12.5,16.7 --amplitude 1e-4
+Chaotic, periodic: the exponent is three standard errors from zero. Neutral: quasi-periodic, or not
+decided with so few --periods.""",
+    response_groups(
+        Group(
+            "question",
+            (
+                over_options(),
+                "--follow {up,down}  responses of a sweep in this direction (default: each from "
+                "rest)",
+            ),
+            declared="transient periods sigmas spectrum",
+        )
+    ),
+    answer,
+    ask_lyapunov,
+    lyapunov_summary,
+    has_picture=is_curve,
+)
+
+COORDINATES = {  # that are printed of each section
+    "phase": "x_rel v_rel",
+    "impacts": "impact_velocity phase",
+    "releases": "v1 phase",
+}
+
+
+def poincare_summary(data: xr.Dataset) -> Iterator[str]:
+    """Yield the number of points of a Poincaré section and the ranges they lie in."""
+    yield f"{data.sizes['point']} points"
+    yield from extents(data, COORDINATES[str(data.attrs["at"])])
+
+
+POINCARE = Command(
+    "poincare",
+    "a Poincaré section: states at a phase of the box, at impacts or at releases",
+    """  {program} poincare --eta 2.9 --periods 5000
+  {program} poincare --eta 0.8 --at impacts
+  {program} poincare --structure beam --hz 12.5 --g 0.02 --at releases""",
+    response_groups(
+        Group(
+            "question",
+            "",
+            START.replace("at the start", "at phase 0"),
+            "at phase transient periods",
+        ),
+        several=False,
+    ),
+    answer,
+    read_question,
+    poincare_summary,
+)
+
+MAX_VALUES_IN_FULL = 5  # values up to which every attractor is printed
+
+
+def attractors_summary(data: xr.Dataset) -> Iterator[str]:
+    """Yield the attractors at one parameter value, or the ranges where there are several."""
+    name = varied_parameter(data)
+    if data.sizes[name] <= MAX_VALUES_IN_FULL:
+        for i in range(data.sizes[name]):
+            at = data.isel({name: i})
+            count, where = int(at.number), format_parameter(data, name, at[name])
+            word = "attractor" if count == 1 else "attractors"
+            yield f"{count} {word} at {where} ({data.sizes['start']} random starts)"
+            yield from attractor_table(at)
+        return
+    data = data.sortby(name)
+    for number in sorted(set(data.number.values.tolist())):
+        holds = data.number.values == number
+        share = format_share(int(holds.sum()), holds.size, f"values with {number}")
+        yield f"{share}: {format_ranges(data, name, holds)}"
+    shares = data.share.where(data.multiplicity.notnull())
+    ends = zip(data.first_found.values, data.last_found.values, strict=True)
+    columns = {
+        "range": [format_range(data, name, *map(float, pair)) for pair in ends],
+        "smallest share": [f"{share:.1%}" for share in shares.min(name).values],
+        "largest share": [f"{share:.1%}" for share in shares.max(name).values],
+    }
+    yield from table(columns)
+
+
+ATTRACTORS = Command(
+    "attractors",
+    "coexisting motions: how many, and how many random starts lead to each",
+    """  {program} attractors --eta 1.32 --starts 200 --seed 1
+  {program} attractors --eta 1.2:1.4:0.01
+  {program} attractors --structure beam --hz 15.5,16 --g 0.02 --scale 1e-3
+Half of the starts lie around zero, half around the response from rest. Every motion found at one
+value is carried to its neighbours, so along a range it is found as far as it exists; random starts
+alone may miss one whose basin is small.""",
+    response_groups(
+        Group(
+            "question",
+            over_options(),
+            """
+            --scale X  half width of one box of starts around zero, m (default: --width times the
+                gap from rest, and a second box around the response from rest)
+            """,
+            "starts seed width transient settle samples",
+        )
+    ),
+    answer,
+    ask_along_parameter,
+    attractors_summary,
+    has_picture=is_curve,
+)
+
+FEWEST_STARTS = 32  # along a side, for entropies
+
+
+def basin_summary(data: xr.Dataset) -> Iterator[str]:
+    """Yield a basin result: the plane, its attractors with their shares, the basin entropy."""
+    labels = data.attractor_of.values
+    started, overlapping = int((labels >= 0).sum()), int((labels < 0).sum())
+    axes = [data[name] for name in map(str, data.attractor_of.dims)]
+    sides = (
+        range_text(data, axis.min().item(), axis.max().item(), str(axis.attrs["units"]))
+        for axis in axes
+    )
+    plane = ", ".join(f"{axis.name} {text}" for axis, text in zip(axes, sides, strict=True))
+    yield f"{data.sizes['attractor']} found, of {started} starts in {plane}"
+    yield from attractor_table(data)
+    if overlapping:
+        yield f"{overlapping} starts left out: there the masses would overlap"
+    if data.sizes["attractor"] > 1 and min(labels.shape) >= FEWEST_STARTS:
+        import orchestrate
+
+        mixed = orchestrate.basin_entropy(data)
+        yield (
+            f"basin entropy {float(mixed.basin_entropy):.3g}, at boundaries "
+            f"{float(mixed.boundary_basin_entropy):.3g} (above 0.69: fractal)"
+        )
+        exponent, error = mixed.uncertainty_exponent, mixed.uncertainty_exponent_error
+        if math.isfinite(exponent):
+            yield (
+                f"uncertainty exponent {float(exponent):.3g} +- {float(error):.2g} "
+                "(1: smooth boundaries)"
+            )
+
+
+BASIN = Command(
+    "basin",
+    "basins of attraction: which motion each start of a plane leads to",
+    """  {program} basin --eta 1.315
+  {program} basin --eta 1.315 --x x_rel,0,1.3,60 --y v_rel,-1.3,1.3,60
+  {program} basin --eta 1.32 --x phase,0,6.28,40 --y v1,-2,2,40
+  {program} basin --structure beam --hz 15.8 --g 0.02 --x x_rel,0,1e-3,40 --y v_rel,-0.1,0.1,40
+Coordinates: x1 x2 x_rel in m, v1 v2 v_rel in m/s, phase in rad. What is not varied is that of
+--at, such as a state that the command attractors has found.""",
+    response_groups(
+        Group(
+            "question",
+            "",
+            """
+            --x NAME,FIRST,LAST,COUNT  horizontal side of the plane (default: x_rel as far as twice
+                the attractors' largest gap, 80 values)
+            --y NAME,FIRST,LAST,COUNT  vertical side of the plane (default: v_rel as far as twice
+                the attractors' largest rate, 80 values)
+            --at X1,X2,V1,V2  state that the plane goes through, m and m/s (default: rest; without
+                --x and --y the mean of the attractors)
+            """,
+            "phase transient settle samples",
+        ),
+        several=False,
+    ),
+    answer,
+    read_question,
+    basin_summary,
+)
+
+
+def draw_orbit(data: xr.Dataset) -> Any:
+    """Simulate one period from the orbit's state and draw the motion; return the figure."""
+    import orchestrate
+
+    from ..structures import Structure
+
+    excitation: Question = dict(ast.literal_eval(str(data.attrs["excitation"])))
+    motion = orchestrate.simulate(
+        Structure.from_attributes({str(name): value for name, value in data.attrs.items()}),
+        **excitation,
+        periods=int(data.attrs["period"]),
+        start=data.state.isel(sample=0).values,
+    )
+    shown = with_units(motion, units_of(data))
+    return orchestrate.plot(shown, title=orbit_title(data, shown))
+
+
+def orbit_title(orbit: xr.Dataset, motion: xr.Dataset) -> str:
+    """Return the title of an orbit's picture: whether it is stable, structure and excitation."""
+    from ..figures.labels import title_from_attributes
+
+    return f"{flag_word(orbit.stability)} orbit, {title_from_attributes(motion)}"
+
+
+def orbit_summary(data: xr.Dataset) -> Iterator[str]:
+    """Yield an orbit's stability, multipliers, impacts, states at phase 0 and largest gap."""
+    parts = data.multipliers.transpose("multiplier", "part").values
+    size = max(abs(complex(*pair)) for pair in parts)
+    word = flag_word(data.stability)
+    yield f"{word}: the largest multiplier has the absolute value {size:.6f}"
+    if word == "undecided":
+        yield "a run of the FMU from this orbit has other impacts: the orbit may not be a motion"
+    yield "multipliers " + ", ".join(f"{real:.6f}{imaginary:+.6f}i" for real, imaginary in parts)
+    for time, speed in zip(data.impact_time.values, data.impact_velocity.values, strict=True):
+        if math.isfinite(time):
+            at, closing = text_of(data, time, "s", ".8g"), text_of(data, speed, "m/s")
+            yield f"impact at {at}, closing at {closing}"
+    for i, state in enumerate(data.state.values):
+        numbers = ", ".join(f"{value:.8g}" for value in state)
+        yield f"state at phase 0 after {i} periods: {numbers} (x1, x2 in m, v1, v2 in m/s)"
+    yield f"largest gap: {format_largest_gap(data)}"
+
+
+ORBIT = Command(
+    "orbit",
+    "a periodic motion by Newton's method, stable or unstable, with its multipliers",
+    """  {program} orbit --eta 3.0                     unstable: simulate would leave it
+  {program} orbit --eta 1.32 --period 2
+  {program} orbit --structure beam --hz 16.7 --g 0.02
+Floquet multipliers: of a stable orbit all lie inside the unit circle.""",
+    response_groups(
+        Group(
+            "question",
+            "",
+            "--guess X1,X2,V1,V2  state at phase 0 to begin with, m and m/s (default: from the "
+            "response from rest)",
+            "period box_acceleration",
+        ),
+        several=False,
+    ),
+    answer,
+    read_question,
+    orbit_summary,
+    draw_orbit,
+    has_picture=lambda question: not question["box_acceleration"],
+)
+
+
+def ask_manifold(arguments: argparse.Namespace) -> tuple[Structure, Question]:
+    """Return structure and keywords of ``manifold``."""
+    structure, question = read_structure_and_question(arguments)
+    if is_shaken(arguments) or question["start"] is None:
+        question |= read_excitation(arguments, structure, si=True, one=True)
+    return structure, question
+
+
+def manifold_summary(data: xr.Dataset) -> Iterator[str]:
+    """Yield a manifold's multiplier, each side's length, and where the curve is broken."""
+    yield f"saddle: multiplier {float(data.multiplier):.6f}"
+    yield from extents(data, "x_rel")
+    lengths = (data.arclength.max("point") / data.orbit_size).values
+    sides = columns_of(data, "side end") | {
+        "points": [f"{n}" for n in data.arclength.count("point").values],
+        "length over the orbit's size": [f"{length:.4g}" for length in lengths],
+        "breaks": [f"{int((data.break_side == i).sum())}" for i in range(data.sizes["side"])],
+    }
+    yield from table(sides)
+
+
+MANIFOLD = Command(
+    "manifold",
+    "the unstable manifold of a saddle of the stroboscopic map, as a curve to each side",
+    """  {program} manifold --eta 3.0
+  {program} manifold --start orbit.nc --length 20       of an orbit that orbit has written
+  {program} manifold --structure beam --hz 14 --g 0.02
+What starts beside a saddle with one multiplier outside the unit circle leaves along it.""",
+    response_groups(
+        Group(
+            "question",
+            "",
+            "--start FILE  NetCDF file of an orbit (default: that which the command orbit finds)",
+            "period box_acceleration length spacing angle distance most",
+            readers={"start": read_earlier_result},
+        ),
+        several=False,
+        stored="--start",
+    ),
+    answer,
+    ask_manifold,
+    manifold_summary,
+)
+
+
+def ask_branch(arguments: argparse.Namespace) -> tuple[Structure, Question]:
+    """Return structure and keywords of ``branch``."""
+    if arguments.limits is None:
+        raise InputError("--limits is missing; expected FIRST:LAST")
+    over, limits = parse_varied(arguments.over, arguments.limits)
+    structure, keywords = read_structure_and_question(arguments)
+    excitation = branch_excitation(arguments, structure, over, keywords["start"] is not None)
+    return structure, {**excitation, "over": over, "limits": limits, **keywords}
+
+
+def branch_excitation(
+    arguments: argparse.Namespace, structure: Structure, over: str, begun: bool
+) -> Question:
+    """Return the excitation at which the first orbit is searched, as keywords for ``branch``."""
+    name, amplitude = frequency_option(arguments), read_amplitude(arguments)
+    if over == "frequency" and arguments.g is not None:
+        raise InputError(
+            "--g: a branch over the frequency has one amplitude; expected --amplitude in m "
+            "(impacts and bifurcations do not depend on the level)"
+        )
+    if over == "frequency" and amplitude is None and not begun:
+        raise InputError(f"--over {arguments.over}: expected --amplitude in m with it")
+    if name is None and (begun or over in ("eta", "frequency")):
+        return {} if amplitude is None else {"amplitude": amplitude}
+    excitation = read_excitation(arguments, structure, one=True)
+    needed = "frequency" if over in ("frequency", "amplitude") else over
+    if over in ("eta", "frequency", "amplitude") and needed not in excitation:
+        expected = "--eta without an amplitude" if over == "eta" else "a frequency and --amplitude"
+        raise InputError(f"--over {over}: expected {expected} with it")
+    return excitation
+
+
+def branch_summary(data: xr.Dataset) -> Iterator[str]:
+    """Yield a branch's bifurcations as a table, and why the branch ends."""
+    name = str(data.attrs["over"])
+    stable, undecided = int(data.stable.sum()), int(has_flag(data.stability, "undecided").sum())
+    unsure = f", {undecided} undecided (runs of the FMU have other impacts)" if undecided else ""
+    where = format_range(data, name, float(data[name].min()), float(data[name].max()))
+    yield f"{data.sizes['point']} orbits at {where}, {stable} of them stable{unsure}"
+    if data.sizes.get("bifurcation", 0):
+        rows = {"number": [str(i) for i in range(data.sizes["bifurcation"])]}
+        rows |= columns_of(data, "kind", "bifurcation_")
+        rows |= parameter_column(data, name, data.bifurcation_value.values, ".8f")
+        yield from table(rows, len(rows["number"]))
+    else:
+        yield "no bifurcation in this range"
+    yield f"first end: {data.attrs['first_end']}; last end: {data.attrs['last_end']}"
+
+
+BRANCH = Command(
+    "branch",
+    "follow periodic motions along a parameter, stable and unstable, to their bifurcations",
+    """  {program} branch --eta 2.5 --limits 2.4:2.8
+  {program} branch --over e --eta 2.5 --limits 0.5:0.9
+  {program} branch --structure beam --over hz --limits 20:30 --amplitude 1e-4
+  {program} branch --start branch.nc --switch 1 --limits 2.4:2.9   the branch that leaves there
+The excitation says where a first orbit is looked for; without it that is the lower limit.""",
+    response_groups(
+        Group(
+            "question",
+            f"""
+            --over NAME = eta  what varies: {CONTINUED}
+            --limits FIRST:LAST  between which it is followed, in its own unit
+            """,
+            """
+            --start FILE  NetCDF file of an orbit or a branch to begin with
+            --switch N  number of a bifurcation of --start: the branch that leaves there
+            """,
+            "period box_acceleration longest most",
+            readers={"start": read_earlier_result},
+        ),
+        several=False,
+        stored="--start",
+    ),
+    answer,
+    ask_branch,
+    branch_summary,
+)
+
+
+def ask_border(arguments: argparse.Namespace) -> tuple[Structure, Question]:
+    """Return structure and keywords of ``border``."""
+    for name, expected in (("start", "a file of the command branch"), ("limits", "A:B,C:D")):
+        if getattr(arguments, name) is None:
+            raise InputError(f"--{name} is missing; expected {expected}")
+    over, limits = arguments.over, arguments.limits
+    names, ranges = ([part.strip() for part in text.split(",")] for text in (over, limits))
+    if len(names) != 2:
+        raise InputError(f"--over {over}: expected two names, such as eta,e or hz,e")
+    pairs = [parse_varied(*pair) for pair in zip(names, ranges, strict=False)]
+    if len(ranges) != 2:
+        raise InputError(f"--limits {limits}: expected A:B,C:D, a range for each of {over}")
+    structure, question = read_structure_and_question(arguments)
+    both = {"over": tuple(name for name, _ in pairs), "limits": tuple(ends for _, ends in pairs)}
+    return structure, {**both, **question}
+
+
+def border_summary(data: xr.Dataset) -> Iterator[str]:
+    """Yield a bifurcation curve's extent, its codimension-two points, and why it ends."""
+    names = [str(name) for name in data.attrs["over"]]
+    yield f"{data.attrs['kind']}: {data.sizes['point']} points"
+    for name in names:
+        reach = format_range(data, name, float(data[name].min()), float(data[name].max()))
+        ends = (format_parameter(data, name, data[name][i]) for i in (0, -1))
+        yield f"from {' to '.join(ends)}, within {reach}"
+    if data.sizes["codimension_two"]:
+        rows = columns_of(data, "kind", "codimension_two_")
+        for name in names:
+            rows |= parameter_column(data, name, data[f"codimension_two_{name}"].values)
+        yield from table(rows, data.sizes["codimension_two"])
+    yield f"first end: {data.attrs['first_end']}; last end: {data.attrs['last_end']}"
+
+
+BORDER = Command(
+    "border",
+    "follow a bifurcation of a branch over two parameters: where a window begins or ends",
+    """  {program} border --start branch.nc --bifurcation 0 --over eta,e --limits 2.4:2.9,0.6:0.8
+  {program} border --start beam.nc --over hz,e --limits 14:18,0.6:0.8
+--start is what the command branch has written, with the numbers of its bifurcations;
+structure and excitation are those of that branch.""",
+    (
+        structure_group("--start"),
+        Group(
+            "question",
+            f"""
+            --over NAME,NAME = eta,e  what varies, that of the branch first, each {CONTINUED}
+            --limits A:B,C:D  between which each is followed, in its own unit
+            """,
+            """
+            --start FILE  NetCDF file of a branch
+            --bifurcation N = 0  its number
+            """,
+            "longest most",
+            readers={"start": read_earlier_result},
+        ),
+        *result_groups(),
+    ),
+    answer,
+    ask_border,
+    border_summary,
+)
+
+COMMANDS = (LYAPUNOV, POINCARE, ATTRACTORS, BASIN, ORBIT, MANIFOLD, BRANCH, BORDER)

@@ -1,0 +1,450 @@
+"""Commands of the laboratory: shake and analyse."""
+
+from __future__ import annotations
+
+import argparse
+import warnings
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..errors import InputError
+from ..units import text_of, with_units
+from .answer import answer, read_earlier_result
+from .grammar import (
+    floats,
+    parse_breakpoints,
+    positive_number,
+    read_pairs,
+)
+from .options import (
+    BESIDE,
+    START,
+    join_option_names,
+    option_name,
+    read_structure_options,
+    structure_group,
+)
+from .output import (
+    FORMAT,
+    OUTPUT,
+    UNITS,
+    Files,
+    digest,
+    parse_endings,
+    print_units_note,
+    read_record_units,
+    result_groups,
+    unit_note,
+)
+from .table import Command, Group, Question, parse_options
+from .text import Columns, columns_of, extents, impact_lines, table
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from ..structures import Structure
+
+KINDS = {  # of excitation: the class, its own options, and which of them it needs
+    "swept_sine": ("SweptSine", ("duration", "rate", "spacing", "g", "acceleration"), ""),
+    "stepped_sine": ("SteppedSine", ("settle_cycles", "measured_cycles", "g", "acceleration"), ""),
+    "random": ("Random", ("duration", "seed"), "duration"),
+    "shock": ("Shock", ("duration", "length", "delay", "g", "acceleration"), "length"),
+    "record": ("Sampled", ("unit", "column", "scale"), ""),
+}
+EXCITATION = """
+--swept-sine FIRST:LAST  frequencies, Hz; downwards too
+--stepped-sine FIRST:LAST:STEP  frequencies, Hz; or a list A,B,...
+--random PSD  density as HZ:VALUE,HZ:VALUE,... in (m/s2)^2/Hz
+--shock SHAPE  half-sine, sawtooth or trapezoid
+--record FILE  measured: .csv, .txt, .uff, .unv, .mat, .wav, .nc
+--g LEVEL  peak acceleration, in 9.80665 m/s2; of sines a profile HZ:VALUE,HZ:VALUE,... too
+--acceleration LEVEL  peak acceleration, m/s2; of sines a profile HZ:VALUE,HZ:VALUE,... too
+--duration S  of all, s
+--rate X  of a swept sine: Hz/s, or octaves/min where --spacing log
+--spacing WORD  of a swept sine: linear or log (default: linear)
+--settle-cycles N  of a stepped sine: cycles at each frequency before it is measured (default: 100)
+--measured-cycles N  of a stepped sine: cycles at each frequency that are measured (default: 50)
+--seed N  of random vibration (default: 0)
+--length S  of a shock's pulse, s
+--delay S  quiet before a shock, s (default: 0)
+--unit UNIT  of a record: m/s2, g ... (default: what the file says)
+--column NAME  of a record: the box's, by name or number from 0 (default: by usual names, or 1)
+--scale X  of a record in a WAV file: m/s2 at its full scale
+"""
+
+
+def ask_shake(arguments: argparse.Namespace) -> tuple[Structure, Question]:
+    """Return structure and keywords of ``shake``."""
+    structure = read_structure_options(arguments)
+    return structure, {
+        "excitation": read_excitation(arguments),
+        **arguments.row.keywords(arguments),
+    }
+
+
+def read_excitation(arguments: argparse.Namespace) -> Any:
+    """Return the excitation that the options describe, such as a ``SweptSine``."""
+    import orchestrate
+
+    kind = excitation_kind(arguments)
+    if kind == "record":
+        return read_record_excitation(arguments)
+    values = {one.name: one.value(arguments) for one in parse_options(EXCITATION)}
+    settings = {name: values[name] for name in (kind, *KINDS[kind][1]) if values[name] is not None}
+    main = settings.pop(kind)
+    level = {} if kind == "random" else {"acceleration": read_level(arguments)}
+    settings = {n: v for n, v in settings.items() if n not in ("g", "acceleration")} | level
+    if kind == "swept_sine":
+        settings |= {"first": main[0], "last": main[1]}
+    elif kind == "stepped_sine":
+        settings["frequencies"] = main[0]
+    elif kind == "random":
+        settings["psd"] = main
+    else:
+        if not isinstance(level["acceleration"], float):
+            raise InputError("--shock: expected one number for its peak, no profile")
+        settings |= {"shape": main, "peak": settings.pop("acceleration")}
+    return getattr(orchestrate, KINDS[kind][0])(**settings)
+
+
+def read_record_excitation(arguments: argparse.Namespace) -> Any:
+    """Return the box's acceleration of a measured file as an excitation."""
+    from .. import Sampled, read_record
+
+    column = arguments.column
+    columns = None
+    if column is not None:
+        columns = {"box_acceleration": int(column) if column.isdecimal() else column}
+    record = read_record(
+        arguments.record, unit=arguments.unit, columns=columns, scale=arguments.scale
+    )
+    if note := unit_note(record.attrs):
+        print(f"{arguments.record}: {note}")
+    return Sampled.from_record(record)
+
+
+def excitation_kind(arguments: argparse.Namespace) -> str:
+    """Return which kind of excitation is chosen; raise for options of another kind."""
+    chosen = [name for name in KINDS if getattr(arguments, name) is not None]
+    if len(chosen) != 1:
+        names = [option_name(name) for name in KINDS]
+        words = " and ".join(map(option_name, chosen)) or "nothing"
+        raise InputError(f"excitation: {words} given; expected one of {', '.join(names)}")
+    (kind,) = chosen
+    _, own, needed = KINDS[kind]
+    for name in (one.name for one in parse_options(EXCITATION) if one.name not in KINDS):
+        if getattr(arguments, name) is not None and name not in own:
+            owners = [option_name(other) for other, row in KINDS.items() if name in row[1]]
+            raise InputError(f"{option_name(name)}: expected with {' or '.join(owners)} alone")
+    if needed and getattr(arguments, needed) is None:
+        raise InputError(f"{option_name(kind)}: expected --{needed} with it, in s")
+    return kind
+
+
+def read_level(arguments: argparse.Namespace) -> Any:
+    """Return the peak acceleration, m/s2: a number, or a profile over frequency."""
+    from ..constants import GRAVITY
+
+    chosen = [name for name in ("g", "acceleration") if getattr(arguments, name) is not None]
+    if len(chosen) != 1:
+        words = join_option_names(chosen, " and ") or "nothing"
+        raise InputError(f"level: {words} given; expected one of --g and --acceleration")
+    text, unit = getattr(arguments, chosen[0]), GRAVITY if chosen[0] == "g" else 1.0
+    if ":" not in text:
+        return unit * positive_number(f"--{chosen[0]}", text)
+    return tuple((f, unit * value) for f, value in parse_breakpoints(f"--{chosen[0]}", text))
+
+
+def shake_summary(data: xr.Dataset) -> Iterator[str]:
+    """Yield the ranges of accelerations and gap, the impacts, and how long a transient lasts."""
+    yield from extents(data, "box_acceleration a1_abs a2_abs x_rel")
+    yield f"a linear transient decays within {float(data.transient_time):.3g} s"
+    yield from impact_lines(data)
+
+
+SHAKE = Command(
+    "shake",
+    "as in the laboratory: motion and impacts under sines, random, shock or a record",
+    """  {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --beside
+  {program} shake --structure beam --swept-sine 5:50 --rate 1 --spacing log --g 5:0.01,50:0.05
+  {program} shake --structure beam --stepped-sine 10:14:0.1 --settle-cycles 150 --g 0.02
+  {program} shake --structure beam --random 5:0.1,100:0.1 --duration 30 --seed 1
+  {program} shake --structure beam --shock half-sine --length 0.011 --g 5
+  {program} shake --structure beam --record base.csv --unit g""",
+    (
+        structure_group(),
+        Group("the box's acceleration", EXCITATION, description="one of the first five"),
+        Group(
+            "the record",
+            BESIDE,
+            ("--sample-rate HZ  of the record (default: what the excitation needs)", START),
+            "accuracy",
+        ),
+        *result_groups(),
+    ),
+    answer,
+    ask_shake,
+    shake_summary,
+)
+
+MASSES = {"box_acceleration": "box", "acceleration1": "mass 1", "acceleration2": "mass 2"}
+
+
+def peak_cells(data: xr.Dataset, values: xr.DataArray, unit: str) -> list[str]:
+    """Return each channel's largest value with the frequency, and the time, at which it is."""
+    cells = []
+    for channel in values.channel.values:
+        flat = values.sel(channel=channel).stack(every=[d for d in values.dims if d != "channel"])
+        peak = flat.isel(every=int(flat.fillna(-1.0).values.argmax()))
+        size = text_of(data, peak, unit, ".4g").removesuffix(" 1")
+        when = f", {float(peak.time):.4g} s" if "time" in peak.coords else ""
+        cells.append(f"{size} at {text_of(data, peak.frequency, 'Hz', '.5g')}{when}")
+    return cells
+
+
+def columns_of_analysis(name: str, data: xr.Dataset) -> Columns:
+    """Return the columns of the table that is printed of an analysis, a row for each channel."""
+    if name in ("orders", "harmonics"):  # of the box they are those of the excitation
+        data = data.drop_sel(channel="box_acceleration", errors="ignore")
+    columns: Columns = {"channel": [MASSES[str(channel)] for channel in data.channel.values]}
+    if name == "frf":
+        h1 = data.magnitude.sel(estimator="H1").where(data.excited > 0)
+        columns["largest |H1|"] = peak_cells(data, h1, "1")
+        at = {"frequency": h1.fillna(-1.0).argmax("frequency")}
+        of_peak = data[["random_error", "coherence"]].isel(at)
+        medians = data.coherence.where(data.excited > 0).median("frequency")
+        return columns | columns_of(of_peak.assign(median=medians), "random_error coherence median")
+    if name == "psd":
+        largest = peak_cells(data, data.psd, "m2/s4/Hz")
+        columns["largest density"] = [cell.replace("m2/s4", "(m/s2)2") for cell in largest]
+        return columns | columns_of(data, "rms")
+    if name == "orders":
+        orders = data.order.values
+        parts = {f"order {n:g}": data.amplitude.sel(order=n) for n in orders}
+        return columns | {title: peak_cells(data, part, "m/s2") for title, part in parts.items()}
+    if name == "harmonics":
+        columns["largest distortion"] = peak_cells(data, data.distortion, "1")
+        medians = data.distortion.median(set(data.distortion.dims) - {"channel"})
+        return columns | columns_of(data.assign(median=medians), "median")
+    if name == "density":
+        names = "skewness skewness_error kurtosis kurtosis_error standard_deviation"
+        return columns | columns_of(data, names)
+    variable = {"spectrogram": "amplitude", "shock": "maximax"}[name]
+    return columns | {"largest amplitude": peak_cells(data, data[variable], "m/s2")}
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """One analysis that ``--show`` names."""
+
+    function: str  # of the public face
+    options: tuple[str, ...]  # of the command that it takes
+    text: str  # what it shows
+
+
+SPECTRAL, SWEPT = ("resolution", "window"), ("orders", "periods")
+ANALYSES = {
+    "frf": Analysis("frf", (*SPECTRAL, "overlap"), "frequency response and coherence"),
+    "psd": Analysis("psd", (*SPECTRAL, "overlap"), "power spectral density"),
+    "orders": Analysis("track_orders", SWEPT, "orders of a swept sine"),
+    "harmonics": Analysis("harmonics", ("highest", "periods"), "harmonics and their distortion"),
+    "spectrogram": Analysis("spectrogram", SPECTRAL, "spectra over the time"),
+    "shock": Analysis("shock_spectrum", ("damping",), "shock response spectrum"),
+    "density": Analysis("probability_density", ("bins",), "probability density, skewness"),
+}
+READING = f"""
+--unit UNIT  of accelerations: m/s2, g, mg ...
+--columns A=X,B=Y  columns by name or number from 0: CHANNEL=COLUMN,... with the channels time,
+    {", ".join(MASSES)}
+--sample-rate HZ  where there is no time
+--scale X  m/s2 at the full scale of WAV files
+"""
+SETTINGS = """
+--resolution HZ  distance of the lines, Hz, of frf, psd and spectrogram
+--window WORD  hann (default), flattop, boxcar and others
+--overlap X  part of a segment, of frf and psd
+--orders ORDERS  orders 1 to N, or a list of them such as 0.5,1,2 (default: 3)
+--highest X  order of harmonics (default: 5)
+--periods X  of the excitation, in a window of orders and harmonics (default: 16)
+--damping X  of the oscillators of shock (default: 0.05)
+--bins X  of density (default: 100)
+"""
+SHOWN = ", ".join(f"{name} ({one.text})" for name, one in ANALYSES.items())
+
+
+def values_of(arguments: argparse.Namespace, options: str) -> dict[str, Any]:
+    """Return the values of those options that are given, by name."""
+    values = {one.name: one.value(arguments) for one in parse_options(options)}
+    return {name: value for name, value in values.items() if value is not None}
+
+
+def run_analyse(arguments: argparse.Namespace) -> None:
+    """Run ``analyse``: compute the chosen analyses of all records; print, store and draw them."""
+    from ..figures.analysis import draw
+    from ..files import open_folder
+    from ..running.store import write_netcdf
+
+    names = parse_endings("--show", arguments.show, tuple(ANALYSES))
+    Files.from_options(arguments, "", fresh=True)  # before records are read
+    settings = settings_by_analysis(arguments, names)
+    paths = paths_by_label(arguments)
+    records = {label: read_cut_record(arguments, path) for label, path in paths.items()}
+    for label, record in records.items():
+        if note := unit_note(record.attrs):
+            print(f"{paths[label]}: {note}")
+    warn_without_sensor(arguments, records)
+    units = read_record_units(arguments)
+    reading = [getattr(arguments, name) for name in ("from", "to", "sensor")]
+    reading += values_of(arguments, READING).items()
+    for name in names:
+        results = {
+            label: analyse(ANALYSES[name], record, paths[label], settings[name])
+            for label, record in records.items()
+        }
+        shown = {label: with_units(data, units) for label, data in results.items()}
+        for label, data in shown.items():
+            print(f"{f'{label}: ' if label else ''}{ANALYSES[name].text}")
+            print(*table(columns_of_analysis(name, data)), sep="\n")
+        print_units_note(arguments, *shown.values())
+        read = {label: str(path) for label, path in paths.items()}
+        stem = f"analyse_{name}_{arguments.record.stem}_{digest(read, settings[name], *reading)}"
+        open_folder(arguments.output)
+        for label, data in results.items():
+            words = "".join(letter if letter.isalnum() else "-" for letter in label)
+            ending = f"_{words}" if len(results) > 1 else ""
+            files = Files.from_options(arguments, f"{stem}{ending}", fresh=True)
+            write_netcdf(data, files.result)
+            files.write(shown[label])
+        (label, first), *others = shown.items()
+        picture = Files.from_options(arguments, stem, fresh=True)
+        picture.write_pictures(partial(draw, first, label, dict(others)))
+
+
+def warn_without_sensor(arguments: argparse.Namespace, records: Mapping[str, xr.Dataset]) -> None:
+    """Warn if simulated accelerations without impulses are compared with measured ones."""
+    simulated = [label for label, record in records.items() if "impulse" in record]
+    if arguments.sensor is None and 0 < len(simulated) < len(records):
+        warnings.warn(
+            f"{', '.join(simulated)}: accelerations between impacts, compared with a record whose "
+            "sensors feel the impulses too; --sensor HZ:RATE compares like with like",
+            stacklevel=2,
+        )
+
+
+def settings_by_analysis(
+    arguments: argparse.Namespace, names: tuple[str, ...]
+) -> dict[str, dict[str, Any]]:
+    """Return a dict of keywords for each analysis; raise for an option that none of them takes."""
+    chosen = values_of(arguments, SETTINGS)
+    for one in chosen:
+        owners = [name for name, analysis in ANALYSES.items() if one in analysis.options]
+        if not set(owners) & set(names):
+            raise InputError(f"--{one}: expected with --show {' or '.join(owners)} alone")
+    return {name: {o: chosen[o] for o in ANALYSES[name].options if o in chosen} for name in names}
+
+
+def paths_by_label(arguments: argparse.Namespace) -> dict[str, Path]:
+    """Return a dict from label to record file, from FILE and ``--beside``; FILE comes first."""
+    label = arguments.label or (arguments.record.stem if arguments.beside else "")
+    beside = read_pairs("--beside", arguments.beside, "LABEL=FILE, such as bonded=whole.nc")
+    if label in beside:
+        expected = "expected another label"
+        raise InputError(f"--beside {label}={beside[label]}: a second record {label}; {expected}")
+    return {label: arguments.record, **{name: Path(path) for name, path in beside.items()}}
+
+
+def read_cut_record(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
+    """Read a record file and keep its samples between ``--from`` and ``--to``."""
+    record = read_record_file(arguments, path)
+    begin, end = (getattr(arguments, name) for name in ("from", "to"))
+    if "time" not in record.coords or begin is end is None:
+        return record
+    part = record.sel(time=slice(begin, end))
+    if not part.sizes["time"]:
+        ends = f"{float(record.time[0]):.6g} to {float(record.time[-1]):.6g} s"
+        raise InputError(f"{path}: nothing between --from and --to; it has {ends}")
+    return part
+
+
+def read_record_file(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
+    """Read a record from a file of any format; apply ``--sensor`` to a simulated one."""
+    from .. import read_record
+
+    if path.suffix.lower() == ".nc":
+        stored = read_earlier_result("FILE" if path == arguments.record else "--beside", path)
+        units = {stored[name].attrs.get("units", "m/s2") for name in MASSES if name in stored}
+        if arguments.sensor is not None and "impulse" in stored:
+            return apply_sensor(stored, arguments.sensor)
+        return stored if units <= {"m/s2"} else read_record(path)
+    if not path.is_file():
+        raise InputError(f"{path}: no such file; expected a record")
+    reading = values_of(arguments, READING)
+    if path.suffix.lower() != ".wav":  # the scale is of the others
+        reading.pop("scale", None)
+    return read_record(path, **reading)
+
+
+def apply_sensor(history: xr.Dataset, text: str) -> xr.Dataset:
+    """Return what accelerometers of ``--sensor HZ[:RATE]`` would read of a simulated motion."""
+    from .. import Sensor, measure
+
+    reader = floats("HZ or HZ:RATE, such as 10000:25600", ":", (1, 2))
+    bandwidth, *rate = reader("--sensor", text)
+    return measure(history, Sensor(bandwidth=bandwidth, sample_rate=rate[0] if rate else None))
+
+
+def analyse(
+    analysis: Analysis, record: xr.Dataset, path: Path, settings: Mapping[str, Any]
+) -> xr.Dataset:
+    """Call the public function of an analysis on a record; errors begin with the file's name."""
+    import orchestrate
+
+    try:
+        result: xr.Dataset = getattr(orchestrate, analysis.function)(record, **settings)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    return result
+
+
+ANALYSE = Command(
+    "analyse",
+    "what an analyser shows of a record: responses, spectra, orders, shock spectra",
+    """  {program} analyse results/shake.nc --show frf,psd --resolution 0.5
+  {program} analyse swept.nc --label delaminated --beside bonded=whole.nc --show orders,harmonics
+  {program} analyse swept.nc --sensor 2000 --beside measured=bench.csv --show orders
+  {program} analyse measured.csv --unit g --columns time=0,box_acceleration=3,acceleration1=4
+  {program} analyse run.wav --scale 500 --show spectrogram,density --from 2 --to 30
+  {program} analyse shock.nc --show shock --damping 0.05 --format nc,csv""",
+    (
+        Group(
+            options=f"""
+            record FILE  a result of shake (.nc), or a record: .csv, .txt, .uff, .unv, .mat, .wav,
+                .nc
+            --show A,B,... = frf,psd  {SHOWN}
+            """
+        ),
+        Group(
+            "records",
+            """
+            --label WORDS  what the record is, for the picture
+            --beside LABEL=FILE ...  another record in the same picture; may be repeated
+            --sensor HZ[:RATE]  of results of shake what accelerometers of this bandwidth read, with
+                the impulses of impacts; RATE: samples a second (default: accelerations between
+                impacts)
+            --from S  time it begins at, s
+            --to S  time it ends at, s
+            """,
+        ),
+        Group("how to read records", READING, description="what files but NetCDF may not say"),
+        Group("settings", SETTINGS),
+        UNITS,
+        Group("files", FORMAT),
+        Group("results", OUTPUT),
+    ),
+    run_analyse,
+)
+
+COMMANDS = (SHAKE, ANALYSE)

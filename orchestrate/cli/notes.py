@@ -1,0 +1,132 @@
+"""Notes on questions that are trivial, and warnings of numbers that are probably not intended."""
+
+from __future__ import annotations
+
+import argparse
+import logging
+import math
+import warnings
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from ..constants import TURN
+from ..units import text_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from ..structures import Structure
+
+FAR_RATIO = 25.0  # frequency ratio from which, or from whose inverse, there is little to be seen
+FAR_LEVEL = 200.0  # times the level from which a clearance is hardly meant
+NEAR = 0.1  # of a frequency: so far beside its own ones a structure is still asked about
+OTHER_UNIT = {  # of an option: its unit over the other one's, names of both
+    "frequency": (1.0 / TURN, "rad/s", "--hz"),
+    "hz": (TURN, "Hz", "--frequency"),
+}
+COMPLETE = ({"eta"}, {"frequency", "amplitude"}, {"frequency", "level"})
+log = logging.getLogger(__name__)
+Question = Mapping[str, Any]
+
+
+def trivial_notes(structure: Structure, question: Question, shown: xr.Dataset) -> Iterator[str]:
+    """Yield notes for the user on arguments that make the result trivial, such as bonded."""
+    varied = isinstance(question.get("level"), tuple) or question.get("over") == "level"
+    if varied and not structure.has_scale:
+        from ..structures.ranges import OF_LENGTH
+
+        nothing = ", ".join(f"{name} = 0" for name in OF_LENGTH)
+        yield f"{nothing}: the response is proportional to the level; one level is enough"
+    elif structure.bonded:
+        yield "bonded: both masses move as one, there are no impacts"
+    elif structure.alike:
+        yield "both oscillators are alike: masses that start together never part"
+    else:
+        yield from clearance_notes(structure, question, shown)
+
+
+def print_frequency_notes(
+    arguments: argparse.Namespace, structure: Structure, question: Question
+) -> None:
+    """Print which structure is used by default; warn if frequencies are far from its own."""
+    frequency = question.get("frequency")
+    values = (
+        frequency if isinstance(frequency, tuple) else () if frequency is None else (frequency,)
+    )
+    if not values:
+        return
+    own_frequency = f"{structure.omega / TURN:.4g} Hz"
+    if getattr(arguments, "structure", "") == "paper" and not arguments.set:
+        omega = f"omega = {structure.omega:.6g} rad/s, {own_frequency}"
+        print(f"structure: the paper's, {omega} (--structure names another)")
+    warn_of_other_unit(arguments, structure, values)
+    low, high = (end(values) / structure.omega for end in (min, max))
+    if high > FAR_RATIO or low < 1.0 / FAR_RATIO:
+        ends = " to ".join(f"{ratio:.3g}" for ratio in dict.fromkeys((low, high)))
+        log.warning(
+            "frequencies of %s times the structure's %s are far from it: is it the structure that "
+            "is meant (--structure)?",
+            *(ends, own_frequency),
+        )
+
+
+def warn_of_other_unit(
+    arguments: argparse.Namespace, structure: Structure, values: tuple[float, ...]
+) -> None:
+    """Warn if frequencies would fit the structure in the other unit: Hz for rad/s or reverse."""
+    low, high = (1.0 - NEAR) * min(values), (1.0 + NEAR) * max(values)
+    own = [TURN * f for f in (structure.f1, structure.f2)]
+    if math.isclose(structure.omega, 1.0) or any(low <= omega <= high for omega in own):
+        return
+    for name, (factor, unit, other) in OTHER_UNIT.items():
+        text = getattr(arguments, name, None)
+        if text and any(low <= factor * omega <= high for omega in own):
+            numbers = f"{structure.f1:.4g} and {structure.f2:.4g} Hz"
+            warnings.warn(
+                f"--{name} {text}: these are {unit}, and the structure's own frequencies are "
+                f"{numbers}; is {other} meant?",
+                stacklevel=2,
+            )
+
+
+def clearance_notes(structure: Structure, question: Question, shown: xr.Dataset) -> Iterator[str]:
+    """Yield a note if the level is below the threshold at which the gap opens or closes."""
+    import numpy as np
+
+    names = {"eta", "frequency", "amplitude", "level"} & question.keys()
+    if question.get("over") == "level":
+        question, names = {**question, "level": question["values"]}, names | {"level"}
+    elif question.get("over") is not None or "clearance" in question:
+        return
+    if structure.bonded or not structure.clearance or names not in COMPLETE:
+        return
+    ratio = threshold_over_level(structure, {name: np.ravel(question[name]) for name in names})
+    if ratio <= 1.0:
+        return
+    opens = structure.clearance < 0.0
+    if ratio > FAR_LEVEL:
+        warnings.warn(
+            f"clearance = {structure.clearance:g} m: {ratio:.3g} times what this level moves; is "
+            "it in m (20 um is 2e-5)?",
+            stacklevel=2,
+        )
+    kind = "pressed together" if opens else "open"
+    yield (
+        f"{kind} by {text_of(shown, abs(structure.clearance), 'm')}, it first "
+        f"{'opens' if opens else 'touches'} at {ratio:.4g} times this level: from rest the "
+        "response is linear"
+    )
+
+
+def threshold_over_level(structure: Structure, box: Mapping[str, Any]) -> float:
+    """Return the smallest ratio of contact threshold to excitation level, of all points asked."""
+    import orchestrate
+
+    frequency = box["eta"] * structure.omega if "eta" in box else box["frequency"]
+    level = orchestrate.contact_threshold(structure, frequency=frequency)
+    threshold = level.threshold_amplitude.values
+    if "eta" in box:
+        return float((threshold * box["eta"] ** 2).min())
+    if "level" in box:
+        return float((threshold * frequency**2).min() / box["level"].max())
+    return float((threshold / box["amplitude"]).min())

@@ -1,0 +1,231 @@
+"""Format what commands print: parameters, ranges, counts, tables of a result's variables."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from ..flags import flag_words
+from ..units import (
+    as_shown,
+    length_of_ratio,
+    omega_of,
+    range_text,
+    scale_of,
+    shown_number,
+    text_of,
+    units_of,
+    with_units,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+MOST_ROWS = 10  # of a table that is printed
+Columns = dict[str, list[str]]  # of a table: cells by title
+
+# -- tables ---------------------------------------------------------------------------------------
+
+
+def table(columns: Mapping[str, Iterable[str]], most: int = MOST_ROWS) -> Iterator[str]:
+    """Yield the lines of a table, titles first, at most as many rows.
+
+    Examples
+    --------
+    >>> list(table({"kind": ["fold", "flip"], "eta": ["1.2", "1.25"]}))
+    ['  kind  eta', '  fold  1.2', '  flip  1.25']
+    """
+    rows = list(zip(*columns.values(), strict=True))
+    shown = [tuple(columns), *rows[:most]]
+    widths = [max(map(len, column)) for column in zip(*shown, strict=True)]
+    for row in shown:
+        cells = (f"{cell:{width}}" for cell, width in zip(row, widths, strict=True))
+        yield f"  {'  '.join(cells)}".rstrip()
+    if len(rows) > most:
+        yield f"  ... and {len(rows) - most} more"
+
+
+def columns_of(data: xr.Dataset, names: str, prefix: str = "") -> Columns:
+    """Return columns of variables along one dimension, in display units."""
+    columns: Columns = {}
+    for name in names.split():
+        array = data[prefix + name]
+        values, unit = array.values, str(array.attrs.get("units", "1"))
+        factor, word = scale_of(data, unit)
+        title = f"{name} {word}" if word not in ("1", "SI") else name
+        if "flag_meanings" in array.attrs:
+            words = flag_words(array.attrs)
+            columns[title] = [words[int(value)] for value in values]
+        elif array.ndim > 1:
+            columns[title] = [",".join(f"{number:.6g}" for number in row) for row in values]
+        elif array.dtype.kind == "f":
+            columns[title] = [f"{value / factor:.6g}" for value in values]
+        else:
+            columns[title] = [str(value) for value in values]
+    return columns
+
+
+def parameter_column(data: xr.Dataset, name: str, values: Any, form: str = ".6g") -> Columns:
+    """Return the column of a parameter's values in display units."""
+    parts = [parameter_parts(data, name, float(value), form) for value in values]
+    before, _, unit = parts[0] if parts else (name, "", "")
+    title = before or f"{'frequency' if name == 'eta' else name} {unit}"
+    return {title: [number for _, number, _ in parts]}
+
+
+def extents(data: xr.Dataset, names: str) -> Iterator[str]:
+    """Yield the range of each named variable, in display units, by what it is."""
+    for name in names.split():
+        array = data[name]
+        if array.size:
+            low, high = float(array.min()), float(array.max())
+            unit = str(array.attrs.get("units", "1"))
+            meaning = str(array.attrs.get("long_name", name)).partition(",")[0]
+            yield f"{meaning}: {range_text(data, low, high, unit).removesuffix(' 1')}"
+
+
+def table_of_one(data: xr.Dataset, name: str) -> Iterator[str]:
+    """Yield all variables of a result at one parameter value as a table."""
+    yield f"one value, {format_parameter(data, name, float(data[name][0]))}: a table and no picture"
+    for key, array in as_shown(data.isel({name: 0})).data_vars.items():
+        if not set(array.dims) - {"direction", "structure"}:
+            values = ", ".join(f"{float(value):.6g}" for value in array.values.ravel())
+            unit = str(array.attrs.get("units", "1")).removeprefix("1")
+            yield f"  {key:20} {values} {unit}".rstrip()
+
+
+def impact_lines(data: xr.Dataset) -> Iterator[str]:
+    """Yield number and fastest of a motion's impacts, and how many begin permanent contact."""
+    count = data.sizes["impact"]
+    if not count:
+        yield "no impacts"
+        return
+    first = int(data.impact_velocity.values.argmax())
+    speed = text_of(data, data.impact_velocity[first], "m/s", ".4g")
+    hardest = f"{float(data.impulse[first]):.4g} N s at {float(data.impact_time[first]):.4g} s"
+    sticks = int(data.sticks.sum())
+    yield f"{count} impacts, the fastest at {speed} ({hardest}); {sticks} begin permanent contact"
+
+
+def attractor_table(data: xr.Dataset) -> Iterator[str]:
+    """Yield a table of attractors: share, period, impacts, gap, how decided, a state."""
+    data = data.isel(attractor=data.multiplicity.notnull().values)
+    gaps = [format_largest_gap(data.isel(attractor=i)) for i in range(data.sizes["attractor"])]
+    names = "share multiplicity impacts_per_period decided_by state"
+    columns = columns_of(data, names)
+    state = columns.pop("state")
+    yield from table(columns | {"largest gap": gaps, "state at phase 0 (SI)": state})
+
+
+# -- parameters and ranges ------------------------------------------------------------------------
+
+
+def varied_parameter(data: xr.Dataset) -> str:
+    """Return the name of the parameter along which a result lies."""
+    others = {"direction", "structure", "attractor"}
+    (name,) = {str(dim) for dim in data.impacts_per_period.dims} - others
+    return name
+
+
+def format_parameter(data: xr.Dataset, name: str, value: float | xr.DataArray) -> str:
+    """Format a parameter's value in display units: ``12.5 Hz``, ``e = 0.7``."""
+    before, number, unit = parameter_parts(data, name, float(value))
+    return f"{before} = {number} {unit}".rstrip() if before else f"{number} {unit}"
+
+
+def format_range(data: xr.Dataset, name: str, low: float, high: float) -> str:
+    """Format a range of a parameter in display units: ``12.5 to 13 Hz``, ``e = 0.7 to 0.8``."""
+    before, first, unit = parameter_parts(data, name, low)
+    last = parameter_parts(data, name, high)[1]
+    numbers = first if first == last else f"{first} to {last}"
+    return f"{before} = {numbers} {unit}".rstrip() if before else f"{numbers} {unit}"
+
+
+def parameter_parts(
+    data: xr.Dataset, name: str, value: float, form: str = ".6g"
+) -> tuple[str, str, str]:
+    """Return a parameter's name (may be empty), formatted value and unit for display."""
+    units, omega = units_of(data), omega_of(data)
+    if name == "eta" and units.frequency not in ("", "eta") and math.isfinite(omega):
+        name, value = "frequency", value * omega
+    if name == "frequency":
+        shown = data if units.frequency else with_units(data, "Hz")
+        number, unit = shown_number(shown, value, "rad/s", form)
+        return ("eta", number, "") if unit == "eta" else ("", number, unit)
+    if name == "level":
+        shown = data if units.acceleration else with_units(data, "g")
+        return ("", *shown_number(shown, value, "m/s2", form))
+    return (name, *shown_number(data, value, unit_of(data, name), form))
+
+
+def unit_of(data: xr.Dataset, name: str) -> str:
+    """Return the SI unit of a dataset's parameter; empty where it has none."""
+    unit = str(data[name].attrs.get("units", "")) if name in data.variables else ""
+    return unit.removeprefix("1")
+
+
+def flag_word(value: xr.DataArray) -> str:
+    """Return the word of a scalar CF flag variable."""
+    return flag_words(value.attrs)[int(value)]
+
+
+def has_flag(values: xr.DataArray, word: str) -> xr.DataArray:
+    """Return a Boolean array: where a CF flag variable has the number of a word."""
+    number = values.attrs["flag_meanings"].split().index(word)
+    return values == values.attrs["flag_values"][number]
+
+
+def runs_of(flags: Any) -> list[tuple[int, int]]:
+    """Return first and last index of each run of true flags.
+
+    Examples
+    --------
+    >>> runs_of([True, True, False, True])
+    [(0, 1), (3, 3)]
+    """
+    runs: list[tuple[int, int]] = []
+    for index, holds in enumerate(flags):
+        if holds and runs and runs[-1][1] == index - 1:
+            runs[-1] = (runs[-1][0], index)
+        elif holds:
+            runs.append((index, index))
+    return runs
+
+
+def format_ranges(data: xr.Dataset, name: str, flags: Any, max_ranges: int = 8) -> str:
+    """Format the widest ranges of a dataset's parameter in which flags are true."""
+    values, runs = data[name].values, runs_of(flags)
+    longest = sorted(sorted(runs, key=lambda run: run[0] - run[1])[:max_ranges])
+    ends = [
+        [parameter_parts(data, name, float(values[i])) for i in dict.fromkeys(run)]
+        for run in longest
+    ]
+    before, _, unit = ends[0][0] if ends else ("", "", "")
+    text = ", ".join(" to ".join(number for _, number, _ in run) for run in ends)
+    left = len(runs) - len(longest)
+    words = f"{before} = {text}" if before else text
+    return f"{words} {unit}".rstrip() + (f" and {left} shorter ranges" if left else "")
+
+
+def format_share(count: int, whole: int, word: str = "") -> str:
+    """Format a number of responses with its share.
+
+    Examples
+    --------
+    >>> format_share(4582, 7901, "repeat")
+    '4,582 repeat (58 %)'
+    """
+    number = f"{count:,} {word}".rstrip()
+    return f"{number} ({100.0 * count / whole:.0f} %)"
+
+
+def format_largest_gap(data: xr.Dataset, form: str = ".6g") -> str:
+    """Format a response's largest gap over a eta^2 and, where the box's motion is known, as
+    length.
+    """
+    ratio, length = float(data.xi_rel_max), length_of_ratio(data)
+    parts = [f"xi_Rel = {ratio:{form}}"]
+    if length is not None and math.isfinite(float(length)):
+        parts.append(text_of(data, ratio * float(length), "m", ".4g"))
+    return ", ".join(parts)

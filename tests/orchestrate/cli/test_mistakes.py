@@ -1,0 +1,382 @@
+"""A user's mistake: one line that names the thing, its value and what is expected."""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+import socket
+import sys
+
+import netCDF4
+import pytest
+
+QUICK = ("--transient", "5", "--samples", "8")
+MISTAKES = {  # options of each command, then what its line says
+    "sweep": """
+        --eta -1 : --eta -1: | 0 < FIRST
+        --eta nan : --eta nan: | FIRST:LAST:STEP
+        --eta 1e7 : eta = 10000000.0 | <= eta <= 1e+06
+        --eta abc : --eta abc: | not numbers | FIRST:LAST:STEP
+        --eta 1:2 : --eta 1:2: | FIRST:LAST:STEP
+        --eta 2:1:0.1 : --eta 2:1:0.1: | FIRST <= LAST
+        --eta 1:2:1e-9999999 : --eta 1:2:1e-9999999: | 10000000 values
+        --over e --eta 1 : --over and --values | both
+        --over e --values 0.1,0.2 : frequency: nothing given | --eta
+        --over eta --values 1,2 : --over eta | --eta VALUES
+        --over amplitude --values 1,2 --hz 1 : --over amplitude | --g VALUES
+        --over k1 --values 1,2 --eta 1 --g 1 : --over k1 | --hz
+        --over f --values 0.1 --eta 1 : 'f' | no parameter
+        --set f=1 : f | no parameter of a structure | gamma
+        --set e : --set e | NAME=VALUE
+        --set e= : --set e=: expected NAME=VALUE
+        --set e=abc : --set e=abc | abc is not a number
+        --set e=0.1 --set e=0.2 : --set e=0.2 | each name once
+        --set e=1.2 : e = 1.2 | 0 <= e <= 1
+        --structure nowhere.toml : nowhere.toml | no such file | paper
+        --samples 0 : samples = 0 | from 1
+        --fmu nowhere.fmu : nowhere.fmu | no such file
+    """,
+    "simulate": """
+        : frequency: nothing given | --eta | --hz | --rpm | --frequency
+        --eta 1,2 : --eta 1,2 | 2 values
+        --eta 1 --frequency 2 : --eta and --frequency | one of them
+        --frequency 2 : --frequency 2 | --amplitude | --g
+        --hz 2 --amplitude 1 --g 1 : --amplitude and --g | one of them
+        --hz 2 --g x : --g x | expected a number > 0
+        --hz 1:2:0.1 --g 1 : --hz 1:2:0.1 | 11 values
+        --structure beam --eta 1 : --eta 1 | 75 rad/s | --amplitude | --g
+        --eta 1 --beside --store a.nc : --beside | --store
+        --eta 1 --store mine.dat : --store mine.dat | .nc
+        --eta 1 --format nc,doc : --format nc,doc | doc | xlsx
+        --eta 1 --start 0,1 : --start 0,1 | four numbers
+        --eta 1 --set E=0.5 : E: no parameter | did you mean e?
+    """,
+    "shake": """
+        : nothing given | --swept-sine, --stepped-sine, --random, --shock, --record
+        --swept-sine 8:20 --g 1 --shock trapezoid : --swept-sine and --shock given | one of
+        --swept-sine 8:20 --g 1 : nothing given | one of duration and rate
+        --swept-sine 8:20 --duration 2 : level | --g and --acceleration
+        --swept-sine 8:20 --g 1 --duration 2 --seed 1 : --seed | with --random alone
+        --swept-sine 8 --g 1 --duration 2 : --swept-sine 8 | FIRST:LAST
+        --stepped-sine 8:20 --g 1 : --stepped-sine 8:20 | FIRST:LAST:STEP
+        --stepped-sine 8,9 --g 1 --duration 2 : --duration: expected with --swept-sine or --random
+        --random 5-9 --duration 2 : --random 5-9 | HZ:VALUE
+        --random 5:1,9:nan --duration 2 : --random 5:1,9:nan | HZ:VALUE
+        --random 5:1,9:1 : --random | --duration
+        --shock sawtooth --g 1 : --shock | --length
+        --record no.csv : no.csv | a file to read
+        --record a.csv --g 1 : --g: expected with --swept-sine or --stepped-sine or --shock alone
+        --swept-sine 8:20 --g 1 --unit g : --unit | with --record alone
+    """,
+    "analyse": """
+        nowhere.nc : FILE nowhere.nc: no such file
+        README.md --show frequency : --show frequency | expected some of frf, psd
+        README.md --beside whole.nc : --beside whole.nc: expected LABEL=FILE
+        README.md --beside README=x.nc : a second record README
+        README.md --damping 0.1 : --damping: expected with --show shock alone
+        README.md --show orders --orders one : --orders one: expected
+        README.md --plot gif : --plot gif | png
+        lost.csv : lost.csv: no such file; expected a record
+        LICENSE --unit g --columns x : --columns x: expected CHANNEL=
+    """,
+    "resonance": """
+        : frequency: nothing given | --hz
+        --structure beam --eta 1:2:0.1 : --eta 1:2:0.1 | 75 rad/s | --g
+    """,
+    "map": """
+        --over e --values 0.3,0.7 : frequency: nothing given
+        --eta 1 --over e --values 0.3,0.7 : map | two parameters
+        --eta 1,2 : map | two parameters
+        --eta 1,2 --over e --values 0.3,0.7 --over D --values 0.1,0.2 : --eta 1,2 | 2 values
+        --eta 1 --over e --values 0.3,0.7 --over e --values 0.3,0.7 : --over e | twice
+        --eta 1,2 --over e : --over and --values | exactly one --values for each --over
+        --hz 1,2 --g 0,1 : --g 0,1
+        --hz 1,2 --g 1 --amplitude 1 --over e --values 0.3,0.7 : --g | --amplitude
+    """,
+    "lyapunov": """
+        --over e : --over and --values | both
+        --eta 1,2 --over e --values 0.3,0.7 : --eta 1,2 | 2 values
+    """,
+    "attractors": """
+        --eta 1 --scale 0 : scale = 0.0
+    """,
+    "basin": """
+        --eta 1:2:0.5 : --eta 1:2:0.5 | 3 values
+        --structure beam --eta 1 : 75 rad/s | --amplitude
+        --eta 1 --x x_rel,0,1 : --x x_rel,0,1 | NAME,FIRST,LAST,COUNT
+        --eta 1 --at 0,0,0 : --at 0,0,0 | four numbers
+    """,
+    "orbit": """
+        --eta 1 --period 0 : period = 0
+        --eta 1 --guess 1,2 : --guess 1,2 | four numbers
+    """,
+    "branch": """
+        : --limits | FIRST:LAST
+        --limits 2 : --limits 2 | FIRST:LAST
+        --eta 2.5 --limits 2.6:2.4 : limits | the lower one first
+        --eta 3 --limits 2.4:2.6 : eta = 3.0 at the start | inside
+        --over hz --g 1 --limits 2.4:2.6 : --g | --amplitude
+        --over frequency --eta 1 --limits 2.4:2.6 : --over frequency | --amplitude
+        --over e --limits 2.4:2.6 : frequency: nothing given
+        --start lost.nc --limits 2.4:2.6 : --start lost.nc | no such file
+        --eta 2.5 --switch 0 --limits 2.4:2.6 : switch = 0 | expected a branch
+    """,
+    "border": """
+        : --start is missing
+        --start lost.nc : --limits is missing
+        --start lost.nc --limits 1:2,0.1:0.9 : --start lost.nc | no such file
+        --start README.md --limits 1:2,0.1:0.9 : --start README.md | not readable
+        --start lost.nc --limits 1:2,3 : --limits 3 | FIRST:LAST
+        --start lost.nc --limits 1:2,0.1:0.9 --structure paper --set E=2 : E: no parameter
+        --start lost.nc --limits 1:2,0.1:0.9 --structure lost.toml : lost.toml
+    """,
+    "spectra": """
+        --eta abc : --eta abc | not numbers
+        --eta 1 --eta0 1.3 : --eta | --eta0
+        --eta0 1 --voltage 1 : --eta0 and --voltage
+        --drive paper : paper | no drive | [motor] and [box]
+    """,
+    "paper": """
+        --figures '' : unknown figure ''
+        --figures spectra --jobs -1 : jobs = -1
+    """,
+    "couple": """
+        --drive rigg : rigg | no such file | quick
+        --structure glued : glued | no such file
+        --set x=1 : x | no parameter
+        --fmu nowhere.fmu : nowhere.fmu | no such file
+        --format doc : --format doc | xlsx
+        --plot gif : --plot gif | png
+        --rated-voltage 12 : --rated-voltage 12 | without --no-load-rpm | --stall-torque together
+        --rated-voltage 9 --no-load-rpm 9 : --rated-voltage 9 | without --stall-torque
+        --rated-voltage 9 --no-load-rpm 9 --stall-torque 0 : --stall-torque 0 | a number > 0
+        --rated-voltage 9 --no-load-rpm 9 --stall-torque 1 --set motor_constant=2 : beside --rated
+        --eta0 x:2 : --eta0 x:2 | FIRST:LAST
+        --eta0 1:2 --voltage 1:2 : --eta0 and --voltage | one of them
+        --step -0.1 : step = -0.1 s | 0.0001 <= step <= 1
+        --eta0 1.2 : one voltage, 1.2 V | --duration
+        --eta0 1:2 --duration 3 : --duration | one voltage
+        --voltage high : --voltage high | a number, or FIRST:LAST
+        --rate 0 : --rate 0 | > 0
+        --rate 1e-4,5e-5 : --rate 1e-4,5e-5 | expected one | jump-voltages
+        --rate 1e-4 --volt-rate 1 : --rate and --volt-rate
+        --course nowhere.csv : nowhere.csv | cannot be read
+        --course a.csv --eta0 1:2 : --course and --eta0
+        --set armature_resistance=1e-3 : does not jump | --eta0 or --voltage
+        --speed-control 1.5 --speed-gradient : --speed-control and --speed-gradient
+        --gain 2 : --gain 2 | --speed-control with it
+        --low 0.5 : --low 0.5 | --speed-gradient with it
+    """,
+    "passage": """
+        --revolutions 0 : --revolutions 0 | >= 1
+    """,
+    "capture": """
+        --over D : --over and --values | both
+        --over D --values a : --values a | not numbers
+        --eta0 1.5 : --eta0 1.5 | FIRST:LAST
+    """,
+    "jump-voltages": """
+        --rate 1:2:3 : --rate 1:2:3 | several such as 1e-4,5e-5
+        --rate 1e-4,-1 : --rate 1e-4,-1 | > 0
+        --eta0 1.5 : --eta0 1.5 | FIRST:LAST
+    """,
+    "drive-branch": """
+        --speed 1 : --speed 1 | FIRST:LAST
+    """,
+}
+CASES = [
+    (command, *map(str.strip, f" {line.strip()}".partition(" : ")[::2]))
+    for command, lines in MISTAKES.items()
+    for line in lines.strip().splitlines()
+]
+
+
+@pytest.mark.parametrize(("command", "options", "words"), CASES)
+def test_mistake(ask, tmp_path, command, options, words):
+    if command == "sweep" and not ("--eta" in options or "--over" in options):
+        options = f"--eta 1 {options}"
+    done = ask(command, *shlex.split(options))
+    assert done.out == ""
+    done.complaint(*(word.strip() for word in words.split("|")))
+    assert done.complaints[0].startswith("error: ")
+    assert [path for path in tmp_path.rglob("*") if path.is_file()] == []
+
+
+SYNTAX = """
+    : COMMAND
+    swep : 'swep'
+    sweep --bogus 1 : --bogus
+    spectra --eta0=1 --volt 1 : --volt
+    sweep --samples 1.5 : --samples | '1.5' | int
+    sweep --direction sideways : --direction | 'sideways' | up
+    build now : now
+    build --folder : --folder | expected one argument
+    resonance --direction given : --direction | 'given' | both
+    couple --only glued : --only | 'glued' | bonded
+    attractors --scale big : --scale | 'big' | float
+"""
+
+
+@pytest.mark.parametrize("line", SYNTAX.strip().splitlines())
+def test_what_is_no_command(ask, line):
+    """Abbreviated options are refused too: a later version may have another that begins so."""
+    options, _, words = f" {line.strip()}".partition(" : ")
+    done = ask(*options.split())
+    *usage, last = done.err.splitlines()
+    assert (done.code, done.out) == (2, "")
+    assert usage[0].startswith("usage: ")
+    assert "error: " in last and all(word.strip() in last for word in words.split("|")), last
+
+
+@pytest.mark.parametrize("command", [("sweep", "--eta", "1"), ("couple",), ("paper", "--quick")])
+def test_output_that_is_a_file(ask, tmp_path, command):
+    (tmp_path / "results").write_text("mine")
+    ask(*command, output=tmp_path / "results" / "below").complaint("--output", "expected a folder")
+    assert (tmp_path / "results").read_text() == "mine"
+
+
+def test_a_foreign_fmu_is_refused(ask, tmp_path, exported):
+    shaker = exported / "fmi2-python" / "MotorShaker.fmu"
+    ask("sweep", "--eta", "1", "--fmu", shaker).complaint("MotorShaker", "expected TwoMass")
+    ask("couple", "--fmu", shaker, "--fmu", shaker).complaint("a second MotorShaker")
+    (tmp_path / "empty.fmu").touch()
+    ask("sweep", "--eta", "1", "--fmu", tmp_path / "empty.fmu").complaint("not readable")
+
+
+def test_a_wrong_file_is_named_with_section_and_key(ask, tmp_path):
+    path = tmp_path / "own.toml"
+    path.write_text("[structure]\nm1 = 1.0\nstiffness = 2.0\n")
+    ask("sweep", "--eta", "1", "--structure", path).complaint("own.toml", "stiffness")
+    path.write_text("[structure]\nm1 = \n")
+    ask("sweep", "--eta", "1", "--structure", path).complaint("own.toml")
+
+
+def not_netcdf(path):
+    path.write_bytes(b"garbage" * 1000)
+
+
+def netcdf_of_others(path):
+    with netCDF4.Dataset(path, "w") as data:
+        data.title = "of others"
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (not_netcdf, "not a result of this project"),
+        (netcdf_of_others, "not a result of this project"),
+        (lambda path: path.mkdir(), "a folder; expected a place for a file"),
+    ],
+)
+def test_something_else_in_the_place_of_the_result(ask, tmp_path, make, words):
+    result = tmp_path / "results" / "mine.nc"
+    result.parent.mkdir()
+    make(result)
+    before = result.read_bytes() if result.is_file() else b""
+    done = ask("sweep", "--eta", "1", *QUICK, "--store", result)
+    done.complaint(result, words, code=done.code)
+    assert done.code in (1, 2)
+    assert [path.name for path in result.parent.iterdir()] == [result.name]
+    assert (result.read_bytes() if result.is_file() else b"") == before
+
+
+def test_a_stale_result_is_refused_with_what_has_changed(ask, tmp_path):
+    asked = ("sweep", "--eta", "1", *QUICK)
+    assert ask(*asked).code == 0
+    (result,) = (tmp_path / "results").glob("*.nc")
+    with netCDF4.Dataset(result, "a") as data:
+        identity = json.loads(data.identity)
+        identity["code"]["orchestrate.response.respond"] = "older"
+        data.identity = json.dumps(identity)
+        del data.content_sha256
+    before = result.read_bytes()
+    words = "stale", "response/respond.py", "--force", "--keep-stale"
+    ask(*asked).complaint(*words)
+    assert result.read_bytes() == before
+    kept = ask(*asked, "--keep-stale")
+    assert kept.code == 0 and "complete already" in kept.out
+    assert ask(*asked, "--force").code == 0
+    assert ask(*asked).code == 0
+
+
+def test_debug_shows_where_an_error_came_from(tmp_path):
+    from orchestrate.cli import main
+    from orchestrate.errors import InputError
+
+    for arguments in (["--debug", "sweep"], ["sweep", "--debug"]):
+        with pytest.raises(InputError, match="e = 2"):
+            main([*arguments, "--set", "e=2", "--output", str(tmp_path)])
+
+
+def test_no_scheduler_but_something_that_takes_calls_and_is_silent(ask, monkeypatch):
+    monkeypatch.setattr("orchestrate.running.cluster.CONNECT_TIMEOUT", "1s")
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
+        asked = ask("sweep", "--eta", "1", "--cluster", address)
+    asked.complaint(f"cluster {address}", "no scheduler")
+
+
+@pytest.mark.parametrize("asked", [("--eta", "1"), ("--frequency", "1", "--amplitude", "1")])
+def test_no_orbit_is_looked_for_at_an_undamped_resonance(ask, tmp_path, asked):
+    ask("orbit", *asked, "--set", "D=0").complaint("frequency = 1.0 rad/s", "d1 = 0.0")
+    assert list(tmp_path.rglob("*.nc*")) == []
+
+
+def test_what_a_file_says_is_shown_in_one_line(ask, tmp_path):
+    """Neither a line of its own, nor a terminal's commands, nor pages of it."""
+    path = tmp_path / "own.toml"
+    path.write_text('[structure]\n"one\\ntwo\\u001b[2J" = 1\n')
+    line = ask("sweep", "--eta", "1", "--structure", path).complaint("no key of [structure]")
+    assert "one\\ntwo\\x1b[2J" in line
+    path.write_text(f"[structure]\nm1 = '{'x' * 50_000}'\n")
+    assert len(ask("sweep", "--eta", "1", "--structure", path).complaint(" ... ")) < 1100
+
+
+def test_a_result_whose_identity_is_damaged(ask, tmp_path):
+    path = tmp_path / "branch.nc"
+    with netCDF4.Dataset(path, "w") as file:
+        file.setncattr("identity", "[")
+    ask("border", "--start", path, "--limits", "1:2,0.1:0.9").complaint("identity is damaged")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="names of any bytes")
+def test_a_path_that_is_not_utf_8_is_refused_before_anything_is_computed(ask, tmp_path):
+    name = tmp_path / os.fsdecode(b"results-\xff")
+    done = ask("sweep", "--eta", "1", *QUICK, output=name)
+    done.complaint("results-\\udcff", "not UTF-8")
+    ask("sweep", "--eta", "1", *QUICK, "--store", name / "a.nc").complaint("not UTF-8")
+    copy = name.with_suffix(".nc")
+    ask("sweep", "--eta", "1:1.1:0.1", *QUICK, "--store", tmp_path / "a.nc")
+    copy.write_bytes((tmp_path / "a.nc").read_bytes())
+    ask("explore", copy, "--no-open", output=tmp_path / "page.html").complaint("not UTF-8")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.nc", "a.png", copy.name]
+
+
+@pytest.mark.parametrize("value", ["abc", "1.5", "-1", "9" * 30, "\u0661"])
+def test_a_time_of_the_environment_that_is_none_is_refused(ask, monkeypatch, value):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", value)
+    done = ask("sweep", "--eta", "1", *QUICK)
+    done.complaint("SOURCE_DATE_EPOCH", "whole number of seconds")
+
+
+def test_an_fmu_of_gigabytes_is_not_read(ask, tmp_path):
+    path = tmp_path / "large.fmu"
+    with path.open("wb") as file:
+        file.truncate(8 << 30)
+    ask("sweep", "--eta", "1", "--fmu", path).complaint(path, f"{8 << 30} bytes, at most")
+
+
+RECOMMENDED = """
+    map --hz 8:20:4 --over g --values 0.3,0.5 : --over g: expected --g VALUES
+    map --hz 8 --over hz --values 1,2 : --over hz: expected --hz VALUES
+    branch --over hz --limits 20:30 --hz 20 : --amplitude in m with it
+    branch --over g --limits 1:2 --hz 20 : expected --over amplitude
+"""
+
+
+@pytest.mark.parametrize("line", RECOMMENDED.strip().splitlines())
+def test_nothing_is_recommended_that_is_refused_then(ask, line):
+    options, _, words = line.strip().partition(" : ")
+    said = ask(*options.split(), "--structure", "beam").complaint(words)
+    assert "--g with it" not in said and "--g in" not in said

@@ -1,0 +1,497 @@
+"""What commands print and leave: results that describe themselves, pictures; finished ones stay."""
+
+from __future__ import annotations
+
+import functools
+import math
+import re
+
+import netCDF4
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+from matplotlib import image
+
+import orchestrate
+from orchestrate import Structure
+from orchestrate.access import OSCILLATOR, find
+from orchestrate.cli import responses
+from orchestrate.cli.dynamics import lyapunov_summary
+from orchestrate.version import __version__
+
+SWEEP = ("sweep", "--eta", "1.28:1.31:0.005", "--transient", "20", "--samples", "12")
+SHORT = ("--transient", "60", "--samples", "16")
+DRAWN = ("resonance", "orbit")  # figures of all are tested elsewhere
+QUESTIONS = {  # command line, words that must be printed
+    "resonance": (
+        ("--structure", "beam", "--hz", "12:13:0.1", "--g", "0.02", *SHORT),
+        ("peaks", "bonded", "delaminated  up", "12.5", "frequency Hz", "no jump"),
+    ),
+    "map": (
+        ("--eta", "0.5:1.5:0.5", "--over", "e", "--values", "0.3,0.7", *SHORT, "--settle", "20"),
+        ("6 responses: ", "after 1 T", "largest gap", "impacts per excitation period"),
+    ),
+    "lyapunov": (
+        ("--eta", "0.8,1.047", "--transient", "100", "--periods", "300"),
+        ("exponent", "chaotic", "-0.007", "periodic"),
+    ),
+    "attractors": (
+        ("--eta", "1.3,1.4", "--starts", "5", *SHORT, "--settle", "20"),
+        (" at eta = 1.3 (5 random starts)", "multiplicity", "state at phase 0"),
+    ),
+    "basin": (
+        ("--eta", "1.4", "--x", "x_rel,-0.1,0.8,4", "--y", "v_rel,-1,1,3", *SHORT),
+        ("of 9 starts", "share", "3 starts left out"),
+    ),
+    "orbit": (
+        ("--eta", "3.0"),
+        ("unstable", "-3.359480", "impact at 0.480678 s", "state at phase 0"),
+    ),
+    "manifold": (
+        ("--eta", "3.0", "--length", "1"),
+        ("saddle: multiplier -3.359480", "length over the orbit's size", "length  "),
+    ),
+    "branch": (
+        ("--eta", "2.62", "--limits", "2.6:2.7"),
+        ("Neimark-Sacker", "2.64796105", "at eta = 2.6 to 2.7", "limit"),
+    ),
+}
+
+
+@pytest.fixture
+def folder(tmp_path):
+    return tmp_path / "results"
+
+
+def shows_something(path):
+    """Whether a picture has lines, dots or colours on white."""
+    grey = image.imread(path)[..., :3].mean(axis=2)
+    return min(grey.shape) > 300 and 0.001 < (grey < 0.95).mean() < 0.95
+
+
+@pytest.mark.parametrize("command", QUESTIONS)
+def test_question(ask, folder, command):
+    options, words = QUESTIONS[command]
+    options += () if command in DRAWN else ("--plot", "none")
+    done = ask(command, *options, "--format", "nc,csv")
+    assert done.code == 0, done.err
+    assert [word for word in words if word not in done.out] == []
+    (result,) = folder.glob("*.nc")
+    assert xr.load_dataset(result).attrs["call"].startswith(f"{command}(")
+    assert re.fullmatch(rf"{command}_(paper|beam)_[0-9a-f]{{6}}", result.stem)
+    assert command not in DRAWN or shows_something(result.with_suffix(".png"))
+    assert list(folder.glob("*.csv"))
+    told = set(re.findall(r"^/\S+", done.out, re.M))
+    assert told == {str(path) for path in folder.iterdir()}
+    again = ask(command, *options, "--format", "nc,csv")
+    assert "complete already" in again.out
+    assert again.out.replace(": complete already", "") == done.out
+
+
+def test_formats_hold_the_same_numbers(ask, folder):
+    options, _ = QUESTIONS["resonance"]
+    formats = ("--format", "csv,mat,xlsx", "--plot", "none")
+    assert ask("resonance", *options, *formats).code == 0
+    (result,) = folder.glob("*.nc")
+    data = xr.load_dataset(result)
+    (curves,) = (path for path in folder.glob("*.csv") if path.name.endswith("frequency.csv"))
+    table = pd.read_csv(curves)
+    digits = pd.read_csv(curves, dtype=str)["x1_max [m]"]  # older pandas reads numbers less exactly
+    np.testing.assert_array_equal(list(map(float, digits)), data.x1_max.values.ravel())
+    np.testing.assert_allclose(table["frequency [Hz]"].unique(), np.arange(12.0, 13.05, 0.1))
+    sheet = pd.read_excel(result.with_suffix(".xlsx"), sheet_name="structure_direction_frequency")
+    np.testing.assert_allclose(sheet["a2_max [g]"] * 9.80665, data.a2_max.values.ravel())
+    assert result.with_suffix(".mat").stat().st_size > 1000
+
+
+@pytest.mark.slow
+def test_a_branch_goes_on_from_a_stored_one(ask, folder):
+    place = folder / "window.nc"
+    assert ask("branch", "--eta", "2.7", "--limits", "2.6:2.82", "--store", place).code == 0
+    done = ask("branch", "--start", place, "--switch", "1", "--limits", "2.78:2.8")
+    assert done.code == 0 and "first end: start" in done.out, done.err
+    limits = ("--over", "eta,e", "--limits", "2.6:2.7,0.69:0.71", "--longest", "0.5")
+    done = ask("border", "--start", place, *limits)
+    assert done.code == 0 and "Neimark-Sacker: " in done.out, done.err
+    assert len(list(folder.glob("*.nc"))) == 3
+
+
+def test_the_excitation_of_the_file(ask, folder, tmp_path):
+    path = tmp_path / "own.toml"
+    path.write_text(
+        "[structure]\nm1 = 1.5\nomega_hz = 11.9\nD = 0.005\n\n"
+        "[excitation]\nfrequency_hz = 12.6\nacceleration_g = 0.02\nphase = 0.5\n"
+    )
+    short = ("simulate", "--structure", path, "--periods", "1", "--plot", "none")
+    told = ("--hz", "12.6", "--g", "0.02", "--phase", "0.5")
+    done, same = ask(*short), ask(*short, *told)
+    assert done.code == same.code == 0, done.err
+    assert done.out.splitlines()[:-1] == same.out.splitlines()[:-1]
+
+
+def test_exponents_along_a_sweep(ask, folder):
+    eta = [1.36, 1.3]
+    options = ("--eta", "1.36,1.3", "--periods", "100", "--transient", "50", "--plot", "none")
+    assert ask("lyapunov", *options, "--follow", "down").code == 0
+    (path,) = folder.glob("*.nc")
+    swept = orchestrate.sweep(
+        Structure(), eta=eta, direction="down", transient=50, samples=1, progress=False
+    )
+    along = {"start": swept, "transient": 50, "periods": 100, "progress": False}
+    expected = orchestrate.lyapunov(Structure(), eta=eta, **along)
+    np.testing.assert_array_equal(xr.load_dataset(path).exponent, expected.exponent)
+
+
+TRIVIAL = [
+    (("simulate", "--eta", "1", "--set", "kappa=1"), "both oscillators are alike"),
+    (("sweep", "--eta", "1.2", *SHORT), "one value, eta = 1.2: a table and no picture"),
+    (("sweep", "--eta", "2:2.1:0.05", "--direction", "both", "--samples", "8"), "gap nowhere"),
+    (("resonance", "--eta", "0.3:0.4:0.05", *SHORT), "no peak in this range"),
+    (
+        ("resonance", "--set", "mu=0.5", "--set", "kappa=1.9", "--set", "D=0.02", "--set", "e=0.8")
+        + ("--eta", "3.4:4.2:0.01"),
+        "peaks of irregular responses, left out: ",
+    ),
+    (
+        ("sweep", "--set", "e=0.86", "--eta", "0.827,0.9", "--transient", "240", "--samples", "60"),
+        "undecided: slow to converge or nearly periodic; --transient 5000 decides most",
+    ),
+    (("lyapunov", "--eta", "1", "--set", "bonded=true", "--periods", "20"), "there are no impacts"),
+]
+
+
+@pytest.mark.parametrize(("words", "said"), TRIVIAL, ids=lambda value: " ".join(value)[:60])
+def test_what_is_trivial_is_said(ask, words, said):
+    done = ask(*words, "--plot", "none")
+    assert done.code == 0 and said in done.out, done.err
+
+
+def test_frequencies_in_hertz_are_told_whose_structure_they_meet(ask, caplog):
+    short = ("--periods", "1", "--plot", "none")
+    done = ask("simulate", "--hz", "47", "--g", "0.5", *short)
+    assert "structure: the paper's, omega = 1 rad/s, 0.1592 Hz (--structure names" in done.out
+    assert caplog.messages[-1].startswith(
+        "frequencies of 295 times the structure's 0.1592 Hz are far from it"
+    )
+    caplog.clear()
+    done = ask("simulate", "--hz", "12", "--g", "0.02", "--structure", "beam", *short)
+    assert "structure:" not in done.out
+    done = ask("simulate", "--eta", "30", *short)
+    assert "structure:" not in done.out and caplog.messages == []
+    low = ("resonance", "--structure", "beam", "--hz", "0.1,12", "--amplitude", "1e-3")
+    ask(*low, "--transient", "1", "--samples", "1", "--plot", "none")
+    assert caplog.messages[-1].startswith("frequencies of 0.00838 to 1.01 times")
+
+
+def made_sweep(kinds, impacts, **sizes):
+    """A made-up sweep of responses: their kinds, as ``multiplicity_decided`` has them."""
+    words = {"flag_values": [0, 1, 2], "flag_meanings": "irregular repeated undecided"}
+    count = len(kinds)
+    eta = 1.0 + 0.01 * np.arange(count)
+    numbers = {"xi_rel_max": np.linspace(1.0, 2.0, count), "impacts_per_period": impacts}
+    numbers |= {name: np.full(count, 0.5) for name in ("x1_max", "x2_max", "a1_max", "a2_max")}
+    numbers |= {"multiplicity": np.ones(count, dtype=int), "permanent_contact": np.zeros(count)}
+    data = xr.Dataset({name: ("eta", values) for name, values in numbers.items()}, {"eta": eta})
+    data = data.assign(multiplicity_decided=("eta", kinds, words))
+    for name in ("x1_max", "x2_max"):
+        data[name].attrs["units"] = "m"
+    return data.assign_attrs(k1=1.0, m1=1.0)
+
+
+def test_a_sweep_is_summed_up_in_a_table_of_ten_lines():
+    """Made-up: twelve windows of which the shortest are left out; impacts divide windows too."""
+    kinds = np.repeat([1, 0, 1, 2, 1, 0, 1, 0, 1, 0, 1, 0], [9, 2, 20, 6, 8, 3, 7, 1, 5, 1, 4, 1])
+    impacts = np.where(np.arange(len(kinds)) < 21, 1.0, 2.0)
+    lines = list(responses.sweep_summary(made_sweep(kinds, impacts)))
+    assert "67 responses: 53 repeat (79 %), 8 irregular (12 %), 6 undecided (9 %)" in lines
+    first = next(i for i, line in enumerate(lines) if "widest windows" in line)
+    rows = [line for line in lines[first:] if line.startswith("  ")]
+    assert len(rows) == 10
+    assert rows[1].split() == ["eta", "=", "1", "to", "1.08", "after", "1", "T", "1"]
+    assert rows[2].split() == ["eta", "=", "1.11", "to", "1.2", "after", "1", "T", "1"]
+    assert rows[3].split() == ["eta", "=", "1.21", "to", "1.3", "after", "1", "T", "2"]
+    assert "undecided" in rows[4]
+    assert lines[-1].startswith("undecided: ") and "--transient 5000" in lines[-1]
+    assert not any("permanent contact" in line for line in lines)
+
+
+def test_the_largest_of_many_exponents_is_not_passed_off_as_an_estimate():
+    etas = np.linspace(5.0, 5.3, 12)
+    exponents = np.full(12, 0.25)
+    exponents[7] = 0.2777
+    columns = {"exponent": exponents, "standard_error": np.full(12, 0.003)}
+    columns["impacts_per_period"] = np.ones(12)
+    words = {"flag_values": [-1, 0, 1], "flag_meanings": "periodic neutral chaotic"}
+    data = xr.Dataset({name: ("eta", values) for name, values in columns.items()}, {"eta": etas})
+    data = data.assign(verdict=("eta", np.ones(12, dtype=int), words))
+    data = data.assign_coords(period=("eta", 2.0 * np.pi / etas))
+    first, *_ = lyapunov_summary(data.assign_attrs(periods=2500, wander=10.0))
+    assert first.startswith("largest exponent 0.27770 +- 0.00300 per tau at eta = 5.19")
+    assert "the largest of 12 is biased" in first
+
+
+# -- files ----------------------------------------------------------------------------------------
+
+
+def fingerprint(folder):
+    """Bytes and times of all that is there."""
+    return {p.name: (p.read_bytes(), p.stat().st_mtime_ns) for p in folder.iterdir()}
+
+
+def result_in(folder):
+    """The one result in a folder."""
+    (path,) = folder.glob("*.nc")
+    return xr.load_dataset(path)
+
+
+def test_a_finished_sweep_describes_itself_and_stays(ask, folder):
+    done = ask(*SWEEP)
+    assert done.code == 0
+    (result,), (picture,) = folder.glob("*.nc"), folder.glob("*.png")
+    assert re.fullmatch("sweep_paper_[0-9a-f]{6}", result.stem) and picture.stem == result.stem
+    assert "largest gap: xi_Rel = " in done.out and str(picture) in done.out
+    assert shows_something(picture)
+    data, fmu = xr.load_dataset(result), find(OSCILLATOR)
+    assert data.xi_rel.dims == ("eta", "sample") and data.xi_rel.shape == (7, 12)
+    np.testing.assert_array_equal(data.sample, np.arange(21, 33))
+    about = {"e": 0.7, "d1": 0.01, "k2": 1.2, "transient": 20, "samples": 12, "direction": "up"}
+    about |= {"fmu_guid": fmu.guid, "fmu_model": fmu.name, "fmi_version": fmu.fmi_version}
+    assert {key: data.attrs[key] for key in about} == about
+    assert "e0.7_D0.005" in data.attrs["title"]
+    assert __version__ in data.attrs["source"] and data.attrs["call"].startswith("sweep(")
+    assert all(len(str(value)) < 4000 for value in data.attrs.values())
+    with netCDF4.Dataset(result) as stored:
+        assert all(v.units and v.long_name for v in stored.variables.values())
+    before = fingerprint(folder)
+    again = ask(*SWEEP)
+    assert again.code == 0 and f"{result.name}: complete already" in again.out
+    assert fingerprint(folder) == before
+    picture.unlink()
+    ask(*SWEEP)
+    assert fingerprint(folder).keys() == before.keys()
+    assert fingerprint(folder)[result.name] == before[result.name]
+    assert ask(*SWEEP, "--samples", "13", "--plot", "none").code == 0
+    after = fingerprint(folder)
+    assert len(after) == 3 and before[result.name] == after[result.name]
+
+
+def test_force_computes_the_same_bytes_anew(ask, folder, monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
+    ask(*SWEEP)
+    before = fingerprint(folder)
+    with monkeypatch.context() as patch:
+        patch.setattr("orchestrate.response.sweep.SweepJob.work", interrupt)
+        assert ask(*SWEEP, "--force").code == 130
+    assert fingerprint(folder) == before
+    assert ask(*SWEEP, "--force").code == 0
+    for name, (content, time) in fingerprint(folder).items():
+        assert content == before[name][0] and time != before[name][1]
+
+
+def interrupt(*_):
+    raise KeyboardInterrupt
+
+
+def test_a_file_of_ones_own_is_not_replaced_by_another_question(ask, folder):
+    own = folder / "mine.nc"
+    assert ask(*SWEEP, "--store", own).code == 0
+    before = fingerprint(folder)
+    assert sorted(before) == ["mine.nc", "mine.png"]
+    ask(*SWEEP, "--samples", "13", "--store", own).complaint(own, "different calculation", "force")
+    own.unlink()
+    for force in ([], ["--force"]):
+        ask(*SWEEP, "--store", own, *force).complaint("mine.png", "choose another --store")
+    assert fingerprint(folder) == {"mine.png": before["mine.png"]}
+
+
+def test_a_file_of_others_stays_whatever_is_forced(ask, folder):
+    folder.mkdir()
+    own = folder / "mine.nc"
+    own.write_text("my notes")
+    for force in ([], ["--force"]):
+        ask(*SWEEP, "--store", own, *force).complaint("mine.nc", "remove it", code=1)
+    assert own.read_text() == "my notes" and len(fingerprint(folder)) == 1
+
+
+def test_a_failed_picture_is_drawn_by_the_same_command(ask, folder):
+    ask(*SWEEP)
+    (picture,) = folder.glob("*.png")
+    picture.unlink()
+    picture.mkdir()  # stands for a full disk, or a kill, at that moment
+    ask(*SWEEP, "--force").complaint(picture, code=1)
+    picture.rmdir()
+    assert ask(*SWEEP).code == 0
+    assert picture.is_file()
+
+
+def test_a_list_is_taken_in_its_own_order(ask, folder):
+    ask("sweep", "--eta", "1.31, 1.28,2", *SHORT, "--plot", "none")
+    data = result_in(folder)
+    assert data.eta.values.tolist() == [1.31, 1.28, 2.0]
+    assert data.attrs["direction"] == "given"
+
+
+def test_up_and_down(ask, folder):
+    done = ask(*SWEEP, "--direction", "both", "--plot", "none")
+    assert result_in(folder).direction.values.tolist() == ["up", "down"]
+    assert "up and down differ" in done.out and ", down" in done.out
+
+
+def test_over_another_parameter_of_an_own_structure(ask, folder, tmp_path):
+    path = tmp_path / "own.toml"
+    path.write_text("[structure]\nm1 = 1.5\nm2 = 1.2\nk1 = 8000.0\nk2 = 9000.0\nd1 = 1.0\n")
+    asked = ("--over", "e", "--values", "0.1:0.9:0.2", "--eta", "1.1", "--samples", "4")
+    asked += ("--plot", "none")
+    assert ask("sweep", "--structure", path, "--set", "d2=2", *asked).code == 0
+    data = result_in(folder)
+    assert data.xi_rel.dims == ("e", "sample")
+    assert {n: data.attrs[n] for n in ("m1", "d2")} == {"m1": 1.5, "d2": 2.0}
+
+
+def test_the_default_range_is_the_papers(ask, monkeypatch):
+    asked = {}
+
+    @functools.wraps(orchestrate.sweep)  # whose options are its arguments
+    def sweep(structure, **question):
+        asked.update(question, structure=structure)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("orchestrate.sweep", sweep, raising=False)
+    assert ask("sweep").code == 130
+    assert list(asked["eta"]) == [float(f"{n / 1000:.3f}") for n in range(100, 8001)]
+    assert asked["structure"].label() == "e0.7_D0.005"
+
+
+def test_a_motion(ask, folder):
+    short = ("simulate", "--transient", "50", "--periods", "2", "--points", "50")
+    done = ask(*short, "--eta", "0.4", "--plot", "none")
+    assert "60 impacts" in done.out and "2 begin permanent contact" in done.out
+    done = ask(*short, "--eta", "1.047", "--beside")
+    assert done.code == 0 and "no impacts" in done.out and "the fastest at" in done.out
+    assert len(list(folder.glob("*.nc"))) == 3
+    assert shows_something(next(folder.glob("*.png")))
+
+
+def test_the_same_motion_told_in_other_units(ask, folder):
+    short = ("simulate", "--structure", "beam", "--periods", "2", "--plot", "none")
+    told = (
+        ("--frequency", "80", "--amplitude", "0.001"),
+        ("--hz", f"{80 / (2 * np.pi)!r}", "--g", f"{0.001 * 80**2 / 9.80665!r}"),
+        ("--rpm", f"{80 * 30 / np.pi!r}", "--amplitude", "0.001"),
+        ("--eta", f"{80 / 75!r}", "--amplitude", "0.001"),
+    )
+    for options in told:
+        assert ask(*short, *options).code == 0
+    motions = [xr.load_dataset(path).x1.values for path in folder.glob("*.nc")]
+    for motion in motions:
+        np.testing.assert_allclose(motion, motions[0], rtol=1e-9, atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (
+            ("--swept-sine", "12:14", "--duration", "2", "--g", "0.02", "--beside"),
+            ("no impacts", "delaminated:", "impacts, the fastest at"),
+        ),
+        (
+            ("--swept-sine", "20:10", "--rate", "20", "--spacing", "log", "--g", "5:0.01,50:0.1"),
+            ("acceleration of the box: -0.", "impacts"),
+        ),
+        (("--random", "5:0.1,40:0.1", "--duration", "2"), ("gap x2 - x1", "impacts")),
+        (
+            ("--shock", "half-sine", "--length", "0.011", "--acceleration", "49"),
+            ("acceleration of the box: ", "4 impacts", "; 0 begin permanent contact"),
+        ),
+    ],
+)
+def test_shaken_as_in_the_laboratory(ask, folder, options, words):
+    drawn = "--beside" in options
+    few = ("--sample-rate", "400", *(() if drawn else ("--plot", "none")))
+    done = ask("shake", "--structure", "beam", *few, *options)
+    assert done.code == 0, done.err
+    assert all(word in done.out for word in words), done.out
+    assert len(list(folder.glob("*.nc"))) == 1 + drawn
+    assert not drawn or shows_something(next(folder.glob("*.png")))
+
+
+def test_another_record_has_files_of_its_own(ask, folder, tmp_path):
+    """Though it has as many samples at the same rate."""
+    for name, level in (("one", 1.0), ("other", 2.0)):
+        rows = [f"{i / 200.0!r},{level * (i % 7)!r}" for i in range(60)]
+        (tmp_path / f"{name}.csv").write_text("time [s],box [m/s2]\n" + "\n".join(rows) + "\n")
+        asked = ("shake", "--structure", "beam", "--record", tmp_path / f"{name}.csv")
+        ask(*asked, "--plot", "none").success()
+    assert len(list(folder.glob("*.nc"))) == 2
+
+
+def test_a_record_is_played_again(ask, folder, tmp_path):
+    path = tmp_path / "base.csv"
+    rows = (f"{i};{math.sin(0.2 * i):.6f};{0.02 * math.sin(0.075 * i):.6f}" for i in range(1500))
+    text = "t [ms];top [g];base [g]\n" + "\n".join(rows) + "\n"
+    path.write_text(text.replace(".", ","))
+    played = ("--structure", "beam", "--record", path, "--plot", "none")
+    done = ask("shake", *played, "--column", "2")
+    assert done.code == 0, done.err
+    assert re.search(r"acceleration of the box: -0\.19\d+ to 0\.19", done.out)
+    named = ask("shake", *played)
+    assert named.out.splitlines()[0] == done.out.splitlines()[0]
+    done = ask("shake", *played, "--column", "side")
+    assert done.code and "no column 'side'; expected one of t, top, base" in done.err
+
+
+def test_spectra(ask, folder):
+    short = ("--transient", "300", "--periods", "8", "--points", "256")
+    done = ask("spectra", "--eta", "1.047", *short)
+    assert "delaminated at eta = 1.047: largest line" in done.out
+    assert shows_something(next(folder.glob("*.png")))
+
+
+# -- branches over a picture -----------------------------------------------------------------------
+
+FEW = ("sweep", "--eta", "2.45:2.55:0.05", "--transient", "10", "--samples", "4")
+
+
+@pytest.fixture
+def window(ask, tmp_path):
+    path = tmp_path / "window.nc"
+    limits = ("--eta", "2.5", "--limits", "2.48:2.52", "--plot", "none")
+    ask("branch", *limits, "--store", path).success()
+    return path
+
+
+def test_a_branch_over_a_sweep_and_resonance_curves(ask, tmp_path, window):
+    folder = tmp_path / "results"
+    for command in (FEW, ("resonance", *FEW[1:])):
+        ask(*command).success()
+        (plain,) = folder.glob(f"{command[0]}_*.png")
+        done = ask(*command, "--overlay", window).success()
+        assert "complete already" in done.out
+        (over,) = set(folder.glob(f"{command[0]}_*.png")) - {plain}
+        assert over.name.startswith(f"{plain.stem}_over_") and str(over) in done.out
+        assert over.read_bytes() != plain.read_bytes()
+    assert len(list(folder.glob("*.nc"))) == 2
+
+
+NOT_FITTING = {
+    ("--set", "e=0.3"): "a branch of another structure, e = 0.7; expected e = 0.3",
+    ("--eta", "1", "--over", "e", "--values", "0.3,0.5"): "a branch along eta; expected",
+    ("--eta", "1.2"): "one value has no picture",
+    ("--overlay", "lost.nc"): "lost.nc: no such file",
+}
+
+
+def test_what_does_not_fit_is_refused_before_anything_is_computed(ask, tmp_path, window):
+    for options, words in NOT_FITTING.items():
+        ask(*FEW, "--overlay", window, *options).complaint("--overlay", words)
+    assert not list((tmp_path / "results").glob("*.nc"))
+
+
+def test_what_is_no_branch_is_refused(ask, tmp_path, window):
+    (tmp_path / "other").mkdir()
+    path = tmp_path / "other" / "sweep.nc"
+    ask(*FEW, "--store", path, "--plot", "none").success()
+    ask(*FEW, "--overlay", path).complaint(path, "an answer of sweep; expected one of branch")
+    levels = ("resonance", "--hz", "0.4,0.41", "--g", "0.1,0.2", "--overlay", window)
+    ask(*levels).complaint("--overlay", "several levels, --g 0.1,0.2; expected one")

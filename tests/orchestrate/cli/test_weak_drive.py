@@ -1,0 +1,268 @@
+"""The weak drive at the command line: what its commands print and draw."""
+
+from __future__ import annotations
+
+import zipfile
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from orchestrate import Drive, Structure, couple
+from orchestrate.cli import weak_drive
+from orchestrate.figures import weak_drive as figures
+
+from .test_responses import shows_something
+
+MOTOR = """
+[structure]
+m1 = 1.5
+m2 = 1.5
+k1 = 8437.5
+k2 = 10125.0
+d1 = 4.5
+d2 = 4.5
+e = 0.7
+
+[motor]
+unbalance_mass = 0.03
+unbalance_radius = 0.02
+rotor_inertia = 6e-5
+motor_constant = 0.06
+armature_resistance = 14.0
+armature_inductance = 0.002
+
+[box]
+box_mass = 5.0
+box_stiffness = 300.0
+box_damping = 4.0
+"""
+SHORT = ("--step", "0.2", "--settle", "30")
+
+
+@pytest.fixture
+def folder(tmp_path):
+    return tmp_path / "results"
+
+
+@pytest.fixture
+def motor(tmp_path):
+    """A file with a structure, a motor and a box of one's own."""
+    path = tmp_path / "motor.toml"
+    path.write_text(MOTOR)
+    return path
+
+
+def results(folder, ending="nc"):
+    """The datasets in a folder, by name."""
+    return {path.stem: xr.load_dataset(path) for path in sorted(folder.glob(f"*.{ending}"))}
+
+
+def cells(text):
+    """The cells of a printed table, by the words that a row begins with."""
+    rows = (line.split("  ") for line in text.splitlines() if line.startswith("  "))
+    parts = [[cell.strip() for cell in row if cell.strip()] for row in rows]
+    return {tuple(row[:2]): row[2:] for row in parts}
+
+
+def test_couple_tells_jumps_beside_where_the_ramp_shows_them(ask, folder):
+    options = ("--eta0", "1.55:1.65", "--rate", "2e-4", "--one-way")
+    done = ask("couple", *options, *SHORT).success()
+    table = cells(done.out)
+    for state, fold in (("bonded", 1.58310), ("delaminated", 1.56970)):
+        voltage, eta0, shown, _ = table[state, "up"]
+        value, error = map(float, voltage.split(" +- "))
+        assert abs(value - fold) <= error + 1e-4 < 3e-4
+        assert float(eta0) == pytest.approx(value, abs=1e-5) and 1.59 < float(shown) < 1.64
+        assert table[state, "down"] == ["none", "the voltage does not fall"]
+    bonded, delaminated = results(folder)
+    assert bonded.startswith("couple_quick_") and delaminated.endswith("_delaminated")
+    assert abs(results(folder)[delaminated].attrs["missing_over_motor_work"]) < 2e-6
+    pictures = sorted(folder.glob("*.png"))
+    assert len(pictures) == 2 and pictures[1].stem == f"{pictures[0].stem}_jumps"
+    assert all(map(shows_something, pictures))
+
+
+def test_what_is_undecided_is_printed_and_drawn(ask, folder):
+    """So fast a ramp does not tell, and the voltage stays constant only for a short time."""
+    options = ("--eta0", "1.5:1.75", "--rate", "2e-3", "--one-way", "--only", "bonded")
+    done = ask("couple", *options, "--hold", "300", "--step", "0.4").success()
+    word, reason = cells(done.out)["bonded", "up"]
+    assert word == "undecided" and "a longer --hold may" in reason
+    (data,) = results(folder).values()
+    assert data.decided.values.tolist() == ["undecided", ""]
+    title = figures.draw({"bonded": data}).axes[0].get_title(loc="left")
+    assert title == "bonded: jump up undecided"
+
+
+def test_a_motor_of_one_s_own(ask, folder, motor):
+    """Volts and seconds; voltages from a file; both kinds of controllers."""
+    own = ("couple", "--drive", motor, "--only", "delaminated")
+    volts = ("--voltage", "5:5.2", "--volt-rate", "0.2", "--one-way", "--settle", "20")
+    ask(*own, *volts, "--plot", "none").success()
+    course = motor.with_name("course.csv")
+    course.write_text("time,voltage\n0,4\n1,5\n1,6\n2,6\n")
+    ask(*own, "--course", course).success()
+    constant = ("--voltage", "6.5", "--duration", "1.5")
+    strong = ("--voltage", "12", "--duration", "1.5")
+    held = ask(*own, *strong, "--speed-control", "120", "--plot", "none").success()
+    assert "a controller sets the voltage" in held.out and "beyond the resonance from" in held.out
+    ask(*own, *constant, "--speed-gradient", "--low", "0.5", "--plot", "none").success()
+    found = results(folder)
+    assert len(found) == 4 and len(list(folder.glob("*.png"))) == 1
+    assert any(abs(float(data.voltage[-1]) - 6.0) < 1e-9 for data in found.values())
+
+
+def test_a_motor_by_its_datasheet(ask, folder):
+    """The torque line through no-load speed and stall torque, in place of the set's constants."""
+    sheet = ("--rated-voltage", "2", "--no-load-rpm", "16", "--stall-torque", "60")
+    constant = ("--voltage", "2", "--duration", "60", "--only", "bonded", "--plot", "none")
+    ask("couple", *sheet, *constant).success()
+    (data,) = results(folder).values()
+    speed = 2.0 * np.pi * 16.0 / 60.0
+    line = {"motor_constant": 2.0 / speed, "armature_resistance": (2.0 / speed) * 2.0 / 60.0}
+    drive, structure = Drive.from_file("quick").replace(**line), Structure.from_file("quick")
+    expected = couple(
+        structure.as_bonded(), drive, voltage=2.0, duration=60.0, store=None, progress=False
+    )
+    assert np.array_equal(data.speed, expected.speed) and data.sizes["revolution"] > 10
+
+
+def test_capture(ask, folder):
+    quick = ("--count", "2", "--tolerance", "0.05", "--step", "0.2", "--only", "bonded")
+    over = ("--over", "rotor_inertia", "--values", "800,1400")
+    done = ask("capture", "--voltage", "1.45:1.6", *quick, *over).success()
+    table = cells(done.out)
+    assert table["bonded", "1400"][1:4] == ["1", "1", "0"]
+    assert float(table["bonded", "800"][0].split()[0]) == pytest.approx(1.5375, abs=0.03)
+    options = ("--count", "2", "--time", "100", "--step", "0.2", "--only", "bonded")
+    done = ask("capture", "--eta0", "1.5:1.6", *options, "--plot", "none").success()
+    assert cells(done.out)["bonded", "none"][:3] == ["0", "0", "2"]
+    assert "1.5, 1.6 V undecided: the speed had not settled; give a longer --time" in done.out
+    assert len(results(folder)) == 2
+    assert all(shows_something(picture) for picture in folder.glob("*.png"))
+
+
+def test_a_threshold_that_is_not_to_be_trusted():
+    """Made-up: an interval that undecided starts have left, above the fold."""
+    data = xr.Dataset(
+        {
+            "passes": ("voltage", [0, 0, 1]),
+            "decision": ("voltage", ["converged", "undecided", "converged"]),
+            "border": ((), 1.525, {"tolerance": 1e-4}),
+            **{"border_low": 1.49, "border_high": 1.56, "fold": 1.45, "above_fold": 1.0},
+            **{"speed_low": 1.25, "speed_high": 1.55},
+        },
+        {"voltage": [1.4, 1.5, 1.6]},
+    )
+    _, row, undecided, warning = weak_drive.capture_lines({"bonded": data})
+    assert row.split()[1:] == [
+        "1.49000",
+        "to",
+        "1.56000",
+        "1",
+        "1",
+        "1",
+        "1.25",
+        "rad/s",
+        "1.55",
+        "rad/s",
+    ]
+    assert undecided.startswith("bonded, 1.5 V undecided")
+    assert "warning: bonded, above the fold at 1.45000 V" in warning
+    sure = data.assign(border_low=1.52496, border_high=1.52504, above_fold=0.0)
+    _, row = weak_drive.capture_lines({"bonded": sure.isel(voltage=[0, 2])})
+    assert row.split()[1:6] == ["1.52500", "+-", "4e-05", "1", "1"]
+
+
+def test_passage(ask, folder):
+    options = ("--eta0", "1.55:1.65", "--rate", "2e-4", "--around", "60", "--one-way", *SHORT)
+    done = ask("passage", *options, "--revolutions", "4", "--only", "delaminated").success()
+    assert done.out.count("jump up at 1.569") == 1 and "around jumps" in done.out
+    (picture,) = folder.glob("*.png")
+    assert shows_something(picture)
+
+
+@pytest.mark.slow
+def test_jump_voltages(ask, folder):
+    options = ("--eta0", "1.5:1.66", "--rate", "4e-4,3e-4", "--one-way", "--jobs", "1", *SHORT)
+    done = ask("jump-voltages", *options).success()
+    assert "jump at rate 0" in done.out and "nan" not in done.out
+    (data,) = results(folder).values()
+    assert data.jumps.attrs["units"] == "V"
+    assert shows_something(next(folder.glob("*.png")))
+
+
+@pytest.mark.slow
+def test_drive_branch(ask, folder):
+    options = ("--speed", "1.29:1.32", "--longest", "0.3", "--jobs", "1")
+    done = ask("drive-branch", *options).success()
+    assert cells(done.out)["bonded", "fold"][0].startswith("1.583") and "jumps up" in done.out
+    assert shows_something(next(folder.glob("*.png")))
+
+
+def test_a_jump_that_no_ramp_has_and_an_undecided_one():
+    """Made-up: a jump up of one of two structures, an undecided one down."""
+    each = {"structure": ["bonded", "delaminated"], "jump": ["up", "down"]}
+    decided = [["by held voltages", "undecided"], ["by the record"] * 2]
+    jumps, errors = [[1.5, np.nan], [np.nan] * 2], [[1e-4, np.nan], [np.nan] * 2]
+    made = {"jumps": jumps, "standard_error": errors, "decided": decided}
+    data = xr.Dataset({name: (tuple(each), values) for name, values in made.items()}, each)
+    _, up, down, hint = weak_drive.jump_voltage_lines({"": data})
+    assert up.split() == ["up", "1.50000", "+-", "0.00010", "none"]
+    assert down.split() == ["down", "undecided", "none"] and "drive-branch" in hint
+    assert len(list(weak_drive.jump_voltage_lines({"": data.isel(jump=[0])}))) == 2
+
+
+def made_branch(motions, bifurcations):
+    """A branch of one leg, by voltage, speed and whether it is stable, and its bifurcations."""
+    along = {"structure": ["bonded"], "leg": ["from below"]}
+    names = ("voltage", "speed", "stable")
+    made = {
+        name: ((*along, "point"), np.array(column)[None, None])
+        for name, column in zip(names, zip(*motions, strict=True), strict=True)
+    }
+    made["revolutions"] = xr.ones_like(xr.DataArray(made["speed"][1], dims=(*along, "point")))
+    made["end"] = (tuple(along), [["limit"]])
+    columns = {
+        "structure": ["bonded"] * len(bifurcations),
+        "revolutions": [1.0] * len(bifurcations),
+    }
+    names = ("kind", "voltage", "speed")
+    columns |= dict(zip(names, map(list, zip(*bifurcations, strict=True)), strict=True))
+    made |= {f"bifurcation_{name}": ("bifurcation", column) for name, column in columns.items()}
+    return xr.Dataset(made, along)
+
+
+def test_stationary_motions_are_listed_with_what_a_slow_ramp_does_there():
+    """Made-up: a branch with two folds, and one change of stability that was not located."""
+    motions = [(1.0, 0.8, 0), (1.2, 0.9, 1), (1.4, 1.0, 1), (1.3, 1.1, 0), (1.2, 1.2, 0)]
+    motions += [(1.35, 1.3, 1), (1.5, 1.4, 1)]
+    made = made_branch(motions, [("fold", 1.41, 1.03), ("fold", 1.19, 1.22)])
+    _, up, down, end, titles, branch = weak_drive.drive_branch_lines({"": made})
+    assert titles.endswith("stability changes near, not located (--period)")
+    assert up.split() == ["bonded", "fold", "1.41", "1.03", "jumps", "up", "to", "1.34", "rad/s"]
+    assert down.split() == ["bonded", "fold", "1.19", "1.22", "jumps", "down"]
+    nowhere = "these branches have no stable motion at 1.19000 V to jump to"
+    assert end == f"bonded, a slow ramp down: {nowhere}"
+    assert branch.split() == ["bonded,", "from", "below", "7", "4", "limit", "0.8", "rad/s"]
+
+
+def test_titles_state_voltages_and_rates():
+    asked = {"voltage": (1.2, 1.65), "rates": [1e-4, 2.5e-5]}
+    title = "1.2 V to 1.65 V, 2.5e-05 V/s to 0.0001 V/s, and at rate 0"
+    assert weak_drive.jump_voltages_title({}, asked) == title
+    motions = xr.Dataset({"voltage": ("point", [1.1, 1.3, 1.2])})
+    title = weak_drive.drive_branch_title({"": motions}, {})
+    assert title == "stationary motions, 1.1 V to 1.3 V"
+    title = weak_drive.capture_title({}, {"voltage": (1.2, 1.65), "control": None})
+    assert title == "switched on from rest, 1.2 V to 1.65 V"
+
+
+def test_the_weak_drive_as_a_package(ask, tmp_path):
+    path = tmp_path / "weak_drive.ssp"
+    for options, state in (((), "delaminated"), (("--only", "bonded"), "bonded")):
+        assert ask("couple", "--ssp", path, *options).code == 0
+        description = zipfile.ZipFile(path).read("SystemStructure.ssd").decode()
+        assert "with a bonded" in description if state == "bonded" else state in description
+    ask("couple", "--ssp", "/nowhere/x.ssp").complaint("/nowhere/x.ssp", code=1)
