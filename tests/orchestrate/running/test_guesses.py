@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from orchestrate.access import OSCILLATOR, find
-from orchestrate.response.questions import series_arguments
 from orchestrate.response.sweep import SweepJob
 from orchestrate.running.executors import compute
 from orchestrate.running.journal import Journal, journal_path
@@ -84,8 +83,9 @@ def job(figure: str, direction: str, low: float = 0.1, high: float = 8.0, step: 
     """A figure's sweep."""
     e, D = FIGURES[figure]
     etas = np.round(np.arange(low, high + 0.5 * step, step), 3)
-    asked = series_arguments(Structure.nondimensional(e=e, D=D), etas, None, None)
-    return SweepJob(**asked, name="sweep", direction=direction, transient=40, samples=40)
+    asked = {"structure": Structure.nondimensional(e=e, D=D), "eta": etas, "start": None}
+    rest = {"transient": 40, "samples": 40, "tolerance": 1e-2, "peak_periods": 8}
+    return SweepJob(**asked, **rest, name="sweep", direction=direction)
 
 
 def played(sweep: SweepJob, workers: int, store=None):
