@@ -130,7 +130,7 @@ def test_a_page_says_what_the_record_is_and_how_the_page_was_made(run):
         assert "acceleration1" in rows["columns of the file"]
         assert (rows["sampling rate"], rows["unit of its accelerations"]) == ("600 Hz", "m/s²")
         assert rows["duration"].startswith("4") and " Hz upwards" in rows["sweep"]
-        assert rows["level of the base"].endswith(f"{unit} (peak)")
+        assert rows["level of the base, peak"].endswith(f" {unit}")
         assert (
             "diagnose" in rows["command that made it"] and "--notes" in rows["command that made it"]
         )

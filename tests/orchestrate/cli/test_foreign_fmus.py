@@ -20,7 +20,7 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="binaries of Lin
 SLOW = pytest.mark.slow
 SWEEP = ("sweep", "--eta", "1,1.1", "--transient", "5", "--samples", "3", "--plot", "none")
 ENDS = {"aborts": "by SIGABRT", "exits with 3": "with exit code 3"}
-BEGINS_ANEW = "nothing was stored, the same command begins anew"
+BEGINS_ANEW = "nothing was stored; repeat the command to start again"
 
 
 @pytest.fixture(scope="module")
