@@ -293,9 +293,10 @@ def curve_difference(one: Curve, other: Curve) -> Floats:
     return np.asarray(rest)
 
 
-def level_and_direction_differences(curves: Sequence[Curve]) -> Mapping[str, tuple[Floats, Floats]]:
+def level_and_direction_differences(
+    curves: Sequence[Curve], rows: int
+) -> Mapping[str, tuple[Floats, Floats]]:
     """Compute the largest differences over level and over direction, and their noise floors."""
-    rows = len(curves[0].response) if curves else 0
     best = {
         name: (np.full(rows, np.nan), np.full(rows, np.nan))
         for name in ("level_dependence", "direction_difference")

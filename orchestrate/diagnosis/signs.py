@@ -186,7 +186,8 @@ def all_signs(
     first = own[0]
     rows = len(first.noise)
     values, floors = dict(first.values), dict(first.floors)
-    compared = level_and_direction_differences([curve for one in own for curve in one.curves])
+    curves = [curve for one in own for curve in one.curves]
+    compared = level_and_direction_differences(curves, rows)
     for name, (value, floor) in compared.items():
         values[name], floors[name] = value, floor
     unknown = np.full(rows, np.nan)

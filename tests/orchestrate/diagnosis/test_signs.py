@@ -10,6 +10,8 @@ import orchestrate
 from orchestrate.diagnosis.indicators import INDICATORS
 from orchestrate.errors import InputError
 
+from .records import BEAM
+
 RATE, SECONDS = 1000.0, 8.0
 TIME = np.arange(int(RATE * SECONDS)) / RATE
 
@@ -228,3 +230,15 @@ def test_two_sweeps_with_silence_between_have_signs_at_any_sampling_rate(rate):
     response = linear(base, 42.0, 0.02) + 0.01 * rng.normal(size=len(box))
     made = base.assign(acceleration1=("time", response))
     assert float(signs(made).sound_f) == pytest.approx(42.0, rel=0.02)
+
+
+def test_a_shock_whose_few_periods_are_no_sweep_has_signs():
+    """Orders can be read of it, but no curve over the frequency."""
+    shock = orchestrate.Shock(peak=50.0, length=0.05, duration=0.5)
+    history = orchestrate.shake(BEAM, shock, sample_rate=2000.0, progress=False)
+    sensor = orchestrate.Sensor(bandwidth=500.0, noise=0.01)
+    felt = orchestrate.measure(history, sensor, excitation=shock)
+    answer = orchestrate.signs(felt, structure=BEAM, seeds=2)
+    known = np.isfinite(answer.value).all("channel")
+    assert known.sel(sign="order_2") and known.sel(sign="kurtosis")
+    assert not known.sel(sign="level_dependence") and not known.sel(sign="sensor_difference")
