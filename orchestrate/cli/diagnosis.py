@@ -63,7 +63,7 @@ def run_diagnose(arguments: argparse.Namespace) -> None:
 
 def file_stem(path: Path, guess: Structure, arguments: argparse.Namespace) -> str:
     """Return the name of a record's result files, unique for content, guess and reading options."""
-    read_as = [arguments.columns, arguments.unit, arguments.sample_rate]
+    read_as = [arguments.columns, arguments.unit, arguments.sample_rate, arguments.participation]
     return f"diagnose_{path.stem}_{digest(file_checksum(path), guess.parameters(), read_as)}"
 
 
@@ -121,6 +121,19 @@ def parse_columns(arguments: argparse.Namespace) -> dict[str, str | int] | None:
     return dict(zip(names, numbers, strict=False))
 
 
+def participation_by_sensor(arguments: argparse.Namespace) -> dict[str, float] | None:
+    """Parse ``--participation G,...`` into a dict by face; None if it is not given."""
+    if arguments.participation is None:
+        return None
+    texts = arguments.participation.split(",")
+    faces = list(CHANNELS)[2:]
+    try:
+        return dict(zip(faces[: len(texts)], map(float, texts), strict=True))
+    except ValueError:
+        expected = "expected a number for face 1, or for both faces, such as 1.57 or 0.53,0.6"
+        raise InputError(f"--participation {arguments.participation}: {expected}") from None
+
+
 def compute_verdicts(
     arguments: argparse.Namespace,
     records: Mapping[Path, xr.Dataset],
@@ -133,7 +146,8 @@ def compute_verdicts(
 
     named = {names[path]: record for path, record in records.items()}
     running = read_running_options(arguments, arguments.output)
-    verdicts = detect_all(named, guess, **running)
+    factors = participation_by_sensor(arguments)
+    verdicts = detect_all(named, guess, participation=factors, **running)
     described = {}
     for path, name in names.items():
         verdict = verdicts[name]
@@ -230,6 +244,8 @@ what it gives:
             --columns A,B,...  of time, base, face 1 and face 2, by name or number from 0 (default:
                 by usual names)
             --sample-rate HZ  where the file has no times; then --columns begins with the base
+            --participation G,...  of the sensors on face 1 and face 2: the beam's mode there over
+                that of a mass on a spring, 1.57 at the tip of a cantilever (default: fitted)
             """,
         ),
         Group("report", "--notes WORDS  below the title: which beam, who, when"),

@@ -10,6 +10,7 @@ from ..errors import InputError
 from ..running.runner import gather
 from ..structures import Structure
 from .detect import DetectJob
+from .evidence import Participation
 from .fit import checked_data, checked_free, delaminated_guess
 from .hypotheses import FREE
 
@@ -25,6 +26,7 @@ def detect_all(
     guess: Structure,
     *,
     free: Sequence[str] = FREE,
+    participation: Participation = None,
     **running: Unpack[Running],
 ) -> dict[str, xr.Dataset]:
     """Decide for each of many records whether it is that of a delaminated structure.
@@ -37,6 +39,8 @@ def detect_all(
     guess : Structure
         Of all of them.
     free : sequence of str
+        As for :func:`orchestrate.detect`.
+    participation : float or mapping of str to float, optional
         As for :func:`orchestrate.detect`.
     **running
         ``jobs``, ``cluster``, ``store`` and others, see
@@ -65,16 +69,23 @@ def detect_all(
     if not isinstance(records, Mapping) or not records:
         raise InputError("records: expected one record or more, by names")
     chosen, structure = checked_free(free), delaminated_guess(guess)
-    jobs = [checked_job(name, record, structure, chosen) for name, record in records.items()]
+    jobs = [
+        checked_job(name, checked, structure, chosen, participation)
+        for name, checked in records.items()
+    ]
     return dict(zip(records, gather(jobs, running, finder(running)), strict=True))
 
 
 def checked_job(
-    name: str, record: xr.Dataset, guess: Structure, free: tuple[str, ...]
+    name: str,
+    record: xr.Dataset,
+    guess: Structure,
+    free: tuple[str, ...],
+    participation: Participation,
 ) -> DetectJob:
     """Check one record and return the job that decides on it."""
     try:
-        data = checked_data(record, guess)
+        data = checked_data(record, guess, participation)
     except InputError as error:
         raise InputError(f"{name}: {error}") from None
     return DetectJob(name=name, data=data, guess=guess, free=free)

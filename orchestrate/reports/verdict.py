@@ -97,6 +97,7 @@ def measured_record(answer: xr.Dataset) -> Section | None:
         ("file of the record", words.get("record_file", "")),
         ("columns of the file", words.get("record_columns", "")),
         ("sensors", words.get("sensors", "")),
+        ("participation of the sensors", participation_text(answer)),
         ("unit of its accelerations", words.get("record_unit_note", "") or unit),
         ("sampling rate", known_text(answer, "sample_rate", "Hz", 6)),
         ("duration", known_text(answer, "record_duration", "s", 4)),
@@ -109,6 +110,18 @@ def measured_record(answer: xr.Dataset) -> Section | None:
     if not known:
         return None
     return Section("The record", tables=[Table(("what", "value"), known)], place="front")
+
+
+def participation_text(answer: xr.Dataset) -> str:
+    """Format the sensors' participation factors of the best stated fit; empty where none is."""
+    if "participation" not in answer:
+        return ""
+    stated = answer.where(answer.participation.notnull().any("channel"), drop=True)
+    if not stated.sizes["hypothesis"]:
+        return ""
+    best = stated.isel(hypothesis=int(stated.misfit.argmin()))
+    pairs = zip(best.participation.values, best.participation_error.values, strict=True)
+    return ", ".join(f"{format_number(value)} ± {format_number(error)}" for value, error in pairs)
 
 
 def known_text(answer: xr.Dataset, name: str, unit: str, digits: int) -> str:
