@@ -119,9 +119,9 @@ def participation_text(answer: xr.Dataset) -> str:
     stated = answer.where(answer.participation.notnull().any("channel"), drop=True)
     if not stated.sizes["hypothesis"]:
         return ""
-    best = stated.isel(hypothesis=int(stated.misfit.argmin()))
+    best = stated.isel(hypothesis=int(np.argmin(stated.misfit.values)))
     pairs = zip(best.participation.values, best.participation_error.values, strict=True)
-    return ", ".join(f"{format_number(value)} ± {format_number(error)}" for value, error in pairs)
+    return ", ".join(format_with_error(value, error) for value, error in pairs)
 
 
 def known_text(answer: xr.Dataset, name: str, unit: str, digits: int) -> str:
