@@ -109,7 +109,6 @@ def test_each_record_has_a_page_with_its_evidence(run):
         assert re.search(r"FMU TwoMassImpactOscillator</td><td[^>]*>\{[0-9a-f-]{36}\}", text)
         assert "intact" not in text and "no certificate" in text
         assert f"<h1>Verdict on {name}.csv: {word[:-1].lower()}</h1>" in text
-        assert text.partition("Read and signed")[2].count(word) == 1
         assert "m/s2" not in re.sub("<td[^>]*>python.*?</td>", "", text)  # the other spelling
 
 
