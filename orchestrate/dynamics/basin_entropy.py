@@ -43,11 +43,7 @@ class BoxEntropies(NamedTuple):
 
 
 def box_entropies(labels: Labels, size: int) -> BoxEntropies:
-    """Return the entropies of square boxes, ``size`` starts a side, of a plane of attractor labels.
-
-    Boxes with a start that leads to no attractor (-1) are left out, and what is left at the end of
-    a side that ``size`` does not divide.
-    """
+    """Return the entropies of square boxes, ``size`` starts a side, without starts of label -1."""
     rows, columns = (side // size for side in labels.shape)
     boxes = labels[: rows * size, : columns * size]
     boxes = boxes.reshape(rows, size, columns, size).swapaxes(1, 2).reshape(rows * columns, -1)

@@ -43,10 +43,7 @@ HALVINGS = 24  # of the last step: its end is known to 1e-7 of it
 
 @dataclass
 class BifurcationCurve:
-    """Equations of an orbit at a bifurcation, as a curve over two parameters.
-
-    Unknowns are those of the nodes, the two parameters, and what the kind adds.
-    """
+    """Equations of an orbit at a bifurcation, as a curve over two parameters."""
 
     family: Family  # of two parameters
     kind: int

@@ -113,11 +113,8 @@ class BorderJob(Question):
 
 
 def start_root(job: BorderJob) -> tuple[BifurcationCurve, Root]:
-    """Solve for the bifurcation at which a border curve begins; return equations and root.
-
-    Orbit and bifurcation together: at a fold the orbit alone, at a fixed parameter, is no simple
-    root, and beyond it there is none.
-    """
+    """Solve for the bifurcation at which a border curve begins; return equations and root."""
+    # both at once: at a fold the orbit alone, at a fixed parameter, is no simple root
     (sequence, nodes), values = job.start.as_guess(job.period), np.array(job.values)
     family = Family.from_nodes(job.setting, sequence, nodes)
     orbit = np.append(nodes.ravel(), values)

@@ -32,10 +32,7 @@ def leaving_branch(kind: int, point: OrbitPoint) -> OrbitPoint:
 
 
 def double_period(point: OrbitPoint) -> OrbitPoint:
-    """Return the orbit repeated twice, with the tangent of the period-doubled branch.
-
-    That is the eigenvector of the multiplier -1.
-    """
+    """Return the orbit repeated twice, with the tangent of the period-doubled branch."""
     family, orbit = point.family, point.orbit
     singular = orbit.jacobian(-1.0).real * family.scale[: family.size]
     mode = fix_sign(np.linalg.svd(singular)[2][-1])

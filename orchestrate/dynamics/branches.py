@@ -254,10 +254,7 @@ def varied_setting(
 
 
 def require_orbit_dataset(start: Any, several: bool) -> None:
-    """Raise ``InputError`` unless ``start`` is a dataset of one orbit (or ``several`` allowed).
-
-    Several orbits will do where one of their bifurcations is named.
-    """
+    """Raise ``InputError`` unless ``start`` is a dataset of one orbit (or ``several`` allowed)."""
     if not hasattr(start, "sizes"):
         raise InputError(
             f"start = {start!r}: expected a dataset of orbit or branch; a number of the parameter "
@@ -306,10 +303,7 @@ def complete_excitation(
     limits: tuple[float, float],
     structure: Structure,
 ) -> tuple[tuple[str, float], ...]:
-    """Return the excitation as (name, number) pairs, taken from ``start`` where not given.
-
-    Where nothing of the structure has a length the amplitude does not matter, and ``eta`` says all.
-    """
+    """Return the excitation as (name, number) pairs, taken from ``start`` where not given."""
     over, names = varied[0], [name for name, _ in arguments]
     if start is not None and not arguments:
         by_frequency = not {"frequency", "amplitude"}.isdisjoint(varied)

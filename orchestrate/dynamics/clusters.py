@@ -57,11 +57,7 @@ class SettledResponse(NamedTuple):
 def run_until_settled(
     instance: Instance, point: Point, start: ArrayLike, settings: AttractorSettings
 ) -> SettledResponse:
-    """Simulate from a state at phase 0 until samples repeat or the limit; return the response.
-
-    Each time it does not repeat, it is run on for as long as before. One that nearly repeats at the
-    end counts as periodic if it did so before and its deviation shrinks, else it is a narrow torus.
-    """
+    """Simulate from a state at phase 0 until samples repeat or the limit; return the response."""
     dropped = transient_periods(
         settings.transient, settings.settle, point.excitation.eta(point.structure)
     )
@@ -101,11 +97,8 @@ def irregular_clusters(rows: ArrayLike, settings: AttractorSettings) -> NDArray[
 
 
 def single_linkage(points: Floats, radius: float) -> NDArray[np.intp]:
-    """Cluster points (n, d) by single linkage with a radius; return a label per point.
-
-    The memory grows with the number of points, and not with its square as that of
-    :func:`scipy.cluster.hierarchy.linkage`.
-    """
+    """Cluster points (n, d) by single linkage with a radius; return a label per point."""
+    # memory grows with the number of points, not its square as in scipy.cluster.hierarchy.linkage
     labels = np.full(len(points), -1, dtype=np.intp)
     left = np.arange(len(points))
     count = 0

@@ -217,11 +217,9 @@ def test_function_value(
 
 
 def cusp_test(curve: BifurcationCurve, root: Root) -> float:
-    """Return the test function of a cusp: the fold's speed in the parameter plane, signed.
-
-    Along a fold that motion is orthogonal to what the left null vector of the orbit's matrix makes
-    of the parameters' derivatives: its sign on that line changes at a cusp, where it stops.
-    """
+    """Return the test function of a cusp: the fold's speed in the parameter plane, signed."""
+    # along a fold the motion is orthogonal to what the left null vector makes of the parameters'
+    # derivatives: its sign on that line changes at a cusp
     size = curve.family.size
     matrix = curve.matrix(root.unknowns).real
     bordered = np.zeros((size + 1, size + 1))
@@ -235,10 +233,8 @@ def cusp_test(curve: BifurcationCurve, root: Root) -> float:
 
 
 def is_point_of_kind(curve: BifurcationCurve, root: Root, kind: PointKind) -> bool:
-    """Return whether a test function's zero is truly such a point (pair on the unit circle).
-
-    Two real multipliers may have the product 1 as well as a pair on the unit circle.
-    """
+    """Return whether a test function's zero is truly such a point (pair on the unit circle)."""
+    # two real multipliers may have the product 1 too
     if kind not in (PointKind.FOLD_TORUS, PointKind.FLIP_TORUS) or curve.kind == TORUS:
         return True
     real = 1.0 if kind == PointKind.FOLD_TORUS else -1.0

@@ -52,10 +52,7 @@ class Curve(Protocol):
         """Return the residual of the equations, shape (n,)."""
 
     def jacobian(self, unknowns: Floats, at_root: bool = False) -> Floats:
-        """Return the residual's Jacobian, shape (n, n + 1); exact if ``at_root``.
-
-        Elsewhere it may be an estimate.
-        """
+        """Return the residual's Jacobian, shape (n, n + 1); exact if ``at_root``."""
 
 
 AnyCurve = TypeVar("AnyCurve", bound=Curve)
@@ -123,10 +120,7 @@ def newton_correct(
 def newton_step(
     curve: Curve, guess: Floats, offset: Floats, normal: Floats, jacobian: Floats | None = None
 ) -> tuple[Floats, Floats]:
-    """Take one step of Newton's method: return the new offset from the guess, and the step.
-
-    The derivative is the curve's own where none is given.
-    """
+    """Take one step of Newton's method: return the new offset from the guess, and the step."""
     try:
         with np.errstate(over="ignore", invalid="ignore"):
             unknowns = guess + curve.scale * offset
@@ -173,11 +167,7 @@ def solve_linear(matrix: Floats, right: Floats) -> Floats:
 
 
 def unit_tangent(matrix: Floats) -> Floats:
-    """Return the unit null vector of the Jacobian rows, oriented along the last row.
-
-    The matrix is the Jacobian with that row below it. Where the tangent is orthogonal to the row,
-    as at a fold of a parameter that was kept fixed, :func:`fix_sign` orients it.
-    """
+    """Return the unit null vector of the Jacobian rows, oriented along the last row."""
     last = unit_vector(len(matrix), -1)
     try:
         vector = solve_linear(matrix, last)
@@ -188,10 +178,7 @@ def unit_tangent(matrix: Floats) -> Floats:
 
 
 def fix_sign(vector: Floats) -> Floats:
-    """Return a vector or its negative, so that its leading component is positive.
-
-    Linear algebra leaves it to the processor which of both comes out.
-    """
+    """Return a vector or its negative, so that its leading component is positive."""
     return vector if vector[leading_component(vector)] > 0.0 else -vector
 
 

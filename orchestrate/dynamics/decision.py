@@ -155,11 +155,7 @@ class MotionDecider:
         return self.remember(motion) if motion and self.repeats_in_fmu(motion) else None
 
     def converges_to(self, state: ArrayLike, motion: SettledMotion) -> bool:
-        """Return whether the FMU's response from a state comes closer to a stable orbit.
-
-        It does where it is in the orbit's neighbourhood, and nearer to it after some periods, as
-        the multipliers say.
-        """
+        """Return whether the FMU's response from a state comes closer to a stable orbit."""
         excitation, periods = self.point.excitation, motion.multiplicity
         begin(self.plain, *self.point, state)
         if motion.free_phase > 0.0:
@@ -241,12 +237,8 @@ class MotionDecider:
         return motion.free_states.nearest(self.plain.get(*STATE))[1] < ON_KNOWN_MOTION
 
     def repeats_in_fmu(self, motion: SettledMotion) -> bool:
-        """Return whether the FMU, started on an orbit, has its impacts and comes back to it.
-
-        Newton's method solves for a given order of impacts. Where chattering ends in contact with
-        one impact more or less than there, by the restitution's threshold ``gamma``, the equations
-        have a root that is no motion of the FMU.
-        """
+        """Return whether the FMU, started on an orbit, has its impacts and comes back to it."""
+        # by `gamma` chattering may have an impact more or less: a root that is no motion of the FMU
         instance, orbit, states = self.eventful, motion.orbit, motion.free_states
         assert instance is not None and orbit is not None, "no orbit"
         begun = motion.free_phase / self.point.excitation.frequency
@@ -298,11 +290,7 @@ def sample_at_another_phase(
 def count_impacts_from_pause(
     instance: Instance, point: Point, state: ArrayLike, periods: int
 ) -> int:
-    """Count the impacts of some periods, begun in a pause between impacts.
-
-    They are counted from a phase in the middle of a stretch without any, so that none is counted
-    twice or left out.
-    """
+    """Count the impacts of some periods, begun in a pause between impacts."""
     begin(instance, *point, state)
     width = point.excitation.period / PIECES
     counts: list[int] = []

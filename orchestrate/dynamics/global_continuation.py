@@ -92,11 +92,8 @@ class AttractorsAtValue:
         )
 
     def find_or_add(self, motion: SettledMotion) -> int:
-        """Return the index of a motion among the attractors here; append it if it is new.
-
-        An irregular response belongs to the irregular attractor with the nearest gap: means over
-        few periods are no reason for one more.
-        """
+        """Return the index of a motion among the attractors here; append it if it is new."""
+        # irregular ones by the nearest gap: means over few periods are no reason for one more
         if motion.decided == IRREGULAR:
             alike = [k for k, known in enumerate(self.motions) if known.decided == IRREGULAR]
             if alike:
@@ -211,11 +208,7 @@ def number_attractors(values: Sequence[AttractorsAtValue], links: Links) -> list
 def match_neighbours(
     before: AttractorsAtValue, value: AttractorsAtValue, i: int, links: Links
 ) -> list[tuple[int, int]]:
-    """Return index pairs of attractors at two neighbouring values that are the same attractor.
-
-    Each leads to the other; else the orbit of one is followed to the other; else one leads to the
-    other and looks the same.
-    """
+    """Return index pairs of attractors at two neighbouring values that are the same attractor."""
     j = i + 1
     forth = [links[i, a, j] for a in range(len(before.motions))]
     back = [links[j, b, i] for b in range(len(value.motions))]

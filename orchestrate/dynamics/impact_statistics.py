@@ -89,12 +89,8 @@ def impact_counts(impacts: Impacts, span: float, periods: int) -> dict[str, floa
 
 
 def contact_time(impacts: Impacts, item: FollowedResponse, end: float) -> float:
-    """Return how long the masses are in permanent contact until ``end``, in units of tau.
-
-    From each impact that begins it to the release (19), or to the end; and from the beginning where
-    the masses are in contact there. Contact begins by impacts alone: without any, masses that
-    touch at the end have touched all the time.
-    """
+    """Return how long the masses are in permanent contact until ``end``, in units of tau."""
+    # without impacts, masses that touch at the end have touched all the time
     first, last = item.touching
     if last and not len(impacts.time):
         return end

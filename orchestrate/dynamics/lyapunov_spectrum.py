@@ -58,10 +58,7 @@ def block_growth(matrices: Floats, times: Floats, end: float, blocks: int) -> Bl
 
 
 def growth_by_batch_means(blocks: BlockGrowth, batches: int) -> tuple[float, float]:
-    """Return the mean growth per unit of tau, and its standard error by batch means.
-
-    The first batch is left out: meanwhile the vector turns into the direction that grows most.
-    """
+    """Return the mean growth per unit of tau, and its standard error by batch means."""
     growth, durations = blocks
     skip = len(growth) // batches
     groups = np.array_split(np.arange(skip, len(growth)), batches - 1)
@@ -136,10 +133,7 @@ def lyapunov_spectrum(
 
 
 def spectrum_without_impacts(structure: Structure) -> Spectrum:
-    """Return the exact spectrum of a bonded structure: damped common motion (10), gap -inf.
-
-    The gap is no state of it: two exponents are minus infinity.
-    """
+    """Return the exact spectrum of a bonded structure: damped common motion (10), gap -inf."""
     damping, square = structure.D3, (1.0 + structure.kappa) / (1.0 + structure.mu)
     excess = complex(damping**2 - square) ** 0.5
     exponents = np.full(STATES, -math.inf)

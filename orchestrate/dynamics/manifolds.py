@@ -97,19 +97,14 @@ class Saddle:
 
 
 def round_off_last_bits(numbers: Floats, size: float, to: float = ROUNDED[0]) -> Floats:
-    """Round numbers to a multiple of ``to`` times ``size``: equal on all processors.
-
-    All that follows from them is the FMU's, and the same everywhere.
-    """
+    """Round numbers to a multiple of ``to`` times ``size``: equal on all processors."""
+    # all that follows from them is the FMU's, and the same everywhere
     unit = to * 2.0 ** math.floor(math.log2(size))
     return np.asarray(np.round(numbers / unit) * unit)
 
 
 def unstable_direction(orbit: PeriodicOrbit) -> Floats:
-    """Return the unit eigenvector of the largest multiplier, for states at phase 0.
-
-    That of the nodes' matrix is a deviation at the first node; it is carried back to phase 0.
-    """
+    """Return the unit eigenvector of the largest multiplier, for states at phase 0."""
     values, vectors = np.linalg.eig(orbit.monodromy())
     node = vectors[:, np.argmax(np.abs(values))].real
     form, phase = orbit.form, orbit.nodes[:1, PHASE]

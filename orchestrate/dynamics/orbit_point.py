@@ -64,10 +64,7 @@ class OrbitPoint:
 
     @cached_property
     def sticking_margins(self) -> Floats:
-        """Return each impact's margin in the sticking condition (17): negative where it sticks.
-
-        Infinite where the contact force would not press the masses together.
-        """
+        """Return each impact's margin in the sticking condition (17): negative where it sticks."""
         orbit, form = self.orbit, self.orbit.form
         nodes = orbit.nodes
         force = form.force(nodes[:, POSITION], nodes[:, VELOCITY])
@@ -76,22 +73,14 @@ class OrbitPoint:
 
     @property
     def wrong_contact(self) -> bool:
-        """Return whether an impact sticks, or not, against the sticking condition (17).
-
-        Where (17) is all but met either will do: an orbit that has just got or lost an impact
-        meets it to rounding, and rounding must not say how it goes on.
-        """
+        """Return whether an impact sticks, or not, against the sticking condition (17)."""
+        # where (17) is all but met either will do: rounding must not say how an orbit goes on
         if not self.orbit.count:
             return False
         return min(self.contact_margin(kind) for kind in CONTACT_KINDS) <= -STICK_TOLERANCE
 
     def contact_margin(self, kind: BifurcationKind) -> float:
-        """Return the margin to losing or gaining a permanent contact: negative beyond it.
-
-        Chattering ends in contact by (17). The margin is negative beyond: for ``CONTACT_LOST``
-        where an impact does not stick that should, or no time is left for the contact, for
-        ``CONTACT_BEGUN`` where an impact would stick.
-        """
+        """Return the margin to losing or gaining a permanent contact: negative beyond it."""
         orbit = self.orbit
         margins = np.minimum(self.sticking_margins, 1.0)
         if kind == CONTACT_LOST:
@@ -99,10 +88,8 @@ class OrbitPoint:
         return float(margins[~(orbit.contact | orbit.sequence.releases)].min(initial=1.0))
 
     def test(self, kind: BifurcationKind) -> float:
-        """Return the test function of a bifurcation kind: it changes sign at the bifurcation.
-
-        Products of multipliers are scaled, as multipliers are infinite where an impact grazes.
-        """
+        """Return the test function of a bifurcation kind: it changes sign at the bifurcation."""
+        # products are scaled: multipliers are infinite where an impact grazes
         if kind == FOLD:
             return float(self.root.tangent[self.family.size])
         if kind == FLIP:
@@ -121,10 +108,8 @@ class OrbitPoint:
         return self.contact_margin(kind)
 
     def zero_is_bifurcation(self, kind: BifurcationKind) -> bool:
-        """Return whether this zero of a kind's test function is a true bifurcation.
-
-        The product of two real multipliers may be 1 as well as that of a pair on the unit circle.
-        """
+        """Return whether this zero of a kind's test function is a true bifurcation."""
+        # the product of two real multipliers may be 1 as well as that of a pair on the unit circle
         if kind != TORUS:
             return True
         return bool((np.abs(np.abs(self.pairs) - 1.0) < ON_CIRCLE).any())

@@ -248,10 +248,7 @@ def state_columns(zero: Floats, points: Sequence[Point]) -> dict[str, Floats]:
 def impact_columns(
     table: Table, points: Sequence[Point], frequency: Floats, closed: NDArray[np.bool_]
 ) -> dict[str, NDArray[Any]]:
-    """Return the orbits' impacts: times, speeds, rate; NaN for releases.
-
-    Without any node the masses are in contact all the time where they rest so (``closed``).
-    """
+    """Return the orbits' impacts: times, speeds, rate; NaN for releases."""
     nodes, kinds, speed = table["nodes"], table["kinds"], np.array([[p.speed] for p in points])
     there = (kinds >= 0) & (kinds != RELEASE)
     return {
@@ -263,10 +260,8 @@ def impact_columns(
 
 
 def stability_columns(table: Table, eta: Floats) -> dict[str, NDArray[Any]]:
-    """Return the orbits' multipliers, their product, stability and exponents.
-
-    Multipliers inside the unit circle decide nothing where the FMU has other impacts.
-    """
+    """Return the orbits' multipliers, their product, stability and exponents."""
+    # inside the unit circle they decide nothing where the FMU has other impacts
     multipliers, time = table["multipliers"], table["zero"].shape[1] * 2.0 * np.pi / eta
     size = np.hypot(*np.moveaxis(multipliers, -1, 0))
     with np.errstate(divide="ignore"):

@@ -73,10 +73,7 @@ def why_no_motion(orbit: PeriodicOrbit) -> str:
 
 
 def least_periods(orbit: PeriodicOrbit, within: float = SAME_ORBIT) -> int:
-    """Return the orbit's least period in excitation periods, by comparing shifted nodes.
-
-    Phases are compared on a circle, so that one at phase 0 may also be 2 pi.
-    """
+    """Return the orbit's least period in excitation periods, by comparing shifted nodes."""
     periods, count = orbit.sequence.periods, orbit.count
     kinds, span = np.array(orbit.sequence.kinds), TURN * orbit.sequence.periods
     size = float(np.abs(orbit.nodes[:, 1:]).max(initial=0.0)) or 1.0

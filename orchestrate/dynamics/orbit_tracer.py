@@ -86,11 +86,7 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         return part > AT_BEGIN and point.zero_is_bifurcation(kind)
 
     def locate(self, step: BranchStep[OrbitPoint]) -> list[LocatedBifurcation[OrbitPoint]]:
-        """Locate the bifurcations in a step, up to where its orbit becomes one of half the period.
-
-        There the branch turns as at a fold: beyond are the same orbits again, begun half their
-        period later.
-        """
+        """Locate the bifurcations in a step, up to where its orbit has half the period."""
         located = super().locate(step)
         for i, each in enumerate(located):
             if is_halved(each, step.before):
@@ -112,11 +108,8 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
     def finish_step(
         self, step: BranchStep[OrbitPoint]
     ) -> tuple[OrbitPoint, BifurcationKind | None]:
-        """Return the step's last orbit, with impacts added or removed as chattering (17) needs.
-
-        Where permanent contact is lost or begins, the branch ends: infinitely many impacts would
-        graze one after the other.
-        """
+        """Return the step's last orbit, with impacts added or removed as chattering (17) needs."""
+        # where permanent contact is lost or begins, infinitely many impacts would graze: an end
         after = step.after
         if not after.wrong_contact:
             return after, None

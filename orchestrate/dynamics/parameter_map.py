@@ -126,10 +126,7 @@ class MapJob(Question):
         return numbers
 
     def decided_response(self, instance: Instance, item: Point) -> tuple[Response, Decision, float]:
-        """Run a point on until its multiplicity is decided; return response, decision, impacts.
-
-        These are per period: of its own periods where it repeats, else of all samples.
-        """
+        """Run a point on until its multiplicity is decided; return response, decision, impacts."""
         eta = item.excitation.eta(item.structure)
         dropped, done, start = transient_periods(self.transient, self.settle, eta), 0, self.start
         while True:

@@ -147,11 +147,7 @@ class PeriodicOrbit:
         )
 
     def residual(self) -> Floats:
-        """Return the residual of the orbit's equations at its nodes, shape (4 k,).
-
-        Each segment must arrive at the node after it: with no gap, at its displacement and
-        velocity, and with its closing speed; at a release with f = 0 (19) and no closing speed.
-        """
+        """Return the residual of the orbit's equations at its nodes, shape (4 k,)."""
         if not self.count:
             return np.zeros(0)
         after = np.roll(self.nodes, -1, axis=0)
@@ -198,11 +194,7 @@ class PeriodicOrbit:
         return matrix.reshape(4 * k, 4 * k)
 
     def monodromy(self) -> Floats:
-        """Return the monodromy matrix (4, 4): a deviation at the first node over one period.
-
-        Its eigenvalues are the Floquet multipliers: those of the stroboscopic map too. In permanent
-        contact the deviation of the gap is gone, so with a contact two of them are zero.
-        """
+        """Return the monodromy matrix (4, 4): a deviation at the first node over one period."""
         if not self.count:
             return self.flows[0] @ self.form.centre() if self.contact[0] else self.flows[0]
         before, after = self.segment_jacobians()
@@ -223,17 +215,11 @@ class PeriodicOrbit:
 
     @property
     def stable(self) -> bool:
-        """Return whether all multipliers lie inside the unit circle, by more than rounding.
-
-        At a bifurcation, where one lies on the circle, rounding would say so or not.
-        """
+        """Return whether all multipliers lie inside the unit circle, by more than rounding."""
         return bool(np.abs(self.multipliers()).max() < 1.0 - ON_CIRCLE)
 
     def multiplier_product(self) -> float:
-        """Return the multipliers' product by Liouville's formula, as an independent check.
-
-        An impact contributes e(v) d(e(v) v)/dv: e^2 where e is constant.
-        """
+        """Return the multipliers' product by Liouville's formula, as an independent check."""
         lost = float(self.form.damping[0] + self.form.damping[1])
         time = TURN * self.sequence.periods / self.form.eta
         if self.contact.any():

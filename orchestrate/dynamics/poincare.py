@@ -106,10 +106,7 @@ def states_at_times(instance: Instance, point: Point, start: ArrayLike, times: F
 
 
 def release_times(impacts: Impacts, point: Point, end: float) -> Floats:
-    """Return the times, s, at which permanent contacts begun by given impacts are released.
-
-    Not those that outlast the span or end in another impact's place.
-    """
+    """Return the times, s, at which permanent contacts begun by given impacts are released."""
     omega = point.structure.omega
     scaled = nondimensional_impacts(impacts, point)
     ends = np.append(scaled.time[1:], omega * end)

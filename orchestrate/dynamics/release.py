@@ -26,11 +26,7 @@ Force = Callable[..., Floats]
 def contact_durations(
     form: ClosedForm, phase: Floats, position: Floats, velocity: Floats, spans: Floats
 ) -> Floats:
-    """Return how long permanent contacts last, in tau; infinite if not released in the span.
-
-    The zero is bracketed by samples of the force and by its largest values between them, and
-    solved for by Chandrupatla's method.
-    """
+    """Return how long permanent contacts last, in tau; infinite if not released in the span."""
     from scipy.optimize.elementwise import find_root
 
     if not len(spans):

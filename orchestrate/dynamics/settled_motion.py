@@ -85,11 +85,7 @@ class SettledMotion:
         return ScaledStates.from_states(states, self.point.excitation.frequency, self.gap)
 
     def is_same_orbit_as(self, other: SettledMotion) -> bool:
-        """Return whether both motions are the same orbit: same nodes, or same states.
-
-        They have the same nodes, begun in the same period or not; or the same states, where
-        chattering that ends in contact has one more of its smallest impacts.
-        """
+        """Return whether both motions are the same orbit: same nodes, or same states."""
         if self.orbit is None or other.orbit is None or self.multiplicity != other.multiplicity:
             return False
         return (
@@ -100,11 +96,7 @@ class SettledMotion:
 
 @dataclass(frozen=True)
 class ScaledStates:
-    """Stroboscopic states of a motion, scaled by its size to find the nearest to a given state.
-
-    Displacements and velocities over the frequency are compared with the largest of them; the gap
-    and its rate with the largest gap, as by :func:`orchestrate.response.multiplicity.scale_states`.
-    """
+    """Stroboscopic states of a motion, scaled by its size to find the nearest to a given state."""
 
     states: Floats  # SI
     scaled: Floats  # displacements, velocities, gap and its rate over their sizes

@@ -257,11 +257,7 @@ class BranchStep(Generic[Point]):
         return []
 
     def may_cross_twice(self, kind: BifurcationKind) -> bool:
-        """Return whether a test function may cross zero twice: its size falls, then rises.
-
-        Slopes are computed only where the test could have come to zero if it changed ``SPEED_UP``
-        times as fast as in the step before.
-        """
+        """Return whether a test function may cross zero twice: its size falls, then rises."""
         value = self.tracer.test(self.before, kind)
         reach = SPEED_UP * abs(self.rates.get(kind, np.inf)) * self.length
         if self.length <= ACCURACY or not abs(value) < reach:

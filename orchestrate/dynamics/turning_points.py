@@ -32,10 +32,7 @@ class TurningPoints:
 
 
 def sample_grid(orbit: PeriodicOrbit) -> tuple[NDArray[np.int_], Floats]:
-    """Return segment indices and phases of a fine sampling grid along an orbit.
-
-    Without nodes the only segment is sampled all around.
-    """
+    """Return segment indices and phases of a fine sampling grid along an orbit."""
     counts = MIN_SAMPLES + np.ceil(
         SAMPLES_PER_PERIOD * np.abs(orbit.durations) * orbit.form.fastest / TURN
     ).astype(int)

@@ -29,10 +29,7 @@ def period_in_tau(eta: float) -> float:
 
 
 def saltation_matrices(impacts: Impacts, point: Point) -> Floats:
-    """Return the saltation matrix ``R + (F+ - R F-) n^T/(n F-)`` of each impact, (n, 4, 4).
-
-    R is the derivative of the restitution (15) by the velocities before it.
-    """
+    """Return the saltation matrix ``R + (F+ - R F-) n^T/(n F-)`` of each impact, (n, 4, 4)."""
     form = ClosedForm.from_structure(*point)
     part = (1.0 + form.e) / (1.0 + form.mu)
     restitution = np.eye(4)

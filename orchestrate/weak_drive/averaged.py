@@ -95,11 +95,8 @@ def free_vibration_roots(structure: Structure, drive: Drive) -> np.ndarray:
 
 
 def calm_speed(structure: Structure, drive: Drive) -> float:
-    """Return the speed over omega that divides the box's own resonance from the structure's.
-
-    Where the vibration takes the least torque between both. The torque falls beyond each of them:
-    folds below this speed are of the box's own resonance, folds above it are of the structure's.
-    """
+    """Return the speed over omega that divides the box's own resonance from the structure's."""
+    # least torque between both: folds below are of the box's own resonance, folds above are not
     frequencies = np.abs(free_vibration_roots(structure, drive))
     high = float(frequencies.max())
     speeds = np.linspace(max(float(frequencies.min()), LOWEST * high), high, 2001)
@@ -122,11 +119,8 @@ def folds(
 
 
 def dividing_speed(structure: Structure, drive: Drive) -> float:
-    """Return the speed over omega that divides motions below and beyond the resonance.
-
-    Half way between the speeds of the outer folds, where all motions are unstable; the resonance's
-    speed where there are none.
-    """
+    """Return the speed over omega that divides motions below and beyond the resonance."""
+    # half way between the outer folds, where all motions are unstable; else the resonance's speed
     ends = folds(structure, drive)
     if not ends:
         return resonance(structure, drive)

@@ -161,10 +161,7 @@ class CaptureJob(Job):
 def run_until_settled(
     run: Run, steps: range, outcome: Callable[[np.ndarray, np.ndarray], Outcome]
 ) -> Outcome:
-    """Simulate a run until its recorded speed decides the outcome, or to its end.
-
-    The function ``outcome`` judges times and speeds each time the run is a fifth longer.
-    """
+    """Simulate a run until its recorded speed decides the outcome, or to its end."""
     times, speeds = np.zeros(0), np.zeros(0)
     first = 0
     while first < len(steps):
@@ -191,12 +188,8 @@ def threshold_voltage(
     start: Callable[[float], Outcome],
     tolerance: float,
 ) -> tuple[ThresholdEnd, ThresholdEnd]:
-    """Bracket by bisection the voltage from which a start passes the resonance.
-
-    The highest voltage that is captured and the lowest above it that passes are brought together to
-    ``tolerance``. An undecided start is neither: the bracket is wider then, and both its ends are
-    brought close to the undecided voltages.
-    """
+    """Bracket by bisection the voltage from which a start passes the resonance."""
+    # an undecided start is neither captured nor passes: the bracket is wider then
     captured = [i for i, outcome in enumerate(outcomes) if outcome.captured]
     if not captured or not outcomes[-1].passed:
         return ThresholdEnd(), ThresholdEnd()

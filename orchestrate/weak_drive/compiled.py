@@ -71,10 +71,7 @@ def create_master(
     connection: Connection = MOTOR,
     start_time: float = 0.0,
 ) -> Master:
-    """Create the master for two FMU instances, a compiled one where that is possible.
-
-    That takes native FMUs of FMI 3.0, and a drive that can go back and is connected like our own.
-    """
+    """Create the master for two FMU instances, a compiled one where that is possible."""
     native = all(one.is_fmi3 and not one.description.needs_tool for one in (oscillator, drive))
     whole = {*BOX, *FORCE} == set(connection.links) and len(connection.inputs) <= MOST_INPUTS
     plain = all(link.scale == 1.0 for link in connection.links.values())

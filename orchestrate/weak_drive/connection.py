@@ -99,10 +99,7 @@ def checked_variable(drive: Description, name: str, causality: str, any_type: bo
 
 
 def factor_to_si(drive: Description, ours: str, theirs: str) -> float:
-    """Return what one of the drive's unit is in SI; raise ``InputError`` where it is no such unit.
-
-    A variable without a unit counts as in SI.
-    """
+    """Return what one of the drive's unit is in SI; raise ``InputError`` for another quantity."""
     unit = drive.variable(theirs).unit or ""
     if unit not in drive.units:
         return 1.0
@@ -121,11 +118,7 @@ def near(name: str, known: Iterable[str]) -> str:
 
 
 def proposals(drive: Description) -> dict[str, list[str]]:
-    """Return by our names which of the drive's variables could be meant, the likeliest first.
-
-    These are real inputs or outputs with a unit for it, or with none; those of a unit come first,
-    then those whose name is like ours.
-    """
+    """Return by our names which of the drive's variables could be meant, the likeliest first."""
     found: dict[str, list[str]] = {}
     for ours, powers in UNITS.items():
         ranks = {}

@@ -154,10 +154,7 @@ class CoupleJob(CoupledRun):
         return xr.Dataset({**variables, **jump_columns}, coordinates, self.attributes(table))
 
     def jump_variables(self, table: Table) -> tuple[list[str], dict[str, Variable]]:
-        """Build the variables of all jumps and their labels: "up", "down", then further ones.
-
-        What happens to a motor that turns backward is told in a mirror, and its signs at the end.
-        """
+        """Build the variables of all jumps and their labels: "up", "down", then further ones."""
         records = [RampRecord(self, table, up) for up in (True, False)]
         first: list[tuple[str, Jump | None, RampRecord]] = []
         further: list[tuple[str, Jump | None, RampRecord]] = []
@@ -220,10 +217,7 @@ class CoupleJob(CoupledRun):
         }
 
     def attributes(self, table: Table) -> dict[str, str | float]:
-        """Return the dataset's title and the relative energy errors of the coupling.
-
-        ``missing_over_motor_work`` is the energy defect of the master over the motor's work.
-        """
+        """Return the dataset's title and the relative energy errors of the coupling."""
         state = "bonded" if self.structure.bonded else "delaminated"
         motor = float(table["motor"][-1])
         return {

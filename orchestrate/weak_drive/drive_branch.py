@@ -117,10 +117,7 @@ class DriveBranchJob(Job):
         return 1 if structure.bonded else self.period
 
     def trace_legs(self, fmus: tuple[Instance, Instance], structure: Structure) -> list[Leg]:
-        """Trace the branch from the lowest speed, and from the highest if needed.
-
-        Then legs of twice the period are traced from the first period doublings of both.
-        """
+        """Trace the branch from the lowest speed, and from the highest if needed."""
         omega, drive = structure.omega, self.drive
         low, high = (speed / omega for speed in self.speeds)
         sizes = averaged.amplitude(structure, drive, np.linspace(low, high, GRID))
@@ -154,10 +151,7 @@ class DriveBranchJob(Job):
             return Leg(end=NO_START)
 
     def trace_leg(self, shooter: Shooter, speeds: tuple[float, float], up: bool) -> Leg:
-        """Trace one leg from the lowest or the highest speed, begun by simulation.
-
-        It is traced with the shortest period after which its first motion repeats.
-        """
+        """Trace one leg from the lowest or the highest speed, begun by simulation."""
         speed = speeds[0] if up else speeds[1]
         voltage = float(averaged.no_load_speed(shooter.structure, self.drive, speed))
         omega = shooter.structure.omega

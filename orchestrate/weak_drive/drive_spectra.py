@@ -96,10 +96,7 @@ class DriveSpectraJob(Job):
             return self.sample_displacements(run, TURN / speed / self.points), float(speed)
 
     def sample_displacements(self, run: Run, interval: float) -> np.ndarray:
-        """Sample both masses' absolute displacements at equal times, m.
-
-        A preload's own displacements would leak into the lowest lines.
-        """
+        """Sample both masses' absolute displacements at equal times, m."""
         count = self.revolutions * self.points
         found = run.master.run([self.approach.last] * count, h=interval).at_ends()
         rest_1, rest_2 = run.job.structure.at_rest

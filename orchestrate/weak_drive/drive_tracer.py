@@ -134,10 +134,7 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         return motion
 
     def accepts(self, root: Root) -> bool:
-        """Return whether a new motion has as many impacts as the one before.
-
-        With another number of impacts it lies beyond a grazing.
-        """
+        """Return whether a new motion has as many impacts as the one before."""
         return self.shooter.shoot(root.unknowns).is_connected_to(self.shot)
 
     def test(self, point: Motion, kind: BifurcationKind) -> float:
@@ -159,18 +156,13 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         return {"xtol": ACCURACY * length}
 
     def end_before(self, step: BranchStep[Motion]) -> tuple[str, Iterable[Motion]]:
-        """Return why the leg ends if it has reached half the period; else empty text.
-
-        Beyond that point the same motions come again, half a period later.
-        """
+        """Return why the leg ends if it has reached half the period; else empty text."""
+        # beyond, the same motions come again, half a period later
         change = half_period_change(self.shooter, step.after.root)
         return (HALVED if self.half_period_change @ change < 0.0 else ""), ()
 
     def end_without_root(self, segment: BranchSegment[Motion]) -> None:
-        """Set why a leg ends where Newton's method fails, such as at a grazing.
-
-        Steps are short there: one motion stands for all that are too near to be seen in a plot.
-        """
+        """Set why a leg ends where Newton's method fails, such as at a grazing."""
         if any(motion.period.sticks for motion in segment.points[-STUCK:]):
             segment.end = UNFINISHED
             return
@@ -225,10 +217,8 @@ def double_period(shooter: Shooter, flip: Motion) -> Motion:
 
 
 def start_far_from_impacts(shooter: Shooter, motion: Motion) -> Motion:
-    """Move the start of a motion's period to where the gap is widest.
-
-    A motion that begins with an impact has no derivative.
-    """
+    """Move the start of a motion's period to where the gap is widest."""
+    # a motion that begins with an impact has no derivative
     period, together = motion.period, motion.period.together
     if period.share > NARROW and together == motion.together:
         return motion

@@ -76,11 +76,8 @@ class EnergyBalance:
         return np.asarray(self.relative_energy(before) - self.relative_energy(after) - work)
 
     def relative_energy(self, motion: OscillatorOutputs) -> Any:
-        """Return the structure's energy by its motion relative to the box, J.
-
-        A preload F adds F times the gap to the springs' energy by the displacements from rest; so
-        little is lost of a motion that is small beside it.
-        """
+        """Return the structure's energy by its motion relative to the box, J."""
+        # a preload adds itself times the gap: little is lost of a motion that is small beside it
         s, (rest_1, rest_2) = self.structure, self.structure.at_rest
         x1, x2, v1, v2 = motion.x1 - rest_1, motion.x2 - rest_2, motion.v1, motion.v2
         own = 0.5 * (s.m1 * v1 * v1 + s.m2 * v2 * v2 + s.k1 * x1 * x1 + s.k2 * x2 * x2)

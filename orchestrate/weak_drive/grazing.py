@@ -50,11 +50,7 @@ def grazing_margins(shooter: Shooter, unknowns: Floats, angle: float) -> Margins
 def turning_gap(
     structure: Structure, before: OscillatorOutputs, after: OscillatorOutputs, h: float
 ) -> float:
-    """Return the smallest gap within a step without an impact, m.
-
-    It is that of the quintic through gap, velocity and acceleration at both ends; the box's
-    acceleration is the same for both masses.
-    """
+    """Return the smallest gap within a step without an impact, m."""
     from scipy.interpolate import BPoly, PPoly
 
     ends = []
@@ -69,10 +65,7 @@ def turning_gap(
 def next_grazing(
     shooter: Shooter, motions: Sequence[tuple[Floats, float]]
 ) -> tuple[BifurcationKind | None, float]:
-    """Extrapolate which grazing comes next along a branch, and how far away it is.
-
-    A margin is taken to fall as it did over the last motions. The very last ones may be beyond.
-    """
+    """Extrapolate which grazing comes next along a branch, and how far away it is."""
     last_motions = motions[-2 * BACK :]
     falling = np.array([grazing_margins(shooter, *motion) for motion in last_motions])
     places = np.array([unknowns[-2:] for unknowns, _ in last_motions])

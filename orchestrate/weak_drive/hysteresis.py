@@ -105,10 +105,8 @@ class VoltageHolder:
         longest: float,
         settings: Settings | None = None,
     ) -> None:
-        """Store how runs begin, the ramp's schedule, the units (s, rad/s, V) and the settings.
-
-        `volts` is negative where the motor turns backward, `longest` the longest hold in s.
-        """
+        """Store how runs begin, the ramp's schedule, the units (s, rad/s, V) and the settings."""
+        # `volts` is negative where the motor turns backward; `longest` is the longest hold, s
         self.begin, self.schedule, self.step = begin, schedule, step
         self.omega, self.volts, self.longest = omega, volts, longest
         self.settings = settings or Settings()
@@ -151,11 +149,8 @@ class VoltageHolder:
         voltage: float,
         ends: tuple[float, float] | None = None,
     ) -> HeldPoint:
-        """Take the voltage to another one at `rate`, and hold it until the speed settles.
-
-        With `ends` also until the speed has come from the first of two nearly to the second one,
-        which is returned as its speed then.
-        """
+        """Take the voltage to another one at `rate`, and hold it until the speed settles."""
+        # with `ends`, until the speed has come from the first of two nearly to the second one
         settings = self.settings
         moves = math.ceil(abs(voltage - first) / settings.rate / self.omega / self.step)
         count = moves + math.ceil(self.longest / self.step)
@@ -218,10 +213,7 @@ class HysteresisLoop(VoltageHolder):
         return [jump._replace(shown=Suspect(last, last, last)) for jump in jumps]
 
     def first_point(self, record: RampRecord, leg: np.ndarray, before: int) -> HeldPoint:
-        """Hold a voltage before a row, from the ramp's state, where the ramp's motion lasts.
-
-        The speed there is the ramp's, less its lag. At the latest that is the ramp's beginning.
-        """
+        """Hold a voltage before a row, from the ramp's state, where the ramp's motion lasts."""
         row = record.row_earlier(before, self.settings.lead, leg)
         back = max(1, before - row)
         while True:
@@ -316,10 +308,8 @@ class HysteresisLoop(VoltageHolder):
         return LOST if self.hold_again(back) is back else UNDECIDED
 
     def confirm(self, points: list[HeldPoint], sign: float) -> tuple[int, float]:
-        """Hold the motion before a loss again; return the outcome and the voltage where it stays.
-
-        Close to its end a motion seems to settle before it leaves: then one `width` earlier counts.
-        """
+        """Hold the motion before a loss again; return outcome and the voltage where it stays."""
+        # near its end a motion seems to settle before it leaves: then one `width` earlier counts
         low, voltage = points[-1], points[-1].voltage - sign * self.settings.width
         later = self.hold_again(low)
         if later is low:
@@ -349,10 +339,7 @@ class HysteresisLoop(VoltageHolder):
         return None
 
     def comes_back(self, points: list[HeldPoint]) -> bool:
-        """Return whether the speed comes back, less than `clear` away, over all voltages.
-
-        It need not settle at a single one between others.
-        """
+        """Return whether the speed comes back, less than `clear` away, over all voltages."""
         last, settled = points[-1], True
         for point in reversed(points[:-1]):
             back = self.hold_from(last, point.voltage)

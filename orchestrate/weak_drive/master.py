@@ -101,10 +101,7 @@ class DriveSide:
 
 
 class Master:
-    """Step two initialised FMU instances together and exchange force and acceleration.
-
-    :class:`.compiled.CompiledMaster` does the same with the same bits, faster.
-    """
+    """Step two initialised FMU instances together and exchange force and acceleration."""
 
     def __init__(
         self,
@@ -172,11 +169,8 @@ class Master:
         return rows
 
     def _steps(self, h: float, halvings: int) -> list[list[float]]:
-        """Run an interval in steps of its length halved, so that each defect is small.
-
-        Steps are doubled where that ends on their own grid: so the interval's end is met without a
-        rest, and all lengths are exact.
-        """
+        """Run an interval in steps of its length halved, so that each defect is small."""
+        # doubled only on their own grid: the end is met without a rest, lengths are exact
         level, rows, most, done = int(self.row[LEVEL]), [], 1 << halvings, 0
         while done < most:
             size = most >> level
@@ -255,10 +249,7 @@ class Master:
         return matched_cubic(first, after[2], mean, moment, h)
 
     def _slopes_of_points(self, after: Sequence[float], h: float) -> Cubic:
-        """Return the acceleration over a step from velocities or positions alone, as a line.
-
-        It is the derivative of the polynomial through the last points and the end.
-        """
+        """Return the acceleration over a step from velocities or positions alone, as a line."""
         from_position = math.isnan(after[1])
         times = [*self.points[::2][-2 - from_position :], self.row[TIME] + h]
         values = [*self.points[1::2][-2 - from_position :], after[0 if from_position else 1]]

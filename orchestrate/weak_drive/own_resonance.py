@@ -75,11 +75,9 @@ def gap_stays_open(w: np.ndarray, n: np.ndarray, Omega: float) -> bool:
 
 
 def resonance(structure: Structure, drive: Drive) -> float:
-    """Return the resonance speed of the structure as given, over omega.
-
-    That of the bonded structure also serves the delaminated one, unless its own lies clearly apart:
-    by more than half the distance of the bonded folds, and half the width of its resonance.
-    """
+    """Return the resonance speed of the structure as given, over omega."""
+    # the bonded one's, unless its own is away by more than half the distance of the bonded folds
+    # and half the width of its resonance
     return averaged.resonance(structure, drive) + resolved_resonance_shift(structure, drive)
 
 

@@ -269,10 +269,7 @@ def waterfall(
 
 
 def resample_over_angle(data: xr.Dataset, mass: int, points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Interpolate a mass's absolute displacement at equal steps of the motor's angle.
-
-    Where the motor turns back for a moment, samples are left out until it has come as far again.
-    """
+    """Interpolate a mass's absolute displacement at equal steps of the motor's angle."""
     from scipy.interpolate import CubicHermiteSpline
 
     angle, time = np.abs(data.angle.values - data.angle.values[0]), data.time.values

@@ -16,10 +16,7 @@ BOX = ("box_position", "box_velocity", "box_acceleration")
 
 
 class OscillatorOutputs(NamedTuple):
-    """Store the outputs of the structure FMU at a communication point, SI units.
-
-    Displacements count from the unloaded springs; the gap ``x_rel`` is 0 in contact.
-    """
+    """Store the outputs of the structure FMU at a communication point, SI units."""
 
     x1: float
     x2: float

@@ -201,10 +201,7 @@ class Course(Schedule):
 
     @classmethod
     def from_csv(cls, path: str | PathLike[str]) -> Course:
-        """Read the course from a CSV file with columns time, s, and voltage, V.
-
-        Rows that begin with ``#``, and one with names, are passed over.
-        """
+        """Read the course from a CSV file with columns time, s, and voltage, V."""
         try:
             lines = read_text(path, MAX_BYTES).splitlines()
         except (OSError, ValueError) as error:

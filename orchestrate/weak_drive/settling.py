@@ -94,10 +94,7 @@ def settling_test(structure: Structure, drive: Drive, stay: int, distance: float
 
 
 def longest_time_constant(structure: Structure, drive: Drive) -> float:
-    """Return the longest time constant of motor and dampers, s; each is limited.
-
-    The motor's is 1/b, those of vibrations are 1/D of each damper.
-    """
+    """Return the longest time constant of motor and dampers, s; each is limited."""
     rates = (drive.b(structure), structure.D1, structure.D2, drive.D_b(structure))
     return max(min(1.0 / rate if rate else math.inf, LONGEST_MEMORY) for rate in rates) / (
         structure.omega
@@ -105,10 +102,8 @@ def longest_time_constant(structure: Structure, drive: Drive) -> float:
 
 
 def time_past_the_fold(structure: Structure, drive: Drive, distance: float) -> float:
-    """Estimate how long the speed creeps past the upper fold, s.
-
-    Near the fold the speed obeys x' = r (distance + q x^2 / 2): it takes pi/(r sqrt(q distance/2)).
-    """
+    """Estimate how long the speed creeps past the upper fold, s."""
+    # x' = r (distance + q x^2 / 2) takes pi/(r sqrt(q distance/2))
     folds = averaged.folds(structure, drive)
     if not folds:
         return 0.0

@@ -60,29 +60,17 @@ class Shot(NamedTuple):
     contact: bool
 
     def is_connected_to(self, other: Shot) -> bool:
-        """Return whether two motions have the same impacts, with no grazing between.
-
-        In a chattering that ends in contact the last impacts come and go with next to no speed.
-        """
+        """Return whether two motions have the same impacts, with no grazing between."""
+        # the last impacts of a chattering that ends in contact come and go with next to no speed
         return self.impacts == other.impacts or (self.contact and other.contact)
 
 
 class Shooter:
-    """Define the equations of a periodic motion of both FMUs, and their Jacobian.
+    """Define the equations of a periodic motion of both FMUs, and their Jacobian."""
 
-    Unknowns are the state where the angle has its value at the start, displacements from rest and
-    each quantity over its unit, then the voltage over K omega and the mean speed over omega. The
-    Jacobian is made by differences at a root, each checked: both sides, or the one that is taken,
-    must have the impacts that the root has, and two sizes of the change must agree. On the way to a
-    root it follows the residuals by Broyden's secants.
-
-    A root may leave 1e-9 of the unit, about the amplitude, of the equations. Rounding leaves 1e-15
-    to 1e-13, times the largest multiplier; the end of a period is continuous, also where an impact
-    passes from one communication step to the next.
-
-    A structure under a preload may stay in contact for good, or part for a short time only: its
-    periods begin in contact then, with the state of one mass, and have to end in contact.
-    """
+    # Unknowns: the state where the angle has its start value, displacements from rest, each over
+    # its unit; voltage over K omega; mean speed over omega. Rounding leaves 1e-15 to 1e-13 times
+    # the largest multiplier. Under a preload a period may begin and end in contact.
 
     accuracy: float = RESIDUAL
 
@@ -171,11 +159,7 @@ class Shooter:
         return np.array([values[name] for name in self.names]) / self.units
 
     def settle(self, voltage: float, speed: float, time: float) -> Floats:
-        """Simulate for a time at a nearly fixed speed (heavy rotor); return the state.
-
-        A delaminated structure begins with the masses apart; a preload presses them together. A
-        heavy rotor holds the speed: so motions are found that a motor would not stay on.
-        """
+        """Simulate for a time at a nearly fixed speed (heavy rotor); return the state."""
         self.begin_together(self.structure.bonded)
         longest = time + (self.turns + 1) * TURN / speed
         own_drive = self.drive
@@ -328,10 +312,8 @@ class Shooter:
         raise NoConvergenceError("a grazing is too near for a derivative")
 
     def multipliers(self) -> np.ndarray:
-        """Return the Floquet multipliers of the last motion, the largest first.
-
-        The angle's own, 1 for every motion, is not among them.
-        """
+        """Return the Floquet multipliers of the last motion, the largest first."""
+        # without the angle's own, which is 1 for every motion
         values = np.linalg.eigvals(self.map_derivative())
         return np.asarray(values[np.argsort(-np.abs(values))])
 

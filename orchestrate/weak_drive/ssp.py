@@ -106,11 +106,8 @@ def add_component(elements: ET.Element, name: str, units: Sequence[str]) -> None
 
 
 def add_master(system: ET.Element, step: float) -> None:
-    """Add OMSimulator's annotation with the fixed step of its master.
-
-    Its C interface reads ``oms:FixedStepMaster``, its Python interface the attributes of
-    ``oms:SimulationInformation``, by the name of the solver that it gives to co-simulation FMUs.
-    """
+    """Add OMSimulator's annotation with the fixed step of its master."""
+    # its C interface reads oms:FixedStepMaster, its Python interface oms:SimulationInformation
     length = format(Decimal(repr(step)), "f")  # its schema takes no exponent
     annotations = ET.SubElement(system, qualified_tag("ssd", "Annotations"))
     annotation = ET.SubElement(
