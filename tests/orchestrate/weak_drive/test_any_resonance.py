@@ -48,6 +48,7 @@ def test_the_least_torque_divides_both_resonances():
     assert averaged.dividing_speed(*NEAR) == pytest.approx(0.5 * (1.25575 + 1.30321), abs=1e-4)
 
 
+@pytest.mark.slow
 def test_a_fold_far_above_omega_is_seen():
     """It was said that the speed follows the voltage, or that the ramp ends below the resonance."""
     found = run(HIGH, (3.15, 3.4), 2e-3, step=None, back=False).sel(jump="up")

@@ -42,6 +42,7 @@ def test_the_border_is_that_of_the_whole_system():
     assert below < 1.3 and beyond > 1.5 and found.speed[1] == pytest.approx(beyond, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_no_border_above_the_fold():
     """Above its fold the speed creeps for long, and passes: it is not captured."""
     fold = folds(*CREEPING)[0].eta0
@@ -54,6 +55,7 @@ def test_no_border_above_the_fold():
     assert slow > 1000.0 and passes(CREEPING, fold + 2e-3, 1.5 * slow)
 
 
+@pytest.mark.slow
 def test_a_motor_that_swings_back_is_captured():
     """Long beyond the resonance, it returns; what counts is where it settles."""
     swinging = SWINGING.as_bonded()

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from orchestrate import capture, couple, couple_all, passage
-from orchestrate.weak_drive.drive_spectra import drive_spectra
+from orchestrate import couple
 from orchestrate.weak_drive.master import Scheme
 from orchestrate.weak_drive.revolutions import Revolutions
 
@@ -129,35 +128,3 @@ def test_all_scaled_the_motion_scales(system):
         assert np.array_equal(large[name], unit * small[name]), name
     other = couple(system.structure, twice, **SHORT)
     assert np.abs(other.speed - small.speed).max() > 1e-4  # the structure is not scaled
-
-
-def test_a_passage_is_the_run_that_couple_makes():
-    kept, run = passage(*PRESSED, **SHORT), couple(*PRESSED, **SHORT, step=0.1)
-    gaps = kept.x2 - kept.x1 + PRESSED.structure.clearance
-    assert gaps.min() > -1e-12 and gaps.max() > 0.004
-    for name in ("motor", "dampers", "impact_loss", "stored"):
-        at = np.interp(run.time[-5:], kept.time, kept[name])
-        assert run[name].values[-5:] == pytest.approx(at, rel=1e-2), name
-
-
-def test_capture_over_the_clearance():
-    """Pressed shut it is captured as the bonded one is; open halves pass at a lower voltage."""
-    asked = {"voltage": (1.51, 1.57), "count": 2, "tolerance": 0.005, "step": 0.2}
-    values = [SHUT.structure.clearance, OPEN.structure.clearance]
-    found = capture(*QUICK, over="clearance", values=values, **asked, jobs=1, progress=False)
-    bonded = capture(*QUICK.as_bonded(), **asked, jobs=1, progress=False)
-    assert found.border[0] == bonded.border > found.border[1] + 0.005
-
-
-def test_ramps_of_many_and_spectra_of_a_structure_pressed_shut_are_those_of_the_bonded_one():
-    """All that answer for both kinds at once."""
-    quick = {"back": False, "step": 0.4, "jobs": 1, "progress": False}
-    ends = 1.5, 1.7
-    both = couple_all({"shut": SHUT}, eta0=ends, rates=[4e-4], **quick).jumps.sel(jump="up")
-    spectra = drive_spectra(
-        *SHUT,
-        **{"voltage": 1.3, "begin": 1.29, "hold": 50.0, "revolutions": 8, "points": 64},
-        **{"jobs": 1, "progress": False},
-    ).acceleration
-    for pair in (both.values.reshape(2, -1), spectra.values):
-        assert pair[1] == pytest.approx(pair[0], abs=1e-6) and np.isfinite(pair[0]).all()

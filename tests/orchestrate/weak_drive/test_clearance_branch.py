@@ -114,6 +114,7 @@ def test_with_a_gap():
     assert_held(OPEN, motions[-1])
 
 
+@pytest.mark.slow
 def test_held_voltages_find_the_fold_of_the_branch():
     """Of a structure with a gap, from states of a ramp that are restored."""
     legs, _ = branch_of(OPEN, 30, (0.995, 1.002))

@@ -64,45 +64,43 @@ def assert_at(jump, fold):
     assert low - 5e-6 <= fold <= high + 5e-6 and high - low < 2.1e-4
 
 
-@pytest.mark.parametrize("at", [0.3, 0.42])
 @pytest.mark.parametrize(("up", "start"), [(True, 1.1), (False, 1.5)])
 @pytest.mark.parametrize("slope", [-0.2, -0.05, -0.02])
-def test_a_fold(slope, up, start, at):
+def test_a_fold(slope, up, start):
     """It is bracketed; -0.02: the other one is 5e-4 away."""
-    (jump,) = decided(slope, up=up, start=start, at=at)
+    (jump,) = decided(slope, up=up, start=start)
     assert_at(jump, fold_of(slope, up))
 
 
 NARROW = {"ends": (1.47, 1.53), "stiff": 2500.0}  # speeds change little between its folds
 
 
-@pytest.mark.parametrize("at", [0.1, 0.25, 0.35])
 @pytest.mark.parametrize(("up", "start"), [(True, 1.27), (False, 1.33)])
-def test_folds_that_are_close_in_speed_too(up, start, at):
+def test_folds_that_are_close_in_speed_too(up, start):
     """1.1e-4 apart; the speed jumps by 0.0066."""
-    (jump,) = decided(-0.0365, up=up, start=start, at=at, **NARROW)
+    (jump,) = decided(-0.0365, up=up, start=start, at=0.25, **NARROW)
     assert_at(jump, fold_of(-0.0365, up, 2500.0))
 
 
-@pytest.mark.parametrize("slope", np.linspace(-0.05, 0.03, 9).round(4).tolist())
+@pytest.mark.parametrize("slope", [-0.05, -0.03, -0.01, 0.01, 0.03])
 def test_no_two_courses_contradict_each_other(slope):
     """What lies between a jump and none is undecided."""
     outcomes = {
         tuple(jump.outcome for jump in decided(slope, start=1.27, at=at, **NARROW))
-        for at in (0.1, 0.2, 0.25, 0.3)
+        for at in (0.1, 0.25)
     }
     assert outcomes <= {(LOST,), (UNDECIDED,)} or outcomes <= {(), (UNDECIDED,)}
     assert outcomes == {(LOST,)} or slope > -0.035
     assert outcomes == {()} or slope < 0.005
 
 
-@pytest.mark.parametrize("slope", [0.005, 0.02, 0.1])
+@pytest.mark.parametrize("slope", [0.01, 0.1])
 def test_a_steep_branch(slope):
-    """Up to 200 times as steep as the voltage, but the speed comes back with it."""
+    """Up to 100 times as steep as the voltage, but the speed comes back with it."""
     assert decided(slope, longest=2e5) == []
 
 
-@pytest.mark.parametrize("slope", [-0.02, -0.005, 0.0, 0.005])
+@pytest.mark.parametrize("slope", [-0.02, 0.0])
 @pytest.mark.parametrize("longest", [1500.0, 5000.0])
 def test_a_short_hold_is_never_wrong(slope, longest):
     """Near the edge of a fold speeds settle slowly."""
@@ -274,6 +272,7 @@ def test_folds_that_are_close_through_both_fmus():
     assert low - 5e-5 < 1.13041 < high + 5e-5 and high - low < 2.1e-4
 
 
+@pytest.mark.slow
 def test_a_vertical_branch_through_both_fmus():
     """Its least slope is 0.02, there is no fold."""
     edge = System(*scale_to_slope(DRAWN[1], 0.02)).as_bonded()
@@ -285,37 +284,28 @@ def test_a_vertical_branch_through_both_fmus():
 
 def test_what_has_not_settled_is_undecided():
     """And the answer says what helps."""
-    omega = CLOSE.structure.omega
-    for hold in (0.0, 300.0 / omega):
-        found = run(CLOSE, (1.2, 1.08), 2e-4, hold=hold, **DOWN).sel(jump="down")
-        assert found.decided == "undecided" and np.isnan(found.jumps)
-        assert "longer hold" in str(found.no_jump.item())
+    hold = 300.0 / CLOSE.structure.omega
+    found = run(CLOSE, (1.2, 1.08), 2e-4, hold=hold, **DOWN).sel(jump="down")
+    assert found.decided == "undecided" and np.isnan(found.jumps)
+    assert "longer hold" in str(found.no_jump.item())
 
 
-@pytest.mark.parametrize("last", [1.606, 1.59])
-def test_a_ramp_that_ends_during_the_jump_or_before_it_shows(last):
-    """Past the fold at 1.5831."""
+def test_a_ramp_that_ends_before_the_jump_shows():
+    """Past the fold at 1.5831; the bracket is as wide as the settings say."""
     quick = QUICK.as_bonded()
-    found = run(quick, (1.5, last), 1e-4, back=False, step=None).sel(jump="up")
+    wide = {"back": False, "step": None, "hysteresis": Settings(width=2e-3)}
+    found = run(quick, (1.5, 1.59), 1e-4, **wide).sel(jump="up")
     low, high = bracket(found, quick)
-    assert found.decided == "by held voltages" and low - 5e-6 < 1.5831 < high + 5e-6
-
-
-def test_a_motor_that_turns_backward_has_the_mirrored_jumps():
-    quick = QUICK.as_bonded()
-    ends = ((way * 1.5, way * 1.65) for way in (1, -1))
-    forward, backward = (run(quick, pair, 2e-4, back=False, step=None) for pair in ends)
-    assert np.isfinite(forward.jumps[0])
-    for name in ("ramp_voltage", "jump_speed_before", "jump_rate", "averaged_jumps"):
-        mirrored = -backward[name].values
-        assert mirrored[0] == pytest.approx(forward[name].values[0], rel=1e-3, abs=1e-6), name
-    error = 3e-4 * quick.drive.volts(quick.structure)
-    assert -float(backward.jumps[0]) == pytest.approx(float(forward.jumps[0]), abs=error)
-
-
-def test_settings_reach_the_rule():
-    """A wide bracket takes fewer holds."""
-    quick = QUICK.as_bonded()
-    wide = run(quick, (1.5, 1.65), 2e-4, back=False, step=None, hysteresis=Settings(width=2e-3))
-    low, high = bracket(wide.sel(jump="up"), quick)
+    assert found.decided == "by held voltages"
     assert low < 1.5831 < high and 1e-3 < high - low < 4.1e-3
+
+
+def test_a_motor_that_turns_backward_has_the_mirrored_jump():
+    quick = QUICK.as_bonded()
+    found = run(quick, (-1.5, -1.65), 2e-4, back=False, step=None)
+    volts = quick.drive.volts(quick.structure)
+    assert float(found.jumps[0]) / volts == pytest.approx(-1.5831, abs=2e-4)
+    assert float(found.averaged_jumps[0]) / volts == pytest.approx(-1.58306, abs=1e-5)
+    assert float(found.ramp_voltage[0]) < float(found.jumps[0])
+    assert found.jump_speed_before[0] < -1.3 and found.motor[-1] > 0.0
+    assert found.sizes["revolution"] > 100

@@ -22,9 +22,8 @@ SETS = random_sets(5)
 STRONGER = {"b": (0.02, 0.5), "epsilon": (1e-4, 2e-3)}
 
 
-@pytest.mark.parametrize("number", [0, 3])
-def test_trajectories(number):
-    error, impacts = trajectory_error(SETS[number], 20.0)
+def test_a_trajectory():
+    error, impacts = trajectory_error(SETS[3], 20.0)
     assert impacts > 2 and error < 1e-6
 
 
