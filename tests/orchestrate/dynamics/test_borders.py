@@ -42,7 +42,7 @@ def number(kind):
 def test_curves_are_where_the_closed_form_has_the_bifurcation(kind, over):
     limits, at = [(2.5, 5.0), LIMITS[over]], number(kind)
     found = border(
-        PAPER, start=window(), bifurcation=at, over=("eta", over), limits=limits, longest=0.08
+        PAPER, start=window(), bifurcation=at, over=("eta", over), limits=limits, longest=0.15
     )
     assert found.sizes["point"] > 5
     for i, end in ((0, "first_end"), (-1, "last_end")):
@@ -146,7 +146,7 @@ def test_a_fold_is_found_from_either_side_of_it(monkeypatch, beyond):
 
 def test_one_direction_does_not_depend_on_the_other(monkeypatch):
     """Each begins with the matrix bordered at the start, not at the far end of the other one."""
-    at, limits = number("Neimark-Sacker"), [(3.0, 4.0), (0.69, 0.71)]
+    at, limits = number("Neimark-Sacker"), [(3.0, 4.0), (0.695, 0.705)]
     monkeypatch.setattr(questions, "answer", lambda job, *rest: job)
     job = border(PAPER, start=window(), bifurcation=at, limits=limits, longest=0.1)
     curve, start = borders.start_root(job)

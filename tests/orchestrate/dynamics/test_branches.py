@@ -29,7 +29,7 @@ FOLD, FLIP, TORUS, GRAZING, TOUCHING, CONTACT_LOST = range(6)
 HALVING = 8
 STARTS = {1: 1.5, 2: 4.0, 3: 6.0, 4: 8.0}
 LIMITS = {1: (1.37, 8.0), 2: (1.37, 8.0), 3: (1.37, 8.0), 4: (1.37, 9.5)}
-PERIODS = ordinary(STARTS, 2)  # of those that last longer nothing is written otherwise
+PERIODS = ordinary(STARTS, [2])  # of the others nothing is written otherwise
 WALL_RATE = 1e5  # of mass 2 where it is a wall: the difference is 1e-10
 
 
@@ -55,7 +55,9 @@ TRUE_BORDERS = [
 ]
 
 
-@pytest.mark.parametrize(("period", "low", "high"), ordinary(TRUE_BORDERS, 3, several_names=True))
+@pytest.mark.parametrize(
+    ("period", "low", "high"), ordinary(TRUE_BORDERS, TRUE_BORDERS[1:3], several_names=True)
+)
 def test_borders_of_stability_are_those_of_the_closed_form(period, low, high):
     truth = border(period, low, high)
     found = values(windows(period), TORUS)
@@ -109,7 +111,7 @@ def test_period_doubling_against_a_stiff_wall():
 
 
 def test_impacts_begin_where_the_linear_response_touches():
-    """At the force 0.1 for k = 1, c = 0.1, omega = 1 and a wall at 1, from above and from below."""
+    """At the force 0.1 for k = 1, c = 0.1, omega = 1 and a wall at 1."""
     structure = wall(0.1, 0.8)
     given = {"over": "amplitude", "box_acceleration": 1.0, "longest": 0.3}
     known = {"frequency": 1.0, "amplitude": 0.2, "box_acceleration": 1.0}
@@ -119,8 +121,6 @@ def test_impacts_begin_where_the_linear_response_touches():
     below = branch(structure, start=above, switch=grazing_of(above), limits=(0.08, 0.22), **given)
     assert not (below.node_kind.values >= 0).any()
     assert below.amplitude.values.min() == 0.08
-    again = branch(structure, start=below.isel(point=-1), limits=(0.08, 0.22), **given)
-    assert values(again, TOUCHING) == pytest.approx([0.1], abs=1e-9)
 
 
 def grazing_of(found):
@@ -144,6 +144,7 @@ DOUBLED = Structure.nondimensional(mu=2.28789, kappa=1.83161, D1=0.0228225, D2=0
 DOUBLED = DOUBLED.replace(e_slope=0.0434816)
 
 
+@pytest.mark.slow
 def test_a_doubled_branch_ends_where_it_has_half_its_period_again():
     """It turns there, and was said to fold; beyond are the same orbits, begun a period later."""
     eta = 2.6198833
@@ -198,7 +199,7 @@ def contacts(instance, eta, found):
 
 
 # D and kappa stand in the tests of borders too
-@pytest.mark.parametrize("over", ordinary(["e", "mu", "D", "kappa"], 2))
+@pytest.mark.parametrize("over", ordinary(["e", "mu", "D", "kappa"]))
 def test_other_parameters_cross_the_same_border(over):
     """Multipliers along other parameters are the closed form's, and limits are reached exactly."""
     limits = {"e": (0.3, 1.0), "D": (0.0, 0.1), "mu": (0.8, 1.1), "kappa": (1.1, 1.5)}[over]
@@ -246,12 +247,10 @@ def test_two_bifurcations_of_a_kind_within_a_step_are_found(longest):
 
 
 def test_the_call_told_asks_it_again():
-    first = branch(PAPER, eta=2.5, limits=(2.4, 2.7))
+    first = branch(PAPER, eta=2.5, limits=(2.48, 2.52))
     names = {"orbit": orbit, "branch": branch, "Structure": Structure}
     again = eval(first.attrs["call"], names)  # noqa: S307
-    assert again.bifurcation_value.values == pytest.approx(
-        first.bifurcation_value.values, abs=1e-12
-    )
+    assert again.xi.values == pytest.approx(first.xi.values, abs=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -274,12 +273,14 @@ def test_what_cannot_be_asked(question, words):
 
 
 def test_what_cannot_be_switched_to():
+    given = {"start": windows(2), "limits": (1.37, 9.5)}
+    torus = int(np.flatnonzero(windows(2).bifurcation_kind.values == TORUS)[0])
     with pytest.raises(InputError, match="switch: Neimark-Sacker"):
-        branch(PAPER, start=windows(1), switch=0, limits=(1.37, 9.5))
+        branch(PAPER, switch=torus, **given)
     with pytest.raises(InputError, match="start: several orbits"):
-        branch(PAPER, start=windows(1), limits=(1.37, 9.5))
+        branch(PAPER, **given)
     with pytest.raises(InputError, match="switch = 99"):
-        branch(PAPER, start=windows(1), switch=99, limits=(1.37, 9.5))
+        branch(PAPER, switch=99, **given)
 
 
 def test_a_root_is_known_by_its_residual():

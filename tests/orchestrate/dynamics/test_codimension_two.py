@@ -74,6 +74,7 @@ def test_a_flip_neimark_sacker_point_is_on_both_curves():
     assert np.abs(truth + 1.0).min() < 1e-8 and abs(np.abs(pair) - 1.0).min() < 1e-8
 
 
+@pytest.mark.slow
 def test_a_period_doubling_ends_where_a_flight_grazes():
     limits = (0.29, 0.71)
     both = [

@@ -44,7 +44,7 @@ def test_one_impact_in_n_periods_is_that_of_the_closed_form(period, eta):
     assert found.fmu_return < 1e-13 * max(1.0, truth.largest)
 
 
-@pytest.mark.parametrize(("eta", "V"), [(1.7, 2.013768092), (2.5, 0.645352178)])
+@pytest.mark.parametrize(("eta", "V"), [(2.5, 0.645352178)])
 def test_a_heavy_stiff_mass_2_is_a_wall(eta, V):
     """The oscillator x'' + x = cos(eta t) with a wall at 0 and restitution 0.8, in closed form."""
     away = []
@@ -135,10 +135,8 @@ def test_the_physical_form_is_the_same_orbit_in_metres():
     assert found.exponent.item() == pytest.approx(plain.exponent.item(), rel=1e-9)
 
 
-@pytest.mark.parametrize("guessed", [False, True])
-def test_the_call_told_asks_it_again(guessed):
-    guess = known(3.0).state.values[0] if guessed else None
-    first = orbit(PAPER, eta=3.0, guess=guess)
+def test_the_call_told_asks_it_again():
+    first = orbit(PAPER, eta=3.0, guess=known(3.0).state.values[0])
     again = eval(first.attrs["call"], {"orbit": orbit, "Structure": Structure})  # noqa: S307
     assert again.xi.identical(first.xi)
 

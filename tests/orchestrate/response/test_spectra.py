@@ -33,7 +33,7 @@ def fourier(structure, eta, mass, impulses):
 @pytest.mark.usefixtures("exported")
 @pytest.mark.parametrize(("structure", "eta"), [(PAPER, 0.4), (OWN, 1.6)])
 def test_lines_of_a_periodic_response(structure, eta):
-    found = spectra(structure, eta=eta, transient=1200, periods=16).isel(eta=0)
+    found = spectra(structure, eta=eta, transient=1200, periods=8).isel(eta=0)
     at_lines = found.acceleration.sel(order=LINES.astype(float))
     for mass in (1, 2):
         whole = fourier(structure, eta, mass, True)
