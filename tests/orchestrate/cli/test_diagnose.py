@@ -169,7 +169,6 @@ def test_answers_are_stored_and_taken_again_beside_a_refused_record(run, sine, c
     assert all(xr.load_dataset(path).equals(data) for path, data in before.items())
     stored = xr.load_dataset(verdicts[0])
     assert "identity" in stored.attrs and "fmu_guid" in stored.attrs
-    assert len(orchestrate.plot(stored).axes) == stored.sizes["order"]
 
 
 def test_another_guess_has_files_of_its_own(run):

@@ -120,7 +120,6 @@ MISTAKES = {  # options of each command, then what its line says
         --over frequency --eta 1 --limits 2.4:2.6 : --over frequency | --amplitude
         --over e --limits 2.4:2.6 : frequency: nothing given
         --start lost.nc --limits 2.4:2.6 : --start lost.nc | no such file
-        --eta 2.5 --switch 0 --limits 2.4:2.6 : switch = 0 | expected a branch
     """,
     "border": """
         : --start is missing
@@ -139,7 +138,6 @@ MISTAKES = {  # options of each command, then what its line says
     """,
     "paper": """
         --figures '' : unknown figure ''
-        --figures spectra --jobs -1 : jobs = -1
     """,
     "couple": """
         --drive rigg : rigg | no such file | quick
@@ -309,6 +307,7 @@ def test_debug_shows_where_an_error_came_from(tmp_path):
             main([*arguments, "--set", "e=2", "--output", str(tmp_path)])
 
 
+@pytest.mark.slow
 def test_no_scheduler_but_something_that_takes_calls_and_is_silent(ask, monkeypatch):
     monkeypatch.setattr("orchestrate.running.cluster.CONNECT_TIMEOUT", "1s")
     with socket.create_server(("127.0.0.1", 0)) as silent:
