@@ -159,7 +159,8 @@ def test_answers_are_stored_and_taken_again_beside_a_refused_record(run, sine, c
     verdicts = [path for path in folder.glob("diagnose_*.nc") if not path.stem.endswith("_signs")]
     assert len(verdicts) == 2
     before = {path: xr.load_dataset(path) for path in verdicts}
-    options = ["--structure", str(folder / "beam.toml"), "--output", str(folder), "--jobs", "1"]
+    options = ["--structure", str(folder / "beam.toml"), "--output", str(folder)]
+    options += ["--jobs", "1", "--plot", "none"]
     code = main(["diagnose", str(sine), str(folder / "whole.csv"), *options])
     out, err = capsys.readouterr()
     (verdict,) = [line for line in said.splitlines() if "whole.csv: " in line]
