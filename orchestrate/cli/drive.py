@@ -11,12 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from ..units import Units, with_readable_lengths, with_units
-from .grammar import (
-    parse_changes,
-    parse_ends,
-    parse_number_or_ends,
-    parse_rate,
-)
+from .grammar import parse_changes, parse_ends, parse_number_or_ends, parse_rate
 from .options import one_of, option_name, print_assumptions
 from .output import Files, digest, print_units_note, read_running_options, read_units
 from .table import Group
@@ -33,6 +28,10 @@ USUAL_RATES = ", ".join(f"{rate:g} for {name}" for name, (_, rate) in USUAL.item
 RATE = 1e-4  # of eta0, in a time 1/omega
 ETA0 = "eta0 = U/(K omega) is the voltage as no-load speed over omega = sqrt(k1/m1)."
 RESUME = "Repeat the command to resume an interrupted run. A finished result is left as it is."
+CONTROLS = {  # options of controllers, with their settings
+    "speed_control": ("gain", "reset_time", "speed_rise"),
+    "speed_gradient": ("filter_time", "low"),
+}
 DATASHEET = ("rated_voltage", "no_load_rpm", "stall_torque")
 
 # -- options --------------------------------------------------------------------------------------
@@ -278,38 +277,27 @@ def make_controller(
     from ..weak_drive.controllers import SpeedControl, SpeedGradient
     from ..weak_drive.couple import require_motor
 
-    of_pi = {"gain": arguments.gain, "reset_time": arguments.reset_time}
-    of_pi["rise"] = arguments.speed_rise
-    of_swing = {"filter_time": arguments.filter_time, "low": arguments.low}
-    one_of(arguments, "speed_control", "speed_gradient")
-    for needed, chosen, names in (
-        (
-            "--speed-control",
-            arguments.speed_control is not None,
-            ("gain", "reset_time", "speed_rise"),
-        ),
-        ("--speed-gradient", arguments.speed_gradient, ("filter_time", "low")),
-    ):
+    chosen = one_of(arguments, *CONTROLS)
+    given: dict[str, float] = {}
+    for needed, names in CONTROLS.items():
         for name in names:
             value = getattr(arguments, name)
-            if value is not None and not chosen:
-                raise InputError(f"{option_name(name)} {value:g}: expected {needed} with it")
+            if value is not None and chosen != needed:
+                expected = f"expected {option_name(needed)} with it"
+                raise InputError(f"{option_name(name)} {value:g}: {expected}")
+            if value is not None:
+                given[name.removeprefix("speed_")] = value
     require_motor(drive)
     constant = drive.motor_constant
-    if arguments.speed_control is not None:
+    if chosen == "speed_control":
         slow = drive.rotor_inertia * drive.armature_resistance / constant**2
         usual = {"gain": 5.0 * constant, "reset_time": slow, "rise": math.inf}
-        return SpeedControl(speed=arguments.speed_control, **{**usual, **without_none(of_pi)})
-    if arguments.speed_gradient:
+        return SpeedControl(speed=arguments.speed_control, **{**usual, **given})
+    if chosen == "speed_gradient":
         passed = own_resonance.dividing_speed(structure, drive) * structure.omega
-        swing = {"filter_time": 30.0 / structure.omega, "low": 0.6, **without_none(of_swing)}
+        swing = {"filter_time": 30.0 / structure.omega, "low": 0.6, **given}
         return SpeedGradient(passed=passed, **swing)
     return None
-
-
-def without_none(values: Mapping[str, float | None]) -> dict[str, float]:
-    """Return the entries of a mapping whose values are not None."""
-    return {name: value for name, value in values.items() if value is not None}
 
 
 # -- answers --------------------------------------------------------------------------------------

@@ -13,12 +13,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import InputError
 from ..units import text_of, with_units
 from .answer import answer, read_earlier_result
-from .grammar import (
-    floats,
-    parse_breakpoints,
-    positive_number,
-    read_pairs,
-)
+from .grammar import floats, parse_breakpoints, positive_number, read_pairs
 from .options import (
     BESIDE,
     START,

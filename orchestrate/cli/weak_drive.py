@@ -312,14 +312,8 @@ def jump_cells(at: xr.Dataset, volts: float) -> tuple[str, ...]:
         reason = str(at.no_jump.item()).replace("a longer hold", "a longer --hold")
         return direction, word, "", "", reason
     error = 0.5 * abs(float(at.jump_high) - float(at.jump_low))
-    shown = f"{float(at.ramp_voltage):.4f}"
-    return (
-        direction,
-        f"{voltage:.5f} +- {error:.5f}",
-        f"{voltage / volts:.5f}",
-        shown,
-        (str(at.decided.item())),
-    )
+    shown, decided = f"{float(at.ramp_voltage):.4f}", str(at.decided.item())
+    return direction, f"{voltage:.5f} +- {error:.5f}", f"{voltage / volts:.5f}", shown, decided
 
 
 COUPLE = Command(
@@ -381,18 +375,10 @@ def ask_capture(arguments: argparse.Namespace) -> tuple[Structure, Drive, Questi
     else:
         down, up = averaged_jump_voltages(arguments, structure, drive)
         ends = down, 1.06 * up
-    return (
-        structure,
-        drive,
-        {
-            "voltage": ends,
-            "over": arguments.over,
-            "values": values and values[0],
-            **arguments.row.keywords(arguments),
-            "control": make_controller(arguments, structure, drive),
-            **times_in_seconds(arguments, structure, "step"),
-        },
-    )
+    question = arguments.row.keywords(arguments)
+    question |= {"voltage": ends, "over": arguments.over, "values": values and values[0]}
+    question["control"] = make_controller(arguments, structure, drive)
+    return structure, drive, question | times_in_seconds(arguments, structure, "step")
 
 
 def capture_title(_: Results, question: Question) -> str:
@@ -577,16 +563,12 @@ def ask_jump_voltages(arguments: argparse.Namespace) -> tuple[Structure, Drive, 
     """Return structure, drive and keywords of ``jump-voltages``."""
     structure, drive = read_drive_options(arguments)
     unit = drive.volts(structure) * structure.omega
-    return (
-        structure,
-        drive,
-        {
-            "voltage": parse_ramp_ends(arguments, structure, drive),
-            "rates": [rate * unit for rate in parse_rates("--rate", arguments.rate or USUAL_LIST)],
-            "back": not arguments.one_way,
-            **times_in_seconds(arguments, structure, "settle", "step"),
-        },
-    )
+    question: Question = {
+        "voltage": parse_ramp_ends(arguments, structure, drive),
+        "rates": [rate * unit for rate in parse_rates("--rate", arguments.rate or USUAL_LIST)],
+        "back": not arguments.one_way,
+    }
+    return structure, drive, question | times_in_seconds(arguments, structure, "settle", "step")
 
 
 def jump_voltages_title(_: Results, question: Question) -> str:

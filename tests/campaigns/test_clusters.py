@@ -37,7 +37,7 @@ class Nodes:
             self.started = [dask.start(self.folder, "scheduler", "scheduler", *options)]
             self.address = dask.read(self.started[0], r"tcp://127\.0\.0\.1:\d+")
             for name in ("one", "two"):
-                place = (*dask.PLACE, str(self.folder))
+                place = (*dask.OPTIONS, str(self.folder))
                 self.started.append(dask.start(self.folder, name, "worker", self.address, *place))
             for node in self.started[1:]:
                 dask.read(node, "Registered to")

@@ -50,8 +50,9 @@ ALL = ("frf", "psd", "orders", "harmonics", "spectrogram", "shock", "density")
 
 
 @pytest.mark.parametrize("show", ALL)
-def test_each_analysis_says_its_numbers_and_draws(ask, tmp_path, files, show):
-    done = ask("analyse", files["parted"], "--show", show, "--from", "0.5", "--to", "9.5").success()
+def test_each_analysis_says_its_numbers(ask, tmp_path, files, show):
+    cut = ("--from", "0.5", "--to", "9.5", "--plot", "none")
+    done = ask("analyse", files["parted"], "--show", show, *cut).success()
     words = {
         "frf": ["largest |H1|", "mass 1   3 at", "mass 2   1.5 at"],
         "psd": ["rms m/s2", "1.41", "4.2"],
@@ -63,26 +64,26 @@ def test_each_analysis_says_its_numbers_and_draws(ask, tmp_path, files, show):
     }[show]
     assert all(word in done.out for word in words), done.out
     folder = tmp_path / "results"
-    (stored,), (picture,) = folder.glob("*.nc"), folder.glob("*.png")
-    assert str(stored) in done.out and str(picture) in done.out
+    (stored,) = folder.glob("*")
+    assert str(stored) in done.out
     assert stored.name.startswith(f"analyse_{show}_parted_")
     assert show in xr.load_dataset(stored).attrs["analysis"]
-    assert shows_something(picture)
 
 
 def test_three_records_in_one_picture(ask, tmp_path, files):
     done = ask(
-        *("analyse", files["parted"], "--label", "delaminated", "--show", "frf,orders"),
+        *("analyse", files["parted"], "--label", "delaminated", "--show", "frf"),
         *("--beside", f"bonded={files['bonded']}", "--beside", f"measured={files['measured']}"),
         *("--format", "nc,csv", "--resolution", "2"),
     ).success()
-    assert "delaminated: frequency response" in done.out and "bonded: orders" in done.out
-    assert done.out.count("mass 2") == 4 and done.out.count("mass 1") == 6
+    for label in ("delaminated", "bonded", "measured"):
+        assert f"{label}: frequency response" in done.out
+    assert done.out.count("mass 2") == 2 and done.out.count("mass 1") == 3
     folder = tmp_path / "results"
-    assert len(list(folder.glob("*.png"))) == 2
-    assert len(list(folder.glob("*.nc"))) == 6
+    (picture,) = folder.glob("*.png")
+    assert str(picture) in done.out and shows_something(picture)
+    assert len(list(folder.glob("*.nc"))) == 3
     assert list(folder.glob("*.csv"))
-    assert all(map(shows_something, folder.glob("*.png")))
 
 
 def test_options_reach_the_analysis(ask, tmp_path, files):
@@ -105,7 +106,7 @@ def test_a_stored_result_of_shake(ask, tmp_path):
     options = ("--structure", "beam", "--random", "5:0.05,40:0.05", "--duration", "20")
     ask("shake", *options, "--plot", "none").success()
     (path,) = (tmp_path / "results").glob("shake*.nc")
-    done = ask("analyse", path, "--show", "frf", "--from", "5").success()
+    done = ask("analyse", path, "--show", "frf", "--from", "5", "--plot", "none").success()
     assert "largest |H1|" in done.out
 
 
@@ -152,7 +153,7 @@ def said(done):
     return [line for line in done.out.splitlines() if line.startswith("  ")]
 
 
-@pytest.mark.parametrize("kind", ["csv", "uff", "wav"])
+@pytest.mark.parametrize("kind", ["csv", "wav"])
 def test_records_of_all_kinds_of_files(ask, tmp_path, files, kind):
     """What is said of a file is what is said of the same record in NetCDF."""
     record, options = sweep(0.5, second=False), []
@@ -160,13 +161,10 @@ def test_records_of_all_kinds_of_files(ask, tmp_path, files, kind):
     if kind == "csv":
         in_g(record, path)
         options = ["--unit", "g", "--columns", "time=0, box_acceleration=AI 1,acceleration1=2"]
-    elif kind == "wav":
+    else:
         values = np.stack([record[name].values for name in record], axis=1) / 10.0
         wavfile.write(path, int(RATE), values)
         options = ["--scale", "10"]
-    else:
-        pytest.importorskip("pyuff") if kind == "uff" else None
-        write_record(record, path)
     show = ("--show", "psd,orders", "--orders", "2", "--plot", "none", "--units", "m/s2")
     done = ask("analyse", path, *options, *show).success()
     record.to_netcdf(tmp_path / "plain.nc")
@@ -180,6 +178,7 @@ def test_measured_beside_simulated(ask, tmp_path, files):
     done = ask(
         *("analyse", files["parted"], "--beside", f"measured={tmp_path / 'bench.csv'}"),
         *("--unit", "g", "--columns", columns, "--show", "orders", "--units", "m/s2"),
+        *("--plot", "none"),
     ).success()
     lines = [line for line in said(done) if "mass 1" in line]
     assert len(lines) == 2 and all("  6 m/s2 at" in line for line in lines)

@@ -80,6 +80,7 @@ def cluster(tmp_path: Path) -> Iterator[Nodes]:
         end_all(started)
 
 
+@pytest.mark.slow  # 10 s
 def test_a_lost_worker_loses_nothing_and_the_other_leaves_no_fmu(
     commands, cluster, tmp_path, monkeypatch
 ):

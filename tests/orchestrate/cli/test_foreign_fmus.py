@@ -35,6 +35,7 @@ def bad(exported, tmp_path_factory):
     return made
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ENDS)
 def test_one_that_ends_its_process_is_told(bad, kind):
     told = rf"ended without a word \({ENDS[kind]}\): an FMU has crashed or ended it"

@@ -1,33 +1,13 @@
-"""A full disk ends a command with one line; what is stored is kept, the same command goes on."""
+"""A limit of file sizes ends a command in one line; what is stored is kept, and it resumes."""
 
 from __future__ import annotations
 
-import os
 import resource
-import subprocess
 
 import pytest
 import xarray as xr
 
 RUN = ("sweep", "--eta", "1:1.2:0.0005", "--transient", "20", "--samples", "300", "--jobs", "1")
-
-
-@pytest.fixture
-def resize(commands):
-    """Mount a small file system as the folder of the results; gives it another size."""
-    commands.output.mkdir()
-    mount = ["mount", "-t", "tmpfs", "-o", "size=900k", "none", str(commands.output)]
-    posix = os.name == "posix" and os.geteuid() == 0
-    if not posix or subprocess.run(mount, capture_output=True).returncode:
-        pytest.skip("file systems cannot be mounted here")
-
-    def resized(size):
-        option = f"remount,size={size}"
-        subprocess.run(["mount", "-o", option, str(commands.output)], check=True)
-
-    yield resized
-    commands.clean_up()
-    subprocess.run(["umount", str(commands.output)], check=True)
 
 
 def whole(ask, tmp_path):
@@ -43,16 +23,6 @@ def goes_on(commands, ask, tmp_path):
     (result,) = commands.output.glob("*.nc")
     assert xr.load_dataset(result).xi_rel.equals(whole(ask, tmp_path))
     assert [n for n in commands.files() if not n.endswith((".nc", ".png"))] == []
-
-
-@pytest.mark.slow  # 6 s
-def test_full_while_chunks_arrive(commands, resize, ask, tmp_path):
-    done = commands.run(*RUN)
-    done.complaint(commands.output, code=1)
-    kept = commands.chunks()
-    assert kept and not list(commands.output.glob("*.nc"))
-    resize("20m")
-    goes_on(commands, ask, tmp_path)
 
 
 @pytest.mark.slow

@@ -20,14 +20,8 @@ BEGINS_ANEW = "interrupted: nothing was stored; repeat the command to start agai
 RUNS = {  # long enough to be ended by force, chaotic, so that a wrong start is seen
     "sweep": ("sweep", "--eta", "1.1:1.4:0.0005", "--transient", "700", "--plot", "none"),
     "couple": (
-        "couple",
-        "--only",
-        "delaminated",
-        "--eta0",
-        "1.4:1.42",
-        "--rate",
-        "2e-5",
-        "--one-way",
+        *("couple", "--only", "delaminated"),
+        *("--eta0", "1.4:1.42", "--rate", "2e-5", "--one-way"),
     ),
     "spectra": (
         *("spectra", "--eta", "1.1:1.3:0.05", "--jobs", "1"),
@@ -72,37 +66,37 @@ def results_left(commands):
     return [name for name in commands.files() if not name.endswith(kinds)]
 
 
-def test_ctrl_c_is_one_line_and_after_a_kill_the_bytes_are_equal(commands, uninterrupted):
+@pytest.mark.parametrize(
+    "number", [signal.SIGKILL, pytest.param(signal.SIGINT, marks=pytest.mark.slow)]
+)
+def test_after_an_interruption_the_bytes_are_equal(commands, uninterrupted, number):
     """A sweep, in threads."""
-    for number in (signal.SIGINT, signal.SIGKILL):
-        kept, process = commands.chunks(), commands.start(*RUNS["sweep"])
-        wait_for(lambda kept=kept: commands.chunks() > kept, process, "a chunk was on disk")
-        done = kill(process, number)
-        assert commands.chunks() > kept, "chunks are lost"
-        if number == signal.SIGINT:
-            assert done.complaint(code=130) == INTERRUPTED
-            assert list(commands.temporary.iterdir()) == []
+    process = commands.start(*RUNS["sweep"])
+    wait_for(lambda: commands.chunks() > 0, process, "a chunk was on disk")
+    done = kill(process, number)
+    assert commands.chunks() > 0, "chunks are lost"
+    if number == signal.SIGINT:
+        assert done.complaint(code=130) == INTERRUPTED
+        assert list(commands.temporary.iterdir()) == []
     commands.run(*RUNS["sweep"]).success()
     assert commands.results() == uninterrupted("sweep")
     assert results_left(commands) == []
 
 
-MAP = (
-    *("map", "--eta", "1.1:1.4:0.005", "--over", "e", "--values", "0.3:0.9:0.005"),
-    "--jobs",
-    "2",
-)
+GRID = ("--eta", "1.1:1.4:0.005", "--over", "e", "--values", "0.3:0.9:0.005")
+MAP = ("map", *GRID, "--jobs", "2")
 RECORD = ("docs/records/beam_a.csv", "--structure", "docs/records/beam.toml")
 ALONE = ("sweep", "--eta", "1.1:1.2:0.001", "--transient", "1000000", "--jobs", "1")  # in one chunk
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("number", "command", "processes"),
     [
         (signal.SIGINT, (*MAP, "--transient", "20000"), 4),
-        pytest.param(signal.SIGTERM, (*MAP, "--transient", "20000"), 4, marks=pytest.mark.slow),
-        pytest.param(signal.SIGINT, ALONE, 0, marks=pytest.mark.slow),
-        pytest.param(signal.SIGINT, ("diagnose", *RECORD), 0, marks=pytest.mark.slow),
+        (signal.SIGTERM, (*MAP, "--transient", "20000"), 4),
+        (signal.SIGINT, ALONE, 0),
+        (signal.SIGINT, ("diagnose", *RECORD), 0),
     ],
 )
 def test_a_signal_ends_a_command_whatever_computes(commands, number, command, processes):

@@ -39,15 +39,16 @@ def ask(folder, **where):
     return done, [path.suffix for path in (folder / "results").glob("*")]
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("exported")
 @pytest.mark.parametrize(
     "where",
     [
         {"stderr": "closed"},
-        pytest.param({"stderr": "/dev/full"}, marks=pytest.mark.slow),
-        pytest.param({"stdout": "closed"}, marks=pytest.mark.slow),
-        pytest.param({"stdout": "closed", "stderr": "closed"}, marks=pytest.mark.slow),
-        pytest.param({"open_files": 12}, marks=pytest.mark.slow),
+        {"stderr": "/dev/full"},
+        {"stdout": "closed"},
+        {"stdout": "closed", "stderr": "closed"},
+        {"open_files": 12},
     ],
 )
 def test_the_run_goes_on(tmp_path, where):
@@ -138,31 +139,6 @@ def test_sigterm_at_random_moments_leaves_nothing(commands):
         assert done.code == 143
         assert [line for line in done.complaints if "resource_tracker" in line] == []
         assert all_end(workers)
-        assert list(commands.temporary.iterdir()) == []
-
-
-@pytest.mark.slow
-def test_no_worker_is_orphaned(commands):
-    chance = random.Random(2)
-    for _ in range(20):
-        process = commands.start(*LONG)
-        time.sleep(chance.uniform(1.0, 6.0))
-        started = list(below(process.pid))
-        os.kill(process.pid, signal.SIGKILL)
-        process.wait()
-        assert all_end(started)
-
-
-@pytest.mark.slow
-def test_paper_ends_on_ctrl_c(commands):
-    chance = random.Random(3)
-    for _ in range(12):
-        process = commands.start("paper", "--quick", "--figures", "maps", "--jobs", "2")
-        time.sleep(chance.uniform(1.0, 12.0))
-        started = list(below(process.pid))
-        os.killpg(process.pid, signal.SIGINT)
-        process.communicate(timeout=40.0)
-        assert all_end(started)
         assert list(commands.temporary.iterdir()) == []
 
 
