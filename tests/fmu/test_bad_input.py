@@ -6,6 +6,7 @@ import math
 
 import pytest
 
+from ..sparing import ordinary
 from .driver import FMUS
 from .programs.driver import OK, Refused, harmonic, open_fmu
 
@@ -178,7 +179,7 @@ def test_a_mistake_is_refused_with_a_message_and_nothing_else_suffers(form, key,
     assert witness.step(40.0).outputs()["x1"] == expected["x1"]
 
 
-@pytest.mark.parametrize("key", CASES)
+@pytest.mark.parametrize("key", ordinary(CASES, [*CASES][::5]))
 def test_hundreds_of_mistakes_do_no_harm(key):
     """pythonfmu releases references at each call, which shows only after some hundred."""
     phase, fail, _ = CASES[key]

@@ -83,7 +83,7 @@ def test_a_refused_step_leaves_the_instance_where_it_was(fmu):
     f, plain = (open_fmu(fmu).start(**values).step(30.0) for _ in range(2))
     before = f.outputs()
     f.set(box_frequency=1e9)  # more radians than a step may walk
-    for point, size in ((30.0, 1.0), (30.0, 0.5), (30.0, -1.0), (30.0, math.nan), (12.0, 1.0)):
+    for point, size in ((30.0, 1.0), (30.0, -1.0), (30.0, math.nan), (12.0, 1.0)):
         f.refused("doStep", point, size)
     f.set(box_frequency=1.13)
     plain.set(box_frequency=1.13)

@@ -6,7 +6,8 @@ import math
 import fmpy
 import pytest
 
-from .driver import DRIVES, MODELS, OSCILLATOR, path_of
+from ..sparing import ordinary
+from .driver import DRIVES, FORMS, MODELS, OSCILLATOR, path_of
 from .programs.driver import Refused, describe, open_fmu
 
 # What is promised: name, unit, start; typed in here, so that a slip in a project's table shows.
@@ -76,6 +77,7 @@ BASES = {  # exponents of kg, m, s, A
 }
 TYPES = {"Float64": "Real", "Int32": "Integer"}  # of FMI 3.0
 models = pytest.mark.parametrize("model", MODELS)
+moving = pytest.mark.parametrize("form", ordinary(FORMS, ["fmi2", "fmi3"]))  # they compute alike
 
 
 @pytest.fixture
@@ -245,6 +247,7 @@ def stated(unknowns, left_out=()):
 
 
 @models
+@moving
 def test_initial_dependencies_are_true(model, form):
     """Each start value in turn is changed: the outputs that move at the start are those that name
     it, no more and no fewer.
@@ -271,6 +274,14 @@ def test_initial_dependencies_are_true(model, form):
 
 
 @models
+def test_pythonfmus_form_states_the_same_dependencies(model):
+    one, other = (describe(path_of(model, form)) for form in ("fmi2-python", "fmi2"))
+    assert stated(one.initialUnknowns) == stated(other.initialUnknowns)
+    assert stated(one.outputs) == stated(other.outputs)
+
+
+@models
+@moving
 def test_dependencies_between_steps_are_true(model, form):
     """One input in turn is set to another value, the others to what they are: an oscillator's
     outputs wait for the next step, a drive's move at once where they name it.

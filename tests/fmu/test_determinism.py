@@ -31,11 +31,11 @@ def test_two_instances_side_by_side(fmu):
     """Stepped in turns, with other parameters in between, they do not touch each other."""
     lone, one, two = (open_fmu(fmu).start(**harmonic(1.13)) for _ in range(3))
     other = open_fmu(fmu, name="other").start(m1=2.0, m2=3.0, e=0.2)
-    expected = [lone.step(k * 0.25).outputs() for k in range(1, 1025)]
+    expected = [lone.step(float(k)).outputs() for k in range(1, 257)]
     for k, row in enumerate(expected, 1):
-        found = one.step(k * 0.25).outputs()
-        other.step(k * 0.25)
-        assert found == row == two.step(k * 0.25).outputs() != other.outputs()
+        found = one.step(float(k)).outputs()
+        other.step(float(k))
+        assert found == row == two.step(float(k)).outputs() != other.outputs()
     assert expected[-1]["impact_count"] > 50
 
 

@@ -134,7 +134,7 @@ def forge(model, form, share):
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("model", MODELS)
 def test_some_forged_states(form, model):
-    tried, problems = forge(model, form, 0.003 if model == OSCILLATOR else 0.01)
+    tried, problems = forge(model, form, 0.0015 if model == OSCILLATOR else 0.006)
     assert tried > 20
     assert problems == []
 

@@ -130,8 +130,9 @@ def test_no_leak_and_no_error_under_valgrind_at_length(importer_of_model):
         clean(importer_of_model.run(*mode, under=VALGRIND, timeout=1800))
 
 
-@pytest.mark.parametrize("sanitizer", ordinary(SANITIZERS))
-@pytest.mark.parametrize("pair", ordinary(PAIRS, [PAIRS[3]]), ids="-".join)
+@pytest.mark.slow  # the ordinary run has valgrind
+@pytest.mark.parametrize("sanitizer", SANITIZERS)
+@pytest.mark.parametrize("pair", PAIRS, ids="-".join)
 def test_no_error_with_sanitizers_in_the_shim(exported, fmus, tmp_path, pair, sanitizer):
     """Address, undefined behaviour and leaks; or threads."""
     options = SANITIZERS[sanitizer]

@@ -67,7 +67,7 @@ def lowest(h, bound, stop):
         return float(min(value / terms for value, terms in values))
 
 
-@examples(300)
+@examples(150)
 @given(HEIGHTS, SIGNED, SIGNED, SIGNED, SIGNED, sizes(1e-9, 1e6))
 @example(0.0, 0.0, 1.0, 0.0, 0.0, 3.0)
 @example(0.5, -1.0, 1.0, 0.0, 0.0, 1e-9)  # double root of the parabola

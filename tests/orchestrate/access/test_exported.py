@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-import subprocess
 import sys
 import threading
 import time
@@ -230,23 +229,6 @@ def test_a_clone_has_its_own_folder(monkeypatch, tmp_path):
     assert "build" not in folder.parts and "vibroimpact" in folder.parts
     if sys.platform == "linux":
         assert folder.is_relative_to(tmp_path / "caches")
-
-
-GUIDS = """
-import sys
-for name in ("ziglang", "pythonfmu", "jinja2", "numpy", "fmpy"):
-    sys.modules[name] = None
-from fmu_src.export.forms import FORMS, MODELS, guid
-print(*[guid(name, form) for form in FORMS for name in MODELS])
-"""
-
-
-def test_guids_need_the_standard_library_alone(real):
-    done = subprocess.run([sys.executable, "-c", GUIDS], capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    guids = done.stdout.split()
-    assert len(set(guids)) == len(guids) == len(FORMS) * len(MODELS)
-    assert {describe(real[form]).guid for form in FORMS} < set(guids)
 
 
 def test_who_waits_for_an_export_does_not_make_it_again(maker, places, monkeypatch):

@@ -32,6 +32,17 @@ def record(structure=BEAM, noise=0.0, both=True, gain=1.0, seed=1, sweep=SWEEP):
     return orchestrate.record(time=felt.time.values, **noisy)
 
 
+def seen_at(one, other=None, structure=BEAM, **options):
+    """What sensors read that stand where the mode is ``one`` and ``other`` times the mass's."""
+    felt = record(structure, **options)
+    base = felt.box_acceleration
+    read = {"box_acceleration": base.values}
+    for name, factor in (("acceleration1", one), ("acceleration2", other)):
+        if factor is not None:
+            read[name] = (base + factor * (felt[name] - base)).values
+    return orchestrate.record(time=felt.time.values, **read)
+
+
 def guess(**changes):
     """The beam, some percent off."""
     return BEAM.replace(f1=31.5, f2=36.5, zeta1=0.03, zeta2=0.015, e=0.6).replace(**changes)

@@ -17,16 +17,18 @@ from tools.benches.lumped import Faces, Halves, Torsion
 from tools.benches.sensors import Sensor
 
 from ...sparing import ordinary
-from .records import BEAM, RATE, SWEEP, guess, record
+from .records import BEAM, RATE, SWEEP, guess, record, seen_at
 
 LIMIT = {"jobs": 1, "progress": False}
 
 
-def test_a_delaminated_structure_is_found_with_its_numbers():
-    answer = orchestrate.detect(record(noise=0.01, both=False), guess(), **LIMIT)
+@pytest.mark.parametrize("factor", ordinary([1.566, 0.532]))  # at the tip, and at the middle
+def test_a_delamination_is_found_with_its_numbers_wherever_the_sensor_is(factor):
+    answer = orchestrate.detect(seen_at(factor, noise=0.01), guess(), **LIMIT)
     assert str(answer.verdict.values) == "delaminated", answer.attrs["reason"]
     assert answer.ratio > 3.0 and answer.odds > 100.0
     best = answer.sel(hypothesis="delaminated")
+    assert best.participation.item() == pytest.approx(factor, rel=0.05)
     for name in ("f1", "f2"):
         one = best.sel(parameter=name)
         assert float(one.value) == pytest.approx(getattr(BEAM, name), rel=0.02)
@@ -52,9 +54,8 @@ def test_of_a_bonded_structure_no_opening_is_seen_and_its_halves_are_not_stated(
 
 def test_a_fit_is_within_its_errors_and_takes_what_is_not_free_from_the_guess():
     start = guess(e=0.5)
-    answer = orchestrate.fit(
-        record(noise=0.01), start, free=("f1", "f2", "zeta1", "zeta2"), **LIMIT
-    )
+    measured = record(noise=0.01, both=False)
+    answer = orchestrate.fit(measured, start, free=("f1", "f2", "zeta1", "zeta2"), **LIMIT)
     assert list(answer.parameter.values) == ["f1", "f2", "zeta1", "zeta2"]
     truth = np.array([30.0, 38.0, 0.02, 0.02])
     away = (answer.value.values - truth) / answer.standard_error.values

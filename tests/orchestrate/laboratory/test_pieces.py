@@ -36,7 +36,7 @@ def sweeps(draw):
     return SweptSine(first=first, last=last, acceleration=level, duration=duration, spacing=spacing)
 
 
-@settings(deadline=None, max_examples=20)
+@settings(deadline=None)
 @given(sweeps(), ACCURACY)
 def test_swept_sine_within_its_bound(sweep, accuracy):
     pieces = sweep.pieces(accuracy)
@@ -71,7 +71,7 @@ def test_profile_of_a_sweep_is_straight_in_logarithms():
         assert math.isclose(float(sweep.level(sweep.time_of(f))), f / 5.0, rel_tol=1e-9)
 
 
-@settings(deadline=None, max_examples=15)
+@settings(deadline=None)
 @given(st.lists(HERTZ, min_size=1, max_size=6), st.booleans(), st.integers(0, 30), ACCURACY)
 def test_stepped_sine_within_its_bound(frequencies, profile, settle, accuracy):
     level = ((0.05, 1.0), (3.0, 8.0), (600.0, 2.0)) if profile else 3.0
@@ -136,7 +136,7 @@ def sines(shaking):
     return np.sqrt(2.0 * density / shaking.duration), 2.0 * math.pi * f, phases
 
 
-@settings(deadline=None, max_examples=12)
+@settings(deadline=None)
 @given(st.floats(0.5, 8.0), st.integers(0, 1000), ACCURACY)
 def test_random_vibration_within_its_bound(duration, seed, accuracy):
     shaking = Random(psd=PROFILE, duration=duration, seed=seed)
