@@ -78,7 +78,8 @@ class Draw:
             return o.resonance_curve(frequency=hertz, level=1.0, amplitude1=height)
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "curve.csv"
-            np.savetxt(path, np.c_[hertz, height], "%.17g", ",", header="f / Hz,a / m/s2")
+            words = {"header": "f / Hz,a / m/s2", "comments": ""}
+            np.savetxt(path, np.c_[hertz, height], "%.17g", ",", **words)
             columns = {"frequency": "f / Hz", "amplitude1": "a / m/s2"}
             return o.read_curve(path, columns=columns, unit="m/s2", level=1.0)
 

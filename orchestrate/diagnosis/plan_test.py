@@ -224,7 +224,8 @@ class SweepComputation:
             channels = Channels.from_record(measure(history, quiet, excitation=sine), (BOX,))
         names, responses = channels.responses()
         shares = np.array([[self.sensors[name].participation] for name in names])
-        linear = channels.box + shares * (self.sound.acceleration(channels) - channels.box)
+        mass = self.sound.acceleration(channels)
+        linear = shares * mass + (1.0 - shares) * channels.box
         rows = np.concatenate([channels.values[:1], responses, linear])
         sound_names = (f"sound {name}" for name in names)
         both = Channels(channels.time, rate, (BOX, *names, *sound_names), rows, channels.title)

@@ -368,10 +368,13 @@ def places_by_name(table: Columns, names: Mapping[str, str]) -> dict[str, int]:
 
 
 def column_index(table: Columns, wish: str | int) -> int:
-    """Return the index of a column that is asked for by name or number."""
+    """Return the index of a column that is asked for by name, heading or number."""
     names = [column.name for column in table.columns]
     if wish in names:
         return names.index(str(wish))
+    headings = [(column.name, column.unit) for column in table.columns]
+    if isinstance(wish, str) and split_heading(wish) in headings:
+        return headings.index(split_heading(wish))
     number = isinstance(wish, int) and not isinstance(wish, bool)
     if number and 0 <= int(wish) < len(names):
         return int(wish)

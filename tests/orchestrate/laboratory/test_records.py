@@ -275,6 +275,7 @@ def test_text_as_analysers_write_it(tmp_path, name, encoding):
             'time "t", base "tip", face 1 "foot", by their order: no name is known',
         ),
         ("t,tip,foot", [0, 2, 1], 'time "t", base "foot", face 1 "tip"'),
+        ("t,tip / g,foot / g", [0, "foot / g", "tip"], 'time "t", base "foot", face 1 "tip"'),
     ],
 )
 def test_a_record_says_which_columns_were_taken(tmp_path, heading, columns, said):
