@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 import orchestrate
+from orchestrate.figures.style import STYLE
 
 from .smaller import QUESTIONS, smaller
 
@@ -19,7 +20,8 @@ def folder(exported, tmp_path, monkeypatch):
 
 @pytest.fixture
 def small(monkeypatch):
-    """All questions are small ones."""
+    """All questions are small ones, and pictures are coarse."""
+    monkeypatch.setitem(STYLE, "savefig.dpi", 20)
     for name in QUESTIONS:
         if name in orchestrate.__all__:
             monkeypatch.setattr(orchestrate, name, smaller(getattr(orchestrate, name)))

@@ -7,8 +7,8 @@ import inspect
 
 import numpy as np
 
-VALUES = 6  # of a list, at most
-MOST = {"transient": 20, "periods": 60, "samples": 12, "starts": 4, "points": 128, "settle": 20}
+VALUES = 4  # of a list, at most
+MOST = {"transient": 5, "periods": 30, "samples": 6, "starts": 3, "points": 128, "settle": 5}
 QUESTIONS = (
     *("simulate", "resonance", "sweep", "spectra", "map", "lyapunov", "attractors", "basin"),
     *("impact_statistics", "couple"),

@@ -60,7 +60,7 @@ def own_drive():
         pytest.param(
             page,
             id=page.stem,
-            marks=[pytest.mark.slow] * (page.stem == "bifurcations"),  # 20 s
+            marks=[pytest.mark.slow] * (page.stem in ("bifurcations", "coupling")),  # long runs
         )
         for page in PAGES
         if python_blocks(page)

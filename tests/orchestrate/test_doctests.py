@@ -16,7 +16,12 @@ MODULES = [
     for path in sorted((ROOT / "orchestrate").rglob("*.py"))
     if ">>> " in path.read_text(encoding="utf-8")
 ]
-LONG = {f"orchestrate.weak_drive.{name}" for name in ("drive_branch", "jump_voltages")}
+LONG = {
+    "orchestrate.diagnosis.detect_all",
+    "orchestrate.dynamics.borders",
+    "orchestrate.laboratory.run_up",
+    *(f"orchestrate.weak_drive.{name}" for name in ("couple_all", "drive_branch", "jump_voltages")),
+}
 
 
 @pytest.mark.parametrize("module", ordinary(MODULES, set(MODULES) - LONG))

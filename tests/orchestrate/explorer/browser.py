@@ -68,11 +68,13 @@ class Browser:
         """What went wrong since this was asked last."""
         return [json.dumps(line) for line in self.driver.get_log("browser")]
 
-    def open(self, page, fragment=""):
+    def open(self, page, fragment="", whole=True):
+        """Show a page anew, and wait until its whole diagram is there."""
         self.navigate("about:blank")
         self.navigate(page.as_uri() + fragment)
         self.until("return Boolean(window.explorer)")
-        self.until(COMPLETE)
+        if whole:
+            self.until(COMPLETE)
 
     def until(self, script, seconds=60):
         end = time.monotonic() + seconds

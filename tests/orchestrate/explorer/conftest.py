@@ -14,7 +14,7 @@ from orchestrate.explorer.page import explore
 from .browser import Browser
 
 READY = "return explorer.regions.complete && !explorer.regions.quick && explorer.inspector.found"
-ETAS = np.round(np.linspace(0.1, 8.0, 211), 4)  # periodic, irregular, with permanent contact
+ETAS = np.round(np.linspace(0.1, 8.0, 61), 4)  # periodic, irregular, with permanent contact
 
 
 @pytest.fixture(scope="session")

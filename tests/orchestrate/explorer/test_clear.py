@@ -2,11 +2,8 @@
 
 import json
 
-import pytest
-
 import orchestrate
 
-from ...sparing import ordinary
 from .conftest import typed
 
 READY = (
@@ -60,30 +57,25 @@ EXPONENTS = {  # of a motion that has not repeated: value and error, headline, l
 }
 
 
-@pytest.mark.parametrize("name", ordinary(EXPONENTS, ["chaos", "undecided above zero"]))
-def test_an_exponent_within_its_error_decides_nothing(browser, name):
-    value, error, headline, label = EXPONENTS[name]
-    browser.run("explorer.choose(2.9, true)")
-    browser.until(READY)
+def test_an_exponent_has_an_error_that_decides(browser):
+    """It covers the careful exponent, and an exponent within it decides nothing."""
+    for eta in (1.7, 3.05, 2.9):
+        browser.run("explorer.inspect(arguments[0], [0, 0, 0, 0])", eta)
+        browser.until(READY)
+        found = browser.run("return explorer.inspector.exponent")
+        careful = orchestrate.lyapunov(orchestrate.Structure(), eta=eta, progress=False)
+        assert abs(found["value"] - careful.exponent.item()) < found["error"] < abs(found["value"])
     assert browser.run("return explorer.inspector.found.response.multiplicity") == 0
-    browser.run(
-        "const [value, error] = arguments;"
-        "explorer.inspector.takeSpectra({ exponent: { value, error } })",
-        value,
-        error,
-    )
-    assert browser.text("sentence").startswith(headline)
-    assert label in browser.text("exponent")
-    undecided = name.startswith("undecided")
-    for text in (browser.text("sentence"), browser.text("exponent")):
-        assert ("undecided here" in text) == undecided
+    for name, (value, error, headline, label) in EXPONENTS.items():
+        browser.run(
+            "const [value, error] = arguments;"
+            "explorer.inspector.takeSpectra({ exponent: { value, error } })",
+            value,
+            error,
+        )
+        assert browser.text("sentence").startswith(headline)
+        assert label in browser.text("exponent")
+        undecided = name.startswith("undecided")
+        for text in (browser.text("sentence"), browser.text("exponent")):
+            assert ("undecided here" in text) == undecided
     assert "undecided here" in browser.text("help-exponent")
-
-
-@pytest.mark.parametrize("eta", [2.9, 1.7, 3.05])
-def test_the_error_of_the_exponent_covers_the_careful_one(browser, eta):
-    browser.run("explorer.choose(arguments[0], true)", eta)
-    browser.until(READY)
-    found = browser.run("return explorer.inspector.exponent")
-    careful = orchestrate.lyapunov(orchestrate.Structure(), eta=eta, progress=False)
-    assert abs(found["value"] - careful.exponent.item()) < found["error"] < abs(found["value"])

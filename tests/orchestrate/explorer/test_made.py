@@ -141,16 +141,16 @@ def test_a_file_with_a_wrong_attribute_is_refused_in_one_line(swept, tmp_path, n
 
 STATE = ("eta", "coordinate")
 SHAPES = {
-    "a state of texts": {"end_state": (STATE, np.full((211, 4), "x"))},
-    "a state of three numbers": {"end_state": (("eta", "three"), np.zeros((211, 3)))},
-    "a state that is not a number": {"end_state": (STATE, np.full((211, 4), np.nan))},
+    "a state of texts": {"end_state": (STATE, np.full((ETAS.size, 4), "x"))},
+    "a state of three numbers": {"end_state": (("eta", "three"), np.zeros((ETAS.size, 3)))},
+    "a state that is not a number": {"end_state": (STATE, np.full((ETAS.size, 4), np.nan))},
     "a single state": {"end_state": ((), 1.0)},
     "a single answer": {"impacts_per_period": ((), 1.0)},
     "answers over another dimension": {"impacts_per_period": ("other", np.zeros(5))},
-    "frequencies of texts": {"frequency": ("eta", np.full(211, "x"))},
-    "frequencies of zero": {"frequency": ("eta", np.zeros(211))},
-    "amplitudes below zero": {"amplitude": ("eta", np.full(211, -1.0))},
-    "an amplitude without end": {"amplitude": ("eta", np.full(211, np.inf))},
+    "frequencies of texts": {"frequency": ("eta", np.full(ETAS.size, "x"))},
+    "frequencies of zero": {"frequency": ("eta", np.zeros(ETAS.size))},
+    "amplitudes below zero": {"amplitude": ("eta", np.full(ETAS.size, -1.0))},
+    "an amplitude without end": {"amplitude": ("eta", np.full(ETAS.size, np.inf))},
     "frequency ratios below zero": {"eta": ("eta", -ETAS)},
     "frequency ratios of texts": {"eta": ("eta", ETAS.astype(str))},
 }

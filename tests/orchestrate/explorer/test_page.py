@@ -2,7 +2,6 @@
 
 import shlex
 import xml.etree.ElementTree as ET
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -36,7 +35,7 @@ def etas(browser):
 
 
 def test_every_response_has_the_samples_of_the_file_to_the_last_bit(browser, swept):
-    assert swept.sizes["eta"] > 200 and int((swept.multiplicity == 0).sum()) > 15
+    assert swept.sizes["eta"] > 50 and int((swept.multiplicity == 0).sum()) > 3
     assert np.array_equal(etas(browser), swept.eta.values)
     assert gaps(browser).tobytes() == swept.xi_rel.values.tobytes()
     found = f"{DIAGRAM}.lanes[0].found"
@@ -63,7 +62,7 @@ def test_a_click_shows_the_motion_that_the_command_computes(browser, swept, tmp_
     assert samples.tobytes() == row.xi_rel.values.tobytes()
     command = shlex.split(browser.text("motion-command"))
     assert command[:4] == ["python", "-m", "orchestrate", "simulate"]
-    assert cli.main([*command[3:], "--output", str(tmp_path)]) == 0
+    assert cli.main([*command[3:], "--plot", "none", "--output", str(tmp_path)]) == 0
     (path,) = tmp_path.glob("*.nc")
     with xr.open_dataset(path) as motion:
         states = browser.numbers(f"{MOTION}.states").reshape(-1, 4)
@@ -93,21 +92,18 @@ def test_a_dragged_region_is_computed_anew_and_there_is_a_way_back(browser, swep
     assert np.array_equal(etas(browser), region)
 
 
-def page_of(browser):
-    """The file that is open."""
-    return Path(browser.run("return location.pathname"))
-
-
-def test_a_link_restores_the_view(browser):
-    browser.open(page_of(browser), "#from=2.8&to=3.1&direction=up&e=0.6&eta=2.95")
+def test_a_link_restores_the_view(chromium, page):
+    browser = chromium
+    browser.open(page, "#from=2.8&to=3.1&direction=up&e=0.6&eta=2.95", whole=False)
     browser.chosen()
     link = browser.run("return location.hash")
     assert "start=" in link and "e=0.6" in link
     before = browser.numbers(f"{MOTION}.states")
-    browser.open(page_of(browser), link)
+    browser.open(page, link, whole=False)
     browser.chosen()
     assert browser.numbers(f"{MOTION}.states").tobytes() == before.tobytes()
     assert browser.run("return location.hash") == link
+    assert browser.console() == []
 
 
 def test_the_basin_fills_and_a_click_or_a_key_on_it_starts_there(browser):
@@ -171,15 +167,23 @@ def test_keys_alone_do_it(browser):
     assert browser.run(f"return {DIAGRAM}.high - {DIAGRAM}.low") == whole
 
 
+@pytest.fixture(scope="module")
+def shown(chromium, page):
+    """The page for tests that only ask what it computes."""
+    chromium.open(page)
+    yield chromium
+    assert chromium.console() == []
+
+
 @pytest.mark.parametrize("clearance", [0.0, 3.0, -1.0])
-def test_the_weak_drive_is_the_masters(browser, clearance):
+def test_the_weak_drive_is_the_masters(shown, clearance):
     structure, drive = (
         kind.from_file("quick") for kind in (orchestrate.Structure, orchestrate.Drive)
     )
     structure = structure.replace(clearance=clearance)
     fixed = {"step": 0.1 / structure.omega, "tolerance": 0.0}
     found = orchestrate.couple(structure, drive, voltage=1.3, duration=300.0, **fixed)
-    browser.run(
+    shown.run(
         """
         const { drive, structure, ...rest } = explorer.table.drive;
         const motor = { ...drive, voltage: 1.3, speed_start: 1.3 / drive.motor_constant };
@@ -194,11 +198,11 @@ def test_the_weak_drive_is_the_masters(browser, clearance):
         """,
         clearance,
     )
-    browser.until("return explorer.told")
+    shown.until("return explorer.told")
     count = found.sizes["revolution"]
     assert count > 40 and int(found.impacts.sum()) > 10
     for name in ("time", "speed", "impacts"):
-        mine = browser.numbers(f"explorer.told.map((row) => row.{name})")
+        mine = shown.numbers(f"explorer.told.map((row) => row.{name})")
         assert np.array_equal(mine, found[name].values), name
 
 
@@ -220,7 +224,12 @@ def test_the_commands_of_an_own_beam_compute_what_is_shown(chromium, tmp_path, k
     chromium.open(explore(data, output=tmp_path / "page.html"))
     command = chromium.text("command")
     assert words in command
-    (again,) = pasted(command, tmp_path / "sweep")
+    if command.startswith("python -c"):
+        (again,) = pasted(command, tmp_path / "sweep")
+    else:
+        given = shlex.split(command)[3:]
+        assert cli.main([*given, "--plot", "none", "--output", str(tmp_path)]) == 0
+        again = xr.load_dataset(*tmp_path.rglob("*.nc"))
     assert again.xi_rel.values.tobytes() == data.xi_rel.values.tobytes()
     assert chromium.console() == []
 

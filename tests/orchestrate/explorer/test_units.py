@@ -7,7 +7,7 @@ from orchestrate.constants import GRAVITY, TURN
 from orchestrate.explorer.page import explore
 
 from ...sparing import ordinary
-from .conftest import READY, typed
+from .conftest import typed
 
 BEAM = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0, "zeta1": 0.007, "zeta2": 0.007}
 SHOWN = """
@@ -45,12 +45,12 @@ def beam(exported):
 def test_the_page_follows_the_units_asked_for(chromium, beam, units, tmp_path):
     turns, lengths, pushes, times, turn, length, push = ASKED[units]
     browser = chromium
-    browser.open(explore(beam, units=units, output=tmp_path / "page.html"))
-    browser.until(READY)
+    browser.open(explore(beam, units=units, output=tmp_path / "page.html"), whole=False)
+    browser.chosen()
     typed(browser, "hertz", f"{300.0 / turn:.9g}")
     typed(browser, "level", "5")
     typed(browser, "gap-number", f"{-2e-5 / length:g}")
-    browser.until(READY)
+    browser.chosen()
     browser.until("return explorer.inspector.spectra")
     point = browser.run("return explorer.inspector.choice.point")
     assert point["frequency"] == pytest.approx(300.0, rel=2e-9)

@@ -50,12 +50,14 @@ TASKS = {  # what a worker is asked, and how often it hands over at the least
 MOST = 25_000  # impacts and steps: 5 to 15 ms on a core of today
 
 
-@pytest.fixture
-def probed(browser):
+@pytest.fixture(scope="module")
+def probed(chromium, page):
     """The page, with the kernel and what workers compute at hand."""
-    browser.run(bundle({**read_modules(), "probe": PROBE}, "probe"))
-    browser.until("return Boolean(window.probe)")
-    return browser
+    chromium.open(page)
+    chromium.run(bundle({**read_modules(), "probe": PROBE}, "probe"))
+    chromium.until("return Boolean(window.probe)")
+    yield chromium
+    assert chromium.console() == []
 
 
 @pytest.mark.parametrize("task", TASKS)

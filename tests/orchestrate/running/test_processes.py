@@ -56,13 +56,6 @@ def start(script: str, store: Path, *arguments: object) -> subprocess.Popen[str]
     )
 
 
-def test_a_plain_script_needs_no_guard(tmp_path):
-    process = start(SQUARES, tmp_path / "result.nc", 2)
-    out, err = process.communicate(timeout=60)
-    assert process.returncode == 0, err
-    assert out.splitlines() == ["begun", f"{119**2}.0"]  # once: no worker ran the script
-
-
 @pytest.mark.parametrize(("number", "at_work"), [(signal.SIGKILL, True), (signal.SIGINT, False)])
 def test_workers_end_with_the_process_they_work_for(tmp_path, number, at_work):
     """At work: they have computed a chunk; else they begin."""
