@@ -46,7 +46,7 @@ def limit(
     text = (
         f"sweep: between {swept[which][0]:.3f} and {swept[which][1]:.3f}; exact: "
         f"{value:.{digits}f} ({kind} of {decides}); the paper's number agrees with "
-        f"{AGREES[parts]}; on the way down between {back[which][0]:.3f} and {back[which][1]:.3f}"
+        f"{AGREES[parts]}; downwards {back[which][0]:.3f} to {back[which][1]:.3f}"
     )
     if orbit == "contact":
         last = data.last_contact(case)
