@@ -106,8 +106,8 @@ def detect(
         ``order2_threshold`` over ``window``. Over ``hypothesis``: ``misfit``, ``evaluations``,
         ``minima``, ``value`` and ``standard_error`` of its parameters, ``participation`` and
         ``participation_error`` over ``channel`` (NaN but of the hypotheses that the verdict is
-        about and that describe the record), ``misfit_at`` and the ``fitted``
-        orders over ``window``, beside what is ``measured``. Attributes ``reason``, ``settle``,
+        about and that describe the record), ``misfit_at`` and the ``fitted`` orders over
+        ``window``, beside what is ``measured``. Attributes ``reason``, ``settle``,
         ``simulated``, ``seen_up_to``, ``assumed`` and ``direction`` of the sweep.
 
     Raises

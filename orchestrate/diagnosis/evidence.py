@@ -15,7 +15,7 @@ from ..errors import InputError
 from ..laboratory.analysis.channels import Channels
 from ..laboratory.pieces import Floats, Pieces
 from ..laboratory.sampled import Sampled
-from ..structures.ranges import Quantity
+from ..laboratory.sensors import PARTICIPATION
 from .orders import (
     MIN_WINDOWS,
     ORDERS,
@@ -54,15 +54,14 @@ Participation = float | Mapping[str, float] | None  # as an argument: of all, of
 
 def checked_participation(given: Participation, sensors: Sequence[str]) -> tuple[float | None, ...]:
     """Return each sensor's participation factor as given; None where it is to be fitted."""
-    factor = Quantity("participation", "1", "", -10.0, 10.0)
     if given is None:
         return (None,) * len(sensors)
     if not isinstance(given, Mapping):
-        return (factor.check(given),) * len(sensors)
+        return (PARTICIPATION.check(given),) * len(sensors)
     if unknown := set(given) - set(sensors):
         text = f"the record has {' and '.join(sensors)}"
         raise InputError(f"participation: {sorted(map(str, unknown))[0]!r} is no sensor; {text}")
-    return tuple(factor.check(given[name]) if name in given else None for name in sensors)
+    return tuple(PARTICIPATION.check(given[name]) if name in given else None for name in sensors)
 
 
 def cut_to_resonance(orders: RecordOrders) -> tuple[Channels, float]:
@@ -312,9 +311,19 @@ class Evidence:
         changes = [GAIN_DEVIATION * computed, late, free * (computed - self.base[0])]
         return np.stack(changes) / self.error[row, 0]
 
+    @cached_property
+    def is_tone(self) -> bool:
+        """Whether the base keeps one frequency, within what the longest window resolves."""
+        longest = max(part.stop - part.start for part in self.windows.parts) / self.rate
+        return float(np.ptp(self.frequency)) < 1.0 / longest
+
     def given_participation(self, row: int) -> float | None:
-        """Return a sensor's participation factor if it was given; None if it is to be fitted."""
-        return self.participation[row] if self.participation else None
+        """Return a sensor's participation factor if it is not fitted, as given or 1; else None.
+
+        Only how a response changes over the frequency tells the factor from the rest.
+        """
+        given = self.participation[row] if self.participation else None
+        return 1.0 if given is None and self.is_tone else given
 
     def participations(self, motion: Floats) -> Floats:
         """Return the participation factors with which a motion is nearest, shape (sensors,)."""

@@ -75,7 +75,7 @@ def fit(
     participation : float or mapping of str to float, optional
         Participation factor of the sensors, or by sensor (``acceleration1``, ``acceleration2``): a
         sensor on a beam reads ``base + participation (mass - base)``, by its place. Those that are
-        not given are fitted, from 0.2 to 1.7.
+        not given are fitted, from 0.2 to 1.7; at a single frequency they are taken as 1.
     **running
         ``jobs``, ``progress``, ``store`` and others, see
         :class:`orchestrate.running.options.Running`.
@@ -185,11 +185,9 @@ def checked_data(
 def check_tones(job: FitJob) -> None:
     """Check that fewer numbers are fitted than a record of one tone has: three orders a sensor."""
     evidence, hypothesis = job.evidence, job.hypotheses[-1]
-    seconds = np.array([part.stop - part.start for part in evidence.windows.parts]) / evidence.rate
     free, numbers = hypothesis.bounds(evidence), len(FITTED_ORDERS) * len(evidence.masses)
-    is_tone = float(np.ptp(evidence.frequency)) < 1.0 / float(seconds.max())
     if (
-        is_tone
+        evidence.is_tone
         and np.ptp(evidence.level) < SAME_LEVEL * evidence.level.max()
         and len(free) >= numbers
     ):

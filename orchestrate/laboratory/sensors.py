@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 FILTERS = ("butterworth", "bessel")
+PARTICIPATION = Quantity("participation", "1", "", -10.0, 10.0)  # of a sensor's place
 MOST_SAMPLES = 20_000_000
 NEEDED = ("x1", "x2", "v1", "v2", "in_contact", "box_acceleration", "impact_time", "impulse")
 
@@ -97,8 +98,7 @@ class Sensor:
             range=Quantity("range", "m/s2", "", 5e-324, math.inf),
             resolution=Quantity("resolution", "m/s2", "", 0.0, 1e12),
         )
-        factor = Quantity("participation", "1", "", -10.0, 10.0)
-        put(self, "participation", factor.check(self.participation))
+        put(self, "participation", PARTICIPATION.check(self.participation))
         if not isinstance(plain(self.antialiasing), (bool, np.bool_)):
             text = "expected true or false"
             raise InputError(f"antialiasing = {self.antialiasing!r}: {text}")

@@ -97,6 +97,7 @@ def test_more_parameters_than_the_numbers_of_one_tone_are_not_fitted():
         orchestrate.fit(tone, guess(), **LIMIT)
     answer = orchestrate.fit(tone, guess(), hypothesis="bonded", **LIMIT)
     assert np.isfinite(answer.value).all()
+    assert answer.participation.values.tolist() == [1.0]  # one frequency does not tell it
 
 
 def test_a_history_without_its_impacts_spikes_is_refused():
