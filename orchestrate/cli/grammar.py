@@ -89,11 +89,6 @@ def positive_number(option: str, text: str) -> float:
     return reader(option, text)[0]
 
 
-def whole_number(option: str, text: str) -> int:
-    """Parse an option's text as an integer."""
-    return parse(option, text, "a whole number >= 0", plain_int)
-
-
 def parse_rate(option: str, text: str) -> float:
     """Parse one rate > 0; name the command that takes several."""
     rates = parse_rates(option, text)

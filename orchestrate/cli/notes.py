@@ -24,7 +24,6 @@ OTHER_UNIT = {  # of an option: its unit over the other one's, names of both
     "frequency": (1.0 / TURN, "rad/s", "--hz"),
     "hz": (TURN, "Hz", "--frequency"),
 }
-COMPLETE = ({"eta"}, {"frequency", "amplitude"}, {"frequency", "level"})
 log = logging.getLogger(__name__)
 Question = Mapping[str, Any]
 
@@ -92,6 +91,8 @@ def warn_of_other_unit(
 def clearance_notes(structure: Structure, question: Question, shown: xr.Dataset) -> Iterator[str]:
     """Yield a note if the level is below the threshold at which the gap opens or closes."""
     import numpy as np
+
+    from ..structures.ranges import COMPLETE
 
     names = {"eta", "frequency", "amplitude", "level"} & question.keys()
     if question.get("over") == "level":

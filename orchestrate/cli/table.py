@@ -17,7 +17,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from .. import PLACES
 from .grammar import (
@@ -32,9 +32,6 @@ from .grammar import (
     plain_float,
     plain_int,
 )
-
-if TYPE_CHECKING:
-    pass
 
 LINK = re.compile(r"As in :func:`orchestrate\.(\w+)`")
 MARKUP = re.compile(r":\w+:`(?:orchestrate\.)?([^`]*)`|``([^`]*)``")

@@ -22,7 +22,7 @@ from ..errors import InputError
 from ..running.job import Job, brief
 from ..running.runner import answer
 from ..structures import PARAMETERS, Excitation, Structure
-from ..structures.ranges import EXCITATION, LEVEL, RATIO_QUANTITIES, expected_one_of
+from ..structures.ranges import COMPLETE, EXCITATION, LEVEL, RATIO_QUANTITIES, expected_one_of
 from .labels import Variable, parameter_variable, variable
 
 if TYPE_CHECKING:
@@ -35,7 +35,6 @@ EXCITATION_PARAMETERS = {
     **{name: EXCITATION[name] for name in ("frequency", "amplitude")},
     "level": LEVEL,
 }
-COMPLETE = ({"eta"}, {"frequency", "amplitude"}, {"frequency", "level"})
 FORMS = "expected eta=, or frequency= with amplitude="
 
 

@@ -122,6 +122,8 @@ EXCITATION = {
 }
 
 LEVEL = Quantity("level", "m/s2", "Peak acceleration a Omega^2 of the box", SMALLEST, LARGEST)
+# names of arguments that make an excitation complete
+COMPLETE = ({"eta"}, {"frequency", "amplitude"}, {"frequency", "level"})
 
 
 def positive_quantity(name: str, description: str) -> Quantity:

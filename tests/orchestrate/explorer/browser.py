@@ -102,15 +102,6 @@ class Browser:
         """Press at the first place of an element, as a part of its size, release at the last."""
         self.drag(self.run(PLACES, name, [list(place) for place in places]))
 
-    def settle_at(self, name, seconds=2.0):
-        """Scroll to an element, and wait until what comes into sight moves it no more."""
-        place, since = None, time.monotonic()
-        while time.monotonic() < since + seconds:
-            now = self.run(PLACES, name, [[0.5, 0.5]])
-            if now != place:
-                place, since = now, time.monotonic()
-            time.sleep(0.1)
-
     def chosen(self, seconds=60):
         """The motion that was asked for has come."""
         self.until("return Boolean(explorer.inspector.found)", seconds)
