@@ -1,8 +1,8 @@
 """A wheel carries the FMUs that were built from its own sources, so that it runs without compilers.
 
 For a wheel, not for an editable installation, ``build/FORM/NAME.fmu`` of the source tree becomes
-``orchestrate/access/fmus/FORM/NAME.fmu``, and ``build/wasm/NAME.wasm``, the kernel for web pages,
-``orchestrate/access/fmus/wasm/NAME.wasm``; so do ``build/libraries/PLATFORM/``, compiled from the
+``orchestrate/fmu/fmus/FORM/NAME.fmu``, and ``build/wasm/NAME.wasm``, the kernel for web pages,
+``orchestrate/fmu/fmus/wasm/NAME.wasm``; so do ``build/libraries/PLATFORM/``, compiled from the
 package's own C sources, for all platforms that are there. What is not there, or was made of other
 sources, is left out, and said to be.
 """
@@ -17,7 +17,7 @@ from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-PLACE = "orchestrate/access/fmus"
+PLACE = "orchestrate/fmu/fmus"
 
 
 def guid_inside(path: Path) -> str:

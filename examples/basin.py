@@ -1,7 +1,7 @@
 """Two motions at one frequency: which starts lead to which."""
 
 from orchestrate import Structure, attractors, basin, plot
-from orchestrate.figures import files
+from orchestrate.show import files
 
 paper = Structure.nondimensional(e=0.7, D=0.005)
 found = attractors(paper, eta=1.32, starts=200, seed=1).isel(eta=0)

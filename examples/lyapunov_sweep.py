@@ -3,7 +3,7 @@
 import numpy as np
 
 from orchestrate import Structure, lyapunov, plot, sweep
-from orchestrate.figures import files
+from orchestrate.show import files
 
 paper = Structure.nondimensional(e=0.7, D=0.005)
 eta = np.arange(2.5, 3.8, 0.02)

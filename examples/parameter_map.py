@@ -3,7 +3,7 @@
 import numpy as np
 
 from orchestrate import Structure, map, plot
-from orchestrate.figures import files
+from orchestrate.show import files
 
 paper = Structure.nondimensional(D=0.05)
 found = map(

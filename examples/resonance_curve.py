@@ -3,7 +3,7 @@
 import numpy as np
 
 from orchestrate import Structure, plot, resonance
-from orchestrate.figures import files
+from orchestrate.show import files
 
 beam = Structure(m1=1.5, m2=1.4, k1=8400.0, k2=10100.0, d1=1.1, d2=1.1, e=0.6)  # SI
 frequency = 2.0 * np.pi * np.arange(8.0, 20.0, 0.1)  # rad/s, of 8 to 20 Hz

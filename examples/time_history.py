@@ -3,7 +3,7 @@
 from math import pi
 
 from orchestrate import Structure, plot, simulate
-from orchestrate.figures import files
+from orchestrate.show import files
 
 beam = Structure(m1=1.5, m2=1.4, k1=8400.0, k2=10100.0, d1=1.1, d2=1.1, e=0.6)  # SI
 found = simulate(beam, frequency=2.0 * pi * 12.4, amplitude=1e-3, transient=200, periods=4)

@@ -11,9 +11,9 @@ from filelock import FileLock
 
 from fmu_src.export import forms
 from fmu_src.export.errors import CannotExport
-from orchestrate.access.c_library import SOURCES, library
-from orchestrate.access.webassembly import WEB_MODELS, web_kernel
 from orchestrate.errors import InputError
+from orchestrate.fmu.c_library import SOURCES, library
+from orchestrate.fmu.webassembly import WEB_MODELS, web_kernel
 
 ROOT = Path(__file__).resolve().parents[1]
 BUILD = ROOT / "build"

@@ -23,35 +23,32 @@ FILES = sorted(
     for path in (ROOT / name).rglob("*.py*")
     if path.suffix in (".py", ".pyi")
 )
-GROUND = {"arguments", "constants", "errors", "files", "flags", "outcomes"}
-GROUND |= {"temporary", "units", "version"}
-BELOW_ANSWERS = GROUND | {"structures", "access", "running"}
+GROUND = {"constants", "errors", "files", "flags", "temporary", "units", "version"}
+GROUND |= {"model"}
+BELOW_ANSWERS = GROUND | {"fmu", "running"}
 FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know beside itself
-    "arguments": {"errors"},
     "constants": set(),
     "errors": set(),
     "flags": set(),
-    "outcomes": set(),
     "version": set(),
     "files": {"errors"},
     "temporary": {"files"},
     "units": {"constants", "errors"},
-    "structures": GROUND,
-    "access": GROUND | {"structures"},
+    "model": GROUND - {"model"},
+    "fmu": GROUND,
     "running": GROUND,
     "response": BELOW_ANSWERS,
     "dynamics": BELOW_ANSWERS | {"response"},
     "laboratory": BELOW_ANSWERS | {"response"},
     "diagnosis": BELOW_ANSWERS | {"response", "laboratory"},
     "weak_drive": BELOW_ANSWERS | {"response", "dynamics"},
-    "figures": GROUND | {"structures"},
-    "reports": GROUND | {"structures", "running", "figures"},
-    "paper": BELOW_ANSWERS | {"__init__", "response", "dynamics", "weak_drive", "figures"},
+    "show": GROUND | {"running"},
+    "paper": BELOW_ANSWERS | {"__init__", "response", "dynamics", "weak_drive", "show"},
     "__init__": BELOW_ANSWERS
-    | {"response", "dynamics", "laboratory", "diagnosis", "weak_drive", "figures", "reports"},
+    | {"response", "dynamics", "laboratory", "diagnosis", "weak_drive", "show"},
     "explorer": BELOW_ANSWERS,
     "cli": BELOW_ANSWERS
-    | {"__init__", "laboratory", "weak_drive", "diagnosis", "figures", "reports", "paper"}
+    | {"__init__", "laboratory", "weak_drive", "diagnosis", "show", "paper"}
     | {"explorer"},
     "__main__": {"cli", "errors"},
 }
@@ -67,14 +64,14 @@ PARTS: dict[str, set[str]] = {  # and of fmu_src
 }
 DYNAMIC = {"orchestrate/__init__.py", "fmu_src/export/sources.py"}
 ONLY_IN = {  # packages of others, and the one place of ours that may know them
-    "fmpy": "orchestrate/access/",
-    "matplotlib": ("orchestrate/figures/", "tools/pictures/"),
+    "fmpy": "orchestrate/fmu/",
+    "matplotlib": ("orchestrate/show/", "tools/pictures/"),
     "loky": "orchestrate/running/",
     "distributed": "orchestrate/running/",
     "sqlite3": "orchestrate/running/",
     "tqdm": "orchestrate/running/",
     "argparse": ("orchestrate/cli/", "tools/"),
-    "platformdirs": "orchestrate/access/",
+    "platformdirs": "orchestrate/fmu/",
     "pythonfmu": ("fmu_src/export/", "fmu_src/runtime/"),
     "ziglang": "fmu_src/export/",
     "pyuff": "orchestrate/laboratory/",
@@ -178,8 +175,8 @@ def test_the_reader_of_imports_sees_all_kinds():
         "COMMAND = ['-m', 'orchestrate.cli']\nENTRY = 'orchestrate.cli:main'\n"
         "def k():\n    'orchestrate.paper'\n"
     )
-    found = set(imports(ast.parse(text), "orchestrate/figures/x.py"))
-    expected = {"a.b", "c.d", "orchestrate.e.f", "orchestrate.figures.g", "i", "j", "?"}
+    found = set(imports(ast.parse(text), "orchestrate/show/x.py"))
+    expected = {"a.b", "c.d", "orchestrate.e.f", "orchestrate.show.g", "i", "j", "?"}
     assert found == expected | {"orchestrate.cli"}
     assert len(FILES) > 80
 
@@ -210,9 +207,9 @@ def test_tests_are_known_to_tests_alone(file):
 
 def test_the_sources_of_the_fmus_are_known_in_six_places():
     found = {file for file in users("fmu_src") if file.startswith("orchestrate/")}
-    access = {f"orchestrate/access/{name}.py" for name in ("c_library", "exported", "webassembly")}
+    access = {f"orchestrate/fmu/{name}.py" for name in ("c_library", "exported", "webassembly")}
     rule = "orchestrate/response/multiplicity.py"
-    assert found == {*access, rule, "orchestrate/structures/ranges.py", "orchestrate/version.py"}
+    assert found == {*access, rule, "orchestrate/model/ranges.py", "orchestrate/version.py"}
 
 
 @pytest.mark.parametrize("file", FILES)

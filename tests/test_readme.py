@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from orchestrate import cli
-from orchestrate.access import find
+from orchestrate.fmu import find
 from tools import assets
 
 from .exports import BUILD

@@ -13,8 +13,8 @@ import pytest
 
 from fmu_src.export.forms import FORMS, MODELS
 from fmu_src.export.platforms import this_machine
-from orchestrate.access.c_library import SOURCES
-from orchestrate.access.webassembly import WEB_MODELS
+from orchestrate.fmu.c_library import SOURCES
+from orchestrate.fmu.webassembly import WEB_MODELS
 
 ROOT = Path(__file__).resolve().parents[1]
 TOOLS = ("ziglang", "pythonfmu", "hatchling")  # to build, not to ask
@@ -29,7 +29,7 @@ class Without(importlib.abc.MetaPathFinder):
 sys.meta_path.insert(0, Without())
 """
 QUESTIONS = ROOT / "tests" / "installed_questions.py"
-PLACE = "orchestrate/access/fmus"
+PLACE = "orchestrate/fmu/fmus"
 
 
 @pytest.fixture(scope="module")

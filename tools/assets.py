@@ -17,8 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from orchestrate.access import Instance, describe, find
-from orchestrate.figures import files
+from orchestrate.fmu import Instance, describe, find
+from orchestrate.show import files
 
 from .pictures import electrodynamic_shaker, icon, oscillator, shaker
 from .references import (

@@ -21,10 +21,10 @@ from pathlib import Path
 
 import numpy as np
 
-from orchestrate.access import OSCILLATOR, Channel, Instance, find
 from orchestrate.constants import TURN
+from orchestrate.fmu import OSCILLATOR, Channel, Instance, find
+from orchestrate.model import Structure
 from orchestrate.response.resonance import resonance
-from orchestrate.structures import Structure
 
 from . import c_host, sampled_solver
 

@@ -15,15 +15,15 @@ import numpy as np
 import xarray as xr
 
 from orchestrate import plot
-from orchestrate.access import OSCILLATOR, EventInstance, begin, find
 from orchestrate.dynamics.borders import border
 from orchestrate.dynamics.branches import branch
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.dynamics.stable_windows import kind_names
 from orchestrate.errors import InputError
 from orchestrate.files import write_whole
+from orchestrate.fmu import OSCILLATOR, EventInstance, begin, find
+from orchestrate.model import Excitation, Structure
 from orchestrate.response.sweep import sweep
-from orchestrate.structures import Excitation, Structure
 from tools.marked import replace_part
 from tools.pictures.small import save_small
 

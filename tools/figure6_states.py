@@ -10,10 +10,10 @@ import numpy as np
 import xarray as xr
 
 import orchestrate
-from orchestrate.access import OSCILLATOR
-from orchestrate.access.webassembly import kernel_digest
 from orchestrate.explorer.figure6 import FILE, STAMP
 from orchestrate.files import write_whole
+from orchestrate.fmu import OSCILLATOR
+from orchestrate.fmu.webassembly import kernel_digest
 
 KEPT = ["frequency", "amplitude", "impacts_per_period", "end_state"]
 LEFT_OUT = ("identity", "history")  # of every source: the stamp tells what decides the bits

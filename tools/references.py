@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
-from orchestrate.access import Instance
+from orchestrate.fmu import Instance
 
 MODELS = Path(__file__).resolve().parents[1] / "fmu_src" / "models"
 

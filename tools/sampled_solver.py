@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from orchestrate.structures import Structure
+from orchestrate.model import Structure
 
 Motion = Callable[[float, np.ndarray], list[float]]
 Event = Callable[[float, np.ndarray], float]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrate.access.webassembly import WebKernel
+from orchestrate.fmu.webassembly import WebKernel
 
 
 class WebInstance:

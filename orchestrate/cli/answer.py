@@ -25,7 +25,7 @@ from .table import Question
 if TYPE_CHECKING:
     import xarray as xr
 
-    from ..structures import Structure
+    from ..model import Structure
 
 UNIT_OF_OPTION = {"hz": "Hz", "rpm": "rpm", "frequency": "rad/s", "eta": "eta"}
 UNIT_OF_KEY = {  # of a structure's file
@@ -112,7 +112,7 @@ def display_units(arguments: argparse.Namespace, question: Mapping[str, Any]) ->
 
 def excitation_keys(arguments: argparse.Namespace) -> Collection[str]:
     """Return the keys of the section ``[excitation]`` in the TOML file of ``--structure``."""
-    from ..structures.files import parse, resolve
+    from ..model.files import parse, resolve
 
     if arguments.structure is None:  # but that of a stored result
         return ()
@@ -130,7 +130,7 @@ def read_overlay(
         raise InputError(f"--overlay: with several levels, --g {arguments.g}; expected one")
     if not is_curve(question):
         raise InputError("--overlay: one value has no picture; expected a range or a list")
-    from ..figures.overlay import explain_mismatch
+    from ..show.overlay import explain_mismatch
 
     over = question.get("over") or ("eta" if "eta" in question else "frequency")
     parameters = structure.parameters()

@@ -18,7 +18,7 @@ from .table import Command, Group
 if TYPE_CHECKING:
     import xarray as xr
 
-    from ..structures import Structure
+    from ..model import Structure
 
 LINES = {  # attributes of a verdict that are printed below it, and what stands before them
     "reason": "decided by",
@@ -197,7 +197,7 @@ def write_files(
 
 def verdict_lines(path: Path, verdict: xr.Dataset) -> Iterator[str]:
     """Yield a record's verdict in a few lines: what it is, its reason, what would settle it."""
-    from ..reports.verdict import make_verdict
+    from ..show.verdict import make_verdict
 
     shown = make_verdict(verdict)
     yield f"{path}: {shown.word} {shown.sentence}"

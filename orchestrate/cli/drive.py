@@ -19,7 +19,7 @@ from .table import Group
 if TYPE_CHECKING:
     import xarray as xr
 
-    from ..structures import Drive, Structure
+    from ..model import Drive, Structure
     from ..weak_drive.controllers import Controller
     from ..weak_drive.schedule import Schedule
 
@@ -108,7 +108,7 @@ CONTROLLER = Group(
 
 def read_drive_options(arguments: argparse.Namespace) -> tuple[Structure, Drive]:
     """Return structure and drive of the options, with the changes of ``--set`` to either."""
-    from ..structures import Drive, Structure
+    from ..model import Drive, Structure
 
     drive = Drive.from_file(arguments.drive)
     structure = Structure.from_file(arguments.structure or arguments.drive)
@@ -136,7 +136,7 @@ def check_masses(source: str, changes: Mapping[str, Any]) -> None:
 
 def read_datasheet(arguments: argparse.Namespace, changes: Mapping[str, float]) -> dict[str, float]:
     """Return motor constant and resistance from the datasheet's options; empty without them."""
-    from ..structures.drive import torque_line
+    from ..model.drive import torque_line
 
     names = DATASHEET
     values = {name: getattr(arguments, name) for name in names}

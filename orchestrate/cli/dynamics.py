@@ -50,7 +50,7 @@ from .text import (
 if TYPE_CHECKING:
     import xarray as xr
 
-    from ..structures import Structure
+    from ..model import Structure
 
 
 def ask_along_parameter(arguments: argparse.Namespace) -> tuple[Structure, Question]:
@@ -283,7 +283,7 @@ def draw_orbit(data: xr.Dataset) -> Any:
     """Simulate one period from the orbit's state and draw the motion; return the figure."""
     import orchestrate
 
-    from ..structures import Structure
+    from ..model import Structure
 
     excitation: Question = dict(ast.literal_eval(str(data.attrs["excitation"])))
     motion = orchestrate.simulate(
@@ -298,7 +298,7 @@ def draw_orbit(data: xr.Dataset) -> Any:
 
 def orbit_title(orbit: xr.Dataset, motion: xr.Dataset) -> str:
     """Return the title of an orbit's picture: whether it is stable, structure and excitation."""
-    from ..figures.labels import title_from_attributes
+    from ..show.labels import title_from_attributes
 
     return f"{flag_word(orbit.stability)} orbit, {title_from_attributes(motion)}"
 

@@ -40,7 +40,7 @@ from .text import Columns, columns_of, extents, impact_lines, table
 if TYPE_CHECKING:
     import xarray as xr
 
-    from ..structures import Structure
+    from ..model import Structure
 
 KINDS = {  # of excitation: the class, its own options, and which of them it needs
     "swept_sine": ("SweptSine", ("duration", "rate", "spacing", "g", "acceleration"), ""),
@@ -278,9 +278,9 @@ def values_of(arguments: argparse.Namespace, options: str) -> dict[str, Any]:
 
 def run_analyse(arguments: argparse.Namespace) -> None:
     """Run ``analyse``: compute the chosen analyses of all records; print, store and draw them."""
-    from ..figures.analysis import draw
     from ..files import open_folder
     from ..running.store import write_netcdf
+    from ..show.analysis import draw
 
     names = parse_endings("--show", arguments.show, tuple(ANALYSES))
     Files.from_options(arguments, "", fresh=True)  # before records are read

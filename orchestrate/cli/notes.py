@@ -15,7 +15,7 @@ from ..units import text_of
 if TYPE_CHECKING:
     import xarray as xr
 
-    from ..structures import Structure
+    from ..model import Structure
 
 FAR_RATIO = 25.0  # frequency ratio from which, or from whose inverse, there is little to be seen
 FAR_LEVEL = 200.0  # times the level from which a clearance is hardly meant
@@ -32,7 +32,7 @@ def trivial_notes(structure: Structure, question: Question, shown: xr.Dataset) -
     """Yield notes for the user on arguments that make the result trivial, such as bonded."""
     varied = isinstance(question.get("level"), tuple) or question.get("over") == "level"
     if varied and not structure.has_scale:
-        from ..structures.ranges import OF_LENGTH
+        from ..model.ranges import OF_LENGTH
 
         nothing = ", ".join(f"{name} = 0" for name in OF_LENGTH)
         yield f"{nothing}: the response is proportional to the level; one level is enough"
@@ -92,7 +92,7 @@ def clearance_notes(structure: Structure, question: Question, shown: xr.Dataset)
     """Yield a note if the level is below the threshold at which the gap opens or closes."""
     import numpy as np
 
-    from ..structures.ranges import COMPLETE
+    from ..model.ranges import COMPLETE
 
     names = {"eta", "frequency", "amplitude", "level"} & question.keys()
     if question.get("over") == "level":

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from ..structures.ranges import ADDED, STRUCTURE
+from ..model.ranges import ADDED, STRUCTURE
 from .grammar import (
     is_single_number,
     parse_changes,
@@ -23,9 +23,9 @@ from .output import result_groups
 from .table import Group
 
 if TYPE_CHECKING:
-    from ..structures import Structure
+    from ..model import Structure
 
-SETS = Path(__file__).resolve().parents[1] / "structures" / "sets"
+SETS = Path(__file__).resolve().parents[1] / "model" / "sets"
 UNITS = {"hz": "hz", "rpm": "rpm", "frequency": "rad_s"}  # of a frequency's options
 FREQUENCIES = ("eta", *UNITS)
 SET_NAMES = tuple(path.stem for path in sorted(SETS.glob("*.toml")))
@@ -149,7 +149,7 @@ def over_options(twice: bool = False) -> str:
 
 def read_structure_options(arguments: argparse.Namespace) -> Structure:
     """Return the ``Structure`` of ``--structure`` with the changes of ``--set``."""
-    from ..structures import Structure
+    from ..model import Structure
 
     changes = parse_changes(arguments.set)
     structure = Structure.from_file(arguments.structure).replace(**changes)
@@ -159,7 +159,7 @@ def read_structure_options(arguments: argparse.Namespace) -> Structure:
 
 def print_assumptions(structure: Structure, source: str, changes: Mapping[str, Any]) -> None:
     """Print which parameters of the user's beam are taken from a shipped set; warn of per cent."""
-    from ..structures.plausible import warn_of_per_cent
+    from ..model.plausible import warn_of_per_cent
 
     warn_of_per_cent({name: changes[name] for name in ("zeta1", "zeta2") if name in changes})
     if source not in SET_NAMES or not changes.keys() & {"f1", "f2"}:
@@ -190,7 +190,7 @@ def read_excitation(
 ) -> dict[str, Any]:
     """Return frequency and amplitude of the box's motion as keywords of the public API."""
     from ..constants import GRAVITY
-    from ..structures.sections import TO_RAD_S
+    from ..model.sections import TO_RAD_S
 
     name, amplitude = frequency_option(arguments), read_amplitude(arguments)
     if not is_shaken(arguments) and (described := excitation_from_file(arguments)):
@@ -229,7 +229,7 @@ def read_question(arguments: argparse.Namespace) -> tuple[Structure, dict[str, A
 
 def excitation_from_file(arguments: argparse.Namespace) -> dict[str, Any] | None:
     """Return frequency and amplitude from the structure's TOML file, or None; set ``--phase``."""
-    from ..structures.files import read
+    from ..model.files import read
 
     excitation: Any = read(arguments.structure).get("excitation")
     if excitation is None:
@@ -316,7 +316,7 @@ def excitation_by_level(
 
 def parse_varied(name: str, limits: str) -> tuple[str, tuple[float, float]]:
     """Return a continued parameter's name in the public API, and its limits in that one's unit."""
-    from ..structures.sections import TO_RAD_S
+    from ..model.sections import TO_RAD_S
 
     if name == "g":
         raise InputError("--over g: expected --over amplitude, in m, at one frequency")

@@ -20,8 +20,8 @@ from .table import Group
 if TYPE_CHECKING:
     import xarray as xr
 
+    from ..model import Structure
     from ..running.options import Running
-    from ..structures import Structure
     from ..units import Units
 
 FORMATS = ("nc", "csv", "mat", "xlsx")
@@ -135,7 +135,7 @@ def read_running_options(arguments: argparse.Namespace, store: Path | None = Non
 
 def user_fmus(paths: list[Path] | None) -> dict[str, Path]:
     """Return a dict from model name to the user's FMU file; raise for unknown or double ones."""
-    from ..access import MODELS, describe
+    from ..fmu import MODELS, describe
 
     fmus: dict[str, Path] = {}
     for path in paths or []:
@@ -180,7 +180,7 @@ def result_name(
 
     Examples
     --------
-    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.model import Structure
     >>> result_name("simulate", "own/beam.toml", Structure(), {"eta": 0.4, "periods": 2})[:-6]
     'simulate_beam_'
     >>> result_name("border", "branch_beam_7ed5cb.nc", Structure(), {})[:-6]
@@ -279,7 +279,7 @@ class Files:
         paths = self.picture_paths(*endings)
         missing = [path for path in paths if self.fresh or not path.exists()]
         if missing:
-            from ..figures.files import save
+            from ..show.files import save
 
             save(draw(), paths[0].with_suffix(""), [path.suffix[1:] for path in missing])
         for path in paths:
@@ -292,7 +292,7 @@ def importing_matplotlib(needed: bool) -> Iterator[None]:
 
     def prepare() -> None:
         """Import Matplotlib and draw a small figure; ignore any error."""
-        from ..figures.files import warm_up_matplotlib
+        from ..show.files import warm_up_matplotlib
 
         with suppress(Exception):  # it comes again where the picture is drawn
             warm_up_matplotlib()

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 def run_build(arguments: argparse.Namespace) -> None:
     """Run ``build``: export the FMUs of the chosen models and forms; print their paths."""
     refuse_units(arguments, "FMUs are in SI")
-    from ..access import FORMS, PLAIN_FORMS, build, build_libraries, build_web_kernels, sources_of
+    from ..fmu import FORMS, PLAIN_FORMS, build, build_libraries, build_web_kernels, sources_of
 
     if arguments.folder is not None:
         check_output(arguments.folder, "--folder")

@@ -53,7 +53,7 @@ from .text import (
 if TYPE_CHECKING:
     import xarray as xr
 
-    from ..structures import Structure
+    from ..model import Structure
 
 
 def simulate_summary(data: xr.Dataset) -> Iterator[str]:
@@ -153,7 +153,7 @@ def run_spectra(arguments: argparse.Namespace) -> None:
     if of_motor is not None:
         frequency = frequency_option(arguments) or "amplitude or --g"
         raise InputError(f"--{frequency}: expected without --{of_motor}, which is the motor's")
-    from ..structures import Structure
+    from ..model import Structure
 
     arguments.structure = arguments.structure or "paper"
     structure = Structure.from_file(arguments.structure).replace(**parse_changes(arguments.set))

@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
-from ..structures.ranges import STRUCTURE
+from ..model.ranges import STRUCTURE
 from .grammar import parse_changes
 from .options import print_assumptions, read_structure_options
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from ..structures import Structure
+    from ..model import Structure
 
 SAME = 1e-9  # relative: numbers that are nearer than this are one
 MOST_NAMED = 3  # parameters that a line on two structures names
@@ -47,7 +47,7 @@ def read_structure_and_question(
 
 def structure_of(option: str, path: Path, data: xr.Dataset) -> Structure:
     """Return the structure in a stored result's attributes; raise ``InputError`` if none is."""
-    from ..structures import Structure
+    from ..model import Structure
 
     try:
         return Structure.from_attributes({str(name): value for name, value in data.attrs.items()})
@@ -71,7 +71,7 @@ def explain_difference(stored: Structure, asked: Structure) -> str:
 
     Examples
     --------
-    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.model import Structure
     >>> explain_difference(Structure(), Structure().replace(e=0.3))
     'e = 0.7 there, 0.3 here'
     """

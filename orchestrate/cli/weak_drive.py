@@ -47,7 +47,7 @@ from .text import columns_of, extents, table
 if TYPE_CHECKING:
     import xarray as xr
 
-    from ..structures import Drive, Structure
+    from ..model import Drive, Structure
     from ..weak_drive.couple import CoupleJob
 
     Results = dict[str, xr.Dataset]  # by structure, or by "" if one result is of both
@@ -100,7 +100,7 @@ def read_values(option: str, texts: Sequence[str]) -> dict[str, Any]:
 
 def variable_lines(drive: Path) -> Iterator[str]:
     """Yield the drive's parameters, inputs and outputs, and what could be connected."""
-    from ..access.description import describe
+    from ..fmu.description import describe
     from ..weak_drive.connection import FORCE, MOTION, proposals
 
     description = describe(drive)
@@ -186,7 +186,7 @@ def run_couple(arguments: argparse.Namespace) -> None:
     """Run ``couple``: compute the coupled runs; print jumps; write files, pictures or SSP."""
     import orchestrate
 
-    from ..access import finder
+    from ..fmu import finder
     from ..running.options import RunOptions
     from ..running.runner import answer_all
     from ..running.store import load
@@ -225,7 +225,7 @@ def write_package(
     arguments: argparse.Namespace, drive: Drive, job: CoupleJob, user_fmus: Mapping[str, Path]
 ) -> Path:
     """Write the coupled system as an SSP file with its FMUs; return its path."""
-    from ..access import find
+    from ..fmu import find
     from ..weak_drive.ssp import write_ssp
 
     folder = arguments.build_folder
@@ -248,8 +248,8 @@ def draw_couple(
     import numpy as np
     import xarray as xr
 
-    from ..figures.passage import draw_run
-    from ..figures.weak_drive import draw
+    from ..show.passage import draw_run
+    from ..show.weak_drive import draw
     from ..weak_drive import averaged, own_resonance
     from ..weak_drive.schedule import Ramp
 
@@ -501,7 +501,7 @@ def passage_title(results: Results, question: Question) -> str:
 def draw_passage(results: Results, arguments: argparse.Namespace, title: str) -> Any:
     """Draw passages with waterfalls of their spectra; return the figure."""
     from .. import waterfall
-    from ..figures.passage import draw
+    from ..show.passage import draw
 
     spectra = {"revolutions": arguments.revolutions, "mass": arguments.mass}
     shown = {state: first_stored_interval(data) for state, data in results.items()}
@@ -511,7 +511,7 @@ def draw_passage(results: Results, arguments: argparse.Namespace, title: str) ->
 
 def passage_lines(results: Results) -> Iterator[str]:
     """Yield a line per structure: samples, times, jumps or passage."""
-    from ..figures.passage import format_jumps
+    from ..show.passage import format_jumps
 
     for state, data in results.items():
         count, first, last = data.sizes["time"], float(data.time[0]), float(data.time[-1])

@@ -28,7 +28,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..access import Player
+from ..fmu import Player
 from ..laboratory.pieces import Floats
 from .evidence import Evidence
 from .refit import linear_fit, nearest_fit

@@ -38,7 +38,7 @@ from .orders import (
 if TYPE_CHECKING:
     import xarray as xr
 
-    from ..structures import Structure
+    from ..model import Structure
 
 Numbers = tuple[float | None, ...]
 Kind = TypeVar("Kind")

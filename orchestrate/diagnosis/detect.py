@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..access import Player, finder
+from ..fmu import Player, finder
 from ..laboratory.record_checks import clipped_share
+from ..model import Structure
 from ..response.labels import Variable, flags, variable
 from ..response.questions import checked_structure
 from ..running.job import Table
 from ..running.runner import answer
-from ..structures import Structure
 from .bootstrap import Bootstrap, bootstrap
 from .bursts import burst_excess
 from .decision_rule import DELAMINATED, NOT_SEEN, Findings, resampled_share

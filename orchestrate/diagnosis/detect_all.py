@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from ..access import finder
 from ..errors import InputError
+from ..fmu import finder
+from ..model import Structure
 from ..running.runner import gather
-from ..structures import Structure
 from .detect import DetectJob
 from .evidence import Participation
 from .fit import checked_data, checked_free, delaminated_guess

@@ -42,7 +42,7 @@ from .misfit import misfit, soft_squares
 from .orders import ORDERS
 
 if TYPE_CHECKING:
-    from ..access import Player
+    from ..fmu import Player
     from .hypotheses import Hypothesis
     from .orders import RecordOrders
 

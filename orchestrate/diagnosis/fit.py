@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..access import finder
-from ..arguments import checked_word
 from ..errors import InputError
+from ..fmu import finder
 from ..laboratory.analysis.channels import BOX
 from ..laboratory.pieces import Floats
+from ..model import Structure
+from ..model.arguments import checked_word
 from ..response.labels import Variable, variable
 from ..response.questions import checked_structure
 from ..running.job import Table
 from ..running.runner import answer
-from ..structures import Structure
 from .curve_evidence import CurveData
 from .decision_rule import SETTINGS, factor_outside
 from .even_orders import EvenOrders, even_orders

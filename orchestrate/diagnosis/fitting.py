@@ -15,7 +15,7 @@ from .linear import LinearModel
 from .misfit import SOFT_LIMIT, misfit
 
 if TYPE_CHECKING:
-    from ..access import Player
+    from ..fmu import Player
 
 STEPS = {  # of the differences that make derivatives; f and common: parts of the resonance's
     **{"common": 3e-4, "f": 1e-4, "split": 3e-3, "e": 0.02, "clearance": 0.01},

@@ -12,13 +12,13 @@ import numpy as np
 
 from ..constants import TURN
 from ..laboratory.pieces import Floats
-from ..structures import Structure
+from ..model import Structure
 from .single_mass import SingleMass
 
 if TYPE_CHECKING:
     from lmfit import Parameters
 
-    from ..access import Player
+    from ..fmu import Player
     from .evidence import Evidence
 
 REPORTED = {  # units and long names

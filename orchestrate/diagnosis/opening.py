@@ -17,7 +17,7 @@ from ..constants import TURN
 from ..laboratory.pieces import Floats
 
 if TYPE_CHECKING:
-    from ..structures import Structure
+    from ..model import Structure
 
 POINTS_AROUND = 201  # frequencies around one of a grid
 
@@ -31,7 +31,7 @@ def opening_force(structure: Structure, frequency: ArrayLike) -> Floats:
 
     Examples
     --------
-    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.model import Structure
     >>> halves = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "zeta1": 0.01, "zeta2": 0.01}
     >>> alike = Structure.from_halves(f2=42.0, **halves)
     >>> bool(opening_force(alike, 30.0) < 1e-12)

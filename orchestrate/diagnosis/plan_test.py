@@ -18,9 +18,9 @@ from ..laboratory.pieces import Floats
 from ..laboratory.sensors import Sensor, measure, sensor_by_channel
 from ..laboratory.shake import shake
 from ..laboratory.swept_sine import SweptSine
+from ..model import Structure
 from ..response.labels import variable, yes_or_no
 from ..running.options import Running
-from ..structures import Structure
 from .opening import largest_opening_force, sweep_rate
 from .undamaged import SoundStructure
 

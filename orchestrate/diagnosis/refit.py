@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..access import Player
+from ..fmu import Player
 from ..laboratory.pieces import Floats
 from .evidence import GAIN_DEVIATION, PARTICIPATION_DEVIATION, PRIOR_WEIGHT, Evidence
 from .fitting import Search, Solution, difference_step

@@ -11,11 +11,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ..access import OSCILLATOR, Player
+from ..fmu import OSCILLATOR, Player
 from ..laboratory.analysis.channels import Channels
 from ..laboratory.pieces import Floats
+from ..model import Structure
 from ..running.job import Job, Table
-from ..structures import Structure
 from .curve_evidence import CurveData
 from .decision_rule import SETTINGS
 from .errors import Estimate, estimate

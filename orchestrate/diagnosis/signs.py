@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..arguments import checked_integer
 from ..errors import InputError
 from ..laboratory.analysis.channels import Channels, attributes, checked_number
 from ..laboratory.pieces import Floats
+from ..model import Structure
+from ..model.arguments import checked_integer
 from ..response.labels import flags, variable
-from ..structures import Structure
 from .drive_signs import drive_signs, is_drive_run
 from .indicators import INDICATORS
 from .orders import sensor_channels

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..access import Player
+from ..fmu import Player
 from ..laboratory.pieces import Floats
 from .errors import motions_under_base_noise
 from .evidence import Evidence

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from ..access.c_library import loaded_function
+from ..fmu.c_library import loaded_function
 from ..laboratory.pieces import Floats
 
 log = logging.getLogger(__name__)

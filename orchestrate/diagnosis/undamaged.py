@@ -12,7 +12,7 @@ from ..constants import TURN
 from ..laboratory.analysis.channels import BOX, Channels
 from ..laboratory.analysis.shock_spectrum import ramp_invariant
 from ..laboratory.pieces import Floats
-from ..structures import Structure
+from ..model import Structure
 
 FIRST_DAMPING = (0.003, 0.02, 0.1)  # ratios that the search for the nearest oscillator begins at
 

@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import OSCILLATOR, REST, EventInstance, Instance, begin, sampled
-from ..arguments import (
+from ..errors import InputError
+from ..fmu import OSCILLATOR, REST, EventInstance, Instance, begin, sampled
+from ..model import Structure
+from ..model.arguments import (
     Numbers,
     checked,
     checked_integer,
@@ -21,12 +23,10 @@ from ..arguments import (
     positive,
     whole,
 )
-from ..errors import InputError
-from ..outcomes import ABSENT, WORDS
+from ..model.outcomes import ABSENT, WORDS
 from ..response.labels import Variable, flags, make_dataset, si_state_coordinate, variable
 from ..response.questions import Point, SeriesQuestion, ask, require_delaminated
 from ..running.job import Table
-from ..structures import Structure
 from .clusters import ABOUT, FEATURES, AttractorSettings, run_until_settled
 from .decision import MotionDecider
 from .global_continuation import MatchedAttractors, continue_attractors, instance_pair
@@ -393,7 +393,7 @@ def attractors(
 
     Examples
     --------
-    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.model import Structure
     >>> from orchestrate.dynamics.attractors import attractors
     >>> found = attractors(Structure.nondimensional(), eta=1.315, starts=40, seed=1)
     >>> found.multiplicity.values[0], found.share.values[0]

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arguments import checked_integer
 from ..errors import InputError
+from ..model.arguments import checked_integer
 from ..response.labels import variable
 
 if TYPE_CHECKING:

@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import OSCILLATOR, STATE, EventInstance, Instance, begin, finder, gap_between
-from ..arguments import checked_integer
 from ..constants import TURN
 from ..errors import InputError
-from ..outcomes import ABSENT
+from ..fmu import OSCILLATOR, STATE, EventInstance, Instance, begin, finder, gap_between
+from ..model import Excitation, Structure
+from ..model.arguments import checked_integer
+from ..model.outcomes import ABSENT
 from ..response.labels import make_dataset, si_state_coordinate, variable
 from ..response.questions import (
     Point,
@@ -28,7 +29,6 @@ from ..response.questions import (
 )
 from ..response.response_loop import stroboscopic_samples
 from ..running.job import Table
-from ..structures import Excitation, Structure
 from .attractors import (
     ABSENT_ROW,
     ATTRACTOR,
@@ -295,7 +295,7 @@ def basin(
 
     Examples
     --------
-    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.model import Structure
     >>> from orchestrate.dynamics.basins import basin
     >>> plane = {"x": ("x_rel", 0.0, 1.3, 6), "y": ("v_rel", -1.3, 1.3, 6)}
     >>> found = basin(Structure.nondimensional(), eta=1.315, **plane)

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..access import OSCILLATOR, EventInstance
-from ..arguments import checked, checked_number, whole
 from ..errors import InputError
+from ..fmu import OSCILLATOR, EventInstance
+from ..model import Structure
+from ..model.arguments import checked, checked_number, whole
 from ..response.labels import variable
 from ..response.questions import EXCITATION_PARAMETERS, Question, ask, require_delaminated
 from ..running.job import Table
-from ..structures import Structure
 from .bifurcation_curve import BifurcationCurve, BifurcationTracer
 from .bifurcations import KINDS, TORUS
 from .branches import (
@@ -202,7 +202,7 @@ def border(
 
     Examples
     --------
-    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.model import Structure
     >>> from orchestrate.dynamics.branches import branch
     >>> from orchestrate.dynamics.borders import border
     >>> beam = Structure.nondimensional()

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..access import OSCILLATOR, EventInstance
-from ..arguments import checked, checked_integer, checked_number, whole
 from ..constants import TURN
 from ..errors import InputError
+from ..fmu import OSCILLATOR, EventInstance
+from ..model import Structure
+from ..model.arguments import checked, checked_integer, checked_number, whole
+from ..model.ranges import OF_LENGTH
 from ..response.questions import Question, ask, excitation_numbers, require_delaminated
 from ..running.job import Table
-from ..structures import Structure
-from ..structures.ranges import OF_LENGTH
 from .bifurcations import KINDS
 from .branch_switching import leaving_branch
 from .continuation import SOLVER_ERRORS
@@ -209,7 +209,7 @@ def branch(
 
     Examples
     --------
-    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.model import Structure
     >>> from orchestrate.dynamics.branches import branch
     >>> found = branch(Structure.nondimensional(), eta=2.5, limits=(2.4, 2.8))
     >>> found.bifurcation_value.values.round(8)

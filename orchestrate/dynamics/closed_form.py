@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..structures import Excitation, Structure
+from ..model import Excitation, Structure
 
 Floats = NDArray[np.float64]
 CRITICAL = 1e-14  # of omega_i^2: so near to critical damping it is critical but for rounding

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import Instance
+from ..fmu import Instance
 from ..response.multiplicity import Repetition
 from ..response.questions import Point
 from ..response.respond import Response, respond

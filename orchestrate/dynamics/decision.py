@@ -15,10 +15,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import STATE, EventInstance, Instance, begin
 from ..constants import TURN
 from ..errors import FmuError, InputError
-from ..outcomes import IRREGULAR, ORBIT, REPEATED, UNDECIDED
+from ..fmu import STATE, EventInstance, Instance, begin
+from ..model.outcomes import IRREGULAR, ORBIT, REPEATED, UNDECIDED
 from ..response.questions import Point
 from ..response.respond import Response, respond
 from ..response.response_loop import stroboscopic_samples

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..errors import InputError
+from ..model import PARAMETERS, Structure
+from ..model.ranges import expected_one_of
 from ..response.questions import EXCITATION_PARAMETERS, Point, make_point
-from ..structures import PARAMETERS, Structure
-from ..structures.ranges import expected_one_of
 from .closed_form import ClosedForm, Floats
 from .periodic_orbit import POSITION, ImpactSequence, PeriodicOrbit
 

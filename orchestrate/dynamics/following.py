@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..access import OSCILLATOR, STATE, EventInstance, Impacts, Instance, begin
-from ..arguments import whole
+from ..fmu import OSCILLATOR, STATE, EventInstance, Impacts, Instance, begin
+from ..model.arguments import whole
 from ..response.questions import Point, SeriesQuestion, State
 from ..running.job import Table
 from .variational import nondimensional_impacts

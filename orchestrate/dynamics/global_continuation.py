@@ -17,9 +17,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..access import EventInstance, Instance, begin
-from ..access.description import describe
-from ..outcomes import IRREGULAR, ORBIT
+from ..fmu import EventInstance, Instance, begin
+from ..fmu.description import describe
+from ..model.outcomes import IRREGULAR, ORBIT
 from ..response.questions import Point
 from ..response.response_loop import stroboscopic_samples
 from ..running.job import Table

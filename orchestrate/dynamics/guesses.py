@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..access import EventInstance, Impacts, begin
 from ..constants import TURN
+from ..fmu import EventInstance, Impacts, begin
 from ..response.questions import Point
 from .closed_form import ClosedForm, Floats
 from .families import ACCELERATION

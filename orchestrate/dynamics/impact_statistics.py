@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..access import Impacts
+from ..fmu import Impacts
+from ..model import Structure
 from ..response.labels import column_variables, make_dataset
 from ..response.questions import ask
 from ..running.job import Table
-from ..structures import Structure
 from .following import FollowedResponse, ImpactsQuestion
 from .lyapunov import exponent_of
 from .variational import contact_durations_after, period_in_tau
@@ -165,7 +165,7 @@ def impact_statistics(
 
     Examples
     --------
-    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.model import Structure
     >>> from orchestrate.dynamics.impact_statistics import impact_statistics
     >>> found = impact_statistics(Structure.nondimensional(), eta=[0.4, 1.047], periods=20)
     >>> found.impacts.values.tolist(), found.contacts.values.tolist()

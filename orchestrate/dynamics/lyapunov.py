@@ -16,15 +16,15 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import Impacts
-from ..arguments import checked, positive, whole
 from ..errors import InputError
+from ..fmu import Impacts
+from ..model import Structure
+from ..model.arguments import checked, positive, whole
+from ..model.ranges import checked_flag
 from ..response.labels import Variable, flags, make_dataset, variable
 from ..response.questions import Point, ask
 from ..response.threshold import exceeds_threshold
 from ..running.job import Table
-from ..structures import Structure
-from ..structures.ranges import checked_flag
 from .following import FollowedResponse, ImpactsQuestion
 from .lyapunov_spectrum import (
     STATES,
@@ -278,7 +278,7 @@ def lyapunov(
 
     Examples
     --------
-    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.model import Structure
     >>> from orchestrate.dynamics.lyapunov import lyapunov
     >>> found = lyapunov(Structure.nondimensional(), eta=[0.8, 1.047], periods=400)
     >>> found.verdict.values.tolist(), float(found.exponent[1].round(3))

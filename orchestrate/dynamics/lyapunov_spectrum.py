@@ -18,9 +18,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..access import Impacts
+from ..fmu import Impacts
+from ..model import Structure
 from ..response.questions import Point
-from ..structures import Structure
 from .closed_form import Floats
 from .variational import impact_matrices
 

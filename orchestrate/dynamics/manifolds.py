@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..access import OSCILLATOR, Instance, begin
-from ..arguments import positive, whole
 from ..errors import InputError
+from ..fmu import OSCILLATOR, Instance, begin
+from ..model import Structure
+from ..model.arguments import positive, whole
 from ..response.labels import flags, make_dataset, nondimensional_state_coordinate, variable
 from ..response.questions import ask, require_delaminated
 from ..running.job import Table
-from ..structures import Structure
 from .branches import acceleration_at_start, complete_excitation, orbit_at, require_orbit_dataset
 from .closed_form import Floats
 from .continuation import SOLVER_ERRORS, fix_sign
@@ -368,7 +368,7 @@ def manifold(
 
     Examples
     --------
-    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.model import Structure
     >>> from orchestrate.dynamics.manifolds import manifold
     >>> curve = manifold(Structure.nondimensional(), eta=3.0, length=0.5)
     >>> float(curve.multiplier.round(4)), curve.sizes["side"]

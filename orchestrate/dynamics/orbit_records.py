@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..access import EventInstance
-from ..outcomes import UNDECIDED
+from ..fmu import EventInstance
+from ..model.outcomes import UNDECIDED
 from ..response.labels import (
     Variable,
     flags,

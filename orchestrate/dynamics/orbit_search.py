@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..access import EventInstance
 from ..constants import TURN
+from ..fmu import EventInstance
 from .closed_form import ClosedForm, Floats
 from .continuation import SOLVER_ERRORS, NoConvergenceError, Root, newton_correct, unit_vector
 from .families import Family, Setting

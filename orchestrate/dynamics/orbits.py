@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..access import OSCILLATOR, EventInstance
-from ..arguments import checked, checked_integer, checked_number, checked_numbers, whole
 from ..constants import TURN
 from ..errors import InputError
+from ..fmu import OSCILLATOR, EventInstance
+from ..model import Structure
+from ..model.arguments import checked, checked_integer, checked_number, checked_numbers, whole
 from ..response.labels import make_dataset
 from ..response.questions import Question, ask, checked_point, checked_state, require_delaminated
 from ..running.job import Table
-from ..structures import Structure
 from .closed_form import Floats
 from .continuation import SOLVER_ERRORS
 from .families import ACCELERATION, Setting
@@ -269,7 +269,7 @@ def orbit(
 
     Examples
     --------
-    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.model import Structure
     >>> from orchestrate.dynamics.orbits import orbit
     >>> found = orbit(Structure.nondimensional(), eta=3.0)
     >>> found.impact_time.values.round(6), bool(found.stable)

@@ -16,10 +16,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..access import OSCILLATOR, EventInstance, Instance
-from ..arguments import Numbers, checked, positive, whole
 from ..errors import InputError
-from ..outcomes import UNDECIDED
+from ..fmu import OSCILLATOR, EventInstance, Instance
+from ..model import PARAMETERS, Structure
+from ..model.arguments import Numbers, checked, positive, whole
+from ..model.outcomes import UNDECIDED
+from ..model.ranges import checked_flag, expected_one_of
+from ..model.structure import ValueListKeywords
 from ..response.labels import column_variables, flags, make_dataset, parameter_variable
 from ..response.multiplicity import DECIDED, Decision
 from ..response.questions import (
@@ -37,9 +40,6 @@ from ..response.respond import Response, count_later_impacts, respond
 from ..response.sweep import HOW_DECIDED
 from ..running.job import Table, plain
 from ..running.options import Running, RunOptions
-from ..structures import PARAMETERS, Structure
-from ..structures.ranges import checked_flag, expected_one_of
-from ..structures.structure import ValueListKeywords
 from .clusters import transient_periods
 from .following import follow_impacts
 from .lyapunov import exponent_of
@@ -241,7 +241,7 @@ def map(
 
     Examples
     --------
-    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.model import Structure
     >>> from orchestrate.dynamics.parameter_map import map
     >>> found = map(Structure.nondimensional(), eta=[0.4, 1.047], e=[0.3, 0.7])
     >>> found.impacts_per_period.values.tolist()

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import OSCILLATOR, EventInstance, Impacts, Instance, begin
-from ..arguments import checked, checked_number, checked_word, whole
 from ..constants import TURN
+from ..fmu import OSCILLATOR, EventInstance, Impacts, Instance, begin
+from ..model import Structure
+from ..model.arguments import checked, checked_number, checked_word, whole
 from ..response.labels import make_dataset, variable, yes_or_no
 from ..response.questions import OneMotionQuestion, Point, ask, checked_point, checked_state
 from ..response.simulate import IN_TIME
 from ..running.job import Table
-from ..structures import Structure
 from .following import FollowedResponse, state_after_transient
 from .variational import contact_durations_after, nondimensional_impacts
 
@@ -184,7 +184,7 @@ def poincare(
 
     Examples
     --------
-    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.model import Structure
     >>> from orchestrate.dynamics.poincare import poincare
     >>> section = poincare(Structure.nondimensional(), eta=0.4, at="releases", periods=3)
     >>> section.sizes["point"], float(abs(section.v_rel).max() < 1e-12)

@@ -8,9 +8,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import gap_between
 from ..constants import TURN
-from ..outcomes import ORBIT
+from ..fmu import gap_between
+from ..model.outcomes import ORBIT
 from ..response.multiplicity import MIN_RELATIVE_GAP
 from ..response.questions import Point
 from .periodic_orbit import PHASE, PeriodicOrbit

@@ -28,7 +28,7 @@ def stable_windows(branch: xr.Dataset) -> list[StableWindow]:
 
     Examples
     --------
-    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.model import Structure
     >>> from orchestrate.dynamics.branches import branch
     >>> found = branch(Structure.nondimensional(), eta=2.6, limits=(2.5, 2.7))
     >>> stable_windows(found)[0].high.__round__(8), stable_windows(found)[0].above

@@ -15,7 +15,7 @@ import math
 
 import numpy as np
 
-from ..access import Impacts
+from ..fmu import Impacts
 from ..response.questions import Point
 from .closed_form import ClosedForm, Floats
 from .release import contact_durations

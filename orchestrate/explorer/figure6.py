@@ -6,10 +6,10 @@ import logging
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..access import OSCILLATOR
-from ..access.webassembly import kernel_digest
+from ..fmu import OSCILLATOR
+from ..fmu.webassembly import kernel_digest
+from ..model import Structure
 from ..running.store import load
-from ..structures import Structure
 from ..units import Units
 from .sweep_data import SweepData, empty_sweep, in_ratios, read_sweep
 

@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any
 import jinja2
 from markupsafe import Markup
 
-from ..access import OSCILLATOR, SHAKER
-from ..access.webassembly import WebKernel, web_kernel
 from ..errors import InputError
 from ..files import open_folder, write_whole
-from ..structures import Drive, Structure
-from ..structures.ranges import STRUCTURE
+from ..fmu import OSCILLATOR, SHAKER
+from ..fmu.webassembly import WebKernel, web_kernel
+from ..model import Drive, Structure
+from ..model.ranges import STRUCTURE
 from ..units import Units, units_of
 from ..version import __version__
 from .branches import branch_json

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..constants import GRAVITY
 from ..errors import InputError
-from ..structures import Excitation, Structure
+from ..model import Excitation, Structure
 from ..units import Units
 
 if TYPE_CHECKING:

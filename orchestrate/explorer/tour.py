@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 from decimal import Decimal
 from typing import Any
 
-from ..structures import Structure
+from ..model import Structure
 from ..units import FACTORS
 
 START = (0.0, 0.0, 0.0, 0.0)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..structures import Structure
+from ..model import Structure
 from .analog_filter import Cells
 from .pieces import Floats, Pieces
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..files import check_path_encoding, write_whole
-from ..structures.ranges import Quantity
+from ..model.ranges import Quantity
 from .columns import Column, Columns, converted_channels
 from .record import CHANNELS, checked_record
 from .record_csv import read_csv, write_csv

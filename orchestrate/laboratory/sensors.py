@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arguments import checked_integer, checked_word
 from ..errors import InputError
-from ..structures import Structure
-from ..structures.ranges import ADDED, STRUCTURE, Quantity, plain
+from ..model import Structure
+from ..model.arguments import checked_integer, checked_word
+from ..model.ranges import ADDED, STRUCTURE, Quantity, plain
 from .analog_filter import AnalogFilter, Cells, Floats, anti_aliasing, in_series, low_pass
 from .pieces import Pieces
 from .reconstruction import Motion, SmoothParts, smooth_parts

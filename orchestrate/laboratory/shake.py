@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import OSCILLATOR, PLAYED, Player
-from ..arguments import checked_positive
 from ..errors import InputError
+from ..fmu import OSCILLATOR, PLAYED, Player
+from ..model import Structure
+from ..model.arguments import checked_positive
 from ..response.equations import absolute_accelerations
 from ..response.labels import make_dataset, variable, yes_or_no
 from ..response.questions import Question, ask, checked_state, checked_structure
 from ..response.simulate import IN_TIME, impact_columns, impact_variables
 from ..running.job import Table
-from ..structures import Structure
 from .pieces import Pieces
 from .signals import ExcitationSignal
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arguments import checked_word
 from ..errors import InputError
-from ..structures.ranges import Quantity
+from ..model.arguments import checked_word
+from ..model.ranges import Quantity
 from .pieces import ERROR, Floats, Pieces, equal_nodes, phase_step
 from .signals import LEVEL, SECONDS, ExcitationSignal, check_fields, checked
 

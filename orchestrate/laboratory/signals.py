@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from ..constants import TURN
 from ..errors import InputError
-from ..structures.ranges import Quantity
+from ..model.ranges import Quantity
 from .pieces import Floats, Pieces
 
 Profile = tuple[tuple[float, float], ...]  # frequency in Hz and what holds there, ascending

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..constants import TURN
 from ..errors import InputError
-from ..structures.ranges import Quantity
+from ..model.ranges import Quantity
 from .pieces import ERROR, Floats, Pieces, phase_step, subdivided
 from .signals import HERTZ, Profile, Sine, along_profile, checked, checked_level
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arguments import checked_word
 from ..constants import TURN
 from ..errors import InputError
-from ..structures.ranges import Quantity
+from ..model.arguments import checked_word
+from ..model.ranges import Quantity
 from .pieces import ERROR, Floats, Pieces, equal_nodes, phase_step, subdivided
 from .signals import (
     HERTZ,

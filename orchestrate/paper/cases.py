@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..structures import Structure
+from ..model import Structure
 
 CASES = {
     "elastic": Structure.nondimensional(e=0.7, D=0.005),  # section 3

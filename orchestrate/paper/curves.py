@@ -10,8 +10,8 @@ import xarray as xr
 
 import orchestrate
 
+from ..model import Structure
 from ..response.labels import flags, variable
-from ..structures import Structure
 
 FLIGHT, SEQUENCE, CONTACT = 0, 1, 2  # the three states of Figure 5
 KINDS = {FLIGHT: "separate motion", SEQUENCE: "sequence of impacts", CONTACT: "permanent contact"}

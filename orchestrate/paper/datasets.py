@@ -13,9 +13,9 @@ import orchestrate
 
 from ..dynamics.lyapunov import CHAOTIC, NEUTRAL
 from ..dynamics.stable_windows import StableWindow, stable_windows
-from ..outcomes import REPEATED
+from ..model import Drive, Structure
+from ..model.outcomes import REPEATED
 from ..running.store import write_netcdf
-from ..structures import Drive, Structure
 from ..weak_drive import averaged
 from .cases import (
     BRANCHES,

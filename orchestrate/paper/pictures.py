@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from ..figures import histories, lines, planes, spectra
-from ..figures.style import XI_REL, XI_REL_RATE, Figure
+from ..show import histories, lines, planes, spectra
+from ..show.style import XI_REL, XI_REL_RATE, Figure
 from .cases import CASES, MAPS, ORBITS
 from .datasets import Datasets
 

@@ -10,9 +10,9 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
-from ..figures.files import png_size
 from ..files import write_whole
 from ..running.store import now
+from ..show.files import png_size
 from ..version import __version__
 from .claims import NO, PARTLY, WORDS
 from .pictures import PARTS

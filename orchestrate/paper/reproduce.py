@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..access import OSCILLATOR, finder
 from ..errors import InputError
-from ..figures.files import save
 from ..files import open_folder, write_whole
+from ..fmu import OSCILLATOR, finder
+from ..show.files import save
 from .answers import answer_sentences, region_rows
 from .claims import read_table
 from .datasets import Datasets

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import gap_between
-from ..structures import Structure
+from ..fmu import gap_between
+from ..model import Structure
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -84,7 +84,7 @@ def absolute_accelerations(
 
     Examples
     --------
-    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.model import Structure
     >>> absolute_accelerations(np.array([[-1.0, 1.0, 0.0, 0.0]]), Structure(d1=0.0, d2=0.0))
     array([[ 1. , -1.2]])
     """

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..structures.ranges import EXCITATION, LEVEL, RATIO_QUANTITIES, STRUCTURE
+from ..model.ranges import EXCITATION, LEVEL, RATIO_QUANTITIES, STRUCTURE
 
 if TYPE_CHECKING:
     import xarray as xr

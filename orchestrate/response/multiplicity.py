@@ -20,8 +20,8 @@ from numpy.typing import ArrayLike, NDArray
 from fmu_src.kernels import repetition
 from fmu_src.kernels.repetition import MIN_RELATIVE_GAP, memory_size
 
-from ..access.c_library import loaded_library
-from ..outcomes import WORDS
+from ..fmu.c_library import loaded_library
+from ..model.outcomes import WORDS
 
 __all__ = ["MIN_RELATIVE_GAP", "memory_size"]
 RULES = {"decide": "decide_multiplicity", "repeat": "find_repetition"}  # in C

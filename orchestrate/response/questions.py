@@ -16,13 +16,13 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import REST, finder, gap_between
-from ..arguments import Numbers, checked, checked_numbers
 from ..errors import InputError
+from ..fmu import REST, finder, gap_between
+from ..model import PARAMETERS, Excitation, Structure
+from ..model.arguments import Numbers, checked, checked_numbers
+from ..model.ranges import COMPLETE, EXCITATION, LEVEL, RATIO_QUANTITIES, expected_one_of
 from ..running.job import Job, brief
 from ..running.runner import answer
-from ..structures import PARAMETERS, Excitation, Structure
-from ..structures.ranges import COMPLETE, EXCITATION, LEVEL, RATIO_QUANTITIES, expected_one_of
 from .labels import Variable, parameter_variable, variable
 
 if TYPE_CHECKING:

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import REST
-from ..arguments import checked, positive
 from ..errors import InputError
-from ..outcomes import IRREGULAR
+from ..fmu import REST
+from ..model import Structure
+from ..model.arguments import checked, positive
+from ..model.outcomes import IRREGULAR
 from ..running.job import Table
-from ..structures import Structure
 from .labels import Variable, make_dataset, parameter_variable, variable, yes_or_no
 from .questions import Point, Series, ask, excitation_numbers, make_series
 from .sweep import RESPONSE_QUANTITIES, Direction, SweepJob, response_variables
@@ -318,7 +318,7 @@ def resonance(
     Examples
     --------
     >>> import numpy as np
-    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.model import Structure
     >>> from orchestrate.response.resonance import resonance
     >>> found = resonance(Structure(), eta=np.arange(0.9, 1.3, 0.005), transient=300)
     >>> found.peak_structure.values[0].item(), float(found.peak_eta[0].round(3))
@@ -372,7 +372,7 @@ def resonance_levels(
     Examples
     --------
     >>> import numpy as np
-    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.model import Structure
     >>> from orchestrate.response.resonance import resonance_levels
     >>> pressed = Structure.from_halves(m1=1.0, m2=1.0, f1=42.0, f2=55.0, clearance=-20e-6)
     >>> shaken = {"frequency": 2.0 * np.pi * np.array([40.0, 44.0]), "level": [0.05, 5.0]}

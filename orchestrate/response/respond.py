@@ -9,9 +9,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import Instance, four_numbers, gap_between
-from ..outcomes import REPEATED, UNDECIDED
-from ..structures import Excitation, Structure
+from ..fmu import Instance, four_numbers, gap_between
+from ..model import Excitation, Structure
+from ..model.outcomes import REPEATED, UNDECIDED
 from .multiplicity import Decision, Repetition, decide_multiplicity, find_repetition
 from .questions import Point
 from .response_loop import COUNTS, LoopSettings, Responses, response_loop, round_state

@@ -17,7 +17,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import (
+from ..errors import FmuError
+from ..fmu import (
     SAMPLE_SERIES,
     START_PARAMETERS,
     Instance,
@@ -28,8 +29,7 @@ from ..access import (
     sampled,
     samples_per_step,
 )
-from ..errors import FmuError
-from ..outcomes import REPEATED
+from ..model.outcomes import REPEATED
 from .multiplicity import decide_multiplicity, library, memory_size
 from .questions import Point
 

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import NO_INPUT, OSCILLATOR, EventInstance, Impacts, begin
-from ..arguments import whole
+from ..fmu import NO_INPUT, OSCILLATOR, EventInstance, Impacts, begin
+from ..model import Structure
+from ..model.arguments import whole
 from ..running.job import Table
-from ..structures import Structure
 from .equations import absolute_accelerations
 from .labels import Variable, make_dataset, variable, yes_or_no
 from .questions import OneMotionQuestion, Point, ask, checked_point, checked_state
@@ -191,7 +191,7 @@ def simulate(
 
     Examples
     --------
-    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.model import Structure
     >>> from orchestrate.response.simulate import simulate
     >>> motion = simulate(Structure.nondimensional(), eta=0.4, transient=50, periods=2)
     >>> motion.sizes["time"], motion.sizes["impact"], int(motion.sticks.sum())

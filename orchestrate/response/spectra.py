@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import OSCILLATOR, REST, Instance, begin, sampled
-from ..arguments import positive, whole
 from ..errors import InputError
+from ..fmu import OSCILLATOR, REST, Instance, begin, sampled
+from ..model import Structure
+from ..model.arguments import positive, whole
 from ..running.job import Table
-from ..structures import Structure
 from .equations import absolute_accelerations
 from .labels import make_dataset, variable
 from .questions import Point, SeriesQuestion, ask
@@ -192,7 +192,7 @@ def spectra(
 
     Examples
     --------
-    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.model import Structure
     >>> from orchestrate.response.spectra import spectra
     >>> found = spectra(Structure(), eta=1.047, transient=300, periods=8, points=256)
     >>> found.acceleration.sel(mass=1, order=20.0)[0].values.round(1)

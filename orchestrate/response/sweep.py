@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..access import OSCILLATOR, Instance
-from ..arguments import checked, checked_word, positive, whole
 from ..errors import InputError
+from ..fmu import OSCILLATOR, Instance
+from ..model import Structure
+from ..model.arguments import checked, checked_word, positive, whole
 from ..running.job import Table
-from ..structures import Structure
 from .labels import (
     COORDINATES,
     Dims,
@@ -323,7 +323,7 @@ def sweep(
 
     Examples
     --------
-    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.model import Structure
     >>> from orchestrate.response.sweep import sweep
     >>> found = sweep(Structure.nondimensional(), eta=[1.046, 1.047], transient=100, samples=40)
     >>> found.xi_rel_max.values.round(2)

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
+from ..model import Excitation, Structure
 from ..running.job import brief
-from ..structures import Excitation, Structure
 from .labels import Variable, make_dataset, parameter_variable, variable
 from .questions import excitation_numbers, require_delaminated
 
@@ -166,7 +166,7 @@ def contact_threshold(
     Examples
     --------
     >>> import numpy as np
-    >>> from orchestrate.structures import Structure
+    >>> from orchestrate.model import Structure
     >>> from orchestrate.response.threshold import contact_threshold
     >>> beam = Structure.from_halves(m1=1.0, m2=0.8, f1=42.0, f2=55.0, zeta1=0.007, zeta2=0.007)
     >>> pressed = beam.replace(clearance=-20e-6)

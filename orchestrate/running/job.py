@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ..arguments import CHECK
+from ..model.arguments import CHECK
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -9,8 +9,8 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, TypedDict
 
-from ..arguments import checked_integer
 from ..errors import InputError
+from ..model.arguments import checked_integer
 
 if TYPE_CHECKING:
     from distributed import Client

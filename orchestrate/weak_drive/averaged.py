@@ -24,8 +24,8 @@ from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike
 
 from ..dynamics import bifurcations
-from ..structures.drive import Drive
-from ..structures.structure import Structure
+from ..model.drive import Drive
+from ..model.structure import Structure
 
 FOLD, TORUS = bifurcations.FOLD.label, bifurcations.TORUS.label
 LOWEST = 0.1  # of the structure's resonance: a slower one of the box is far away

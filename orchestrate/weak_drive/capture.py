@@ -18,16 +18,16 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..access.exported import finder
-from ..access.models import OSCILLATOR, SHAKER
-from ..arguments import checked_integer
 from ..errors import InputError
+from ..fmu.exported import finder
+from ..fmu.models import OSCILLATOR, SHAKER
+from ..model.arguments import checked_integer
+from ..model.drive import Drive
+from ..model.ranges import DRIVE
+from ..model.structure import Structure
 from ..response.labels import Variable, parameter_variable, variable, yes_or_no
 from ..running.job import Job, Table
 from ..running.runner import answer
-from ..structures.drive import Drive
-from ..structures.ranges import DRIVE
-from ..structures.structure import Structure
 from . import averaged
 from .controllers import Controller
 from .couple import couple_job, require_motor, scheme_from_arguments

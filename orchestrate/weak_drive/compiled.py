@@ -18,10 +18,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..access.c_library import loaded_function
-from ..access.channel import Channel
-from ..access.instance import Instance
 from ..errors import FmuError
+from ..fmu.c_library import loaded_function
+from ..fmu.channel import Channel
+from ..fmu.instance import Instance
 from .connection import FORCE, MOTOR, Connection
 from .master import Master, Scheme
 from .record import BOX, Record

@@ -13,9 +13,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from ..access.description import Description
-from ..access.instance import INTEGER_TYPES, REAL_TYPES
 from ..errors import InputError
+from ..fmu.description import Description
+from ..fmu.instance import INTEGER_TYPES, REAL_TYPES
 
 MOTION = ("box_acceleration", "box_velocity", "box_position")  # outputs of a drive
 FORCE = ("box_force", "box_force_1", "box_force_2", "box_force_3")  # inputs: with its derivatives

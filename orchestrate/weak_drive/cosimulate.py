@@ -18,23 +18,23 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..access.begin import REST, begin
-from ..access.description import Description, describe
-from ..access.exported import finder
-from ..access.instance import REAL_TYPES, Instance
-from ..access.models import ELECTRODYNAMIC_SHAKER, OSCILLATOR, SHAKER
-from ..access.play import PLAYED, Player
-from ..arguments import checked_integer
 from ..errors import InputError
+from ..fmu.begin import REST, begin
+from ..fmu.description import Description, describe
+from ..fmu.exported import finder
+from ..fmu.instance import REAL_TYPES, Instance
+from ..fmu.models import ELECTRODYNAMIC_SHAKER, OSCILLATOR, SHAKER
+from ..fmu.play import PLAYED, Player
+from ..model import Excitation
+from ..model.arguments import checked_integer
+from ..model.drive import Drive
+from ..model.shaker import Shaker
+from ..model.structure import Structure
 from ..response.labels import variable, yes_or_no
 from ..response.questions import Question, checked_state, checked_structure
 from ..response.simulate import IN_TIME, impact_columns, impact_variables
 from ..running.job import Chunk, Table, brief, plain
 from ..running.runner import answer
-from ..structures import Excitation
-from ..structures.drive import Drive
-from ..structures.shaker import Shaker
-from ..structures.structure import Structure
 from .compiled import create_master
 from .connection import OURS, Connection, checked_links, checked_variable
 from .energy_balance import given_work

@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from ..access.instance import Instance
-from ..access.models import OSCILLATOR, SHAKER
 from ..errors import InputError
+from ..fmu.instance import Instance
+from ..fmu.models import OSCILLATOR, SHAKER
+from ..model.drive import Drive
+from ..model.structure import Structure
 from ..response.labels import Variable, variable
 from ..running.job import Table
 from ..running.options import Running
-from ..structures.drive import Drive
-from ..structures.structure import Structure
 from . import averaged, own_resonance
 from .controllers import Controller
 from .hysteresis import LOST, UNDECIDED, HysteresisLoop, Jump, Settings
@@ -460,7 +460,7 @@ def couple(
     >>> bool(abs(run.missing[-1]) < 1e-6 * run.motor[-1])
     True
     """
-    from ..access.exported import finder
+    from ..fmu.exported import finder
     from ..running.runner import answer
 
     require_motor(drive)

@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..access.exported import finder
 from ..errors import InputError
+from ..fmu.exported import finder
+from ..model.drive import Drive
+from ..model.structure import Structure
 from ..response.labels import variable
 from ..running.runner import gather
-from ..structures.drive import Drive
-from ..structures.structure import Structure
 from . import averaged, own_resonance
 from .couple import (
     CoupleJob,

@@ -16,19 +16,19 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from ..access.exported import finder
-from ..access.instance import Instance
-from ..access.models import OSCILLATOR, SHAKER
-from ..arguments import checked_integer
 from ..dynamics.bifurcations import FLIP, FOLD, GRAZING, KINDS, TORUS, TOUCHING
 from ..dynamics.continuation import SOLVER_ERRORS
 from ..dynamics.tracer import LIMIT, Bifurcation, BranchSegment, ContinuationSettings
 from ..errors import InputError
+from ..fmu.exported import finder
+from ..fmu.instance import Instance
+from ..fmu.models import OSCILLATOR, SHAKER
+from ..model.arguments import checked_integer
+from ..model.drive import Drive
+from ..model.structure import Structure
 from ..response.labels import Variable, variable
 from ..running.job import Job, Table
 from ..running.runner import answer
-from ..structures.drive import Drive
-from ..structures.structure import Structure
 from . import averaged, own_resonance
 from .couple import require_motor
 from .drive_tracer import (

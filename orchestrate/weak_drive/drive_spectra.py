@@ -15,17 +15,17 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from ..access.exported import finder
-from ..access.models import OSCILLATOR, SHAKER
-from ..arguments import checked_integer
 from ..constants import TURN
 from ..errors import InputError
+from ..fmu.exported import finder
+from ..fmu.models import OSCILLATOR, SHAKER
+from ..model.arguments import checked_integer
+from ..model.drive import Drive
+from ..model.structure import Structure
 from ..response.labels import variable
 from ..response.spectra import amplitude_spectrum
 from ..running.job import Job, Table
 from ..running.runner import answer
-from ..structures.drive import Drive
-from ..structures.structure import Structure
 from . import averaged, own_resonance
 from .couple import couple_job, scheme_from_arguments
 from .run import Run, begin_run

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..structures.structure import Structure
+from ..model.structure import Structure
 from .polynomials import Cubic, end_derivatives
 from .record import Floats, OscillatorOutputs, Record
 

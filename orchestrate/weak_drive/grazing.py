@@ -14,7 +14,7 @@ import numpy as np
 
 from ..dynamics.bifurcations import GRAZING, KINDS, TOUCHING, BifurcationKind
 from ..dynamics.closed_form import Floats
-from ..structures.structure import Structure
+from ..model.structure import Structure
 from .record import OscillatorOutputs
 from .shooting import Shooter
 

@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ..access.exported import finder
-from ..access.models import OSCILLATOR, SHAKER
 from ..errors import InputError
+from ..fmu.exported import finder
+from ..fmu.models import OSCILLATOR, SHAKER
+from ..model.drive import Drive
+from ..model.structure import Structure
 from ..response.labels import variable
 from ..running.job import Job, Table
 from ..running.runner import answer
-from ..structures.drive import Drive
-from ..structures.structure import Structure
 from .couple import couple_job, require_motor, schedule_from_arguments, scheme_from_arguments
 from .hysteresis import Settings
 from .master import Scheme

@@ -24,9 +24,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..access.channel import Channel
-from ..access.instance import Instance
 from ..errors import InputError
+from ..fmu.channel import Channel
+from ..fmu.instance import Instance
 from .connection import FORCE, MOTOR, Connection
 from .polynomials import (
     Cubic,

@@ -22,8 +22,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..structures.drive import Drive
-from ..structures.structure import Structure
+from ..model.drive import Drive
+from ..model.structure import Structure
 from . import averaged
 
 CLOSE = 1e-9  # to a pole, in parts of it

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..constants import TURN
+from ..model.structure import Structure
 from ..running.job import Table
-from ..structures.structure import Structure
 from .energy_balance import Energies, EnergyBalance
 from .extremes import range_of_box, range_of_mass
 from .record import Floats, Record

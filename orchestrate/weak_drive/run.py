@@ -11,11 +11,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..access.instance import Instance
-from ..access.models import OSCILLATOR, SHAKER
+from ..fmu.instance import Instance
+from ..fmu.models import OSCILLATOR, SHAKER
+from ..model.drive import Drive
+from ..model.structure import Structure
 from ..running.job import Job, Table
-from ..structures.drive import Drive
-from ..structures.structure import Structure
 from .compiled import create_master
 from .controllers import Controller, Measurement
 from .master import Scheme

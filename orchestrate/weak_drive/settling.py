@@ -15,8 +15,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..structures.drive import Drive
-from ..structures.structure import Structure
+from ..model.drive import Drive
+from ..model.structure import Structure
 from . import averaged, own_resonance
 from .settled import SettledSettings, settled_speed
 

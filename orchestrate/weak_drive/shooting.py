@@ -12,13 +12,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..access.instance import Instance
 from ..constants import TURN
 from ..dynamics.closed_form import Floats
 from ..dynamics.continuation import NoConvergenceError, fix_sign
 from ..errors import FmuError
-from ..structures.drive import Drive
-from ..structures.structure import Structure
+from ..fmu.instance import Instance
+from ..model.drive import Drive
+from ..model.structure import Structure
 from .compiled import create_master
 from .extremes import range_of_mass
 from .master import Master, Scheme

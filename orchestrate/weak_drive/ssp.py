@@ -19,11 +19,11 @@ from os import PathLike
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
-from ..access.description import Description, describe
-from ..access.models import OSCILLATOR, SHAKER
 from ..files import write_whole
-from ..structures.drive import Drive
-from ..structures.structure import Structure
+from ..fmu.description import Description, describe
+from ..fmu.models import OSCILLATOR, SHAKER
+from ..model.drive import Drive
+from ..model.structure import Structure
 from .run import oscillator_start
 from .schedule import check
 
@@ -232,7 +232,7 @@ def write_ssp(
     >>> names[:3]
     ['SystemStructure.ssd', 'resources/oscillator.ssv', 'resources/shaker.ssv']
     """
-    from ..access.exported import find
+    from ..fmu.exported import find
 
     check("voltage", voltage, "V")
     speed = voltage / drive.motor_constant if speed_start is None else speed_start

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from orchestrate.access import OSCILLATOR, find
+from orchestrate.fmu import OSCILLATOR, find
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from orchestrate.structures.ranges import ADDED, STRUCTURE
+from orchestrate.model.ranges import ADDED, STRUCTURE
 
 Values = dict[str, float]
 

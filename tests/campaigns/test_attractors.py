@@ -14,10 +14,10 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import orchestrate
-from orchestrate.access import EventInstance, Instance, begin
 from orchestrate.errors import InputError
 from orchestrate.flags import flag_words
-from orchestrate.structures import Excitation, Structure
+from orchestrate.fmu import EventInstance, Instance, begin
+from orchestrate.model import Excitation, Structure
 from tools.draws import draw_structure
 
 from .findings import expect_none

@@ -14,8 +14,8 @@ from typing import Any
 
 import pytest
 
-from orchestrate.access import OSCILLATOR, Instance, find
 from orchestrate.errors import FmuError, InputError
+from orchestrate.fmu import OSCILLATOR, Instance, find
 
 from .findings import expect_none
 from .parameter_sets import ParameterSet, draw_parameter_set
@@ -58,7 +58,7 @@ def end_by_fmu(drawn: ParameterSet, grid: Sequence[float], form: str = "fmi3") -
 @functools.cache
 def web_module() -> Any:
     """Return the kernel's WebAssembly module under wasmtime."""
-    from orchestrate.access.webassembly import web_kernel
+    from orchestrate.fmu.webassembly import web_kernel
     from tools.web_instance import WebInstance
 
     return WebInstance(web_kernel(OSCILLATOR))

@@ -18,8 +18,8 @@ from pathlib import Path
 import pytest
 from mpmath import mp
 
-from orchestrate.access import describe
-from orchestrate.access.unpacked import unpacked
+from orchestrate.fmu import describe
+from orchestrate.fmu.unpacked import unpacked
 from tools import exact_motion, importers
 
 from .findings import expect_none

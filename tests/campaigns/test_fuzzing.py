@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from orchestrate.access import MODELS
+from orchestrate.fmu import MODELS
 from tools import importers
 
 from .findings import expect_none

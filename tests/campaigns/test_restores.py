@@ -12,9 +12,9 @@ from typing import Any
 
 import pytest
 
-from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
-from orchestrate.access.events import EventInstance
 from orchestrate.errors import FmuError, InputError
+from orchestrate.fmu import OSCILLATOR, SHAKER, Instance, find
+from orchestrate.fmu.events import EventInstance
 
 from .findings import expect_none
 from .parameter_sets import draw_parameter_set, natural_frequencies

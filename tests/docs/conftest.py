@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import orchestrate
-from orchestrate.figures.style import STYLE
+from orchestrate.show.style import STYLE
 
 from .smaller import QUESTIONS, smaller
 

@@ -20,7 +20,7 @@ CELLS = (
     "                        transient=300)\nfound.xi_rel_max",
     "motion = orchestrate.simulate(own, frequency=80.0, amplitude=1e-3, periods=5)",
     "%matplotlib inline\nimport matplotlib\nmatplotlib.get_backend()",
-    "from orchestrate.figures.lines import draw_sweep as draw\n"
+    "from orchestrate.show.lines import draw_sweep as draw\n"
     "figure = draw(orchestrate.sweep(own, eta=[1.0, 1.1], transient=50, samples=20))",
     "motion.x1.plot();",
 )
@@ -66,7 +66,7 @@ def answered(exported, tmp_path_factory):
 EDITS = {
     "a constant": ("orchestrate/response/respond.py", "\n", "\nADDED = 1\n"),
     "a function": (
-        "orchestrate/access/instance.py",
+        "orchestrate/fmu/instance.py",
         "def get(",
         "def got(self): ...\n\n    def get(",
     ),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from orchestrate.access import find
+from orchestrate.fmu import find
 from tools import assets, references
 
 from ..sparing import ordinary

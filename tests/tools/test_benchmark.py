@@ -7,8 +7,8 @@ from functools import partial
 
 import pytest
 
-from orchestrate.access import OSCILLATOR, find
-from orchestrate.structures import Structure
+from orchestrate.fmu import OSCILLATOR, find
+from orchestrate.model import Structure
 from tools import benchmark, sampled_solver, shake_benchmark
 
 

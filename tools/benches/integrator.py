@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from orchestrate.access.c_library import loaded_function
+from orchestrate.fmu.c_library import loaded_function
 
 from .system import LAWS, Floats, Frictions, ModalSystem, Motion, empty_contacts, empty_springs
 

@@ -17,7 +17,7 @@ from fmu_src.export.compiler import kernel_object
 from fmu_src.export.model_header import model_header
 from fmu_src.export.platforms import this_machine
 from fmu_src.export.source_code import kernel_source
-from orchestrate.access import describe
+from orchestrate.fmu import describe
 
 HERE = Path(__file__).parent
 TYPES = {"Real": "R", "Float64": "R", "Integer": "I", "Int32": "I", "Boolean": "B"}

@@ -11,8 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 
-from orchestrate.figures.colours import BLACK, BLUE, GREY, RED
-from orchestrate.figures.style import styled
+from orchestrate.show.colours import BLACK, BLUE, GREY, RED
+from orchestrate.show.style import styled
 
 from .oscillator import draw_damper, draw_spring, hide_frame
 

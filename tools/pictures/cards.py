@@ -9,8 +9,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from orchestrate.figures.colours import BLACK, BLUE, RED
-from orchestrate.figures.style import legend_below, make_panels, styled
+from orchestrate.show.colours import BLACK, BLUE, RED
+from orchestrate.show.style import legend_below, make_panels, styled
 
 SIZE = (3.8, 2.9)
 STYLES: dict[str, dict[str, Any]] = {

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from orchestrate.figures.style import make_panels, styled
+from orchestrate.show.style import make_panels, styled
 
 from .oscillator import draw_damper, draw_spring, hide_frame, make_sketch
 

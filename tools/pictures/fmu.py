@@ -7,8 +7,8 @@ from typing import Any
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch
 
-from orchestrate.figures.colours import BLUE, RED
-from orchestrate.figures.style import styled
+from orchestrate.show.colours import BLUE, RED
+from orchestrate.show.style import styled
 
 INPUTS = ("box_\namplitude", "box_\nfrequency", "box_\nacceleration")
 OUTPUTS = ("x1, x2, v1, v2", "x_rel: gap", "contact_force", "box_force")

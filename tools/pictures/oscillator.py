@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from orchestrate.figures.style import make_panels, styled
+from orchestrate.show.style import make_panels, styled
 
 
 def make_sketch(width: float) -> tuple[Figure, Axes]:

@@ -8,8 +8,8 @@ from pathlib import Path
 from matplotlib.figure import Figure
 from PIL import Image
 
-from orchestrate.figures.files import png_bytes
 from orchestrate.files import write_whole
+from orchestrate.show.files import png_bytes
 
 COLOURS = 128  # more are not seen in lines and letters
 

@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from numpy.polynomial import Polynomial
 from scipy.optimize import brentq
 
-from orchestrate.figures.colours import BLACK, BLUE, GREEN, GREY, ORANGE, RED
-from orchestrate.figures.style import make_panels, styled
+from orchestrate.show.colours import BLACK, BLUE, GREEN, GREY, ORANGE, RED
+from orchestrate.show.style import make_panels, styled
 
 WAVES = ((0.5, 1.0, math.pi), (0.16, 3.0, 2.3))  # of the gap: amplitude, frequency, phase
 MEAN = 0.515

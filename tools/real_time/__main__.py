@@ -8,7 +8,7 @@ from functools import reduce
 from operator import add
 from pathlib import Path
 
-from orchestrate.access import OSCILLATOR, find
+from orchestrate.fmu import OSCILLATOR, find
 
 from .footprint import MACHINES, stack_table
 from .sources import compiler_version, missing_programs, unpack

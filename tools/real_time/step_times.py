@@ -7,7 +7,7 @@ from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
-from orchestrate.structures import Structure
+from orchestrate.model import Structure
 from tools import importers
 
 from .sources import HERE

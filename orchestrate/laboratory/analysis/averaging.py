@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from ...arguments import checked_word
 from ...errors import InputError
+from ...model.arguments import checked_word
 from .channels import Channels, checked_number
 
 WINDOWS = ("hann", "hamming", "blackman", "blackmanharris", "flattop", "boxcar")

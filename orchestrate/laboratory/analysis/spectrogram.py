@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...arguments import checked_word
+from ...model.arguments import checked_word
 from ...response.labels import variable
 from .averaging import FEWEST_LINES, WINDOWS, segment_length
 from .channels import (

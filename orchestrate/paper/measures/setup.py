@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from ...structures import Drive, Structure
+from ...model import Drive, Structure
 from ...weak_drive import averaged
 from ..cases import BEAM
 from ..claims import Claim, Measured

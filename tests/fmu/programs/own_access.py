@@ -5,8 +5,8 @@ import sys
 import fmpy
 import numpy as np
 
-from orchestrate.access.instance import Instance
 from orchestrate.errors import FmuError
+from orchestrate.fmu.instance import Instance
 
 
 def main(path):

@@ -8,7 +8,7 @@ import pytest
 import orchestrate
 from orchestrate import Structure
 
-SETS = Path(orchestrate.__file__).parent / "structures" / "sets"
+SETS = Path(orchestrate.__file__).parent / "model" / "sets"
 
 HALVES = ("--set", "f1=42", "--set", "f2=55")
 MASSES = ("--set", "m1=1.5", "--set", "m2=1.2")

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from orchestrate import Structure, cosimulate, sweep
-from orchestrate.access import ELECTRODYNAMIC_SHAKER, OSCILLATOR, find
 from orchestrate.errors import FmuError, WorkerError
-from tests.orchestrate.access.misbehaving import misbehaving
+from orchestrate.fmu import ELECTRODYNAMIC_SHAKER, OSCILLATOR, find
+from tests.orchestrate.fmu.misbehaving import misbehaving
 
 from .commands import all_end, below, end, kill, wait_for
 

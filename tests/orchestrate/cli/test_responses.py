@@ -15,9 +15,9 @@ from matplotlib import image
 
 import orchestrate
 from orchestrate import Structure
-from orchestrate.access import OSCILLATOR, find
 from orchestrate.cli import responses
 from orchestrate.cli.dynamics import lyapunov_summary
+from orchestrate.fmu import OSCILLATOR, find
 from orchestrate.version import __version__
 
 SWEEP = ("sweep", "--eta", "1.28:1.31:0.005", "--transient", "20", "--samples", "12")

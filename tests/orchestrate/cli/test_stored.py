@@ -12,7 +12,7 @@ import xarray as xr
 
 import orchestrate
 from orchestrate.cli.answer import display_units
-from orchestrate.structures import Structure
+from orchestrate.model import Structure
 
 BEAM = Structure.from_file("beam")
 STORED = BEAM.replace(e=0.65)

@@ -21,7 +21,7 @@ from orchestrate.cli.output import result_name
 from orchestrate.cli.table import declared_option, documentation_of, parse_options
 from orchestrate.cli.text import format_ranges
 from orchestrate.errors import InputError
-from orchestrate.structures import Structure
+from orchestrate.model import Structure
 from orchestrate.units import with_units
 
 from .commands import ROOT
@@ -258,9 +258,9 @@ def test_build(capsys, tmp_path, monkeypatch):
         forms.extend(asked)
         return [tmp_path / "folder"]
 
-    monkeypatch.setattr("orchestrate.access.build", build)
+    monkeypatch.setattr("orchestrate.fmu.build", build)
     for made in ("build_libraries", "build_web_kernels"):
-        monkeypatch.setattr(f"orchestrate.access.{made}", lambda *_: [tmp_path / "folder"])
+        monkeypatch.setattr(f"orchestrate.fmu.{made}", lambda *_: [tmp_path / "folder"])
     assert cli.main(["build"]) == 0
     assert capsys.readouterr().out == f"{tmp_path / 'folder'}  0 kB\n" * 3
     assert cli.main(["build", "--sources-only"]) == 0

@@ -17,8 +17,8 @@ from orchestrate import cli
 from orchestrate.cli import diagnosis, dynamics, responses, weak_drive
 from orchestrate.cli.text import attractor_table
 from orchestrate.dynamics.orbit_records import STABILITY
-from orchestrate.figures import weak_drive as figures
 from orchestrate.response.labels import flags
+from orchestrate.show import weak_drive as figures
 from orchestrate.units import Units, with_units
 
 from ...exports import BUILD
@@ -304,7 +304,7 @@ def test_a_passage_prints_its_motion_in_the_unit_asked_for(monkeypatch):
     moved["speed"] = variable([100.0, 110.0], "rad/s", ("time",))
     moved |= {"jumps": ("jump", [np.nan]), "decided": ("jump", ["no"])}
     data = xr.Dataset(moved, {"time": [0.0, 1.0], "jump": ["up"]}, {"kept": "all"})
-    monkeypatch.setattr("orchestrate.figures.passage.jump_texts", lambda _: [])
+    monkeypatch.setattr("orchestrate.show.passage.jump_texts", lambda _: [])
     (line,) = weak_drive.passage_lines({"bonded": data})
     assert "largest |x1| 0.002 m, speed up to 110 rad/s" in line
     (line,) = weak_drive.passage_lines({"bonded": with_units(data, "rpm, mm")})

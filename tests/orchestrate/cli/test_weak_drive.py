@@ -10,7 +10,7 @@ import xarray as xr
 
 from orchestrate import Drive, Structure, couple
 from orchestrate.cli import weak_drive
-from orchestrate.figures import weak_drive as figures
+from orchestrate.show import weak_drive as figures
 
 from .test_responses import shows_something
 

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 import orchestrate
-from orchestrate.access import OSCILLATOR, Player, find
 from orchestrate.diagnosis.errors import contact_covariance, estimate, squares_beyond_noise
 from orchestrate.diagnosis.evidence import Evidence
 from orchestrate.diagnosis.fitting import Search, misfit
 from orchestrate.diagnosis.hypotheses import Bonded, Delaminated, NonlinearSpring
+from orchestrate.fmu import OSCILLATOR, Player, find
 
 from .records import BEAM, record
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from orchestrate.access import OSCILLATOR, EventInstance, begin, find
+from orchestrate.fmu import OSCILLATOR, EventInstance, begin, find
 
 
 def flown(structure, excitation, states, periods=1):

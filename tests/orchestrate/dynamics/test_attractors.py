@@ -10,8 +10,8 @@ import pytest
 from orchestrate.dynamics.attractors import AttractorsJob, attractors, random_starts
 from orchestrate.dynamics.clusters import transient_periods
 from orchestrate.errors import InputError
+from orchestrate.model import Structure
 from orchestrate.response.sweep import sweep
-from orchestrate.structures import Structure
 
 PAPER = Structure.nondimensional()
 TWO = 1.315  # eta at which a response T and one 2T coexist

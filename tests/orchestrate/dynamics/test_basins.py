@@ -7,7 +7,6 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from orchestrate.access import OSCILLATOR, REST, STATE, Instance, begin, find, finder
 from orchestrate.dynamics.basins import (
     BasinJob,
     Plane,
@@ -17,11 +16,12 @@ from orchestrate.dynamics.basins import (
 )
 from orchestrate.dynamics.clusters import AttractorSettings
 from orchestrate.errors import InputError
+from orchestrate.fmu import OSCILLATOR, REST, STATE, Instance, begin, find, finder
+from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
 from orchestrate.response.simulate import simulate
 from orchestrate.response.sweep import sweep
 from orchestrate.running.runner import answer
-from orchestrate.structures import Excitation, Structure
 
 PAPER = Structure.nondimensional()
 ETA = 1.315

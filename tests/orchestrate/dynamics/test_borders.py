@@ -11,8 +11,8 @@ from orchestrate.dynamics.borders import border
 from orchestrate.dynamics.branches import branch
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.errors import InputError
+from orchestrate.model import Structure
 from orchestrate.response import questions
-from orchestrate.structures import Structure
 
 from ...sparing import ordinary
 from .single_impact import SingleImpact

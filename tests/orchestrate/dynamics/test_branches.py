@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from orchestrate.access import OSCILLATOR, EventInstance, begin, find
 from orchestrate.dynamics.attractors import attractors
 from orchestrate.dynamics.branches import branch
 from orchestrate.dynamics.continuation import (
@@ -18,7 +17,8 @@ from orchestrate.dynamics.continuation import (
 )
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.errors import InputError
-from orchestrate.structures import Excitation, Structure
+from orchestrate.fmu import OSCILLATOR, EventInstance, begin, find
+from orchestrate.model import Excitation, Structure
 
 from ...sparing import ordinary
 from .single_impact import SingleImpact, border

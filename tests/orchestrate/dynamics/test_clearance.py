@@ -6,8 +6,8 @@ import pytest
 import orchestrate
 from orchestrate import Structure
 from orchestrate.dynamics.closed_form import ClosedForm
+from orchestrate.model import Excitation
 from orchestrate.response.questions import Point
-from orchestrate.structures import Excitation
 
 from .stroboscopic import assert_multipliers, flown
 

@@ -8,7 +8,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.cluster.hierarchy import fcluster, linkage
 
-from orchestrate.access import OSCILLATOR, REST, Instance, find
 from orchestrate.dynamics.clusters import (
     AttractorSettings,
     irregular_clusters,
@@ -16,8 +15,9 @@ from orchestrate.dynamics.clusters import (
     single_linkage,
     transient_periods,
 )
+from orchestrate.fmu import OSCILLATOR, REST, Instance, find
+from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
-from orchestrate.structures import Excitation, Structure
 
 PAPER = Structure.nondimensional()
 

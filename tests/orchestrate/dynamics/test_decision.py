@@ -7,7 +7,6 @@ import pytest
 from scipy.optimize import brentq
 
 from orchestrate import orbit
-from orchestrate.access import OSCILLATOR, REST, EventInstance, Instance, find
 from orchestrate.dynamics.attractors import attractors
 from orchestrate.dynamics.clusters import AttractorSettings
 from orchestrate.dynamics.decision import (
@@ -17,10 +16,11 @@ from orchestrate.dynamics.decision import (
 )
 from orchestrate.dynamics.orbit_search import least_periods
 from orchestrate.dynamics.settled_motion import ScaledStates, same_nodes
-from orchestrate.outcomes import IRREGULAR, ORBIT, REPEATED, UNDECIDED
+from orchestrate.fmu import OSCILLATOR, REST, EventInstance, Instance, find
+from orchestrate.model import Excitation, Structure
+from orchestrate.model.outcomes import IRREGULAR, ORBIT, REPEATED, UNDECIDED
 from orchestrate.response.questions import Point
 from orchestrate.response.sweep import sweep
-from orchestrate.structures import Excitation, Structure
 
 PAPER = Structure.nondimensional()
 USUAL = AttractorSettings()

@@ -7,7 +7,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from orchestrate.access import OSCILLATOR, REST, find
 from orchestrate.dynamics.attractors import attractors
 from orchestrate.dynamics.clusters import AttractorSettings
 from orchestrate.dynamics.decision import MotionDecider
@@ -17,9 +16,10 @@ from orchestrate.dynamics.global_continuation import (
     instance_pair,
     match_neighbours,
 )
-from orchestrate.outcomes import ORBIT
+from orchestrate.fmu import OSCILLATOR, REST, find
+from orchestrate.model import Excitation, Structure
+from orchestrate.model.outcomes import ORBIT
 from orchestrate.response.questions import Point
-from orchestrate.structures import Excitation, Structure
 
 PAPER = Structure.nondimensional()
 pytestmark = pytest.mark.usefixtures("exported")

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from orchestrate.access import OSCILLATOR, Instance, begin, find
 from orchestrate.dynamics.impact_statistics import impact_statistics
+from orchestrate.fmu import OSCILLATOR, Instance, begin, find
+from orchestrate.model import Excitation, Structure
 from orchestrate.response.simulate import simulate
-from orchestrate.structures import Excitation, Structure
 
 PAPER = Structure.nondimensional()
 OWN = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=2.9, e=0.6)

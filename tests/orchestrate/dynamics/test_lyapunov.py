@@ -7,16 +7,6 @@ import math
 import numpy as np
 import pytest
 
-from orchestrate.access import (
-    OSCILLATOR,
-    REST,
-    STATE,
-    EventInstance,
-    Impacts,
-    Instance,
-    begin,
-    find,
-)
 from orchestrate.dynamics.following import follow_impacts
 from orchestrate.dynamics.lyapunov import (
     CHAOTIC,
@@ -29,9 +19,19 @@ from orchestrate.dynamics.lyapunov import (
 )
 from orchestrate.dynamics.variational import monodromy, period_in_tau
 from orchestrate.errors import InputError
+from orchestrate.fmu import (
+    OSCILLATOR,
+    REST,
+    STATE,
+    EventInstance,
+    Impacts,
+    Instance,
+    begin,
+    find,
+)
+from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
 from orchestrate.response.sweep import sweep
-from orchestrate.structures import Excitation, Structure
 
 make = Structure.nondimensional
 PAPER = make()

@@ -10,7 +10,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import orchestrate
-from orchestrate.access import OSCILLATOR, REST, STATE, EventInstance, Instance, begin, find
 from orchestrate.dynamics.following import follow_impacts
 from orchestrate.dynamics.lyapunov_spectrum import (
     compound_matrices,
@@ -18,8 +17,9 @@ from orchestrate.dynamics.lyapunov_spectrum import (
     lyapunov_spectrum,
 )
 from orchestrate.dynamics.variational import impact_matrices, period_in_tau
+from orchestrate.fmu import OSCILLATOR, REST, STATE, EventInstance, Instance, begin, find
+from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
-from orchestrate.structures import Excitation, Structure
 
 make = Structure.nondimensional
 

@@ -12,9 +12,9 @@ from scipy.optimize import brentq
 
 import orchestrate
 from orchestrate import InputError, Structure
-from orchestrate.access import OSCILLATOR, Instance, begin
 from orchestrate.dynamics import manifolds
 from orchestrate.dynamics.curve_growth import CurveGrower, CurvePoint, GrowthSettings
+from orchestrate.fmu import OSCILLATOR, Instance, begin
 from orchestrate.response.questions import make_point
 
 from ...processors import printed_on_each
@@ -188,7 +188,7 @@ def job_fields():
 
 
 def exported_path():
-    from orchestrate.access import finder
+    from orchestrate.fmu import finder
 
     return finder({})(OSCILLATOR).path
 

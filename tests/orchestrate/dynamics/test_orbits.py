@@ -10,7 +10,7 @@ from orchestrate.dynamics import orbit_records
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.errors import InputError
 from orchestrate.flags import flag_words
-from orchestrate.structures import Excitation, Structure
+from orchestrate.model import Excitation, Structure
 
 from .single_impact import SingleImpact
 from .stroboscopic import assert_multipliers

@@ -9,10 +9,10 @@ from orchestrate.dynamics.lyapunov import lyapunov
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.dynamics.parameter_map import map
 from orchestrate.errors import InputError
-from orchestrate.outcomes import REPEATED, UNDECIDED
+from orchestrate.model import Structure
+from orchestrate.model.outcomes import REPEATED, UNDECIDED
 from orchestrate.response.simulate import simulate
 from orchestrate.response.sweep import sweep
-from orchestrate.structures import Structure
 
 PAPER = Structure.nondimensional()
 ETAS, ES = [0.4, 1.13, 1.6], [0.3, 0.7]

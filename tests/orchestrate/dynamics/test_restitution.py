@@ -7,7 +7,7 @@ import pytest
 
 import orchestrate
 from orchestrate import Structure
-from orchestrate.structures import Excitation
+from orchestrate.model import Excitation
 
 from .stroboscopic import assert_multipliers
 

@@ -7,8 +7,8 @@ from orchestrate.dynamics import manifolds
 from orchestrate.dynamics.branches import branch, complete_excitation
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.errors import InputError
+from orchestrate.model import Structure
 from orchestrate.response import questions
-from orchestrate.structures import Structure
 
 PAPER = Structure.nondimensional(e=0.7, D=0.005)
 BEAM = Structure.from_file("beam")

@@ -7,8 +7,8 @@ from orchestrate.dynamics.closed_form import ClosedForm
 from orchestrate.dynamics.orbits import orbit
 from orchestrate.dynamics.periodic_orbit import ImpactSequence, PeriodicOrbit
 from orchestrate.dynamics.turning_points import pressing_force
+from orchestrate.model import Excitation, Structure
 from orchestrate.response.sweep import sweep
-from orchestrate.structures import Excitation, Structure
 
 NODES = ("node_phase", "node_position", "node_velocity", "node_closing")
 

@@ -11,7 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from orchestrate.access import (
+from orchestrate.dynamics.closed_form import ClosedForm
+from orchestrate.dynamics.following import follow_impacts
+from orchestrate.dynamics.release import contact_durations
+from orchestrate.dynamics.variational import contact_durations_after, monodromy, period_in_tau
+from orchestrate.fmu import (
     OSCILLATOR,
     REST,
     STATE,
@@ -21,13 +25,9 @@ from orchestrate.access import (
     begin,
     find,
 )
-from orchestrate.dynamics.closed_form import ClosedForm
-from orchestrate.dynamics.following import follow_impacts
-from orchestrate.dynamics.release import contact_durations
-from orchestrate.dynamics.variational import contact_durations_after, monodromy, period_in_tau
+from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
 from orchestrate.response.threshold import threshold_amplitudes
-from orchestrate.structures import Excitation, Structure
 
 make = Structure.nondimensional
 ALIKE = (make(), make(e=0.3), make(D=0.05), make(mu=1.5, kappa=2.1))

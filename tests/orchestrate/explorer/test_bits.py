@@ -4,7 +4,7 @@ import struct
 
 import pytest
 
-from orchestrate.access.webassembly import web_kernel
+from orchestrate.fmu.webassembly import web_kernel
 from tools.web_instance import WebInstance
 
 from .kernels import Native, period

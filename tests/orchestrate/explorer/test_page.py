@@ -9,12 +9,12 @@ import xarray as xr
 
 import orchestrate
 from orchestrate import cli
-from orchestrate.access import OSCILLATOR, Instance, find
 from orchestrate.explorer.page import explore
+from orchestrate.fmu import OSCILLATOR, Instance, find
+from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
 from orchestrate.response.respond import responses_from
 from orchestrate.response.response_loop import LoopSettings, response_loop
-from orchestrate.structures import Excitation, Structure
 
 from ...sparing import ordinary
 from .test_own_beam import pasted

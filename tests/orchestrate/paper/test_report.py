@@ -9,8 +9,8 @@ from importlib import resources
 import pytest
 from markupsafe import escape
 
-from orchestrate.access import OSCILLATOR, find
 from orchestrate.errors import InputError
+from orchestrate.fmu import OSCILLATOR, find
 from orchestrate.paper import report
 from orchestrate.paper.claims import WORDS
 from orchestrate.paper.pictures import PARTS

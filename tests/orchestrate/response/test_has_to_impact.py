@@ -11,10 +11,10 @@ import pytest
 
 import orchestrate
 from orchestrate import Structure
-from orchestrate.access import OSCILLATOR, EventInstance, begin, find
-from orchestrate.outcomes import REPEATED, UNDECIDED
+from orchestrate.fmu import OSCILLATOR, EventInstance, begin, find
+from orchestrate.model import Excitation
+from orchestrate.model.outcomes import REPEATED, UNDECIDED
 from orchestrate.response.threshold import exceeds_threshold
-from orchestrate.structures import Excitation
 
 pytestmark = pytest.mark.usefixtures("exported")
 QUIET = {"progress": False}

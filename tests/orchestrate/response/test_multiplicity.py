@@ -6,13 +6,14 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from fmu_src.kernels import repetition
-from orchestrate.access import OSCILLATOR, EventInstance, Instance, find
 from orchestrate.dynamics.continuation import NoConvergenceError
 from orchestrate.dynamics.families import Setting
 from orchestrate.dynamics.guesses import guess_from_state
 from orchestrate.dynamics.orbit_search import least_periods, solve_orbit, why_no_motion
 from orchestrate.dynamics.turning_points import stroboscopic_states
-from orchestrate.outcomes import IRREGULAR, REPEATED, UNDECIDED
+from orchestrate.fmu import OSCILLATOR, EventInstance, Instance, find
+from orchestrate.model import Excitation, Structure
+from orchestrate.model.outcomes import IRREGULAR, REPEATED, UNDECIDED
 from orchestrate.response.multiplicity import (
     MIN_RELATIVE_GAP,
     Decision,
@@ -21,7 +22,6 @@ from orchestrate.response.multiplicity import (
 )
 from orchestrate.response.questions import Point
 from orchestrate.response.respond import Response, respond
-from orchestrate.structures import Excitation, Structure
 
 from ...sparing import ordinary
 

@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from orchestrate.model import Structure
 from orchestrate.response.sweep import sweep
-from orchestrate.structures import Structure
 
 PEAKS = [(0.7, 0.005, 21.558, 1.047), (0.7, 0.05, 2.6347, 1.057), (0.3, 0.005, 16.410, 1.048)]
 

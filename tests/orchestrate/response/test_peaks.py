@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from orchestrate.access import OSCILLATOR, EventInstance, Instance, begin, find, sampled
+from orchestrate.fmu import OSCILLATOR, EventInstance, Instance, begin, find, sampled
+from orchestrate.model import Excitation, Structure
 from orchestrate.response.equations import absolute_accelerations
 from orchestrate.response.peaks import (
     PEAKS,
@@ -16,7 +17,6 @@ from orchestrate.response.peaks import (
 )
 from orchestrate.response.questions import Point
 from orchestrate.response.response_loop import LoopSettings, periods_to_sample, response_loop
-from orchestrate.structures import Excitation, Structure
 
 PAPER = Structure.nondimensional()
 OWN = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=2.9, e=0.6)

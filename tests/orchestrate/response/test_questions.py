@@ -11,9 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from orchestrate.errors import InputError
+from orchestrate.model import Structure
 from orchestrate.response.questions import checked_point, checked_states, excitation_numbers
 from orchestrate.response.sweep import SweepJob
-from orchestrate.structures import Structure
 
 OWN = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=0.9, e=0.6)
 

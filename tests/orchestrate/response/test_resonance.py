@@ -8,10 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from orchestrate.errors import InputError
+from orchestrate.model import Structure
 from orchestrate.response.resonance import resonance
 from orchestrate.response.sweep import sweep
 from orchestrate.response.turns_and_jumps import inside_irregular
-from orchestrate.structures import Structure
 
 BEAM = Structure.from_file("beam")
 OMEGA = 2.0 * np.pi * np.linspace(8.0, 20.0, 60)

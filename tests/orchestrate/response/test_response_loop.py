@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from orchestrate.access import OSCILLATOR, Instance, find
 from orchestrate.errors import FmuError
+from orchestrate.fmu import OSCILLATOR, Instance, find
+from orchestrate.model import Excitation, Structure
 from orchestrate.response.questions import Point
 from orchestrate.response.response_loop import (
     CompiledResponseLoop,
@@ -13,7 +14,6 @@ from orchestrate.response.response_loop import (
     response_loop,
     round_state,
 )
-from orchestrate.structures import Excitation, Structure
 
 pytestmark = pytest.mark.usefixtures("exported")
 

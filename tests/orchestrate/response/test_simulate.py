@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from orchestrate.errors import InputError
+from orchestrate.model import Structure
 from orchestrate.response.simulate import simulate
-from orchestrate.structures import Structure
 
 PAPER = Structure.nondimensional()
 OWN = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=2.9, e=0.6)

@@ -8,9 +8,9 @@ from scipy.integrate import trapezoid
 from scipy.signal import periodogram
 
 from orchestrate.errors import InputError
+from orchestrate.model import Structure
 from orchestrate.response.simulate import simulate
 from orchestrate.response.spectra import amplitude_spectrum, spectra
-from orchestrate.structures import Structure
 
 PAPER = Structure.nondimensional()
 OWN = Structure(m1=0.8, m2=1.1, k1=5000.0, k2=7500.0, d1=1.3, d2=1.9, e=0.6)

@@ -11,13 +11,13 @@ import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from orchestrate.access import OSCILLATOR, Instance, begin, find, sampled
 from orchestrate.errors import InputError
-from orchestrate.outcomes import IRREGULAR, REPEATED, UNDECIDED
+from orchestrate.fmu import OSCILLATOR, Instance, begin, find, sampled
+from orchestrate.model import Excitation, Structure
+from orchestrate.model.outcomes import IRREGULAR, REPEATED, UNDECIDED
 from orchestrate.response.multiplicity import DECIDED
 from orchestrate.response.simulate import simulate
 from orchestrate.response.sweep import SweepJob, sweep
-from orchestrate.structures import Excitation, Structure
 
 PAPER = Structure.nondimensional()
 SHORT = {"transient": 30, "samples": 20}

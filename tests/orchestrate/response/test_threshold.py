@@ -7,9 +7,9 @@ import pytest
 
 import orchestrate
 from orchestrate import InputError, Structure
-from orchestrate.access import OSCILLATOR, Instance, begin, find
-from orchestrate.figures import plot
-from orchestrate.structures import Excitation
+from orchestrate.fmu import OSCILLATOR, Instance, begin, find
+from orchestrate.model import Excitation
+from orchestrate.show import plot
 
 from ...sparing import ordinary
 

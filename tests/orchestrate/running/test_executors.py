@@ -10,8 +10,8 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
-from orchestrate.access import OSCILLATOR
 from orchestrate.errors import InputError, WorkerError
+from orchestrate.fmu import OSCILLATOR
 from orchestrate.running import cluster, runner
 from orchestrate.running.executors import compute, threads
 from orchestrate.running.runner import answer

@@ -9,14 +9,14 @@ from unittest.mock import patch
 import numpy as np
 import pytest
 
-from orchestrate.access import OSCILLATOR, find
+from orchestrate.fmu import OSCILLATOR, find
+from orchestrate.model import Structure
 from orchestrate.response.sweep import SweepJob
 from orchestrate.running.executors import compute
 from orchestrate.running.journal import Journal, journal_path
 from orchestrate.running.options import RunOptions
 from orchestrate.running.progress import Progress
 from orchestrate.running.store import Store, open_store
-from orchestrate.structures import Structure
 from tests.sparing import ordinary
 
 from .sums import Forgetful, Model

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from orchestrate import Drive, Structure
-from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
+from orchestrate.fmu import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.weak_drive.compiled import create_master
 from orchestrate.weak_drive.energy_balance import Energies, EnergyBalance
 from orchestrate.weak_drive.master import Scheme

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
-from orchestrate.structures import Drive, Structure
+from orchestrate.model import Drive, Structure
 from orchestrate.weak_drive import averaged
 
 from ...sparing import ordinary

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from orchestrate import couple
-from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.dynamics.bifurcations import FOLD
+from orchestrate.fmu import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.drive_tracer import motion_near
 from orchestrate.weak_drive.schedule import Ramp

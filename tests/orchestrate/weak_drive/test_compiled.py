@@ -3,7 +3,7 @@
 import ctypes
 
 from fmu_src.export.errors import CannotExport
-from orchestrate.access import c_library as libraries
+from orchestrate.fmu import c_library as libraries
 from orchestrate.weak_drive import compiled
 from orchestrate.weak_drive.compiled import SOURCE, CompiledMaster, Pair, create_master
 from orchestrate.weak_drive.master import DRIVE, MOTION, Master, Scheme

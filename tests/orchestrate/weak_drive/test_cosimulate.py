@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import orchestrate
-from orchestrate.access.description import describe
 from orchestrate.errors import InputError
+from orchestrate.fmu.description import describe
 from orchestrate.weak_drive import cosimulate
 from orchestrate.weak_drive.connection import proposals
 from orchestrate.weak_drive.polynomials import derivatives

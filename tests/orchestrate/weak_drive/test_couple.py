@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from orchestrate import InputError, SpeedControl, couple
-from orchestrate.access import OSCILLATOR, SHAKER, find
+from orchestrate.fmu import OSCILLATOR, SHAKER, find
 from orchestrate.weak_drive.couple import couple_job
 from orchestrate.weak_drive.master import Scheme
 from orchestrate.weak_drive.schedule import Ramp

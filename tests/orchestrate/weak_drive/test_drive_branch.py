@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from orchestrate import Drive, InputError, Structure, drive_branch
-from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
+from orchestrate.fmu import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.drive_tracer import motion_near
 from orchestrate.weak_drive.shooting import Shooter

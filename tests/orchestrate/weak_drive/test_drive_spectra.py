@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from orchestrate import Drive, Structure
-from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.errors import InputError
+from orchestrate.fmu import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.response.spectra import amplitude_spectrum
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple import couple_job

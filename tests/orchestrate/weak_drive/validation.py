@@ -7,8 +7,8 @@ but the state that it starts from.
 import numpy as np
 
 from orchestrate import Drive, Structure, jump_voltages
-from orchestrate.access import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.dynamics.bifurcations import FLIP, FOLD
+from orchestrate.fmu import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple import scheme_from_arguments
 from orchestrate.weak_drive.drive_branch import DriveBranchJob

@@ -1,0 +1,344 @@
+"""FMU instance for co-simulation: set, get, step, save and restore its state (FMI 2.0 and 3.0)."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Sequence
+from ctypes import byref, c_bool, c_double, c_int, c_size_t, c_uint, c_void_p, cast
+from functools import partial
+from os import PathLike
+from types import TracebackType
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import FmuError, InputError, VibroimpactError
+from .description import describe
+from .library import loaded
+
+REAL_TYPES = ("Real", "Float64")
+INTEGER_TYPES = ("Integer", "Int32")
+Prepared = Callable[[], None]
+
+
+def function_addresses(instance: Instance, names: Sequence[str]) -> tuple[int, ...]:
+    """Return the addresses of an FMI 3.0 instance and of functions of FMI, for compiled code."""
+    dll = instance._fmu.dll
+    functions = (cast(dll[f"fmi3{name}"], c_void_p).value or 0 for name in names)
+    return (instance._fmu.component, *functions)
+
+
+class Transfer(NamedTuple):
+    """A prepared FMI set or get call for several variables of one type, with its value buffer."""
+
+    call: Prepared
+    values: Any  # where they travel
+    positions: list[int]  # of them among all that are set or read together
+
+
+class Instance:
+    """Co-simulation instance of an FMI 2.0 or 3.0 FMU, as a context manager.
+
+    Notes
+    -----
+    Every status but OK raises :class:`FmuError` with what the FMU logged, a discarded step too:
+    importers' own loops may take that for the end of the simulation.
+
+    Examples
+    --------
+    >>> from orchestrate.fmu import OSCILLATOR, Instance, find
+    >>> with Instance(find(OSCILLATOR).path) as instance:
+    ...     instance.initialize(box_amplitude=1.0, box_frequency=1.2)
+    ...     instance.step(0.0, 100.0)
+    ...     instance.get("impact_count")
+    [22]
+    """
+
+    EVENTS: ClassVar[dict[str, bool]] = {}  # arguments that make an FMI 3.0 FMU report events
+
+    def __init__(self, path: str | PathLike[str], name: str = "instance") -> None:
+        self.description = describe(path)
+        self._messages: list[str] = []
+        self._readers: dict[tuple[str, ...], tuple[Transfer, NDArray[np.float64]]] = {}
+        self._transfers: dict[tuple[str, ...], list[Transfer]] = {}
+        self.cache: dict[object, Any] = {}  # what callers prepare once for this instance
+        self._open = False
+        try:
+            self._fmu = loaded(self.description, name)
+            (self._make3 if self.is_fmi3 else self._make2)()
+        except VibroimpactError:
+            raise
+        except Exception as error:
+            reason = f"FMU {path}: cannot be loaded ({error})"
+            raise InputError(f"{reason}; expected an FMU with a binary for this machine") from None
+        self._open = True
+        self._start, self._time, self._length = c_double(), c_double(), c_double()
+        self._reset, self._initialize, self._step = (
+            self._calls3() if self.is_fmi3 else self._calls2()
+        )
+
+    @property
+    def is_fmi3(self) -> bool:
+        """True for FMI 3.0, False for 2.0."""
+        return self.description.is_fmi3
+
+    def _make2(self) -> None:
+        """Instantiate the FMU by FMI 2.0, with callbacks that collect its log messages."""
+        import fmpy
+        from fmpy import fmi2
+
+        self._callbacks = fmi2.fmi2CallbackFunctions()
+        self._callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(self._log)
+        self._callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(fmpy.calloc)
+        self._callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(fmpy.free)
+        # messages come as a format with arguments
+        fmpy.logging.addLoggerProxy(byref(self._callbacks))
+        self.call("instantiate", callbacks=self._callbacks, loggingOn=True)
+
+    def _make3(self) -> None:
+        """Instantiate the FMU by FMI 3.0, with a callback that collects its log messages."""
+        self.call("instantiate", loggingOn=True, logMessage=self._log, **self.EVENTS)
+
+    def _calls2(self) -> tuple[Prepared, list[Prepared], Prepared]:
+        """Prepare FMI 2.0's C calls; return those of reset, of initialisation, and of one step."""
+        no, zero = c_int(0), c_double()  # no tolerance, no end
+        initialize = [
+            self.prepared("fmi2SetupExperiment", no, zero, self._start, no, zero),
+            self.prepared("fmi2EnterInitializationMode"),
+            self.prepared("fmi2ExitInitializationMode"),
+        ]
+        step = self.prepared("fmi2DoStep", self._time, self._length, c_int(1))
+        return self.prepared("fmi2Reset"), initialize, step
+
+    def _calls3(self) -> tuple[Prepared, list[Prepared], Prepared]:
+        """Prepare FMI 3.0's C calls; return those of reset, of initialisation, and of one step."""
+        no, zero = c_bool(False), c_double()
+        initialize = [
+            self.prepared("fmi3EnterInitializationMode", no, zero, self._start, no, zero),
+            self.prepared("fmi3ExitInitializationMode"),
+        ]
+        results = [*(byref(c_bool()) for _ in range(3)), byref(c_double())]
+        step = self.prepared("fmi3DoStep", self._time, self._length, c_bool(True), *results)
+        return self.prepared("fmi3Reset"), initialize, step
+
+    def __enter__(self) -> Any:
+        """Return the instance itself, for use in a `with` statement."""
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Free the instance at the end of a `with` statement."""
+        self.close()
+
+    def close(self) -> None:
+        """Free the FMU instance; it cannot be used afterwards."""
+        if self._open:
+            self._open = False
+            free = self._fmu.fmi3FreeInstance if self.is_fmi3 else self._fmu.fmi2FreeInstance
+            free(self._fmu.component)
+
+    def _log(self, *arguments: Any) -> None:
+        """Append the FMU's log message; it is the last argument in both FMI versions."""
+        self._messages.append(arguments[-1].decode(errors="replace"))
+
+    def failure(self, error: object) -> FmuError:
+        """Return an ``FmuError`` with the FMU's log messages, or ``error``'s text without any."""
+        quoted = r"(?s).*FmuError\(([\"'])(.*)\1\)\s*$"  # how pythonfmu hands an exception on
+        texts = [re.sub(quoted, r"\2", message) for message in self._messages]
+        return FmuError("; ".join(texts) or str(error))
+
+    def call(self, function: str, *args: Any, **kwargs: Any) -> Any:
+        """Call a method of FMPy's FMU object; return its result or raise the FMU's message."""
+        self._messages.clear()
+        try:
+            return getattr(self._fmu, function)(*args, **kwargs)
+        except Exception as error:
+            raise self.failure(error) from None
+
+    def prepared(self, function: str, *arguments: Any) -> Prepared:
+        """Return a fast callable of an FMI C function with fixed arguments; it raises on failure.
+
+        FMPy and ctypes take longer to convert arguments than the FMU to answer. Here they are made
+        once: C numbers, whose values may change from call to call, and arrays.
+        """
+        call = partial(self._fmu.dll[function], c_void_p(self._fmu.component), *arguments)
+        messages = self._messages
+
+        def run() -> None:
+            """Call the C function; raise an error if its status is not OK."""
+            messages.clear()
+            status = call()
+            if status:
+                raise self.failure(f"{function} failed with status {status}")
+
+        return run
+
+    def variable(self, name: str) -> Any:
+        """Return FMPy's description of a variable."""
+        return self.description.variable(name)
+
+    def set(self, **values: float) -> None:
+        """Set FMU variables given as keywords (name=value)."""
+        names = ("Set", *values)
+        new_values = list(values.values())
+        for call, array, positions in self._transfers.get(names) or self._grouped(names):
+            everything = len(positions) == len(new_values)
+            selected = new_values if everything else [new_values[i] for i in positions]
+            try:
+                array[:] = selected
+            except TypeError as error:
+                raise FmuError(str(error)) from None
+            call()
+
+    def get(self, *names: str) -> list[Any]:
+        """Return the values of FMU variables, given by name, as a list in the same order."""
+        key = ("Get", *names)
+        values: list[Any] = [None] * len(names)
+        for call, array, positions in self._transfers.get(key) or self._grouped(key):
+            call()
+            if len(positions) == len(names):
+                return list(array[:])
+            for position, value in zip(positions, array, strict=True):
+                values[position] = value
+        return values
+
+    def _grouped(self, names: tuple[str, ...]) -> list[Transfer]:
+        """Prepare an FMI call per data type for variables; the first name: ``Set``/``Get``."""
+        verb, *variables = names
+        positions: dict[str, list[int]] = {}
+        for position, name in enumerate(variables):
+            positions.setdefault(self.variable(name).type, []).append(position)
+        transfers = [
+            self._transfer(verb, kind, [(self.variable(variables[i]), 1) for i in indices], indices)
+            for kind, indices in positions.items()
+        ]
+        self._transfers[names] = transfers
+        return transfers
+
+    def _transfer(
+        self, verb: str, kind: str, variables: Sequence[tuple[Any, int]], positions: list[int]
+    ) -> Transfer:
+        """Prepare one FMI set or get call for variables of one type; return it with its buffer."""
+        if kind not in (*REAL_TYPES, *INTEGER_TYPES, "Boolean"):
+            raise FmuError(f"{variables[0][0].name}: is {kind}; expected numbers and Booleans")
+        flag = c_bool if self.is_fmi3 else c_int
+        element: Any = c_double if kind in REAL_TYPES else c_int if kind in INTEGER_TYPES else flag
+        values = (element * sum(length for _, length in variables))()
+        count = len(variables)
+        references = (c_uint * count)(*(variable.valueReference for variable, _ in variables))
+        sizes = (c_size_t(len(values)),) if self.is_fmi3 else ()
+        function = f"fmi{3 if self.is_fmi3 else 2}{verb}{kind}"
+        call = self.prepared(function, references, c_size_t(count), values, *sizes)
+        if verb == "Get" and kind in REAL_TYPES:
+            call = self._checked(call, variables, np.ctypeslib.as_array(values))
+        return Transfer(call, values, positions)
+
+    def _checked(
+        self, call: Prepared, variables: Sequence[tuple[Any, int]], values: NDArray[np.float64]
+    ) -> Prepared:
+        """Wrap a prepared get call so that it raises if the FMU gives NaN or infinity."""
+
+        def run() -> None:
+            """Call the get function; raise an error if a value is not finite."""
+            call()
+            if not math.isfinite(values.sum()) and not np.isfinite(values).all():
+                names = [variable.name for variable, length in variables for _ in range(length)]
+                raise self.not_finite_error(names, values)
+
+        return run
+
+    def not_finite_error(self, names: Sequence[str], values: ArrayLike) -> FmuError:
+        """Return an ``FmuError`` that names the first variable whose value is not finite."""
+        index = int(np.flatnonzero(~np.isfinite(values))[0])
+        text = f"{names[index]} = {np.ravel(values)[index]}"
+        return FmuError(f"the FMU {self.description.name} answers {text}; expected a finite number")
+
+    def initialize(self, start_time: float = 0.0, **values: float) -> None:
+        """Set start values given as keywords, and take the FMU through initialisation mode."""
+        self.set(**values)
+        self._start.value = start_time
+        for call in self._initialize:
+            call()
+
+    def reset(self) -> None:
+        """Reset the FMU (fmi2Reset, fmi3Reset) to its state after instantiation."""
+        self._reset()
+
+    def step(self, time: float, target: float) -> None:
+        """Do one communication step from ``time`` to ``target``, s."""
+        self._time.value, self._length.value = time, target - time
+        self._step()
+
+    def read(self, *names: str) -> NDArray[np.float64]:
+        """Return all values of Real variables or arrays, concatenated, by one FMI call."""
+        transfer, values = self._reader(names)
+        transfer.call()
+        return values
+
+    def size(self, *names: str) -> int:
+        """Return how many values :meth:`read` gives for these names (arrays have several)."""
+        return len(self._reader(names)[1])
+
+    def _reader(self, names: tuple[str, ...]) -> tuple[Transfer, NDArray[np.float64]]:
+        """Prepare an FMI get call for Real variables; return it and the array that it fills."""
+        if names not in self._readers:
+            elements = [element for name in names for element in self.elements(name)]
+            for variable in (
+                variable for variable, _ in elements if variable.type not in REAL_TYPES
+            ):
+                raise FmuError(f"{variable.name}: is {variable.type}; expected Real variables")
+            transfer = self._transfer("Get", elements[0][0].type, elements, [])
+            self._readers[names] = transfer, np.ctypeslib.as_array(transfer.values)
+        return self._readers[names]
+
+    def elements(self, name: str) -> list[tuple[Any, int]]:
+        """Return the FMI variables behind an (array's) name, each with its number of values."""
+        variables = self.description.variables
+        if f"{name}[1]" not in variables:
+            variable = self.variable(name)
+            sizes = (int(dimension.start) for dimension in variable.dimensions or ())
+            return [(variable, math.prod(sizes))]
+        count = sum(variable_name.startswith(f"{name}[") for variable_name in variables)
+        return [(variables[f"{name}[{i + 1}]"], 1) for i in range(count)]
+
+    def save_state(self) -> bytes:
+        """Return the FMU's whole state, serialised to bytes by FMI's functions."""
+        get, serialize, _, _, free = self.state_calls()
+        state = self.call(get)
+        try:
+            return bytes(self.call(serialize, state))
+        finally:
+            self.call(free, state)
+
+    def restore_state(self, data: bytes) -> None:
+        """Set the FMU to a state from the bytes that :meth:`save_state` gave."""
+        _, _, deserialize, put, free = self.state_calls()
+        state = self.call(deserialize, data)
+        try:
+            self.call(put, state)
+        finally:
+            self.call(free, state)
+
+    def state_calls(self) -> tuple[str, str, str, str, str]:
+        """Return FMPy's method names to get, serialize, deserialize, set and free a state."""
+        if self.is_fmi3:
+            return (
+                "getFMUState",
+                "serializeFMUState",
+                "deserializeFMUState",
+                "setFMUState",
+                "freeFMUState",
+            )
+        return (
+            "getFMUstate",
+            "serializeFMUstate",
+            "deSerializeFMUstate",
+            "setFMUstate",
+            "freeFMUstate",
+        )

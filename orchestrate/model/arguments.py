@@ -1,0 +1,93 @@
+"""Checks of arguments, for all packages: an error names the argument, its value, what is expected.
+
+Fields of jobs made by :func:`whole`, :func:`positive` and :func:`checked` check what they are
+given, see :meth:`orchestrate.running.job.Job.check_fields`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import field
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..errors import InputError
+
+MAX_COUNT = 1_000_000  # periods, samples, values: more is a typing error
+CHECK = "check"  # key of a field's check in its metadata
+Numbers = float | tuple[float, ...]
+
+
+def checked_integer(name: str, value: Any, minimum: int, maximum: int = MAX_COUNT) -> int:
+    """Return ``value`` as int; raise ``InputError`` unless whole and from minimum to maximum."""
+    is_integer = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
+    if not is_integer or not minimum <= value <= maximum:
+        raise InputError(f"{name} = {value!r}: expected a whole number from {minimum} to {maximum}")
+    return int(value)
+
+
+def checked_word(name: str, value: Any, known: Iterable[str]) -> str:
+    """Return ``value`` as a string; raise ``InputError`` unless it is one of the known words."""
+    words = tuple(known)
+    if value not in words:
+        raise InputError(f"{name} = {value!r}: expected one of {', '.join(words)}")
+    return str(value)
+
+
+def checked_numbers(
+    name: str, value: ArrayLike | None, check: Callable[[Any], float] = float, above: str = ""
+) -> Numbers | None:
+    """Return an argument as float or tuple of finite floats, ``> 0`` if so; None if not given."""
+    if value is None:
+        return None
+    try:
+        array = np.asarray(value)
+        if array.dtype.kind not in "iuf":
+            raise ValueError
+        array = array.astype(float)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"{name} = {value!r}: expected a number or a list of numbers") from None
+    if array.ndim > 1 or not 1 <= array.size <= MAX_COUNT:
+        shape = "x".join(map(str, array.shape))
+        raise InputError(f"{name}: {shape} values; expected a number or a list of 1 to {MAX_COUNT}")
+    result = tuple(check(number) for number in array.ravel().tolist())
+    bad = [number for number in result if not math.isfinite(number) or (above and number <= 0.0)]
+    if bad:
+        raise InputError(f"{name} = {bad[0]!r}: expected finite numbers{above}")
+    return result if array.ndim else result[0]
+
+
+def checked_number(name: str, value: Any, expected: str = "one number") -> float:
+    """Return an argument as finite float; raise ``InputError`` if it is a list or no number."""
+    number = checked_numbers(name, value)
+    if not isinstance(number, float):
+        raise InputError(f"{name} = {value!r}: expected {expected}")
+    return number
+
+
+def checked_positive(name: str, value: Any) -> float:
+    """Return an argument as finite float above zero; raise ``InputError`` otherwise."""
+    number = checked_numbers(name, value)
+    if not isinstance(number, float) or number <= 0.0:
+        raise InputError(f"{name} = {value!r}: expected a number > 0")
+    return number
+
+
+def checked(check: Callable[[str, Any], Any], *default: Any) -> Any:
+    """Return a job's field, with a default or without, that a check takes by name and value."""
+    metadata = {CHECK: check}
+    return field(metadata=metadata, default=default[0]) if default else field(metadata=metadata)
+
+
+def whole(minimum: int, maximum: int = MAX_COUNT) -> Any:
+    """Return a job's field that takes a whole number from minimum to maximum."""
+    return checked(partial(checked_integer, minimum=minimum, maximum=maximum))
+
+
+def positive() -> Any:
+    """Return a job's field that takes a finite number above zero."""
+    return checked(checked_positive)

@@ -1,0 +1,155 @@
+"""Report sections of any result: its picture, its numbers, its signs, and where it comes from."""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+from collections.abc import Iterable, Sequence
+from importlib.metadata import PackageNotFoundError, version
+from typing import TYPE_CHECKING
+
+from ..errors import InputError
+from ..model.ranges import EXCITATION, STRUCTURE
+from ..units import OVER_OMEGA, as_shown, scale_of
+from .labels import plain_title
+from .page import Section, Table, format_number
+from .plot import function_name, plot
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+WORDS = {-1: "not in this record", 0: "no", 1: "yes"}
+MOST_ROWS = 60
+MOVED = "{0.meaning.values}: {0.formula.values} ({0.source.values}). Also moved by: "
+MOVED += "{0.moved_by.values}."
+MOVED = "{0.meaning.values}: {0.formula.values} ({0.source.values}). Also moved by: "
+MOVED += "{0.moved_by.values}."
+PACKAGES = ("numpy", "scipy", "xarray", "fmpy", "lmfit", "matplotlib")
+BY_RECORD = ("detect", "fit")  # their question is the record, which has a digest
+LONGEST = 160  # letters of an attribute
+ORIGIN = {  # attributes, and what a reader calls them
+    "title": "title",
+    "record_file": "record",
+    "record_sha256": "SHA-256 of the record",
+    "guess_file": "guess",
+    "sensors": "sensors",
+    "source": "computed by",
+}
+
+
+def title_of(answer: xr.Dataset) -> str:
+    """Return a result's title as a heading; pictures and tables tell of its structure."""
+    return plain_title(str(answer.attrs.get("title") or function_name(answer)), structure=False)
+
+
+def answer_section(answer: xr.Dataset) -> Section:
+    """Return a section with a result's picture, if there is one, and its scalar numbers."""
+    title = title_of(answer)
+    tables = [table for table in (scalar_table(answer), parameter_table(answer)) if table.rows]
+    try:
+        return Section(title, picture=plot(answer), caption=title, tables=tables)
+    except InputError:
+        return Section(title, tables=tables)
+
+
+def scalar_table(answer: xr.Dataset) -> Table:
+    """Return a table of all scalar variables of a result."""
+    rows = []
+    for name, array in as_shown(answer).data_vars.items():
+        if not array.dims and array.dtype.kind in "iufb":
+            value = format_number(float(array), str(array.attrs.get("units", "")), 5)
+            meaning = str(array.attrs.get("long_name", ""))
+            rows.append((str(name), meaning, flag_word(array) or value))
+    return Table(("name", "what it is", "value"), rows[:MOST_ROWS])
+
+
+def flag_word(array: xr.DataArray) -> str:
+    """Return the word that a scalar flag variable stands for; empty if it is no flag."""
+    words = str(array.attrs.get("flag_meanings", "")).split()
+    numbers = [int(number) for number in array.attrs.get("flag_values", [])]
+    return words[numbers.index(int(array))] if words and int(array) in numbers else ""
+
+
+def parameter_table(answer: xr.Dataset) -> Table:
+    """Return a table of structure and excitation, from a result's attributes."""
+    rows = []
+    for name, quantity in {**STRUCTURE, **EXCITATION}.items():
+        if name in answer.attrs and not isinstance(answer.attrs[name], str):
+            factor, unit = scale_of(answer, quantity.unit)
+            value = float(answer.attrs[name]) / factor
+            shown = OVER_OMEGA if unit == "eta" else unit
+            rows.append((name, quantity.description, format_number(value, shown, 6)))
+    return Table(("parameter", "what it is", "value"), rows)
+
+
+def signs_section(answer: xr.Dataset) -> Section:
+    """Return a section on signs: values, noise floors, and other causes of those that stand out."""
+    known = [answer.sel(sign=sign) for sign in answer.sign.values]
+    known = [one for one in known if bool((one.exceeds >= 0).any())]
+    rows = [
+        (
+            str(one.meaning.values),
+            *(format_sensors(one[name].values) for name in ("value", "floor", "sound_highest")),
+            " · ".join(WORDS[int(number)] for number in one.exceeds.values),
+        )
+        for one in known
+    ]
+    marked = [number for number, one in enumerate(known) if bool((one.exceeds == 1).any())]
+    columns = ("sign", "value", "noise alone", "sound structure", "stands out")
+    moved = [MOVED.format(known[number]) for number in marked]
+    both = ", for sensor 1 and sensor 2" if answer.sizes["channel"] > 1 else ""
+    text = (
+        "A sign stands out where it is above twice what noise and a sound structure with the same "
+        "noise show. Signs know nothing of the model; each is moved by other things too. "
+        f"Numbers have no unit{both}. "
+        f"Noise from {answer.attrs.get('noise_from', 'the record')}; sound structure: "
+        f"{answer.attrs.get('sound_from', '')}, seeds {answer.attrs.get('seeds', '')}."
+    )
+    caption = "Signs of the record over what noise and a sound structure show"
+    table = Table(columns, rows, frozenset(marked))
+    return Section("Signs that need no model", [text], moved, plot(answer), caption, [table])
+
+
+def format_sensors(values: Iterable[float]) -> str:
+    """Format one number per sensor for a table's cell."""
+    return " · ".join(format_number(float(value)) for value in values)
+
+
+def origin_section(answers: Sequence[xr.Dataset]) -> Section:
+    """Return a section with versions and identities of all results of a page."""
+    rows: list[tuple[str, str]] = []
+    for number, answer in enumerate(answers, 1):
+        begin = f"{number}. " if len(answers) > 1 else ""
+        rows += [(begin + name, text) for name, text in describe_origin(answer)]
+    found = {name: installed_version(name) for name in PACKAGES}
+    versions = [f"{name} {number}" for name, number in found.items() if number]
+    rows.append(("versions", ", ".join([f"Python {platform.python_version()}", *versions])))
+    table = Table(("what", "value"), rows)
+    return Section("Where it comes from", tables=[table], place="appendix")
+
+
+def describe_origin(answer: xr.Dataset) -> list[tuple[str, str]]:
+    """Return pairs of a name and a text on a result's origin, from its attributes."""
+    attributes = {str(name): str(text) for name, text in answer.attrs.items()}
+    rows = [(label, attributes[name]) for name, label in ORIGIN.items() if attributes.get(name)]
+    if "history" in attributes:
+        rows.append(("computed on", attributes["history"].partition(": ")[0]))
+    if "call" in attributes and attributes.get("analysis") not in BY_RECORD:
+        rows.append(("what was asked", attributes["call"]))
+    for name in sorted(attributes):
+        if name.startswith("fmu_guid"):
+            model = attributes.get(name.replace("guid", "model"), "")
+            rows.append((f"FMU {model}".rstrip(), attributes[name]))
+    if "identity" in attributes:
+        digest = hashlib.sha256(attributes["identity"].encode()).hexdigest()[:16]
+        rows.append(("identity of question, FMU and code", digest))
+    cut = {name: f"{text[:LONGEST]} ..." for name, text in rows if len(text) > LONGEST}
+    return [(name, cut.get(name, text)) for name, text in rows]
+
+
+def installed_version(name: str) -> str:
+    """Return a package's installed version; empty if it is not installed."""
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return ""

@@ -1,0 +1,189 @@
+"""Draw branches of orbits, alone or over responses, once both are known to belong together."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+
+from ..errors import InputError
+from ..flags import flag_words
+from ..model.ranges import OF_LENGTH, STRUCTURE
+from ..units import omega_of
+from .colours import BLUE, RED
+from .scales import ETA, acceleration_scale, axis_values, frequency_scale, parameter_scale
+from .style import draw_line
+
+MARKERS = {  # by the bifurcation's kind
+    **{"fold": "<", "period doubling": "s", "period halving": "d", "Neimark-Sacker": "o"},
+    **{"grazing of an impact": "v", "grazing of a flight": "^", "earlier release": "D"},
+    **{"loss of permanent contact": "X", "begin of permanent contact": "P"},
+}
+SAME = 1e-9  # relative: numbers that are nearer than this are one
+SI = (*STRUCTURE, "bonded")
+MOVED = {  # by a parameter that is none of SI
+    **{"mu": {"m2", "d2"}, "kappa": {"k2"}, "omega": {"k1", "k2", "d1", "d2"}},
+    **{"D": {"d1", "d2"}, "D1": {"d1"}, "D2": {"d2"}, "zeta1": {"d1"}, "zeta2": {"d2"}},
+    **{"f1": {"k1", "d1"}, "f2": {"k2", "d2"}},
+}
+PAIR = (BLUE, RED)  # colours of stable and unstable orbits
+ALIKE = ({"eta", "frequency"}, {"level", "amplitude"})  # names of what is one axis
+
+
+def explain_mismatch(branch: xr.Dataset, over: str, parameters: Mapping[str, Any]) -> str:
+    """Return a text on why a dataset is no branch of this structure and parameter; else ""."""
+    question = str(branch.attrs.get("call", "")).partition("(")[0] or "nothing"
+    if question != "branch":
+        return f"an answer of {question}; expected one of branch"
+    name = str(branch.attrs["over"])
+    if name != over and not any({name, over} <= alike for alike in ALIKE):
+        return f"a branch along {name}; expected one along {over}"
+    if branch.attrs.get("box_acceleration", 0.0) or "box_acceleration" in branch.coords:
+        return "a branch with a constant acceleration of the box; expected one without"
+    for key in SI:
+        if key in MOVED.get(name, {name}) or key not in parameters:
+            continue
+        own, other = float(branch.attrs.get(key, 0.0)), float(parameters[key])
+        if not math.isclose(own, other, rel_tol=SAME):
+            return f"a branch of another structure, {key} = {own:g}; expected {key} = {other:g}"
+    return ""
+
+
+def explain_other_excitation(branch: xr.Dataset, data: xr.Dataset, over: str) -> str:
+    """Return a text on why a branch has another excitation than the responses; else "".
+
+    The box's amplitude does not matter where everything grows with it, as without a clearance.
+    """
+    at = branch.frequency.values
+    if over not in ALIKE[0]:
+        same = [differ(branch[key].values, data[key].values) for key in ("eta", "frequency")]
+        if all(same):
+            eta = [float(each.eta.values[0]) for each in (branch, data)]
+            return f"a branch at eta = {eta[0]:g}; expected eta = {eta[1]:g}"
+    has_scale = any(branch.attrs.get(name) for name in OF_LENGTH)
+    if has_scale and over not in ALIKE[1]:
+        own, other = branch.amplitude.values, amplitude_at(data, at)
+        if not np.allclose(own, other, rtol=SAME, atol=0.0):
+            return (
+                f"a branch at an amplitude of {own[0]:g} m, where the responses have "
+                f"{other[0]:g} m; expected the same, as the structure has a scale of length"
+            )
+    return ""
+
+
+def differ(some: np.ndarray, others: np.ndarray) -> bool:
+    """Return whether two arrays hold more than one number, apart from rounding."""
+    return not np.allclose(np.append(some, others), some[0], rtol=SAME, atol=0.0)
+
+
+def amplitude_at(data: xr.Dataset, frequency: np.ndarray) -> np.ndarray:
+    """Return the box's amplitude, m, interpolated to frequencies between the responses'.
+
+    Where the level is held, exactly that; else linear between the responses.
+    """
+    order = np.argsort(data.frequency.values, kind="stable")
+    own = data.frequency.values[order]
+    amplitude = np.broadcast_to(data.amplitude.values, own.shape)[order]
+    level = amplitude * own**2
+    if np.allclose(level, level[0], rtol=SAME, atol=0.0):
+        return np.asarray(level[0] / frequency**2)
+    return np.interp(frequency, own, amplitude)
+
+
+class Overlay:
+    """A branch with the units of the responses over which it is drawn."""
+
+    def __init__(self, branch: xr.Dataset, data: xr.Dataset, parameter: str) -> None:
+        parameters = {key: data.attrs[key] for key in SI if key in data.attrs}
+        if "structure" in data.dims:  # of both
+            parameters.pop("bonded", None)
+        why = explain_mismatch(branch, parameter, parameters)
+        why = why or explain_other_excitation(branch, data, parameter)
+        if why:
+            raise InputError(f"overlay: {why}")
+        self.branch, self.data, self.parameter = branch, data, parameter
+
+    def x(self, values: xr.DataArray) -> np.ndarray:
+        """Return values of the branch's parameter in the units of the responses' axis."""
+        name, numbers = str(self.branch.attrs["over"]), values.values
+        if name in ALIKE[0]:
+            omega = omega_of(self.branch)
+            frequency = numbers * omega if name == "eta" else numbers
+            on_ratios = axis_values(self.data, self.parameter).label == ETA
+            return np.asarray(frequency / (omega if on_ratios else frequency_scale(self.data)[0]))
+        if self.parameter == "level":
+            accelerations = numbers * self.branch.frequency.values[0] ** 2
+            return np.asarray(accelerations / acceleration_scale(self.data, "g")[0])
+        return np.asarray(numbers / parameter_scale(self.data, self.parameter)[0])
+
+    def scale(self, factor: float) -> np.ndarray:
+        """Return factors from lengths over a eta^2 to the axis' unit, one per branch point."""
+        own = self.parameter in ALIKE[1]
+        amplitude = None if own else amplitude_at(self.data, self.branch.frequency.values)
+        return length_factors(self.branch, factor, amplitude)
+
+    def draw(self, plane: Axes, name: str, factor: float, colours: tuple[str, str] = PAIR) -> None:
+        """Draw a length of the orbits, such as ``xi_rel``, as lines; ``factor``: the axis' unit."""
+        x = self.x(self.branch[str(self.branch.attrs["over"])])
+        draw_orbits(plane, self.branch, x, name, self.scale(factor), colours)
+
+    def mark(self, plane: Axes, name: str, factor: float) -> None:
+        """Draw the branch's bifurcations at a length of the orbits; ``factor``: the axis' unit."""
+        if self.branch.sizes.get("bifurcation"):
+            x = self.x(self.branch.bifurcation_value)
+            draw_bifurcations(plane, self.branch, x, name, self.scale(factor))
+
+    def gaps(self, factor: float) -> np.ndarray:
+        """Return the branch's gaps at phase 0 in the unit of an axis."""
+        samples = self.branch.xi_rel.transpose("sample", "point").values
+        return np.asarray(samples * self.scale(factor))
+
+
+def length_factors(
+    branch: xr.Dataset, factor: float, amplitude: np.ndarray | None = None
+) -> np.ndarray:
+    """Return what lengths over a eta^2 are multiplied by at each point; 1 for an axis of ratios."""
+    if not factor:
+        return np.ones(branch.sizes["point"])
+    box = branch.amplitude.values if amplitude is None else amplitude
+    return np.asarray(box * branch.eta.values**2 / factor)
+
+
+def draw_orbits(
+    plane: Axes,
+    branch: xr.Dataset,
+    x: np.ndarray,
+    name: str,
+    scale: np.ndarray,
+    colours: tuple[str, str] = PAIR,
+) -> None:
+    """Draw a length of a branch's orbits as lines: solid where stable, dashed where unstable."""
+    stable = branch.stable.values == 1
+    # a step of which one end is unstable is drawn as unstable
+    both = stable & np.append(stable[1:], True) & np.append(True, stable[:-1])
+    for row in np.atleast_2d(branch[name].transpose(..., "point").values * scale):
+        for label, shown, style, colour, width in (
+            ("stable", stable, "-", colours[0], 1.2),
+            ("unstable", ~both, "--", colours[1], 0.9),
+        ):
+            values = np.where(shown, row, np.nan)
+            draw_line(plane, x, values, style, colour, width, label if shown.any() else None)
+
+
+def draw_bifurcations(
+    plane: Axes, branch: xr.Dataset, x: np.ndarray, name: str, scale: np.ndarray
+) -> None:
+    """Draw a marker of the bifurcation's kind at a length of each bifurcation's orbit."""
+    names = flag_words(branch.bifurcation_kind.attrs)
+    there = np.interp(branch.bifurcation_place.values, np.arange(len(scale)), scale)
+    values = branch[f"bifurcation_{name}"].transpose("bifurcation", ...).values
+    rows = values.reshape(len(there), -1) * there[:, np.newaxis]
+    style: Any = {"color": "black", "markerfacecolor": "white", "markersize": 5, "zorder": 3}
+    for at, row, kind in zip(x, rows, branch.bifurcation_kind.values, strict=True):
+        word = names[int(kind)].replace("Neimark Sacker", "Neimark-Sacker")
+        place = np.full(len(row), at)
+        plane.plot(place, row, MARKERS[word], linestyle="none", label=word, **style)

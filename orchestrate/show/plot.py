@@ -1,0 +1,160 @@
+"""Public ``plot``: choose the picture of any result by the function that made it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from functools import partial
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from ..errors import InputError
+from ..units import Units, with_units
+from . import analysis, diagnosis, histories, lines, planes, resonance, spectra, weak_drive
+
+DRAW: dict[str, Callable[..., Figure]] = {  # by the function that made the result
+    # lines over a parameter
+    "attractors": lines.draw_attractors,
+    "branch": lines.draw_branch,
+    "jump_voltages": lines.draw_jump_voltages,
+    "lyapunov": lines.draw_lyapunov,
+    "sweep": lines.draw_sweep,
+    "contact_threshold": resonance.draw_contact_threshold,
+    "resonance": resonance.draw_resonance,
+    "resonance_levels": resonance.draw_levels,
+    "couple": weak_drive.draw,
+    "drive_branch": weak_drive.draw_stationary,
+    # planes
+    "basin": planes.draw_basin,
+    "border": planes.draw_border,
+    "capture": weak_drive.draw_capture,
+    "manifold": planes.draw_manifold,
+    "map": planes.draw_map,
+    "poincare": planes.draw_poincare,
+    # time histories
+    "cosimulate": histories.draw_cosimulation,
+    "shake": histories.draw_shake,
+    "simulate": histories.draw_motion,
+    # spectra
+    "drive_spectra": spectra.draw_motor_spectra,
+    "spectra": spectra.draw_spectra,
+    **dict.fromkeys(analysis.DRAW, analysis.draw),
+    # special: a diagnosis
+    "detect": diagnosis.draw_detect,
+    "fit": diagnosis.draw_detect,
+    "plan_test": diagnosis.draw_plan,
+    "signs": diagnosis.draw_signs,
+}
+TOGETHER = {  # what belongs into one picture with a result of this function
+    **dict.fromkeys(("border", "branch", "lyapunov", "map"), "more of them"),
+    **dict.fromkeys(("resonance", "sweep"), "branches"),
+    **dict.fromkeys(("shake", "simulate"), "the bonded structure's"),
+    **dict.fromkeys(("capture", "couple"), "the other structure's"),
+}
+EXPECTED = (
+    f"expected answers of one of {', '.join(sorted(DRAW))}; several of one of border, branch, "
+    "lyapunov, map; a sweep or resonance with branches over it; simulate or shake with the bonded "
+    "structure's; couple with drive_branch"
+)
+
+
+def plot(*answers: xr.Dataset, title: str = "", part: str = "", units: str | Units = "") -> Figure:
+    """Draw one result, or several that belong in one picture; return the figure.
+
+    Parameters
+    ----------
+    *answers : xarray.Dataset
+        One answer, or several that belong into one picture: branches, borders, maps or exponents; a
+        sweep or resonance curves, and branches over them; a motion of the delaminated and of the
+        bonded structure; runs of :func:`orchestrate.couple` or :func:`orchestrate.capture` of both
+        structures, with the branches of :func:`orchestrate.drive_branch`.
+    title : str
+        Above the picture; by default structure and excitation.
+    part : str
+        ``"jumps"``: of runs of :func:`orchestrate.couple` the second picture, speed and amplitude
+        over time around each jump. By default the first one, the ramp.
+    units : str
+        Of its axes and its title, such as ``"Hz, mm, g"``: a frequency in Hz, rpm, rad/s or as eta,
+        a length in m, mm or um, an acceleration in m/s2 or g, a time in s or periods. By default
+        Hz and the prefix that suits of a structure in SI, the paper's ratios else.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        It is shown in a notebook; ``figure.savefig("picture.png")`` writes a file.
+
+    Raises
+    ------
+    InputError
+        Where there is no picture of these.
+
+    Examples
+    --------
+    >>> import orchestrate
+    >>> beam = orchestrate.Structure.nondimensional()
+    >>> figure = orchestrate.plot(orchestrate.simulate(beam, eta=1.2, periods=4))
+    >>> [axes.get_ylabel() for axes in figure.axes][0]
+    'displacement in m'
+
+    Notes
+    -----
+    Colours, letters and sizes that all pictures have in common stand in
+    ``orchestrate.show.style.STYLE``, as settings of Matplotlib: what is changed there holds for
+    every picture from then on.
+    """
+    kinds = [function_name(answer) for answer in answers]
+    shown: dict[str, list[xr.Dataset]] = {kind: [] for kind in kinds}
+    for kind, answer in zip(kinds, answers, strict=True):
+        shown[kind].append(with_units(answer, units))
+    if part and (part != "jumps" or set(shown) != {"couple"}):
+        asked = f"part={part!r} of {' and '.join(sorted(shown))}"
+        raise InputError(f"plot: {asked}; expected 'jumps' of couple")
+    if part:
+        return weak_drive.draw_jumps(by_structure(shown["couple"]), title=title)
+    draw = choose_picture(shown)
+    if draw is None:
+        raise InputError(f"plot: no picture of {' and '.join(kinds) or 'nothing'}; {EXPECTED}")
+    return draw(title=title) if title else draw()
+
+
+def choose_picture(shown: dict[str, list[xr.Dataset]]) -> Callable[..., Figure] | None:
+    """Return what draws these results in one picture, with the results; None if there is none."""
+    kind, *more = sorted(shown, key=lambda kind: kind in ("branch", "drive_branch")) or [""]
+    if kind not in DRAW:
+        return None
+    (first, *others), beside = shown[kind], TOGETHER.get(kind)
+    runs = by_structure(shown[kind])
+    if beside == "the other structure's":
+        branches = shown.get("drive_branch", [])
+        if len(runs) <= len(others) or more not in ([], ["drive_branch"]) or len(branches) > 1:
+            return None
+        if branches and kind != "couple":
+            return None
+        return partial(DRAW[kind], runs, **{"branches": branches[0]} if branches else {})
+    if not more and (not others or beside == "more of them"):
+        return partial(DRAW[kind], first, *others)
+    if more == ["branch"] and not others and beside == "branches":
+        return partial(DRAW[kind], first, overlay=shown["branch"])
+    if not more and len(others) == 1 and len(runs) == 2 and beside == "the bonded structure's":
+        return partial(DRAW[kind], runs["delaminated"], bonded=runs["bonded"])
+    return None
+
+
+def by_structure(answers: Sequence[xr.Dataset]) -> dict[str, xr.Dataset]:
+    """Return results by the structure that they are of, delaminated or bonded (undamaged)."""
+    names = ["bonded" if answer.attrs.get("bonded", False) else "delaminated" for answer in answers]
+    return dict(zip(names, answers, strict=True))
+
+
+def function_name(answer: object) -> str:
+    """Return the name of the public function that made a result."""
+    attributes = answer.attrs if isinstance(answer, xr.Dataset) else {}
+    if "analysis" in attributes:  # of a record
+        return str(attributes["analysis"])
+    call = attributes.get("call")
+    if not isinstance(call, str):
+        kind = type(answer).__name__
+        raise InputError(f"plot: {kind} is no answer of a question; {EXPECTED}")
+    name = call.partition("(")[0].removesuffix("Job")  # a job by its class: CoupleJob
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()

@@ -1,0 +1,285 @@
+"""Report sections of a verdict on a beam: statement, evidence, fits, parameters."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..constants import TURN
+from ..units import scale_of, units_of, with_units
+from .diagnosis import PARTED, draw_detect, draw_misfit
+from .page import MISSING, Section, Table, Verdict, format_number, format_with_error
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+TONES = {"delaminated": "bad", "no opening seen": "good", "not described": "unclear"}
+ALWAYS_ASSUMED = (
+    "Two masses stand for the beam: waves and higher modes are left out.",
+    "Impacts take no time and lose energy by one number e.",
+)
+NAMES_OF_CHANNELS = (
+    "Base is what the beam is fastened to, the shaker's table or a clamp; its acceleration is "
+    "called box_acceleration in Python and in files of this package. Face 1 and face 2 are the "
+    "outer faces of both halves, with sensor 1 and sensor 2: acceleration1 and acceleration2."
+)
+BEST = 3  # hypotheses in the table of parameters
+
+
+def make_verdict(answer: xr.Dataset) -> Verdict:
+    """Return the verdict of a ``detect`` result: its word and one sentence.
+
+    What is sound is never called so: no opening was seen.
+    """
+    word = str(answer.verdict.values)
+    sentences = {
+        "delaminated": delaminated_statement,
+        "no opening seen": no_opening_statement,
+        "not described": lambda _: (
+            "None of the structures that were tried, sound or delaminated, describes this record: "
+            "the beam, its clamp or the sensors do something else."
+        ),
+        "undecided": lambda _: "This record does not tell a delaminated beam from a sound one.",
+    }
+    return Verdict(make_sentence(word), sentences[word](answer), TONES.get(word, "open"))
+
+
+def delaminated_statement(answer: xr.Dataset) -> str:
+    """Return the statement on a delaminated beam."""
+    ratio = scalar(answer, "ratio")
+    times = "" if math.isnan(ratio) else f", {format_number(ratio)} times closer than any sound one"
+    apart = "the faces are seen to move apart, and " if scalar(answer, "faces_apart") > 1.0 else ""
+    return (
+        f"The record is that of two halves that part and strike each other: {apart}the delaminated "
+        f"structure describes it{times}."
+    )
+
+
+def no_opening_statement(answer: xr.Dataset) -> str:
+    """Return the statement for no opening seen; it never says that the beam is intact."""
+    smallest = scalar(answer, "smallest_opening")
+    seen = ""
+    if math.isfinite(smallest):
+        shown = answer if units_of(answer).length else with_units(answer, "um")
+        factor, unit = scale_of(shown, "m")
+        opening = f"{format_number(smallest / factor)} {unit.replace('um', 'µm')}"
+        seen = (
+            f" Faces at the sensor that part by {opening} or more would have been seen; away from "
+            "it an opening may be larger."
+        )
+    level = format_level(answer, scalar(answer, "level_high"))
+    ends = scalar(answer, "frequency_low"), scalar(answer, "frequency_high")
+    covered = f"up to {level} over {frequencies_text(answer, *ends)}"
+    return f"No opening of the faces was seen {covered}.{seen}"
+
+
+def scalar(answer: xr.Dataset, name: str) -> float:
+    """Return a scalar variable of a result by its name; NaN if the result lacks it."""
+    return float(answer[name]) if name in answer else math.nan
+
+
+def verdict_sections(answer: xr.Dataset) -> list[Section]:
+    """Return all report sections on which a verdict rests."""
+    front = (decision_section, fits_section, measured_record)
+    appendix = (parameter_section, misfit_section, assumption_section)
+    made = [section_of(answer) for section_of in (*front, *appendix)]
+    return [section for section in made if section is not None]
+
+
+def measured_record(answer: xr.Dataset) -> Section | None:
+    """Return a section on the record: sensors, unit, sampling, sweep; None where none is known."""
+    words = {str(name): str(text) for name, text in answer.attrs.items()}
+    unit = words.get("record_unit", "").replace("m/s2", "m/s²")
+    levels = scalar(answer, "level_low"), scalar(answer, "level_high")
+    rows = [
+        ("file of the record", words.get("record_file", "")),
+        ("columns of the file", words.get("record_columns", "")),
+        ("sensors", words.get("sensors", "")),
+        ("participation of the sensors", participation_text(answer)),
+        ("unit of its accelerations", words.get("record_unit_note", "") or unit),
+        ("sampling rate", known_text(answer, "sample_rate", "Hz", 6)),
+        ("duration", known_text(answer, "record_duration", "s", 4)),
+        ("sweep", sweep_text(answer)),
+        ("level of the base, peak", format_level(answer, *levels)),
+        ("file of the guess", words.get("guess_file", "")),
+        ("command that made it", words.get("command", "")),
+    ]
+    known = [row for row in rows if row[1]]
+    if not known:
+        return None
+    return Section("The record", tables=[Table(("what", "value"), known)], place="front")
+
+
+def participation_text(answer: xr.Dataset) -> str:
+    """Format the sensors' participation factors of the best stated fit; empty where none is."""
+    if "participation" not in answer:
+        return ""
+    stated = answer.where(answer.participation.notnull().any("channel"), drop=True)
+    if not stated.sizes["hypothesis"]:
+        return ""
+    best = stated.isel(hypothesis=int(np.argmin(stated.misfit.values)))
+    pairs = zip(best.participation.values, best.participation_error.values, strict=True)
+    return ", ".join(format_with_error(value, error) for value, error in pairs)
+
+
+def known_text(answer: xr.Dataset, name: str, unit: str, digits: int) -> str:
+    """Format a scalar variable in its own unit; empty if the answer has none of that name."""
+    value = scalar(answer, name)
+    return format_number(value, unit, digits) if math.isfinite(value) else ""
+
+
+def sweep_text(answer: xr.Dataset) -> str:
+    """Format the range and direction of the sweep, and the part of it that was compared."""
+    low, high = scalar(answer, "sweep_low"), scalar(answer, "sweep_high")
+    if not math.isfinite(low + high):
+        return ""
+    direction = {"up": "upwards", "down": "downwards", "up and down": "up and down"}
+    way = direction.get(str(answer.attrs.get("direction", "")), "")
+    whole = f"{frequencies_text(answer, low, high)} {way}".rstrip()
+    if "frequency" not in answer.coords:
+        return whole
+    ends = float(answer.frequency.min()), float(answer.frequency.max())
+    return f"{whole}; compared with models: {frequencies_text(answer, *ends)}"
+
+
+def frequencies_text(answer: xr.Dataset, low: float, high: float) -> str:
+    """Format a range of frequencies in Hz in the units that were asked for."""
+    turn, word = scale_of(answer, "Hz")
+    first, last = (format_number(end / turn, digits=4) for end in (low, high))
+    return f"{first} to {last} {'Omega/omega' if word == 'eta' else word}"
+
+
+def format_level(answer: xr.Dataset, *levels: float) -> str:
+    """Format levels of the base in the unit that was asked for; empty where one is not known."""
+    felt, unit = scale_of(answer, "m/s2")
+    numbers = " to ".join(format_number(level / felt) for level in levels)
+    return f"{numbers} {unit.replace('m/s2', 'm/s²')}" if all(map(math.isfinite, levels)) else ""
+
+
+def decision_section(answer: xr.Dataset) -> Section:
+    """Return a section on what decided the verdict and what would change it."""
+    reason, settle = (str(answer.attrs.get(name, "")) for name in ("reason", "settle"))
+    points = [f"What decided: {make_sentence(reason)}"] if reason else []
+    odds = scalar(answer, "odds")
+    simulated = str(answer.attrs.get("simulated", ""))
+    if simulated:
+        points.append(f"{make_sentence(simulated)} Both models were fitted to each of them.")
+    elif math.isfinite(odds) and odds > 0.0:
+        points.append(
+            "The odds of the delaminated against the best sound structure are "
+            f"{format_odds(odds)}. They were counted in records put together of blocks of this "
+            "one, by how often the ratio of misfits is large enough to decide."
+        )
+    if settle:
+        points.append(f"What would change or settle it: {make_sentence(settle)}")
+    return Section("Why", points=points, place="front")
+
+
+def format_odds(odds: float) -> str:
+    """Format odds as a ratio, "24 to 1"."""
+    larger = f"{float(f'{max(odds, 1.0 / odds):.2g}'):g}"
+    return f"{larger} to 1" if odds >= 1.0 else f"1 to {larger}"
+
+
+def make_sentence(words: str) -> str:
+    """Return words as a sentence, with a capital at the beginning and a full stop."""
+    return f"{words[:1].upper()}{words[1:].rstrip('.')}."
+
+
+def fits_section(answer: xr.Dataset) -> Section | None:
+    """Return a section with the measurement over the fits; None without fits."""
+    if "measured" not in answer or "fitted" not in answer:
+        return None
+    picture = draw_detect(answer.assign_attrs(title=""))
+    words = "What was measured, and what the best structures of each kind do, order by order."
+    return Section("The measurement over the fits", picture=picture, caption=words, place="front")
+
+
+def misfit_section(answer: xr.Dataset) -> Section | None:
+    """Return a section with all structures, and the misfit over frequency; None without it."""
+    if "misfit_at" not in answer:
+        return None
+    text = (
+        "The misfit is the distance of a structure's motion from the measured one. It is 1 where "
+        "they differ by as much as noise and the usual error of a good model explain."
+    )
+    return Section(
+        "Where the structures differ from the measurement",
+        [text],
+        picture=draw_misfit(answer.assign_attrs(title="")),
+        caption="Misfit of each structure over the frequency of the excitation",
+        tables=[hypothesis_table(answer)],
+        place="appendix",
+    )
+
+
+def hypothesis_table(answer: xr.Dataset) -> Table:
+    """Return a table of the hypotheses, the best fit first; marked: on which the verdict rests."""
+    rows = []
+    for one in sort_by_misfit(answer):
+        minima = f"{int(np.isfinite(one.minima).sum())}" if "minima" in one else MISSING
+        computed = format_number(scalar(one, "evaluations"), digits=6)
+        misfit = format_number(float(one.misfit))
+        rows.append((str(one.hypothesis.values), misfit, minima, computed))
+    parted = {"delaminated": True, "no opening seen": False}.get(str(answer.verdict.values))
+    deciding = [i for i, row in enumerate(rows) if row[0].startswith(PARTED) == parted][:1]
+    columns = ("structure", "misfit", "minima found", "motions computed")
+    return Table(columns, rows, frozenset(deciding))
+
+
+def parameter_section(answer: xr.Dataset) -> Section | None:
+    """Return a section with the parameters and errors that are stated; None without any."""
+    if "value" not in answer or "parameter" not in answer.dims:
+        return None
+    shown = [one for one in sort_by_misfit(answer) if np.isfinite(one.value).any()][:BEST]
+    names = [str(one.hypothesis.values) if "hypothesis" in one.coords else "value" for one in shown]
+    rows = []
+    for name in map(str, answer.parameter.values):
+        about = answer.sel(parameter=name)
+        unit, words = str(about.unit.values), f"{name}, {about.meaning.values}"
+        texts = [format_parameter(one.sel(parameter=name), unit) for one in shown]
+        if any(text != MISSING for text in texts):
+            rows.append((words, *texts))
+    text = (
+        "Errors are standard errors from blocks of the record and from what the structure misses. "
+        f"What a structure does not have, or the record does not hold, has a dash ({MISSING})."
+    )
+    table = Table(("parameter", *names), rows)
+    return Section("Parameters", [text], tables=[table], place="appendix") if rows else None
+
+
+def sort_by_misfit(answer: xr.Dataset) -> list[xr.Dataset]:
+    """Return the hypotheses of a result one by one, the best fit first."""
+    if "hypothesis" not in answer.dims:
+        return [answer]
+    ordered = answer.sortby("misfit")
+    return [ordered.isel(hypothesis=position) for position in range(ordered.sizes["hypothesis"])]
+
+
+def format_parameter(at: xr.Dataset, unit: str) -> str:
+    """Format a parameter of one hypothesis with its error; a dash if it has none."""
+    factor, word = scale_of(at, unit)
+    if word == "eta":  # a half's own frequency is no ratio to itself
+        factor, word = 1.0, unit
+    value, error = float(at.value) / factor, scalar(at, "standard_error") / factor
+    return format_with_error(value, error, word) if math.isfinite(value) else MISSING
+
+
+def assumption_section(answer: xr.Dataset) -> Section:
+    """Return a section with the verdict's assumptions."""
+    own = [text.strip() for text in str(answer.attrs.get("assumed", "")).split(";")]
+    points = [*ALWAYS_ASSUMED, *describe_guess(answer), *map(make_sentence, filter(None, own))]
+    return Section("What was assumed", [NAMES_OF_CHANNELS], points, place="appendix")
+
+
+def describe_guess(answer: xr.Dataset) -> list[str]:
+    """Return lines on the guess with which the search began; its masses were kept."""
+    numbers = {name: float(answer.attrs.get(name, math.nan)) for name in ("m1", "m2", "k1", "k2")}
+    if not all(value > 0.0 for value in numbers.values()):
+        return []
+    masses = " and ".join(format_number(numbers[name], "kg") for name in ("m1", "m2"))
+    halves = (math.sqrt(numbers[f"k{i}"] / numbers[f"m{i}"]) / TURN for i in (1, 2))
+    frequencies = " and ".join(format_number(f, "Hz") for f in halves)
+    return [f"Guessed of both halves: masses of {masses}, which were kept, and {frequencies}."]

@@ -1,0 +1,43 @@
+"""Processes that unpack an FMU, for the tests of what they leave: ``processes.py FMU ENDING``."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+
+from orchestrate.fmu import Instance
+from orchestrate.temporary import process_folder
+
+
+def work(path: str) -> None:
+    """Make an instance and take a step."""
+    with Instance(path) as instance:
+        instance.initialize()
+        instance.step(0.0, 1.0)
+
+
+def main(path: str, ending: str) -> None:
+    """Work, then end in one of the ways in which processes end."""
+    work(path)
+    mine = process_folder()
+    print(mine, flush=True)
+    if ending == "kill":
+        os.kill(os.getpid(), signal.SIGKILL)
+    if ending == "error":
+        raise RuntimeError
+    if ending == "fork":
+        child = os.fork()
+        if child == 0:
+            work(path)
+            print(process_folder(), flush=True)
+            sys.exit()  # runs what is registered for the end of the process, the parent's too
+        os.waitpid(child, 0)
+        assert list(mine.iterdir()), "the child has removed what is its parent's"
+    if ending == "wait":
+        sys.stdin.readline()
+        work(path)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,183 @@
+"""The compiled loop through events against the same in Python: equal bits, equal refusals."""
+
+from __future__ import annotations
+
+import ctypes
+import shutil
+import sys
+
+import numpy as np
+import pytest
+
+from orchestrate.errors import FmuError
+from orchestrate.fmu import PLAYED, REST, EventInstance, Player
+from orchestrate.fmu import c_library as libraries
+from orchestrate.fmu import event_loop as loops
+from orchestrate.fmu.c_library import library
+from orchestrate.fmu.event_loop import (
+    SOURCE,
+    Calls,
+    CompiledEventLoop,
+    EventLoop,
+    Progress,
+    Task,
+)
+from orchestrate.fmu.play import CUBIC
+from orchestrate.model import Structure
+
+from ...sparing import ordinary
+from .misbehaving import misbehaving
+
+STRUCTURE = Structure.nondimensional(mu=0.7, kappa=1.3, D=0.013, e=0.6)
+STRUCTURES = {
+    "chaos": STRUCTURE,
+    "sticking": Structure.nondimensional(e=0.2),
+    "bonded": STRUCTURE.as_bonded(),
+}
+RANDOM = np.random.default_rng(3)
+NODES = np.concatenate([[0.0], np.cumsum(RANDOM.uniform(0.1, 0.9, 400))])
+CUBICS = RANDOM.normal(size=(400, 4)) * (1.0, 1.0, 1.0, 3.0)
+SAMPLES = np.sort(np.concatenate([RANDOM.uniform(0.0, NODES[-1], 900), NODES, NODES[7:9]]))
+
+
+def bits(played):
+    """All that a loop answers."""
+    impacts = played.impacts
+    arrays = (impacts.time, impacts.state, impacts.closing, impacts.sticks)
+    return [array.tobytes() for array in (played.rows, played.touching, *arrays)]
+
+
+def done(kind, fmu, structure, nodes=NODES, cubics=CUBICS, samples=SAMPLES):
+    """What a loop answers, and the instance's state at the end."""
+    with Player(fmu) as player:
+        player.start(structure, (0.1, 0.2, 0.0, 0.0) if not structure.bonded else REST)
+        played = kind(player, CUBIC, PLAYED).run(nodes, cubics, samples)
+        return played, player.save_state()
+
+
+@pytest.mark.parametrize("name", STRUCTURES)
+def test_the_same_bits(name, event_fmu):
+    structure = STRUCTURES[name]
+    expected, end = done(EventLoop, event_fmu, structure)
+    result, compiled_end = done(CompiledEventLoop, event_fmu, structure)
+    assert bits(result) == bits(expected)
+    assert compiled_end == end
+    count = len(expected.impacts.time)
+    assert count == 0 if structure.bonded else count > 50
+    assert name != "sticking" or expected.impacts.sticks.sum() > 10
+
+
+def test_pauses_change_no_bit(event_fmu, monkeypatch):
+    """However small the buffer for impacts, and however often the loop returns to Python."""
+    expected, end = done(EventLoop, event_fmu, STRUCTURE)
+    monkeypatch.setattr(loops, "IMPACT_CAPACITY", 3)
+    monkeypatch.setattr(loops, "MAX_STEPS", 7)
+    result, compiled_end = done(CompiledEventLoop, event_fmu, STRUCTURE)
+    assert (bits(result), compiled_end) == (bits(expected), end)
+
+
+def test_where_it_is_read_changes_no_impact(event_fmu):
+    at_samples, end = done(CompiledEventLoop, event_fmu, STRUCTURE)
+    unread, same_end = done(CompiledEventLoop, event_fmu, STRUCTURE, samples=np.empty(0))
+    assert bits(at_samples)[2:] == bits(unread)[2:]
+    assert unread.rows.shape == (0, len(PLAYED))
+    assert len(end) == len(same_end)
+
+
+def test_an_open_instance_serves_any_number_of_motions(event_fmu):
+    """After another structure, and after a refusal, the motion is that of a new instance."""
+    expected, _ = done(CompiledEventLoop, event_fmu, STRUCTURE)
+    with Player(event_fmu) as player:
+        for structure in (*STRUCTURES.values(), STRUCTURE):
+            player.start(structure)
+            player.play(NODES, CUBICS, SAMPLES)
+        with pytest.raises(FmuError, match="box_acceleration = nan"):
+            player.play(NODES + NODES[-1], CUBICS * np.nan, SAMPLES)
+        player.start(STRUCTURE, (0.1, 0.2, 0.0, 0.0))
+        assert bits(player.play(NODES, CUBICS, SAMPLES)) == bits(expected)
+
+
+def refusal(kind, fmu, cubics=CUBICS, nodes=NODES, **inputs):
+    """What is said where the FMU refuses a call."""
+    with Player(fmu) as player:
+        player.start(STRUCTURE)
+        player.set(**inputs)
+        with pytest.raises(FmuError) as caught:
+            kind(player, CUBIC, PLAYED).run(nodes, cubics, SAMPLES)
+        return str(caught.value)
+
+
+def bad_row(value):
+    """Cubics of which one has a bad number."""
+    cubics = CUBICS.copy()
+    cubics[200, 2] = value
+    return cubics
+
+
+@pytest.mark.parametrize(
+    ("words", "arguments"),
+    [
+        ("box_snap = nan", {"cubics": bad_row(np.nan)}),
+        ("currentCommunicationPoint = 2.0 s", {"nodes": NODES + 2.0}),
+        ("evaluation_limit", {"evaluation_limit": 2}),
+    ],
+    ids=["input", "time", "discarded"],
+)
+def test_a_refusal_is_passed_on(words, arguments, event_fmu):
+    text = refusal(CompiledEventLoop, event_fmu, **arguments)
+    assert text == refusal(EventLoop, event_fmu, **arguments)
+    assert words in text
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the bad FMU is made for Linux")
+@pytest.mark.parametrize("first", ordinary([0, 40, 41, 42, 43], [0, 42]))
+def test_numbers_that_are_not_finite_are_refused(first, event_fmu, tmp_path):
+    """At a time of reading or at an impact, whichever comes first."""
+    if shutil.which("cc") is None and shutil.which("gcc") is None:
+        pytest.importorskip("ziglang")
+    found = []
+    for kind in (EventLoop, CompiledEventLoop):  # each with a count of readings of its own
+        fmu = misbehaving(event_fmu, tmp_path / f"{kind.__name__}.fmu", "NaN", first=first)
+        found.append(refusal(kind, fmu))
+    assert found[0] == found[1]
+    assert "answers x1 = nan; expected a finite number" in found[0]
+
+
+def test_shapes_that_do_not_fit_are_refused(event_fmu):
+    with Player(event_fmu) as player:
+        player.start(STRUCTURE)
+        with pytest.raises(ValueError, match=r"derivatives of shape \(400, 3\) for 401 nodes"):
+            player.play(NODES, CUBICS[:, :3], SAMPLES)
+
+
+def test_without_a_library_python_does_it(event_fmu, monkeypatch):
+    monkeypatch.setattr(loops, "run_function", lambda: None)
+    with EventInstance(event_fmu) as instance:
+        assert type(instance.event_loop()) is EventLoop
+
+
+def test_with_a_library_c_does_it(event_fmu):
+    with EventInstance(event_fmu) as instance:
+        assert type(instance.event_loop()) is CompiledEventLoop
+        assert instance.event_loop() is instance.event_loop()
+
+
+def test_a_library_that_cannot_be_loaded_is_no_failure(tmp_path, monkeypatch):
+    (tmp_path / "event_loop.so").write_bytes(b"nothing")
+    monkeypatch.setattr(libraries, "library", lambda source: tmp_path / "event_loop.so")
+    assert loops.run_function.__wrapped__() is None
+
+
+def test_structures_have_the_sizes_of_the_source():
+    """A field forgotten on one side would shift all that follow."""
+    sizes = (ctypes.c_uint * 3).in_dll(ctypes.CDLL(str(library(SOURCE))), "sizes")
+    assert list(sizes) == [ctypes.sizeof(kind) for kind in (Calls, Task, Progress)]
+
+
+def test_what_is_not_read_changes_nothing(event_fmu):
+    with Player(event_fmu) as player:
+        rows = []
+        for outputs in (PLAYED, ("x2", "v1")):
+            player.start(STRUCTURE, (0.1, 0.2, 0.0, 0.0))
+            rows.append(player.play(NODES, CUBICS, SAMPLES, outputs).rows)
+    assert rows[1].tobytes() == rows[0][:, [1, 2]].tobytes()

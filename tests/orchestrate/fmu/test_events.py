@@ -1,0 +1,113 @@
+"""Impacts by the clock: all of them, at the same bits as without events."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from orchestrate.errors import FmuError, InputError
+from orchestrate.fmu import REST, EventInstance, Instance, begin, sampled
+from orchestrate.model import Excitation, Structure
+
+STRUCTURE = Structure.nondimensional(mu=0.7, kappa=1.3, D=0.013, e=0.6)
+CHAOS = Excitation.nondimensional(1.2, STRUCTURE)
+END = 300.0
+STATE = ("x1", "x2", "v1", "v2")
+
+
+@pytest.fixture
+def events(event_fmu):
+    """Make an instance with events."""
+    with EventInstance(event_fmu) as instance:
+        yield instance
+
+
+@pytest.fixture
+def impacts(events):
+    """All impacts of a chaotic motion."""
+    begin(events, STRUCTURE, CHAOS)
+    return events.impacts(0.0, END)
+
+
+def test_every_impact_is_there(impacts, event_fmu):
+    with Instance(event_fmu) as instance:
+        begin(instance, STRUCTURE, CHAOS)
+        instance.step(0.0, END)
+        count, last, contacts = instance.get("impact_count", "impact_time", "contact_count")
+    assert len(impacts.time) == count > 50
+    assert impacts.time[-1] == last
+    assert impacts.sticks.sum() == contacts
+    assert np.all(np.diff(impacts.time) > 0.0) and np.all(impacts.closing >= 0.0)
+
+
+def test_stopping_at_impacts_changes_no_bit(events, event_fmu):
+    begin(events, STRUCTURE, CHAOS)
+    events.impacts(0.0, END)
+    stopped = events.get(*STATE)
+    begin(events, STRUCTURE, CHAOS)
+    events.advance(0.0, END)
+    assert events.get(*STATE) == stopped
+    with Instance(event_fmu) as instance:
+        begin(instance, STRUCTURE, CHAOS)
+        instance.step(0.0, END)
+        assert instance.get(*STATE) == stopped
+
+
+def test_an_impact_s_laws(impacts):
+    before, after, mu = impacts.before(STRUCTURE), impacts.state, STRUCTURE.mu
+    np.testing.assert_array_equal(before[:, :2], after[:, :2])
+    momentum = [states[:, 2] + mu * states[:, 3] for states in (before, after)]
+    np.testing.assert_allclose(momentum[0], momentum[1], atol=1e-13)
+    np.testing.assert_allclose(before[:, 2] - before[:, 3], impacts.closing, atol=1e-13)
+    free = ~impacts.sticks
+    parting = after[free, 3] - after[free, 2]
+    np.testing.assert_allclose(parting, STRUCTURE.e * impacts.closing[free], atol=1e-12)
+    gained = (before[:, 2] - after[:, 2])[free] * STRUCTURE.m1
+    np.testing.assert_allclose(gained, impacts.impulse(STRUCTURE)[free], atol=1e-12)
+
+
+def test_no_impacts(events):
+    begin(events, STRUCTURE.as_bonded(), CHAOS)
+    found = events.impacts(0.0, 10.0)
+    assert (found.time.shape, found.state.shape, found.sticks.dtype) == ((0,), (0, 4), bool)
+
+
+def test_begin_sets_all(any_fmu):
+    structure = Structure(m1=2.0, m2=3.0, k1=4.0, k2=5.0, d1=0.1, d2=0.2, e=0.3, gamma=1e-5)
+    excitation = Excitation(frequency=2.0, amplitude=0.5, phase=1.0)
+    with Instance(any_fmu) as instance:
+        begin(instance, structure, excitation, (0.1, 0.2, 0.3, 0.4))
+        values = {**structure.parameters(), **excitation.inputs()}
+        assert instance.get(*values) == list(values.values())
+        assert instance.get(*STATE, "phase") == [0.1, 0.2, 0.3, 0.4, 1.0]
+        assert instance.get("x_rel_max_on") == [False]
+        begin(instance, structure.as_bonded(), excitation, REST, x_rel_max_on=True)
+        assert instance.get("bonded", "x_rel_max_on", "x2") == [True, True, 0.0]
+
+
+@pytest.mark.parametrize("start", [(0.0, 0.0, 0.0), 0.0, [[0.0] * 4], "rest", ["a"] * 4])
+def test_a_start_has_four_numbers(events, start):
+    with pytest.raises(InputError, match=r"start = .*: expected 4 numbers, x1, x2, v1, v2"):
+        begin(events, STRUCTURE, CHAOS, start)
+
+
+@pytest.mark.parametrize("count", [1, 7, 300])
+def test_samples_are_the_states_at_equal_parts(any_fmu, count):
+    with Instance(any_fmu) as instance:
+        begin(instance, STRUCTURE, CHAOS)
+        states = sampled(instance, 0.0, 30.0, count)
+        begin(instance, STRUCTURE, CHAOS)
+        for n, state in enumerate(states, start=1):
+            instance.step((n - 1) * (30.0 / count), n * (30.0 / count))
+            np.testing.assert_allclose(instance.read(*STATE), state, rtol=1e-9, atol=1e-9)
+
+
+def test_fmi_2_has_no_events(oscillator_in):
+    with pytest.raises(InputError, match=r"is FMI 2.0; expected FMI 3.0, which has events"):
+        EventInstance(oscillator_in("fmi2-python"))
+
+
+def test_a_refused_step_speaks(events):
+    begin(events, STRUCTURE, CHAOS)
+    with pytest.raises(FmuError, match="currentCommunicationPoint = 1.0 s"):
+        events.impacts(1.0, 2.0)

@@ -1,0 +1,255 @@
+"""The FMUs of the present sources: found, exported where missing or out of date, always whole."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+from orchestrate.errors import InputError, StoreError
+from orchestrate.fmu import (
+    FORMS,
+    MODELS,
+    OSCILLATOR,
+    SHAKER,
+    build,
+    describe,
+    exported,
+    find,
+    finder,
+    up_to_date,
+)
+
+from .altered import altered_fmu
+
+REASON = "ziglang, which compiles the kernel, is not installed: expected vibroimpact[build]"
+
+
+@pytest.fixture
+def real(oscillator_in):
+    """The true FMUs of the oscillator, to copy."""
+    return {form: oscillator_in(form) for form in FORMS}
+
+
+@pytest.fixture
+def maker(monkeypatch, real):
+    """Stand in for the exporters: copies of the true FMUs, and a record of what was asked."""
+    asked, without = [], set()
+
+    def export(name, form, folder, platforms=None):
+        asked.append((name, form, Path(folder)))
+        if form in without:
+            raise exported.CannotExport(REASON)
+        target = Path(folder) / form / f"{name}.fmu"
+        target.parent.mkdir(parents=True, exist_ok=True)
+        source = (
+            real[form] if name == OSCILLATOR else find(name, form, exported.CLONE / "build").path
+        )
+        shutil.copy(source, target)
+        return target
+
+    monkeypatch.setattr(exported.sources, "export", export)
+    export.asked, export.without = asked, without
+    return export
+
+
+@pytest.fixture
+def places(monkeypatch, tmp_path):
+    """Put the default folder and that of the FMUs that came with the package elsewhere."""
+    folder, shipped = tmp_path / "cache", tmp_path / "shipped"
+    monkeypatch.setattr(exported, "default_folder", lambda: folder)
+    monkeypatch.setattr(exported, "SHIPPED", shipped)
+    return folder, shipped
+
+
+def put(source, folder, form="fmi3", model=OSCILLATOR):
+    """Copy an FMU into a build folder."""
+    target = folder / form / f"{model}.fmu"
+    target.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copy(source, target)
+    return target
+
+
+def test_the_fmi_3_form_is_the_default(real):
+    assert find(OSCILLATOR).path == real["fmi3"]
+
+
+def test_what_is_missing_is_exported_once(maker, places):
+    folder, _ = places
+    for _ in range(2):
+        assert find(OSCILLATOR).path == folder / "fmi3" / f"{OSCILLATOR}.fmu"
+    assert maker.asked == [(OSCILLATOR, "fmi3", folder)]
+
+
+@pytest.mark.parametrize("progress", [True, False])
+def test_a_script_is_told_that_an_export_takes_long(maker, places, caplog, progress):
+    exported.announce.cache_clear()
+    finder({"progress": progress})(OSCILLATOR)
+    said = [record.getMessage() for record in caplog.records if record.levelname == "WARNING"]
+    assert any("takes some seconds" in line for line in said) == progress
+
+
+def test_what_came_with_the_package_needs_no_export(maker, places, real):
+    put(real["fmi3"], places[1])
+    assert find(OSCILLATOR).path == places[1] / "fmi3" / f"{OSCILLATOR}.fmu"
+    assert maker.asked == []
+
+
+def test_what_came_with_the_package_serves_where_nothing_can_be_made(maker, places, real):
+    maker.without.update(FORMS)
+    put(real["fmi2-python"], places[1], "fmi2-python")
+    assert find(OSCILLATOR).path == places[1] / "fmi2-python" / f"{OSCILLATOR}.fmu"
+
+
+def test_other_sources_than_the_package_s_are_exported(maker, places, real):
+    guid = describe(real["fmi3"]).guid
+    stale = put(real["fmi3"], places[1])
+    altered_fmu(real["fmi3"], stale, instantiationToken=(guid, guid[::-1]))
+    assert find(OSCILLATOR).path.parents[1] == places[0]
+
+
+@pytest.mark.parametrize("damage", ["cut", "empty", "other", "stale"])
+def test_what_is_damaged_or_out_of_date_is_made_anew(maker, places, real, damage):
+    path = put(real["fmi3"], places[0])
+    if damage == "cut":
+        path.write_bytes(path.read_bytes()[:-3000])
+    elif damage == "empty":
+        path.write_bytes(b"")
+    elif damage == "other":
+        shutil.copy(find(SHAKER).path, path)
+        maker.asked.clear()
+    else:
+        guid = describe(path).guid
+        altered_fmu(real["fmi3"], path, instantiationToken=(guid, guid.replace("-", "0")))
+    assert not up_to_date("fmi3", OSCILLATOR, places[0])
+    assert find(OSCILLATOR).guid == describe(real["fmi3"]).guid
+    assert (OSCILLATOR, "fmi3", places[0]) in maker.asked
+
+
+def test_a_build_folder_given_is_the_only_place(maker, places, real, tmp_path):
+    put(real["fmi3"], places[0]), put(real["fmi3"], places[1])
+    assert find(OSCILLATOR, folder=tmp_path / "mine").path.parents[1] == tmp_path / "mine"
+
+
+def test_without_a_compiler_the_python_form_serves(maker, places, caplog):
+    exported.warn_once.cache_clear()
+    maker.without.update({"fmi2", "fmi3"})
+    for _ in range(2):
+        assert find(OSCILLATOR).path == places[0] / "fmi2-python" / f"{OSCILLATOR}.fmu"
+    assert caplog.text.count("no fmi3 FMU here, fmi2-python serves instead") == 1
+
+
+def test_where_nothing_can_be_made_one_line_says_why(maker, places):
+    maker.without.update(FORMS)
+    with pytest.raises(InputError) as error:
+        find(OSCILLATOR)
+    line = str(error.value)
+    assert REASON in line and f"FMU {OSCILLATOR}: there is none" in line and "\n" not in line
+
+
+def test_an_own_fmu_is_taken_as_it_is(maker, tmp_path, real):
+    guid = describe(real["fmi2"]).guid
+    own = altered_fmu(real["fmi2"], tmp_path / "own.fmu", guid=(guid, "{mine}"))
+    assert find(OSCILLATOR, fmu=own).guid == "{mine}"
+    with pytest.raises(InputError, match=f"model {OSCILLATOR}; expected {SHAKER}"):
+        find(SHAKER, fmu=own)
+    assert maker.asked == []
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: find("Oscillator"), "model Oscillator: expected one of TwoMassImpactOscillator"),
+        (lambda: find(OSCILLATOR, "fmi4"), "form fmi4: expected one of fmi2-python, fmi2, fmi3"),
+        (lambda: build(names=["Shaker"]), "model Shaker: expected one of"),
+        (lambda: build(forms=["fmi1"]), "form fmi1: expected one of"),
+        (lambda: finder({"fmu": {"Oscillator": "a.fmu"}}), "model Oscillator: expected one of"),
+        (lambda: finder({"fmu": "no.fmu"})(OSCILLATOR), "FMU no.fmu: no such file; expected"),
+    ],
+)
+def test_refusals(maker, places, call, words):
+    with pytest.raises(InputError) as error:
+        call()
+    assert words in str(error.value) and "\n" not in str(error.value)
+
+
+def test_finder_takes_a_question_s_keywords(maker, places, real, tmp_path):
+    assert finder({})(OSCILLATOR).path.parents[1] == places[0]
+    assert finder({"build_folder": tmp_path / "b"})(SHAKER).path.parents[1] == tmp_path / "b"
+    own = put(real["fmi2"], tmp_path / "own", "fmi2")
+    found = finder({"fmu": {OSCILLATOR: own}, "jobs": 2})
+    assert found(OSCILLATOR).path == own
+    assert found(SHAKER).path.parents[1] == places[0]
+    assert finder({"fmu": str(own)})(OSCILLATOR).path == own
+
+
+def test_build_writes_all(maker, places, tmp_path):
+    written = build(tmp_path / "out")
+    names = {path.relative_to(tmp_path / "out").as_posix() for path in written}
+    assert names == {f"{form}/{model}.fmu" for form in FORMS for model in MODELS}
+
+
+def test_build_leaves_out_what_cannot_be_made(maker, places, tmp_path, caplog):
+    maker.without.update({"fmi2", "fmi3"})
+    written = build(tmp_path / "out", names=[OSCILLATOR])
+    assert [path.parent.name for path in written] == ["fmi2-python"]
+    assert caplog.text.count(REASON) == 2
+    maker.without.update(FORMS)
+    with pytest.raises(InputError, match="cannot be made: ziglang"):
+        build(tmp_path / "out")
+
+
+def test_build_into_a_file(maker, tmp_path):
+    (tmp_path / "folder").write_text("mine")
+    with pytest.raises(StoreError, match="folder: .*; expected a folder that can be written"):
+        build(tmp_path / "folder")
+    assert maker.asked == [] and (tmp_path / "folder").read_text() == "mine"
+
+
+def test_a_full_disk(monkeypatch, tmp_path):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(exported.sources, "export", full)
+    with pytest.raises(StoreError, match="No space left on device; expected a folder"):
+        build(tmp_path)
+
+
+def test_a_clone_has_its_own_folder(monkeypatch, tmp_path):
+    assert exported.default_folder() == exported.CLONE / "build"
+    (tmp_path / "build").mkdir()  # PyPA's package of that name beside ours in site-packages
+    monkeypatch.setattr(exported, "CLONE", tmp_path)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "caches"))
+    folder = exported.default_folder()
+    assert "build" not in folder.parts and "vibroimpact" in folder.parts
+    if sys.platform == "linux":
+        assert folder.is_relative_to(tmp_path / "caches")
+
+
+def test_who_waits_for_an_export_does_not_make_it_again(maker, places, monkeypatch):
+    quick, met = exported.sources.export, threading.Barrier(2, timeout=10.0)
+    check = exported.up_to_date
+
+    def slow(*arguments):
+        time.sleep(0.5)
+        return quick(*arguments)
+
+    def both_find_nothing(*arguments):
+        there = check(*arguments)
+        if not there and len(seen) < 2:
+            seen.append(there)
+            met.wait()
+        return there
+
+    seen = []
+    monkeypatch.setattr(exported.sources, "export", slow)
+    monkeypatch.setattr(exported, "up_to_date", both_find_nothing)
+    with ThreadPoolExecutor(2) as threads:
+        found = list(threads.map(lambda _: find(OSCILLATOR).path, range(2)))
+    assert found == [places[0] / "fmi3" / f"{OSCILLATOR}.fmu"] * 2
+    assert len(maker.asked) == 1

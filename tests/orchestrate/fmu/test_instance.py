@@ -1,0 +1,207 @@
+"""What is set is what is read, errors are the FMU's words, states come back bit by bit."""
+
+from __future__ import annotations
+
+import math
+import os
+import subprocess
+import sys
+
+import pytest
+
+from orchestrate.errors import FmuError, InputError
+from orchestrate.fmu import FORMS, OSCILLATOR, Instance, describe
+
+from .altered import altered_fmu
+
+CHAOS = {"box_amplitude": 1.0 / 1.2**2, "box_frequency": 1.2}
+STATE = ("x1", "x2", "v1", "v2", "x_rel", "x_rel_max", "impact_time", "impact_energy", "phase")
+
+
+@pytest.fixture
+def instance(any_fmu):
+    """Make an instance in chaotic motion, at t = 100 s."""
+    with Instance(any_fmu) as instance:
+        instance.initialize(**CHAOS)
+        instance.step(0.0, 100.0)
+        yield instance
+
+
+def trajectory(instance, start, steps=25):
+    """Values along some steps."""
+    values = []
+    for n in range(steps):
+        instance.step(start + 2.0 * n, start + 2.0 * n + 2.0)
+        values.append(instance.get(*STATE, "impact_count", "in_contact"))
+    return values
+
+
+@pytest.mark.parametrize(("form", "version"), list(zip(FORMS, ("2.0", "2.0", "3.0"), strict=True)))
+def test_description(oscillator_in, form, version):
+    fmu = oscillator_in(form)
+    found = describe(fmu, OSCILLATOR)
+    assert (found.path, found.name, found.fmi_version) == (fmu, OSCILLATOR, version)
+    assert found.guid.strip("{}").replace("-", "").isalnum() and len(found.guid) == 38
+    assert found.variables["e"].causality == "parameter" and found.variables["x_rel"].unit == "m"
+    assert found.needs_tool == (form == "fmi2-python")
+    assert describe(str(fmu)).variables.keys() == found.variables.keys()
+
+
+def test_what_is_set_is_read(any_fmu):
+    values = {"m2": 0.1, "e": 0.3, "bonded": True, "box_amplitude": -1.5e-7, "x_rel_max_on": False}
+    with Instance(any_fmu) as instance:
+        instance.set(**values)
+        instance.initialize()
+        assert instance.get(*values) == list(values.values())
+        instance.set(box_frequency=2.0)
+        assert instance.get("box_frequency", "m2") == [2.0, 0.1]
+
+
+def test_reader_agrees_with_get(instance):
+    time = 100.0
+    for step in (0.0, 0.1, 3.7, 20.0):
+        instance.step(time, time + step)
+        time += step
+        assert list(instance.read(*STATE)) == instance.get(*STATE)
+    assert list(instance.read("v2", "x1")) == instance.get("v2", "x1")
+
+
+def test_get_has_types(instance):
+    count, contact, gap = instance.get("impact_count", "in_contact", "x_rel")
+    assert isinstance(count, int) and count > 0
+    assert contact in (True, False) and isinstance(gap, float)
+
+
+def test_initialize_begins_at_a_time(any_fmu):
+    with Instance(any_fmu) as instance:
+        instance.initialize(start_time=5.0, x1_start=-0.25, **CHAOS)
+        assert instance.get("x1") == [-0.25]
+        with pytest.raises(FmuError, match=r"currentCommunicationPoint = 0.0 s: .*5\.0 s"):
+            instance.step(0.0, 1.0)
+        instance.step(5.0, 6.0)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda i: i.set(box_amplitude=math.nan), ["box_amplitude = nan m"]),
+        (lambda i: i.set(box_frequency=-1.0), ["box_frequency = -1.0 rad/s", "<= box_frequency"]),
+        (lambda i: i.set(e=0.5), ["e = 0.5", "fixed"]),
+        (lambda i: i.set(x1=0.5), ["x1 = 0.5", "output"]),
+        (lambda i: i.step(100.0, 99.0), ["communicationStepSize = -1.0 s"]),
+        (lambda i: i.step(100.0, math.inf), ["communicationStepSize = inf s"]),
+        (lambda i: i.step(50.0, 51.0), ["currentCommunicationPoint = 50.0 s", "100.0 s"]),
+        (lambda i: i.restore_state(b"short"), ["saved by this FMU"]),
+        (lambda i: i.restore_state(b"?" * len(i.save_state())), ["saved by this FMU"]),
+        (lambda i: i.read("in_contact"), ["in_contact", "Boolean", "Real"]),
+    ],
+)
+def test_errors_are_the_fmus_words_and_change_nothing(instance, call, words):
+    before = instance.get(*STATE)
+    with pytest.raises(FmuError) as error:
+        call(instance)
+    text = str(error.value)
+    assert all(word in text for word in words), text
+    assert "\n" not in text and "Traceback" not in text
+    assert instance.get(*STATE) == before
+    instance.step(100.0, 101.0)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda i: i.get("gap"),
+        lambda i: i.set(gap=1.0),
+        lambda i: i.read("x1", "gap"),
+        lambda i: i.variable("gap"),
+    ],
+)
+def test_a_variable_that_is_not_there(instance, call):
+    with pytest.raises(InputError, match="variable gap: the FMU TwoMassImpactOscillator has none"):
+        call(instance)
+
+
+def test_a_restored_state_gives_the_same_bits(instance, any_fmu):
+    state = instance.save_state()
+    assert isinstance(state, bytes)
+    once = trajectory(instance, 100.0)
+    assert len({tuple(values) for values in once}) == len(once)
+    instance.restore_state(state)
+    assert trajectory(instance, 100.0) == once
+    with Instance(any_fmu, name="another") as other:
+        other.initialize()
+        other.restore_state(state)
+        assert trajectory(other, 100.0) == once
+
+
+def test_reset(instance):
+    instance.reset()
+    instance.initialize(**CHAOS)
+    assert instance.get("impact_count", "x1") == [0, 0.0]
+    once = trajectory(instance, 0.0)
+    instance.reset()
+    instance.initialize()
+    assert instance.get("box_frequency") == [0.4]  # start values are back too
+    instance.reset()
+    instance.initialize(**CHAOS)
+    assert trajectory(instance, 0.0) == once
+
+
+def test_instances_side_by_side_do_not_mind_each_other(any_fmu):
+    with Instance(any_fmu) as one, Instance(any_fmu, name="two") as two:
+        for instance in (one, two):
+            instance.initialize(**CHAOS)
+        one.step(0.0, 200.0)
+        two.step(0.0, 50.0)
+        one.close()
+        two.step(50.0, 200.0)
+        with Instance(any_fmu, name="three") as three:
+            three.initialize(**CHAOS)
+            three.step(0.0, 200.0)
+            assert three.get(*STATE[:5]) == two.get(*STATE[:5])
+
+
+def test_what_is_no_number_is_refused(instance):
+    with pytest.raises(FmuError, match="real number"):
+        instance.set(e="much")
+
+
+def test_closing_twice_is_closing(any_fmu):
+    with Instance(any_fmu) as instance:
+        instance.close()
+    instance.close()
+
+
+def test_the_environment_is_left_alone(any_fmu):
+    before = dict(os.environ)
+    with Instance(any_fmu) as instance:
+        instance.initialize()
+        instance.step(0.0, 1.0)
+    assert dict(os.environ) == before
+
+
+def test_an_fmu_without_a_binary_for_this_machine(any_fmu, tmp_path):
+    fmu = altered_fmu(any_fmu, tmp_path / "a.fmu", modelIdentifier=(OSCILLATOR, "Elsewhere"))
+    with pytest.raises((FmuError, InputError), match="Elsewhere") as error:
+        Instance(fmu)
+    assert "\n" not in str(error.value)
+
+
+SECONDS = """
+import sys, time
+from orchestrate.fmu import Instance
+for _ in range(2):
+    with Instance(sys.argv[1]) as instance:
+        instance.initialize(box_amplitude=0.7, box_frequency=1.2)
+        begin = time.process_time()
+        instance.step(0.0, 10000.0)
+        print(time.process_time() - begin)
+"""
+
+
+@pytest.mark.slow
+def test_the_second_instance_of_a_process_is_as_fast_as_the_first(python_fmu):
+    command = [sys.executable, "-c", SECONDS, str(python_fmu)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    first, second = map(float, done.stdout.split())
+    assert second < 8.0 * first + 0.05

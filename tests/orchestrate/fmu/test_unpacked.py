@@ -1,0 +1,119 @@
+"""Unpacked FMUs: once a process, gone at its end, and after a kill with the next process."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from fmu_src.version import VERSION
+from orchestrate.errors import InputError, StoreError
+from orchestrate.fmu import FORMS, Instance, describe
+from orchestrate.fmu.unpacked import unpacked
+from orchestrate.temporary import PREFIX, process_folder
+
+from ...sparing import ordinary
+from .altered import altered_fmu
+
+PROGRAM = Path(__file__).with_name("processes.py")
+
+
+@pytest.fixture(params=ordinary(FORMS, ["fmi3"]))
+def used_fmu(request, oscillator_in):
+    """The usual form, and the others in the slow tests: what cleans up knows no form."""
+    return oscillator_in(request.param)
+
+
+@pytest.fixture
+def process(tmp_path, used_fmu):
+    """Start a process whose temporary folder is the test's."""
+    started = []
+
+    def start(ending):
+        command = [sys.executable, str(PROGRAM), str(used_fmu), ending]
+        pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+        environment = {**os.environ, "TMPDIR": str(tmp_path)}
+        started.append(subprocess.Popen(command, env=environment, text=True, **pipes))
+        return started[-1]
+
+    yield start
+    for one in started:
+        one.kill()
+        one.communicate()
+
+
+def ours(folder):
+    return sorted(path.name for path in folder.glob(f"{PREFIX}*"))
+
+
+@pytest.mark.parametrize(("ending", "code"), [("error", 1), ("fork", 0)])
+def test_nothing_is_left(process, tmp_path, ending, code):
+    one = process(ending)
+    out, err = one.communicate()
+    assert one.returncode == code, err
+    assert ours(tmp_path) == []
+    assert len(set(out.split())) == (2 if ending == "fork" else 1)
+
+
+def test_what_a_killed_process_left_is_removed_by_the_next_and_nothing_else(process, tmp_path):
+    waiting = process("wait")
+    folder = Path(waiting.stdout.readline().strip())
+    process("kill").communicate()
+    left = set(ours(tmp_path)) - {folder.name}
+    assert len(left) == 1 and list((tmp_path / left.pop()).iterdir())
+    foreign = [tmp_path / f"{PREFIX}mine", tmp_path / "vibroimpact", tmp_path / f"{PREFIX}1-x"]
+    for path in foreign:  # the last one's process lives
+        path.mkdir()
+    (tmp_path / f"{PREFIX}999999999-link").symlink_to(tmp_path / "vibroimpact")
+    process("well").communicate()
+    assert {folder, *foreign} <= set(tmp_path.iterdir())
+    assert len(ours(tmp_path)) == 4 and (tmp_path / "vibroimpact").is_dir()
+    assert waiting.communicate("\n")[1] == "" and waiting.returncode == 0
+    assert not folder.exists()
+
+
+def test_a_process_unpacks_an_fmu_once(any_fmu, tmp_path):
+    with Instance(any_fmu), Instance(any_fmu, name="second"):
+        first = unpacked(describe(any_fmu))
+    stamp = (first / "modelDescription.xml").stat().st_mtime_ns
+    copy = tmp_path / "copy.fmu"
+    copy.write_bytes(any_fmu.read_bytes())
+    with Instance(copy):
+        assert unpacked(describe(copy)) == first  # the bytes decide, not the name
+    assert (first / "modelDescription.xml").stat().st_mtime_ns == stamp
+
+
+def test_an_fmu_that_changes_is_unpacked_anew(any_fmu, tmp_path):
+    path = tmp_path / "mine.fmu"
+    path.write_bytes(any_fmu.read_bytes())
+    described = describe(path)
+    altered_fmu(any_fmu, path, version=(VERSION, "0.1.1"))
+    assert unpacked(describe(path)) != unpacked(describe(any_fmu))
+    described = describe(any_fmu)
+    other = tmp_path / "other.fmu"
+    altered_fmu(any_fmu, other, version=(VERSION, "0.1.2"))
+    old = describe(other)
+    other.write_bytes(b"something else")
+    with pytest.raises(InputError, match="it has changed since it was read"):
+        unpacked(old)
+    assert unpacked(described).is_dir()
+
+
+def test_what_cannot_be_unpacked_leaves_nothing(any_fmu, tmp_path, monkeypatch):
+    import fmpy
+
+    def full(_, target):
+        Path(target).mkdir()
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(fmpy, "extract", full)
+    fmu = altered_fmu(any_fmu, tmp_path / "mine.fmu", version=(VERSION, "0.1.3"))
+    before = set(process_folder().iterdir())
+    with pytest.raises(
+        StoreError, match=r"cannot be unpacked \(No space left on device\); expected"
+    ):
+        Instance(fmu)
+    assert set(process_folder().iterdir()) == before

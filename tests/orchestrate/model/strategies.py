@@ -1,0 +1,46 @@
+"""Structures, excitations and drives as hypothesis makes them up."""
+
+from __future__ import annotations
+
+from hypothesis import strategies as st
+
+from orchestrate.model import Drive, Excitation, Structure
+from orchestrate.model.ranges import STRUCTURE, Quantity
+
+SCALE = st.floats(1e-6, 1e6)
+LOSS = st.one_of(st.just(0.0), SCALE)
+SMALL = st.floats(1e-3, 1e3)
+RATIO = st.one_of(st.just(0.0), st.floats(1e-9, 10.0))
+
+
+def values_of(quantity: Quantity) -> st.SearchStrategy[float]:
+    """Strategy of a parameter by its range: of one without a low or high end not the extremes."""
+    inside = quantity.maximum <= 1.0
+    if inside:
+        return st.floats(quantity.minimum, quantity.maximum)
+    if quantity.minimum > 0.0:
+        return SCALE
+    return LOSS if quantity.minimum == 0.0 else st.one_of(st.just(0.0), st.floats(-1e3, 1e3))
+
+
+STRUCTURES = st.builds(
+    Structure,
+    **{name: values_of(quantity) for name, quantity in STRUCTURE.items()},
+    bonded=st.booleans(),
+)
+NUMBERS = st.fixed_dictionaries(
+    {"mu": SMALL, "kappa": SMALL, "D1": RATIO, "D2": RATIO, "e": st.floats(0.0, 1.0)}
+)
+EXCITATIONS = st.builds(Excitation, frequency=SCALE, amplitude=LOSS, phase=st.floats(-1e3, 1e3))
+DRIVES = st.builds(
+    Drive,
+    box_mass=SCALE,
+    box_stiffness=LOSS,
+    box_damping=LOSS,
+    unbalance_mass=SCALE,
+    unbalance_radius=SCALE,
+    rotor_inertia=SCALE,
+    motor_constant=SCALE,
+    armature_resistance=SCALE,
+    armature_inductance=LOSS,
+)

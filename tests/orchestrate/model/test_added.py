@@ -1,0 +1,99 @@
+"""Parameters that the variable table has beside the paper's: what follows from the row of each."""
+
+import dataclasses
+import typing
+
+import numpy as np
+import pytest
+
+import orchestrate
+from orchestrate import InputError, Structure
+from orchestrate.cli.grammar import parse_changes
+from orchestrate.model import PARAMETERS, write
+from orchestrate.model.ranges import ADDED, OF_LENGTH, STRUCTURE
+from orchestrate.model.structure import LaterKeywords, ValueListKeywords
+
+HALVES = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0}
+BONDED = {"mass": 2.0, "f": 50.0, "thicknesses": (3.0, 2.0)}
+FORMS = [
+    "m1 = 1.0\nm2 = 1.0\nk1 = 1.0\nk2 = 1.2\nd1 = 0.01\nd2 = 0.01",
+    "mu = 1.0\nkappa = 1.2\nD = 0.005",
+    "m1 = 1.0\nm2 = 1.0\nf1_hz = 1.0\nf2_hz = 1.1\nzeta1 = 0.01\nzeta2 = 0.01",
+]
+
+
+def test_what_a_type_checker_knows_is_what_the_table_has():
+    fields = [field.name for field in dataclasses.fields(Structure)]
+    assert fields == [*STRUCTURE, "bonded"]
+    assert typing.get_type_hints(LaterKeywords) == dict.fromkeys(ADDED, float)
+    assert sorted(ValueListKeywords.__annotations__) == sorted(PARAMETERS)
+
+
+@pytest.mark.parametrize("name", ADDED)
+def test_every_constructor_takes_it(name):
+    value = {name: 0.02}
+    made = [
+        Structure(**value),
+        Structure.nondimensional(**value),
+        Structure.from_halves(**HALVES, **value),
+        Structure.from_bonded(**BONDED, **value),
+        Structure().replace(**value),
+        Structure.from_attributes(Structure(**value).parameters()),
+        Structure().replace(**parse_changes([f"{name}=0.02"])),  # --set
+    ]
+    for structure in made:
+        assert structure.get(name) == structure.parameters()[name] == 0.02
+        assert f"{name}0.02" in structure.label()
+    assert name not in Structure().label()
+    assert Structure().get(name) == STRUCTURE[name].default
+    with pytest.raises(TypeError, match="nothing_of_the_kind"):
+        Structure.nondimensional(nothing_of_the_kind=1.0)
+
+
+@pytest.mark.parametrize("name", ADDED)
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), 1e101, "wide", True])
+def test_out_of_range_it_is_refused_with_its_range(name, value):
+    with pytest.raises(InputError, match=f"{name} = .*: expected"):
+        Structure(**{name: value})
+
+
+@pytest.mark.parametrize("name", ADDED)
+@pytest.mark.parametrize("keys", FORMS)
+def test_files_have_it_with_all_keys_and_may_leave_it_out(tmp_path, keys, name):
+    path = tmp_path / "beam.toml"
+    path.write_text(f"[structure]\n{keys}\n{name} = 2e-5\n")
+    assert Structure.from_file(path).get(name) == 2e-5
+    write(path, structure=Structure.from_file(path))
+    assert Structure.from_file(path).get(name) == 2e-5
+    path.write_text(f"[structure]\n{keys}\n")
+    assert Structure.from_file(path).get(name) == STRUCTURE[name].default
+    path.write_text(f"[structure]\n{keys}\n{name} = nan\n")
+    unit = STRUCTURE[name].unit
+    with pytest.raises(InputError, match=f"structure.{name} = nan {unit}: expected"):
+        Structure.from_file(path)
+
+
+@pytest.mark.parametrize("name", ADDED)
+def test_an_older_file_without_it_has_its_default(name):
+    attributes = Structure(e=0.4).parameters()
+    del attributes[name]
+    assert Structure.from_attributes(attributes) == Structure(e=0.4)
+    with pytest.raises(KeyError, match="m1"):
+        Structure.from_attributes({"e": 0.4})
+
+
+@pytest.mark.parametrize("name", sorted({*ADDED} & {*OF_LENGTH}))
+def test_with_a_length_in_it_the_level_counts_and_scaling_it_too_does_not(name):
+    """At twice the amplitude the motion is another one, unless the parameter goes along."""
+    structure = Structure(**{name: 0.05}, e=0.9)
+    power = STRUCTURE[name].dimension["m"]
+    assert structure.has_scale and not Structure().has_scale
+    one, other, same = (
+        orchestrate.simulate(structure.replace(**{name: value}), frequency=1.2, **asked).x_rel
+        for value, asked in (
+            (0.05, {"amplitude": 1.0, "periods": 3}),
+            (0.05, {"amplitude": 2.0, "periods": 3}),
+            (0.05 * 2.0**power, {"amplitude": 2.0, "periods": 3}),
+        )
+    )
+    assert np.array_equal(same, 2.0 * one) and not np.allclose(other, 2.0 * one, rtol=1e-6)

@@ -1,0 +1,76 @@
+"""The box's motion: both ways, units, refusals."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from orchestrate.errors import InputError
+from orchestrate.model import Excitation, Structure
+
+from .strategies import EXCITATIONS, STRUCTURES
+
+ETA = st.floats(1e-3, 1e3)
+
+
+@given(ETA)
+def test_where_omega_is_1_the_fmu_gets_what_it_always_got(eta):
+    excitation = Excitation.nondimensional(eta, Structure())
+    expected = {"box_amplitude": 1.0 / (eta * eta), "box_frequency": eta, "phase_start": 0.0}
+    assert excitation.inputs() == expected
+    assert excitation.eta(Structure()) == eta
+    assert excitation.period == 2.0 * math.pi / eta
+
+
+@given(ETA, STRUCTURES)
+def test_with_eta_lengths_are_metres(eta, structure):
+    excitation = Excitation.nondimensional(eta, structure)
+    assert excitation.length(structure) == 1.0
+    assert math.isclose(excitation.eta(structure), eta, rel_tol=1e-15)
+
+
+@given(EXCITATIONS, STRUCTURES)
+def test_length_is_a_eta_squared(excitation, structure):
+    expected = excitation.amplitude * (excitation.frequency / structure.omega) ** 2
+    assert math.isclose(excitation.length(structure), expected, rel_tol=1e-14)
+
+
+@given(EXCITATIONS)
+def test_repr_can_be_evaluated(excitation):
+    assert eval(repr(excitation)) == excitation
+
+
+@pytest.mark.parametrize("natural", [1.0, math.sqrt(1.2), math.sqrt(1.1)])
+@pytest.mark.parametrize("detuning", [0.0, 0.9e-6, 1.1e-6])
+@pytest.mark.parametrize("damping", [0.0, 0.9e-6, 1.1e-6])
+def test_no_periodic_response_is_looked_for_at_a_resonance_without_damping(
+    natural, detuning, damping
+):
+    structure = Structure.nondimensional(D=damping * natural)
+    excitation = Excitation(frequency=natural * (1.0 + detuning), amplitude=0.5)
+    if math.hypot(detuning, damping) < 1e-6:
+        with pytest.raises(InputError, match=f"frequency = {excitation.frequency!r} rad/s"):
+            excitation.check(structure)
+    else:
+        excitation.check(structure)
+    excitation.replace(amplitude=0.0).check(structure)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: Excitation(frequency=0.0, amplitude=1.0), "frequency = 0.0 rad/s: expected"),
+        (lambda: Excitation(frequency=1.0, amplitude=-1.0), "amplitude = -1.0 m: expected 0 <="),
+        (lambda: Excitation(frequency=1.0, amplitude=math.nan), "amplitude = nan m: expected"),
+        (lambda: Excitation(frequency=1.0, amplitude=1.0, phase=1e9), "phase = 1000000000.0 rad"),
+        (lambda: Excitation.nondimensional(0.0, Structure()), "eta = 0.0: expected 1e-06 <= eta"),
+        (lambda: Excitation.nondimensional("1", Structure()), "eta = '1': expected a number"),
+    ],
+)
+def test_refusals(call, words):
+    with pytest.raises(InputError) as error:
+        call()
+    assert words in str(error.value) and "\n" not in str(error.value)

@@ -1,0 +1,288 @@
+"""TOML files: what is written is read, units are said by the key, the shipped sets are exact."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from orchestrate.errors import InputError, StoreError
+from orchestrate.model import SETS, Drive, Excitation, Structure, read, resolve, write
+from orchestrate.model.ranges import ADDED
+
+from .strategies import DRIVES, EXCITATIONS, STRUCTURES
+
+QUICK = {
+    "structure": {
+        **{"m1": 0.2727272727272727, "m2": 0.2727272727272727},
+        **{"k1": 0.2727272727272727, "k2": 0.3272727272727272},
+        **{"d1": 0.010909090909090908, "d2": 0.010909090909090908},
+        **{"e": 0.7, "gamma": 0.0001, "bonded": False, **dict.fromkeys(ADDED, 0.0)},
+    },
+    "drive": {
+        **{"box_mass": 1.0, "box_stiffness": 0.010000000000000002, "box_damping": 0.01},
+        **{"unbalance_mass": 0.01, "unbalance_radius": 100.0, "rotor_inertia": 1100.0},
+        **{"motor_constant": 1.0, "armature_resistance": 0.045454545454545456},
+        "armature_inductance": 0.0,
+    },
+}
+BEAM = {
+    "structure": {
+        **{"m1": 1.5, "m2": 1.5, "k1": 8437.5, "k2": 10125.0, "d1": 1.125, "d2": 1.125},
+        **{"e": 0.7, "gamma": 0.0001, "bonded": False, **dict.fromkeys(ADDED, 0.0)},
+    },
+    "drive": {
+        **{"box_mass": 5.5, "box_stiffness": 309.375, "box_damping": 4.125},
+        **{"unbalance_mass": 0.025, "unbalance_radius": 0.02, "rotor_inertia": 5e-05},
+        **{"motor_constant": 0.06, "armature_resistance": 12.0, "armature_inductance": 0.0},
+    },
+}
+
+
+@pytest.fixture
+def file(tmp_path):
+    """Write a TOML file, give its path."""
+
+    def put(text):
+        path = tmp_path / "mine.toml"
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return put
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=25)
+@given(STRUCTURES, EXCITATIONS, DRIVES)
+def test_what_is_written_is_read(tmp_path, structure, excitation, drive):
+    path = tmp_path / "all.toml"
+    write(path, structure=structure, excitation=excitation, drive=drive)
+    assert read(path) == {"structure": structure, "excitation": excitation, "drive": drive}
+    assert Structure.from_file(path) == structure
+    assert Excitation.from_file(str(path)) == excitation
+    assert Drive.from_file(path) == drive
+
+
+def test_nothing_is_half_written(tmp_path):
+    (tmp_path / "folder").mkdir()
+    with pytest.raises(StoreError, match="folder"):
+        write(tmp_path / "folder", structure=Structure())
+    assert [path.name for path in tmp_path.iterdir()] == ["folder"]
+
+
+@pytest.mark.parametrize(("name", "expected"), [("quick", QUICK), ("beam", BEAM)])
+def test_shipped_sets_to_the_last_bit(name, expected):
+    found = read(name)
+    assert {key: value.parameters() for key, value in found.items()} == expected
+
+
+def test_resolve(tmp_path):
+    assert resolve("paper") == SETS["paper"]
+    path = write(tmp_path / "a.toml", structure=Structure())
+    assert resolve(path) == resolve(str(path)) == path
+    with pytest.raises(InputError, match="bean: no such file; expected .*did you mean beam"):
+        resolve("bean")
+    with pytest.raises(InputError, match="a folder"):
+        resolve(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("", Structure()),
+        ("e = 0.3", Structure(e=0.3)),
+        ("m1 = 2\nk1 = 8.0", Structure(m1=2.0, k1=8.0)),
+        ("mu = 0.5\nD = 0.02", Structure.nondimensional(mu=0.5, D=0.02)),
+        ("D1 = 0.1\nD2 = 0.2", Structure.nondimensional(D1=0.1, D2=0.2)),
+        ("kappa = 2\nm1 = 3\nbonded = true", Structure.nondimensional(kappa=2, m1=3, bonded=True)),
+        ("omega_rad_s = 75\nm1 = 1.5", Structure.nondimensional(omega=75, m1=1.5)),
+        ("omega_hz = 12.0", Structure.nondimensional(omega=2.0 * math.pi * 12.0)),
+        ("omega_rpm = 720", Structure.nondimensional(omega=2.0 * math.pi * 720.0 / 60.0)),
+    ],
+)
+def test_structures(file, text, expected):
+    assert Structure.from_file(file(f"[structure]\n{text}\n")) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "frequency", "amplitude"),
+    [
+        ("frequency_rad_s = 90\namplitude = 0.002", 90.0, 0.002),
+        ("frequency_hz = 15\namplitude = 0.002", 2.0 * math.pi * 15.0, 0.002),
+        ("frequency_rpm = 900\namplitude = 0.002", 2.0 * math.pi * 15.0, 0.002),
+        ("frequency_rad_s = 10\nacceleration_g = 2", 10.0, 2.0 * 9.80665 / 100.0),
+        ("eta = 1.5", 112.5, 1.0 / 2.25),
+        ("eta = 1.5\namplitude = 0.002", 112.5, 0.002),
+        ("eta = 1.5\nacceleration_g = 0.5", 112.5, 0.5 * 9.80665 / 112.5**2),
+    ],
+)
+def test_excitations(file, text, frequency, amplitude):
+    path = file(f"[structure]\nomega_rad_s = 75\n\n[excitation]\n{text}\nphase = 0.5\n")
+    found = Excitation.from_file(path)
+    assert math.isclose(found.frequency, frequency, rel_tol=1e-15)
+    assert math.isclose(found.amplitude, amplitude, rel_tol=1e-15)
+    assert found.phase == 0.5
+
+
+def test_eta_refers_to_a_structure_given_elsewhere(file):
+    path, structure = file("[excitation]\neta = 2"), Structure.nondimensional(omega=75.0)
+    assert Excitation.from_file(path, structure).frequency == 150.0
+    with pytest.raises(InputError, match=r"mine.toml: excitation.eta = 2: .*\[structure\]"):
+        Excitation.from_file(path)
+
+
+def test_a_drive_by_numbers(file):
+    motor = "[motor]\nbeta = 0.25\nepsilon = 0.001\nb = 0.02\n"
+    path = file(f"{motor}[box]\nOmega_b = 0.1\nD_b = 0.005\n")
+    structure = Structure.nondimensional(omega=75.0)
+    numbers = {"beta": 0.25, "epsilon": 0.001, "b": 0.02, "Omega_b": 0.1, "D_b": 0.005}
+    assert Drive.from_file(path, structure) == Drive.nondimensional(**numbers, structure=structure)
+    with pytest.raises(InputError, match=r"motor.beta = 0.25: .*\[structure\]"):
+        Drive.from_file(path)
+
+
+S, X, M = "[structure]\n", "[excitation]\n", "[motor]\n"
+MOTOR = """unbalance_mass = 0.025
+unbalance_radius = 0.02
+rotor_inertia = 5e-5
+motor_constant = 0.06
+armature_resistance = 12.0
+"""
+BOX = "[box]\nbox_mass = 5.5\nbox_stiffness = 309.375\nbox_damping = 4.125\n"
+SHEET = """
+[motor]
+rated_voltage = 12.0
+stall_torque = 0.06
+unbalance_mass = 0.025
+unbalance_radius = 0.02
+{more}
+
+[box]
+box_mass = 5.5
+box_stiffness = 309.375
+box_damping = 4.125
+"""
+HALVES = """
+[structure]
+m1 = 1.5
+m2 = 1.2
+f1_hz = 42.0
+f2_hz = 55.0
+zeta1 = 0.007
+zeta2 = 0.01
+e = 0.6
+"""
+WRONG = [
+    ("e = 0.7", ["e = 0.7: outside of a section", "below one of [structure], [excitation]"]),
+    ("[struct]\ne = 0.7", ["struct: no section", "expected one of structure", "mean structure?"]),
+    ("structure = 3", ["structure = 3: expected a section [structure]"]),
+    ("[[structure]]\ne = 0.7", ["structure = [{'e': 0.7}]: expected a section [structure]"]),
+    ("[structure\ne = 1", ["not readable as TOML", "line 1"]),
+    (f"{S}e = 0.7\ne = 0.3\n", ["not readable as TOML", "Cannot overwrite", "line 3"]),
+    (f"{S}e = \nk1 = 1.0", ["not readable as TOML", "line 2"]),
+    (f"{S}e = 0.7\n{S}gamma = 1e-4", ["not readable as TOML", "line 3"]),
+    (f"{S}kapa = 1.2", ["structure.kapa = 1.2: no key", "did you mean kappa?"]),
+    (f"{S}zebra = 1", ["structure.zebra = 1: no key", "expected one of e, gamma"]),
+    (f"{S}e = 1.2", ["structure.e = 1.2: expected 0 <= e <= 1"]),
+    (f"{S}e = nan", ["structure.e = nan: expected 0 <= e <= 1"]),
+    (f"{S}m1 = inf", ["structure.m1 = inf kg: expected 1e-30 <= m1 <= 1e+30 kg"]),
+    (f"{S}d2 = -1e-9", ["structure.d2 = -1e-09 N.s/m: expected 0 <= d2"]),
+    (f'{S}e = "0.7"', ["structure.e = '0.7': expected a number, 0 <= e <= 1"]),
+    (f"{S}e = true", ["structure.e = True: expected a number"]),
+    (f'{S}bonded = "yes"', ["structure.bonded = 'yes': expected true or false"]),
+    (f"{S}mu = 1.0\nm2 = 1.0", ["structure.mu = 1.0: beside m2", "one kind", "kappa"]),
+    (f"{S}k1 = 1.0\nomega_hz = 1.0", ["structure.omega_hz = 1.0: beside k1", "one kind"]),
+    (f"{S}D = 0.1\nD1 = 0.1", ["structure.D1 = 0.1: beside D", "one kind: D, or D1, D2"]),
+    (f"{S}D1 = 0.1", ["structure.D2: missing", "expected all of D1, D2"]),
+    (f"{S}omega_hz = 1\nomega_rpm = 60", ["structure.omega_rpm = 60: beside omega_hz"]),
+    (f"{S}omega_hz = 1e20", ["[structure]:", "omega = 6.28", "k1 = 3.9", "expected 1e-30 <= k1"]),
+    (f"{S}mu = 1e20\nD = 1e20", ["[structure]:", "mu = 1e+20", "D = 1e+20", "d2 = 2e+40"]),
+    (f"{X}amplitude = 1", ["[excitation]: expected one of frequency_hz", "eta"]),
+    (f"{X}frequency_hz = 1", ["[excitation]: expected one of amplitude, acceleration_g"]),
+    (f"{X}frequency = 1\namplitude = 1", ["excitation.frequency = 1: no key", "frequency_"]),
+    (f"{X}frequency_hz = 1\neta = 1", ["excitation.eta = 1: beside frequency_hz"]),
+    (f"{X}frequency_hz = 1\namplitude = -1", ["excitation.amplitude = -1.0 m: expected 0 <="]),
+    (
+        f"{X}frequency_hz = 1\namplitude = 1\nacceleration_g = 1",
+        ["excitation.acceleration_g = 1: beside amplitude"],
+    ),
+    (f"{S}{X}eta = 0", ["excitation.eta = 0.0: expected 1e-06 <= eta <= 1e+06"]),
+    (f"{M}{MOTOR}", ["no section [box]; expected [motor] and [box] together"]),
+    (BOX, ["no section [motor]"]),
+    (f"{M}{BOX}", ["motor.unbalance_mass: missing; expected all of unbalance_mass"]),
+    (f"{M}{MOTOR}[box]\nbox_mass = 1.0", ["box.box_stiffness: missing; expected all of box_mass"]),
+    (f"{M}{MOTOR}[box]\nOmega_b = 1\nD_b = 0", ["[box] beside a SI [motor]: expected box_mass"]),
+    (f"{M}{MOTOR}b = 1\n{BOX}", ["motor.b = 1: beside unbalance_mass", "beta, epsilon, b"]),
+    (f"{M}beta = 1\nepsilon = 1\nb = 1\n{BOX}", ["[box] beside a non-dimensional [motor]"]),
+    (f"{M}beta = 1\n[box]\nOmega_b = 1\nD_b = 0", ["motor.epsilon: missing"]),
+    (SHEET.format(more="rotor_inertia = 1"), ["[motor]", "expected one of no_load_speed_hz"]),
+    (SHEET.format(more="no_load_speed_rpm = 1"), ["expected one of rotor_inertia, mechanical"]),
+    (
+        SHEET.format(more="no_load_speed_rpm = 1\nrotor_inertia = 1\nmotor_constant = 1"),
+        ["motor.rated_voltage = 12.0", "beside motor_constant"],
+    ),
+    (HALVES.replace("f2_hz = 55.0", ""), ["structure.f2_hz", "missing", "m1, m2, f1_hz, f2_hz"]),
+    (HALVES.replace("f2_hz = 55.0", "k2 = 5.0"), ["structure.k2 = 5.0: beside f1_hz"]),
+    (HALVES.replace("zeta2 = 0.01", "D2 = 0.01"), ["structure.D2 = 0.01: beside f1_hz"]),
+]
+
+
+@pytest.mark.parametrize("speed", ["rad_s = 200.0", "hz = 31.830988618379067"])
+@pytest.mark.parametrize(
+    "rotor", ["rotor_inertia = 4e-5", "mechanical_time_constant = 0.1333333333"]
+)
+def test_a_motor_by_its_datasheet(file, speed, rotor):
+    """The motor of `beam`, whose inertia has the unbalance in it."""
+    drive = Drive.from_file(file(SHEET.format(more=f"no_load_speed_{speed}\n{rotor}")))
+    expected = Drive.from_file("beam").parameters()
+    assert drive.parameters() == pytest.approx(expected, rel=1e-9)
+
+
+def test_halves_by_frequency_and_damping_ratio(file):
+    numbers = {"m1": 1.5, "m2": 1.2, "f1": 42.0, "f2": 55.0, "zeta1": 0.007, "zeta2": 0.01}
+    assert read(file(HALVES))["structure"] == Structure.from_halves(**numbers, e=0.6)
+
+
+@pytest.mark.parametrize(("text", "words"), WRONG, ids=[repr(text) for text, _ in WRONG])
+def test_mistakes_are_one_line(file, text, words):
+    path = file(text)
+    with pytest.raises(InputError) as error:
+        read(path)
+    line = str(error.value)
+    assert line.startswith(f"{path}: ") and "\n" not in line
+    assert "expected" in line
+    assert all(word in line for word in words), line
+
+
+@pytest.mark.parametrize("kind", [Structure, Excitation, Drive])
+def test_what_is_not_described(file, kind):
+    with pytest.raises(InputError, match=r"mine.toml: describes no \w+; expected \["):
+        kind.from_file(file(""))
+
+
+@given(st.text(max_size=40))
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=25)
+def test_any_text_is_read_or_refused_in_one_line(file, text):
+    path = file("")
+    path.write_text(f"[structure]\n{text}", encoding="utf-8", errors="ignore")
+    try:
+        read(path)
+    except InputError as error:
+        assert "\n" not in str(error)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("[structure]\nm1 = 1 # " + "x" * 70_000, "at most 65536"),
+        ("[structure]\nm1 = " + "[" * 10_000 + "]" * 10_000, "nested too deeply"),
+    ],
+    ids=["huge", "deep"],
+)
+def test_what_is_no_file_of_parameters(tmp_path, text, words):
+    path = tmp_path / "own.toml"
+    path.write_text(text)
+    with pytest.raises(InputError, match=words) as told:
+        read(path)
+    assert len(str(told.value)) < 300

@@ -1,0 +1,126 @@
+"""Electrodynamic shakers: from a data sheet and from files, refusals, and what their FMU makes of
+them.
+"""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from orchestrate.errors import InputError
+from orchestrate.fmu import ELECTRODYNAMIC_SHAKER, Instance, find
+from orchestrate.model import Drive, Shaker, Structure, read, write
+from orchestrate.model.files import SHAKERS
+from orchestrate.model.ranges import SHAKER
+
+from .strategies import values_of
+
+SHEET = {
+    **{"rated_force": 100.0, "moving_mass": 0.2, "force_factor": 10.0, "coil_resistance": 2.0},
+    **{"suspension_resonance": 39.0, "amplifier_power": 150.0, "travel": 0.014},
+}
+RANDOM = st.builds(
+    Shaker,
+    **{name: values_of(quantity) for name, quantity in SHAKER.items()},
+    current_control=st.booleans(),
+)
+
+
+def test_a_data_sheet():
+    shaker = Shaker.from_datasheet(**SHEET, payload=0.4, damping_ratio=0.1)
+    assert shaker.force_factor * shaker.current_limit == 100.0
+    assert 0.5 * shaker.voltage_limit * shaker.current_limit == pytest.approx(150.0)
+    assert shaker.travel_limit == 0.007
+    assert shaker.table_mass == pytest.approx(0.6)
+    assert shaker.resonance == pytest.approx(39.0 / math.sqrt(3.0))
+    bare = Shaker.from_datasheet(**SHEET, damping_ratio=0.1)
+    assert bare.resonance == pytest.approx(39.0)
+    critical = 2.0 * math.sqrt(bare.suspension_stiffness * bare.table_mass)
+    assert bare.suspension_damping == pytest.approx(0.1 * critical)
+    assert bare.replace(table_mass=bare.table_mass + 0.4, suspension_damping=1.0) == shaker.replace(
+        suspension_damping=1.0
+    )
+
+
+@given(RANDOM)
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_files_keep_every_bit(tmp_path, shaker):
+    assert Shaker.from_file(write(tmp_path / "a.toml", shaker=shaker)) == shaker
+    assert eval(repr(shaker)) == shaker
+
+
+@pytest.mark.parametrize("name", SHAKERS)
+def test_the_sets_give_their_rated_force(exported, name):
+    """A sine at eight times the resonance, by the FMU with the set's parameters, reaches the rated
+    force and no more; the sets are bare tables, with nothing else in their files.
+    """
+    assert list(read(name)) == ["shaker"]
+    shaker = Shaker.from_file(name)
+    frequency, forces, limited = 8.0 * 2.0 * math.pi * shaker.resonance, [], set()
+    period, amplitude = 2.0 * math.pi / frequency, shaker.voltage_limit
+    with Instance(find(ELECTRODYNAMIC_SHAKER).path) as fmu:
+        fmu.initialize(0.0, **shaker.parameters())
+        for k in range(10 * 64):
+            time = k * period / 64
+            turn = amplitude * complex(math.cos(frequency * time), math.sin(frequency * time))
+            cubic = [((1j * frequency) ** n * turn).imag for n in range(4)]
+            names = ("command", "command_1", "command_2", "command_3")
+            fmu.set(**dict(zip(names, cubic, strict=True)))
+            fmu.step(time, time + period / 64)
+            force, acts = fmu.get("coil_force", "limited")
+            forces.append(abs(force))
+            limited.add(bool(acts))
+    assert max(forces) == pytest.approx(float(name[7:].replace("kN", "e3").strip("N")))
+    assert limited == {False, True}
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"rated_force": 0.0}, "rated_force = 0.0 N: expected"),
+        ({"moving_mass": math.nan}, "moving_mass = nan kg: expected"),
+        ({"payload": -1.0}, "payload = -1.0 kg: expected 0 <= payload"),
+        ({"force_factor": 0.0}, "force_factor = 0.0 N/A: expected a force factor > 0"),
+        ({"travel": "wide"}, "travel = 'wide': expected a number"),
+        ({"current_control": 2}, "current_control = 2: expected true or false"),
+        ({"amplifier_power": 90.0}, "amplifier_power = 90.0 VA: expected at least 100 VA"),
+    ],
+)
+def test_bad_data_sheets(changes, words):
+    with pytest.raises(InputError, match=words):
+        Shaker.from_datasheet(**{**SHEET, **changes})
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("table_mass = 1", "shaker.force_factor: missing"),
+        ("force_factor = 1\ncoil_resistance = 1\nmass = 1", "shaker.mass = 1: no key of"),
+        (
+            "force_factor = 1\ncoil_resistance = 1\ntable_mass = 1\nmoving_mass = 1",
+            "shaker.moving_mass = 1: beside table_mass; expected keys of one kind",
+        ),
+        (
+            "force_factor = 1\ncoil_resistance = 1\ncurrent_control = 1",
+            "shaker.current_control = 1: expected true or false",
+        ),
+    ],
+)
+def test_bad_files(tmp_path, text, words):
+    path = tmp_path / "mine.toml"
+    path.write_text(f"[shaker]\n{text}\n")
+    with pytest.raises(InputError, match=words):
+        Shaker.from_file(path)
+
+
+def test_what_a_file_does_not_describe():
+    with pytest.raises(InputError, match=r"beam: describes no shaker; expected \[shaker\]"):
+        Shaker.from_file("beam")
+    for kind in (Structure, Drive):
+        with pytest.raises(InputError, match="shaker_10N: describes no"):
+            kind.from_file("shaker_10N")
+    with pytest.raises(InputError, match="did you mean shaker_100N"):
+        Shaker.from_file("shaker_100n")

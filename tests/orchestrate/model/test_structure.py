@@ -1,0 +1,234 @@
+"""A structure in SI units and by the paper's numbers: both ways, scaled, changed, refused."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import pickle
+
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import given
+from hypothesis import strategies as st
+
+from orchestrate.errors import InputError
+from orchestrate.model import Structure
+from orchestrate.model.ranges import ADDED, STRUCTURE
+
+from .strategies import NUMBERS, RATIO, SCALE, SMALL, STRUCTURES
+
+
+def near(value, expected):
+    return math.isclose(value, expected, rel_tol=1e-12)
+
+
+@given(NUMBERS, SCALE, SCALE)
+def test_numbers_to_si_and_back_at_any_scale(numbers, m1, omega):
+    structure = Structure.nondimensional(**numbers, m1=m1, omega=omega)
+    for name, value in numbers.items():
+        assert near(structure.get(name), value), name
+    assert structure.m1 == m1 and near(structure.omega, omega)
+
+
+@given(st.sampled_from([0.005, 0.02, 0.05, 0.013, 0.3]), st.integers(1, 40))
+def test_a_number_comes_back_as_it_was_written(damping, tenths):
+    structure = Structure.nondimensional(D=damping, mu=tenths / 10, kappa=tenths / 10)
+    found = (structure.D1, structure.D2, structure.mu, structure.kappa)
+    assert found == (damping, damping, tenths / 10, tenths / 10)
+
+
+def test_the_operations_of_the_paper_s_sweeps():
+    """To the last bit what sweeps by the paper's numbers have always given to the FMU."""
+    structure = Structure.nondimensional(e=0.3, D=0.013, mu=0.7, kappa=1.3)
+    expected = {"m1": 1.0, "m2": 0.7, "k1": 1.0, "k2": 1.3, "d1": 2.0 * 0.013}
+    rest = {"d2": 2.0 * 0.013 * 0.7, "e": 0.3, "gamma": 1e-4, "bonded": False}
+    assert structure.parameters() == {**expected, **rest, **dict.fromkeys(ADDED, 0.0)}
+
+
+def test_the_formulas_of_the_paper():
+    structure = Structure(m1=2.0, m2=3.0, k1=8.0, k2=10.0, d1=0.4, d2=0.9)
+    assert (structure.omega, structure.mu, structure.kappa) == (2.0, 1.5, 1.25)
+    assert near(structure.D1, 0.4 / (2.0 * 2.0 * 2.0))
+    assert near(structure.D2, 0.9 / (2.0 * 2.0 * 3.0))
+    assert near(structure.D3, 1.3 / (2.0 * 2.0 * 5.0))
+    omegas = [math.sqrt(k / m) / 2.0 for k, m in ((8.0, 2.0), (10.0, 3.0), (18.0, 5.0))]
+    found = [structure.omega_1, structure.omega_2, structure.omega_3]
+    assert all(map(near, found, omegas))
+
+
+def test_frozen_hashable_picklable():
+    structure = Structure(e=0.3)
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        structure.e = 0.5
+    assert {structure: 1}[Structure(e=0.3)] == 1
+    assert pickle.loads(pickle.dumps(structure)) == structure
+
+
+@given(STRUCTURES)
+def test_repr_can_be_evaluated(structure):
+    assert eval(repr(structure)) == structure
+
+
+def test_numbers_of_arrays_are_plain():
+    data = xr.DataArray([0.25, 0.5])
+    for value in (np.float64(0.5), np.float32(0.5), np.array(0.5), data[1]):
+        structure = Structure(e=value, bonded=np.True_)
+        assert type(structure.e) is float and structure.bonded is True
+        assert "np." not in repr(structure)
+    assert type(Structure(m1=2).m1) is float
+
+
+@given(NUMBERS, st.sampled_from(["mu", "kappa", "D1", "D2"]), SMALL)
+def test_replacing_a_number_changes_that_number_alone(numbers, name, value):
+    before = Structure.nondimensional(**numbers)
+    after = before.replace(**{name: value})
+    for other in ("mu", "kappa", "D1", "D2", "e", "gamma", "omega", "m1"):
+        expected = value if other == name else before.get(other)
+        assert near(after.get(other), expected), other
+
+
+def test_replacing_is_building_anew():
+    """A sweep over a number asks for the same bits as structures made one by one."""
+    base = Structure.nondimensional(D=0.013, mu=0.7, kappa=1.3)
+    for mu in (0.3, 0.9, 1.7):
+        assert base.replace(mu=mu) == Structure.nondimensional(D=0.013, mu=mu, kappa=1.3)
+    for damping in (0.0, 0.02, 0.05):
+        assert base.replace(D=damping) == Structure.nondimensional(D=damping, mu=0.7, kappa=1.3)
+
+
+@pytest.mark.parametrize(
+    ("structure", "label"),
+    [
+        (Structure(), "e0.7_D0.005"),
+        (Structure(bonded=True), "e0.7_D0.005_bonded"),
+        (Structure.nondimensional(e=0.3, D=0.05), "e0.3_D0.05"),
+        (Structure.nondimensional(mu=0.5, kappa=2.0), "e0.7_D0.005_mu0.5_kappa2"),
+        (Structure(gamma=1e-6), "e0.7_D0.005_gamma1e-06"),
+        (Structure.nondimensional(D1=0.1, D2=0.2, e=1.0), "e1_D0.1-0.2"),
+        (Structure.from_file("beam"), "e0.7_m1.5-1.5_k8437.5-10125_d1.125-1.125"),
+    ],
+)
+def test_labels(structure, label):
+    assert structure.label() == label
+
+
+@given(STRUCTURES, STRUCTURES)
+def test_labels_of_different_structures_differ(one, other):
+    assert (one.label() == other.label()) == (one == other)
+
+
+@pytest.mark.parametrize("name", STRUCTURE)
+def test_ranges_are_the_fmu_s(name):
+    quantity = STRUCTURE[name]
+    for value in (quantity.minimum, quantity.maximum):
+        assert getattr(Structure(**{name: value}), name) == value
+    below, above = (
+        np.nextafter(quantity.minimum, -math.inf),
+        np.nextafter(quantity.maximum, math.inf),
+    )
+    for value in (below, above, math.nan, math.inf, -math.inf, 10**400):
+        with pytest.raises(InputError, match=f"^{name} = .*expected .* <= {name} <= "):
+            Structure(**{name: value})
+
+
+@pytest.mark.parametrize("value", ["0.5", None, True, 1j, [0.5], np.array([0.5, 0.6])])
+def test_what_is_no_number(value):
+    with pytest.raises(InputError, match="^e = .*: expected a number, 0 <= e <= 1"):
+        Structure(e=value)
+
+
+@pytest.mark.parametrize("value", ["yes", 1, None])
+def test_bonded_is_true_or_false(value):
+    with pytest.raises(InputError, match="^bonded = .*: expected true or false"):
+        Structure(bonded=value)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: Structure.nondimensional(mu=0.0), ["mu = 0.0: expected 1e-30 <= mu"]),
+        (lambda: Structure.nondimensional(D=-1.0), ["D = -1.0: expected 0 <= D "]),
+        (lambda: Structure.nondimensional(D2="a"), ["D2 = 'a': expected a number"]),
+        (
+            lambda: Structure.nondimensional(mu=1e20, D=1e11),
+            ["mu = 1e+20", "D = 1", "d2 = 2e+31 N.s/m: expected 0 <= d2 <= 1e+30"],
+        ),
+        (lambda: Structure().replace(omega=1e20), ["omega = 1e+20", "k1 = 1e+40"]),
+        (lambda: Structure().replace(kapa=2.0), ["kapa: no parameter", "did you mean kappa?"]),
+        (lambda: Structure().replace(mu=1.0, m2=2.0), ["mu and m2: expected one of them"]),
+        (lambda: Structure().replace(D=1.0, D1=2.0), ["D and D1: expected one of them"]),
+        (lambda: Structure().replace(e=2.0), ["e = 2.0: expected 0 <= e <= 1"]),
+        (lambda: Structure().get("gama"), ["gama: no parameter", "did you mean gamma?"]),
+        (lambda: Structure(d1=0.3).get("D"), ["D: D1 = 0.15 and D2 = 0.005; expected D1 or D2"]),
+    ],
+)
+def test_refusals_are_one_line(call, words):
+    with pytest.raises(InputError) as error:
+        call()
+    text = str(error.value)
+    assert all(word in text for word in words), text
+    assert "\n" not in text
+
+
+@pytest.mark.filterwarnings("ignore:.* of critical damping")
+@given(SCALE, SCALE, SMALL, SMALL, RATIO, RATIO)
+def test_halves_to_si_and_back(m1, m2, f1, f2, zeta1, zeta2):
+    """Each half alone is the damped oscillator of its frequency and damping ratio."""
+    halves = {"f1": f1, "f2": f2, "zeta1": zeta1, "zeta2": zeta2}
+    structure = Structure.from_halves(m1=m1, m2=m2, **halves)
+    for name, value in halves.items():
+        assert near(structure.get(name), value), name
+    for f, zeta, m, k, d in ((f1, zeta1, m1, "k1", "d1"), (f2, zeta2, m2, "k2", "d2")):
+        roots = np.roots([m, structure.get(d), structure.get(k)])
+        assert near(abs(np.prod(roots)), (2.0 * math.pi * f) ** 2)
+        assert math.isclose(-roots.sum().real, 4.0 * math.pi * f * zeta, rel_tol=1e-9)
+    assert near(structure.D2, zeta2 * f2 / f1)
+
+
+def test_halves_come_back_as_they_were_written():
+    halves = {"f1": 42.0, "f2": 55.1, "zeta1": 0.007, "zeta2": 0.013}
+    structure = Structure.from_halves(m1=1.5, m2=1.2, **halves)
+    assert {name: structure.get(name) for name in halves} == halves
+    assert structure.label() == "e0.7_m1.5-1.2_f42-55.1_zeta0.007-0.013"
+    assert structure.replace(k1=1e5).label() != structure.label()
+
+
+@given(STRUCTURES, SMALL)
+def test_a_half_s_frequency_keeps_its_damping_ratio_and_the_other_half(structure, f):
+    other = structure.replace(f2=f)
+    assert near(other.f2, f) and math.isclose(other.zeta2, structure.zeta2, rel_tol=1e-9)
+    assert (other.m1, other.k1, other.d1) == (structure.m1, structure.k1, structure.d1)
+    assert other.m2 == structure.m2
+
+
+@pytest.mark.filterwarnings("ignore:.* of critical damping")
+@given(SCALE, SMALL, RATIO, SMALL, SMALL)
+def test_layers_together_are_the_beam_that_was_measured(mass, f, zeta, h1, h2):
+    structure = Structure.from_bonded(mass=mass, f=f, zeta=zeta, thicknesses=(h1, h2))
+    m, k, d = (structure.get(x + "1") + structure.get(x + "2") for x in "mkd")
+    assert near(m, mass) and near(math.sqrt(k / m), 2.0 * math.pi * f)
+    assert near(d, 2.0 * zeta * math.sqrt(k * m))
+    # Timoshenko and Gere: k of E b h^3/12, m of b h
+    assert near(structure.f2 / structure.f1, h2 / h1)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"f1": 1.0, "k1": 2.0}, "f1 and k1: expected one of them"),
+        ({"zeta2": 0.1, "D": 0.1}, "zeta2 and D: expected one of them"),
+        ({"f2": 0.0}, "f2 = 0.0 Hz: expected 1e-30 <= f2"),
+        ({"f1": 1e29}, "f1 = 1e+29: they make k1 = "),
+    ],
+)
+def test_mistakes_in_halves(changes, words):
+    with pytest.raises(InputError) as error:
+        Structure().replace(**changes)
+    assert words in str(error.value)
+
+
+@pytest.mark.parametrize("thicknesses", [(0.0, 1.0), (1.0, -2.0), (1.0,), 3.0, (1.0, math.nan)])
+def test_thicknesses_are_two_numbers_above_zero(thicknesses):
+    with pytest.raises(InputError, match="thicknesses = .*expected two numbers > 0"):
+        Structure.from_bonded(mass=1.0, f=10.0, thicknesses=thicknesses)

@@ -1,0 +1,88 @@
+"""Branches and borders as pictures: what is solid, what is dashed, where the marks are."""
+
+import functools
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from orchestrate.dynamics.branches import branch
+from orchestrate.model import Structure
+from orchestrate.show import labels
+from orchestrate.show.lines import draw_branch
+from orchestrate.show.planes import draw_border
+from orchestrate.units import with_units
+
+PAPER = Structure.nondimensional()
+
+
+@functools.cache
+def window():
+    return branch(PAPER, eta=2.5, limits=(2.4, 2.8))
+
+
+def test_stable_is_solid_and_unstable_dashed():
+    figure = draw_branch(window())
+    lines = figure.axes[0].get_lines()
+    solid = next(line for line in lines if line.get_linestyle() == "-")
+    dashed = next(line for line in lines if line.get_linestyle() == "--")
+    border_at = window().bifurcation_value.values[0]
+    shown = np.isfinite(solid.get_ydata())
+    assert (solid.get_xdata()[shown] < border_at).all()
+    assert np.isfinite(dashed.get_ydata()).sum() > 3
+    assert dashed.get_xdata()[np.isfinite(dashed.get_ydata())].max() == pytest.approx(2.8)
+
+
+def test_bifurcations_are_marked_each_kind_once_in_the_legend():
+    figure = draw_branch(window(), window())
+    (plane,) = figure.axes
+    words = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert sorted(words) == ["Neimark-Sacker", "period doubling", "stable", "unstable"]
+    marks = [line for line in plane.get_lines() if line.get_markerfacecolor() == "white"]
+    assert {float(mark.get_xdata()[0]) for mark in marks} == set(window().bifurcation_value.values)
+
+
+def test_a_border_is_a_line_over_both_parameters_with_its_points():
+    sides = {"eta": ("point", [2.7, 2.8, 2.9]), "e": ("point", [0.69, 0.7, 0.71])}
+    kinds = {"flag_values": [0, 1], "flag_meanings": "cusp fold_flip"}
+    made = {"codimension_two_kind": ("codimension_two", [1], kinds)}
+    made |= {"codimension_two_eta": ("codimension_two", [2.8])}
+    made |= {"codimension_two_e": ("codimension_two", [0.7])}
+    attributes = {**PAPER.parameters(), "over": ["eta", "e"], "kind": "period doubling"}
+    figure = draw_border(xr.Dataset(made, sides, attributes))
+    line, point = figure.axes[0].get_lines()
+    assert line.get_xdata() == pytest.approx([2.7, 2.8, 2.9])
+    assert line.get_ydata() == pytest.approx([0.69, 0.7, 0.71])
+    assert (point.get_xdata()[0], point.get_ydata()[0]) == (2.8, 0.7)
+    words = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert words == ["period doubling", "fold flip"]
+
+
+def test_gaps_of_a_branch_are_lengths_where_they_are_asked_for():
+    found = with_units(window(), "Hz, mm")
+    (plane,) = draw_branch(found).axes
+    assert plane.get_ylabel() == "gap $x_2 - x_1$ in mm, at $t = nT$"
+    lengths = 1e3 * (found.xi_rel * found.amplitude * found.eta**2).values
+    drawn = np.concatenate([np.ravel(line.get_ydata()) for line in plane.lines[:2]])
+    assert np.nanmax(drawn) == pytest.approx(lengths.max())
+
+
+def test_the_title_of_a_branch_has_what_is_held_of_the_box(exported):
+    beam = {"m1": 1.5, "m2": 1.4, "k1": 8437.5, "k2": 9450.0, "d1": 1.125, "d2": 1.95, "e": 0.7}
+    omega = np.sqrt(beam["k1"] / beam["m1"])
+    frequency = np.array([80.0, 81.0, 82.0])
+
+    def titled(over, frequency, amplitude, units=""):
+        points = {"frequency": frequency, "eta": frequency / omega, "amplitude": amplitude}
+        columns = {name: ("point", values * np.ones(3)) for name, values in points.items()}
+        data = xr.Dataset(coords=columns, attrs=beam)
+        return labels.branch_title(with_units(data, units), [over])
+
+    assert titled("frequency", frequency, 3e-5, "Hz, mm").endswith("$a$ = 0.03 mm")
+    level = titled("frequency", frequency, 0.2 / frequency**2, "Hz, mm, g")
+    assert level.endswith(r"$a\,\Omega^2$ = 0.0204 g") and r"\Omega/2\pi" not in level
+    both = titled("e", 80.0 * np.ones(3), 3e-5, "Hz, mm")
+    assert both.endswith(r"$\Omega/2\pi$ = 12.732 Hz, $a$ = 0.03 mm") and "$e$" not in both
+    assert draw_branch(window()).get_suptitle() == "$e$ = 0.7, $D$ = 0.005"
+    in_si = window().assign_attrs({**window().attrs, "over": "frequency", "m1": 2.0, "m2": 2.0})
+    assert draw_branch(in_si).get_suptitle().endswith(r"$a\,\Omega^2$ = 1 m/s$^2$ (0.102 g)")

@@ -1,0 +1,82 @@
+"""Pictures of signs and of a test's plan."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import orchestrate
+from orchestrate.diagnosis.indicators import INDICATORS
+from orchestrate.show import diagnosis
+
+
+def texts(figure):
+    figure.canvas.draw()
+    words = [text.get_text() for axes in figure.axes for text in axes.texts]
+    words += [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+    return words + [label.get_text() for axes in figure.axes for label in axes.get_yticklabels()]
+
+
+@pytest.fixture(scope="module")
+def signs():
+    time = np.arange(4000) / 1000.0
+    angle = 2.0 * np.pi * (20.0 * time + 5.0 * time**2)
+    box, response = 2.0 * np.sin(angle), 6.0 * np.sin(angle) + 0.6 * np.sin(2.0 * angle)
+    noise = 0.01 * np.random.default_rng(2).normal(size=(2, 4000))
+    names = {"box_acceleration": box, "acceleration1": response + noise[0]}
+    names["acceleration2"] = response + noise[1]
+    record = xr.Dataset({name: ("time", values) for name, values in names.items()}, {"time": time})
+    return orchestrate.signs(record, seeds=1)
+
+
+def test_every_known_sign_has_its_bar_and_the_others_are_named(signs):
+    figure = orchestrate.plot(signs, title="Beam A")
+    words, (axes,) = texts(figure), figure.axes
+    known = (signs.exceeds >= 0).any("channel").values
+    names = [one.long_name for one in INDICATORS.values()]
+    assert 0 < known.sum() < len(names)
+    lacking = figure.legends[0].get_title().get_text().replace("\n", " ")
+    for name, drawn in zip(names, known, strict=True):
+        assert (name in words) == drawn and (name in lacking) == (not drawn)
+    widths = {bar.get_width() for bar in axes.patches}
+    order_2 = (signs.value / np.fmax(signs.floor, signs.sound_highest)).sel(sign="order_2").values
+    assert all(any(np.isclose(width, wanted) for width in widths) for wanted in order_2)
+    low, high = axes.get_xlim()
+    assert low == diagnosis.FEWEST_DECADES[0] and high > float(order_2.max())
+    assert all(text.xy[0] >= diagnosis.LIMIT for text in axes.texts)  # on no line
+    assert figure.get_suptitle() == "Beam A"
+
+
+@pytest.fixture(scope="module")
+def plan(exported):
+    beam = orchestrate.Structure.from_file("beam").replace(D=0.03)
+    sensor = orchestrate.Sensor(bandwidth=200.0, noise=1e-3)
+    frequencies = np.linspace(10.0, 15.0, 11)
+    return orchestrate.plan_test(
+        beam, sensor=sensor, levels=[0.02, 0.2], frequencies=frequencies, progress=False
+    )
+
+
+def test_a_plan_shows_map_recommended_sweep_and_preload(plan):
+    figure = orchestrate.plot(plan)
+    words = texts(figure)
+    assert {"level that counts", "recommended sweep", "at 0.02 m/s$^2$"} <= set(words)
+    high = plan.assign(smallest_level=0.0 * plan.smallest_level)
+    assert "level that counts" not in texts(orchestrate.plot(high))  # it is not in the picture
+    (box,) = (patch for patch in figure.axes[0].patches if patch.get_width() > 0.0)
+    assert box.get_x() == float(plan.recommended_first)
+    low, high = box.get_y(), box.get_y() + box.get_height()
+    assert low < float(plan.recommended_level) < high
+    assert len(figure.axes[1].lines) == 2
+
+
+def test_curves_below_an_axis_are_named():
+    over = ("hypothesis", "order", "channel", "frequency")
+    fitted = np.ones((2, 1, 1, 5)) * np.array([1.0, 1e-6]).reshape(2, 1, 1, 1)
+    made = {"measured": (over[1:], np.ones((1, 1, 5)), {"units": "m/s2"})}
+    made |= {"fitted": (over, fitted), "misfit": ("hypothesis", [0.1, 2.0])}
+    names = {"hypothesis": ["delaminated", "bonded"], "order": [2.0]}
+    names |= {"channel": ["acceleration1"], "frequency": np.arange(1.0, 6.0)}
+    (plane,) = diagnosis.draw_detect(xr.Dataset(made, names)).axes
+    assert plane.get_title("right") == "below this axis: bonded"

@@ -1,0 +1,230 @@
+"""The page of a report: it carries all it needs, escapes every text, and fits paper and phone."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import re
+import shutil
+import subprocess
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import orchestrate
+from orchestrate.errors import InputError
+from orchestrate.show.answers import title_of
+from orchestrate.show.page import Page, Section, Table, Verdict, format_number, format_with_error
+from orchestrate.show.verdict import format_odds, measured_record, verdict_sections
+
+EVIL = "<script>alert(\"1\")</script> & 'others'"
+RATE = 1000.0
+
+
+class Tags(HTMLParser):
+    """Tags and texts of a page."""
+
+    def __init__(self):
+        super().__init__()
+        self.tags, self.open, self.texts = [], [], []
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+        if tag not in ("meta", "img"):
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.texts.append(data)
+
+
+def parsed(html):
+    page = Tags()
+    page.feed(html)
+    assert page.open == []
+    return page
+
+
+@pytest.fixture(scope="module")
+def signs():
+    time = np.arange(4000) / RATE
+    angle = 2.0 * np.pi * (20.0 * time + 5.0 * time**2)
+    generator = np.random.default_rng(2)
+    response = 6.0 * np.sin(angle) + np.sin(2.0 * angle) + 0.01 * generator.normal(size=4000)
+    record = xr.Dataset(
+        {
+            "box_acceleration": ("time", 2.0 * np.sin(angle)),
+            "acceleration1": ("time", response),
+        },
+        {"time": time},
+        {"title": EVIL},
+    )
+    return orchestrate.signs(record, seeds=1)
+
+
+@pytest.fixture(scope="module")
+def html(signs, tmp_path_factory):
+    path = tmp_path_factory.mktemp("report") / "r.html"
+    return orchestrate.report(signs, output=path, notes=EVIL).read_text("utf-8")
+
+
+def test_every_text_is_escaped(html):
+    page = parsed(html)
+    assert "script" not in {tag for tag, _ in page.tags}
+    assert EVIL in page.texts  # as a text, twice: the notes and the title's part
+    assert not any(name.startswith("on") for _, attributes in page.tags for name in attributes)
+
+
+def test_it_needs_no_network_and_its_style_is_the_one_allowed(html):
+    assert "http:" not in html and "https:" not in html
+    policy = re.search(r'Content-Security-Policy" content="([^"]+)"', html)[1]
+    style = re.search(r"<style>(.*?)</style>", html, re.DOTALL)[1]
+    digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
+    assert f"'sha256-{digest}'" in policy.replace("&#39;", "'")
+    assert "default-src" in policy and "unsafe" not in policy and "script-src" not in policy
+    assert not any("style" in attributes for _, attributes in parsed(html).tags)
+
+
+def test_a_page_has_pictures_tables_for_a_telephone_and_what_else_moves_a_sign(html):
+    page = parsed(html)
+    (image,) = (attributes for tag, attributes in page.tags if tag == "img")
+    assert image["src"].startswith("data:image/png;base64,") and image["alt"]
+    assert int(image["width"]) > 600 and int(image["height"]) > 300
+    cells = [attributes for tag, attributes in page.tags if tag == "td"]
+    assert cells and all(attributes.get("data-label") for attributes in cells)
+    words = "\n".join(page.texts)
+    assert "order 2 over order 1" in words and "Also moved by: a shaker or a sensor" in words
+    assert "fall of the jump voltage" not in words  # this record does not show it
+    assert "numpy" in words and "vibroimpact" in words
+
+
+def test_any_stored_answer_has_a_page(exported, tmp_path):
+    beam = orchestrate.Structure.from_file("beam")
+    motion = orchestrate.simulate(beam, frequency=78.0, amplitude=1e-3, periods=3)
+    motion.to_netcdf(tmp_path / "motion.nc")
+    stored = xr.load_dataset(tmp_path / "motion.nc")
+    text = orchestrate.report(stored, output=tmp_path / "m.html", title="A motion").read_text()
+    words = "\n".join(parsed(text).texts)
+    assert "A motion" in words and motion.attrs["fmu_guid"] in words
+    assert "8437.5 N/m" in words and "0.001 m" in words
+    assert "Read and signed" not in words
+    assert len([tag for tag, _ in parsed(text).tags if tag == "img"]) == 1
+
+
+def test_what_is_signed_comes_first_and_the_appendix_last():
+    sections = [
+        Section("What was assumed", points=[EVIL], place="appendix"),
+        Section("Signs", tables=[Table(("a", "b"), [("1", EVIL)])]),
+        Section("Why", points=[EVIL], place="front"),
+    ]
+    page = parsed(Page("T", "", sections, Verdict("Undecided.", EVIL, "open")).html())
+    words = "\n".join(page.texts)
+    order = ("Undecided.", "Why", "no certificate", "Signature", "Signs", "Appendix", "assumed")
+    assert sorted(order, key=words.index) == list(order)
+    assert ("p", {"class": "verdict open"}) in page.tags
+
+
+def test_numbers_have_the_digits_of_their_errors():
+    assert format_with_error(0.57123, 0.0312) == "0.571 ± 0.031"
+    assert format_with_error(42.0, np.nan, "Hz") == "42 Hz"
+    assert format_with_error(-3.4e-7, 4.4e-7, "m") == "-0.34 ± 0.44 µm"
+    assert (format_number(np.inf, "Hz"), format_number(2e-6, "m")) == ("–", "2 µm")
+    odds = [format_odds(value) for value in (23.7, 2001.0, 0.0005)]
+    assert odds == ["24 to 1", "2000 to 1", "1 to 2000"]
+
+
+def test_nothing_is_no_report(tmp_path):
+    with pytest.raises(InputError, match="no answer given"):
+        orchestrate.report(output=tmp_path / "r.html")
+    with pytest.raises(InputError, match="no answer of a question"):
+        orchestrate.report(xr.Dataset(), output=tmp_path / "r.html")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.fixture(scope="module")
+def verdict():
+    return xr.Dataset(
+        {
+            "verdict": ((), "delaminated"),
+            "odds": ((), 300.0),
+            "misfit": ("hypothesis", [2.0, 0.5]),
+            "value": (("hypothesis", "parameter"), [[0.3, np.nan], [np.nan, 42.0]]),
+            "standard_error": (("hypothesis", "parameter"), [[0.1, np.nan], [np.nan, 0.5]]),
+        },
+        {
+            "hypothesis": ["bonded, with a stop in the positive direction", "delaminated"],
+            "parameter": ["stop", "f1"],
+            "unit": ("parameter", ["1", "Hz"]),
+            "meaning": ("parameter", ["stiffness of a stop", "frequency of half 1"]),
+        },
+        {"m1": 1.5, "m2": 0.75, "k1": 1.5 * (2 * np.pi * 42.0) ** 2, "k2": 0.75e5},
+    )
+
+
+@pytest.mark.skipif(not shutil.which("chromium"), reason="no chromium here, which prints the page")
+def test_on_paper_one_page_is_signed_and_the_rest_is_short(verdict, signs, tmp_path):
+    """A page with the signature, one with the signs, one of an appendix."""
+    over, hertz = ("order", "channel", "frequency"), np.linspace(9.0, 16.0, 50)
+    wave = np.ones((3, 1, 50)) / (1.0 + (hertz - 12.0) ** 2)
+    shown = {"measured": (over, wave, {"units": "m/s2"}), "floor": (over, 1e-3 * wave)}
+    shown |= {"fitted": (("hypothesis", *over), np.stack([wave, 1.1 * wave]))}
+    shown |= {"misfit_at": (("hypothesis", "frequency"), np.ones((2, 50)))}
+    sides = {"order": [1.0, 2.0, 3.0], "channel": ["acceleration1"]}
+    sides["frequency"] = ("frequency", hertz, {"units": "Hz"})
+    told = {"analysis": "detect", "reason": "words " * 60, "settle": "words " * 30}
+    told |= {"record_file": "a.csv", "command": "diagnose " * 12, "assumed": "words; " * 8}
+    answer = verdict.assign(shown).assign_coords(sides).assign_attrs(told)
+    page = orchestrate.report(answer, signs, output=tmp_path / "r.html", notes="Beam 7.")
+    command = ["chromium", "--headless", "--no-sandbox", "--no-pdf-header-footer"]
+    printed = tmp_path / "r.pdf"
+    subprocess.run([*command, f"--print-to-pdf={printed}", page.as_uri()], capture_output=True)
+    assert len(re.findall(rb"/Type\s*/Page\b(?!s)", printed.read_bytes())) == 3
+
+
+def test_a_verdict_says_what_was_guessed_and_what_each_parameter_is(verdict):
+    sections = {section.heading: section for section in verdict_sections(verdict)}
+    assert any("1.5 kg and 0.75 kg" in words for words in sections["What was assumed"].points)
+    assert any("42 Hz and 50.3 Hz" in words for words in sections["What was assumed"].points)
+    rows = dict(row[:1] + row[1:2] for row in sections["Parameters"].tables[0].rows)
+    assert rows["f1, frequency of half 1"] == "42.00 ± 0.50 Hz"
+    assert "stop, stiffness of a stop" in rows
+    odds = [words for words in sections["Why"].points if words.startswith("The odds")]
+    assert "300 to 1" in odds[0] and "blocks" in odds[0]
+    without = verdict.assign_attrs(m1=float("nan"))
+    sections = {section.heading: section for section in verdict_sections(without)}
+    assert not any("kg" in words for words in sections["What was assumed"].points)
+
+
+def test_the_record_is_described_in_the_units_that_are_asked_for():
+    answer = xr.Dataset(
+        {
+            "level_low": ((), 3.9),
+            "level_high": ((), 4.0),
+            "sample_rate": ((), 1250.0),
+            "record_duration": ((), 40.0),
+            "sweep_low": ((), 20.0),
+            "sweep_high": ((), 90.0),
+        },
+        {"frequency": ("window", [30.0, 70.0])},
+        {"record_file": "a.csv", "record_unit": "m/s2", "direction": "down", "command": "diagnose"},
+    )
+    rows = dict(measured_record(orchestrate.units.with_units(answer, "g")).tables[0].rows)
+    assert rows["level of the base, peak"] == "0.398 to 0.408 g"
+    assert rows["sweep"] == "20 to 90 Hz downwards; compared with models: 30 to 70 Hz"
+    assert (rows["sampling rate"], rows["duration"]) == ("1250 Hz", "40 s")
+    assert rows["unit of its accelerations"] == "m/s²"  # one spelling on the page
+    assert rows["command that made it"] == "diagnose" and "sensors" not in rows
+    noted = answer.assign_attrs(record_unit_note="--unit g was used, although the file says m/s2")
+    rows = dict(measured_record(noted).tables[0].rows)
+    assert "although" in rows["unit of its accelerations"]
+    assert measured_record(xr.Dataset()) is None
+
+
+def test_a_heading_has_no_name_of_a_file():
+    told = {"title": "Map over frequency and e: e0.6_m1.5-1.4_f11.9-13.5", "call": "map()"}
+    assert title_of(xr.Dataset(attrs=told)) == "Map over frequency and e"
+    assert title_of(xr.Dataset(attrs={**told, "title": "Orders: Record a.csv"})).endswith("a.csv")
