@@ -17,10 +17,10 @@ from typing import Any
 
 from orchestrate.files import write_whole
 from orchestrate.paper.claims import WORDS
-from tools.marked import MARK, replace_part
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 IMPLIED = re.compile(r"; the paper's number agrees with (?:both|neither)\b")  # by the verdict
+MARK = "<!-- {}: {} -->\n"
 PAGES, CLAIMS = (DOCS / "paper.md", DOCS / "claims.md"), DOCS / "claims.json"
 
 
@@ -85,11 +85,12 @@ def fill_page(text: str, found: Mapping[str, Any]) -> str:
         "sections": lambda: section_table(found["claims"]),
         "verdicts": lambda: claim_table(found["claims"]),
         "regions": lambda: region_table(found["regions"]),
-        "answers": lambda: [f"- {sentence}" for sentence in found["answers"]],
     }
     for name, lines in parts.items():
-        if MARK.format(name, "begin") in text:
-            text = replace_part(text, name, lines())
+        begin, end = (MARK.format(name, word) for word in ("begin", "end"))
+        if begin in text:
+            before, rest = text.split(begin)
+            text = "\n".join([before + begin + lines()[0], *lines()[1:], end + rest.split(end)[1]])
     return text
 
 

@@ -201,7 +201,7 @@ def run_paper(arguments: argparse.Namespace) -> None:
 
 
 def claim_lines(verdicts: Mapping[str, Any]) -> Iterator[str]:
-    """Yield each claim's verdict, and answers to further questions, a line each."""
+    """Yield the verdicts of claims and regions, a line each."""
     for row in verdicts["claims"]:
         text, printed = row["text"], row["printed"]
         verdict = f"{row['section']:4} {row['verdict']:7}"
@@ -210,7 +210,6 @@ def claim_lines(verdicts: Mapping[str, Any]) -> Iterator[str]:
         shares = f"chaotic {row['chaotic']:5} neutral {row['neutral']:5}"
         where = f"{row['case']:18} {row['region']:13} {row['verdict']:16}"
         yield f"{where} {shares} largest {row['largest']}"
-    yield from verdicts["answers"]
 
 
 PAPER = Command(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
@@ -50,8 +50,6 @@ DECIDED_BY = (
 )
 KEYWORDS = ("transient", "settle", "samples", "converged", "longest", "alike", "alike_irregular")
 COLUMNS = (*OF_ATTRACTORS, "multiplier", "how", "share", "state")
-SIZE_PERIODS, SAMPLES_PER_PERIOD = 8, 64  # of the response from rest, to measure its size
-AROUND, BEYOND = 0.7, 3.0  # of its largest displacement, of its largest gap: the second box
 
 
 def half_widths(name: str, value: ArrayLike | None) -> Numbers | None:
@@ -258,8 +256,8 @@ def size_from_rest(instance: Instance, point: Point, settings: AttractorSettings
     """Run from rest until settled; return a state there, largest displacement and gap, m."""
     response = run_until_settled(instance, point, REST, settings).response
     begin(instance, *point, response.end)
-    span = SIZE_PERIODS * point.excitation.period
-    states = sampled(instance, 0.0, span, SIZE_PERIODS * SAMPLES_PER_PERIOD)
+    span = 8 * point.excitation.period
+    states = sampled(instance, 0.0, span, 512)
     displacement = float(np.abs(states[:, :2]).max())
     return SizeFromRest(np.array(response.end), displacement, response.x_rel_max)
 
@@ -271,7 +269,8 @@ def starts_in_both_boxes(
     states = random_starts(count, scale, seed, point.structure)
     draws = np.random.default_rng([*seed, 1]).uniform(-1.0, 1.0, (count, 4))
     frequency = point.excitation.frequency
-    around, gap = AROUND * size.displacement, BEYOND * (size.gap or point.length)
+    # of the largest displacement, and of the largest gap, of the response from rest
+    around, gap = 0.7 * size.displacement, 3.0 * (size.gap or point.length)
     x1 = size.state[0] + around * draws[:, 0]
     v1 = size.state[2] + frequency * around * draws[:, 2]
     x2 = x1 + gap * np.abs(draws[:, 1]) - point.structure.gap_offset
@@ -281,7 +280,7 @@ def starts_in_both_boxes(
 
 
 def attractor_settings(call: Mapping[str, Any]) -> AttractorSettings:
-    """Check a call's keywords on settling and clustering; return them as ``AttractorSettings``."""
+    """Return the ``AttractorSettings`` of a call, with its keywords, which are checked."""
     least = {"transient": 0, "samples": 4, "longest": 0}  # whole numbers
     settings: dict[str, Any] = {
         name: checked_integer(name, call[name], least[name])
@@ -289,7 +288,7 @@ def attractor_settings(call: Mapping[str, Any]) -> AttractorSettings:
         else checked_positive(name, call[name])
         for name in KEYWORDS
     }
-    return AttractorSettings(**settings)
+    return replace(call["settings"] or AttractorSettings(), **settings)
 
 
 def attractors(
@@ -311,6 +310,7 @@ def attractors(
     longest: int = 20_000,
     alike: float = 0.02,
     alike_irregular: float = 0.25,
+    settings: AttractorSettings | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Find coexisting attractors from random starts, and the share of starts that each attracts.
@@ -351,6 +351,8 @@ def attractors(
         Newton's method finds no stable orbit.
     alike_irregular : float
         Relative difference within which irregular responses belong to one attractor.
+    settings : AttractorSettings, optional
+        Further thresholds of the rule that decides, of :mod:`orchestrate.dynamics.decision`.
     **running
         ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`.
 

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 LEAST_BOXES = 4  # along each side of the plane
-LEAST_SIZES = 3  # of boxes, through which a line is fitted
 Labels = NDArray[np.int64]
 Floats = NDArray[np.float64]
 
@@ -58,7 +57,7 @@ def uncertainty_exponent(sizes: Floats, fractions: Floats) -> tuple[float, float
     from scipy.stats import linregress
 
     known = fractions > 0.0
-    if np.count_nonzero(known) < LEAST_SIZES:
+    if np.count_nonzero(known) < 3:  # of boxes, through which a line is fitted
         return math.nan, math.nan
     line = linregress(np.log(sizes[known]), np.log(fractions[known]))
     return float(line.slope), float(line.stderr)

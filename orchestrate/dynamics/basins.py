@@ -61,9 +61,7 @@ AXES = {  # coordinates of a plane of starts: units, long name
     "v_rel": ("m/s", "velocity of the gap at the start"),
     "phase": ("rad", "phase of the box at the start"),
 }
-SEARCH = 24  # random starts for the attractors that a default plane is laid around
 COUNT = 80  # values along its sides
-BEYOND = 2.0  # how far it goes, over the attractors' largest gap
 GAPS = {"x_rel": ("x1", "x2"), "v_rel": ("v1", "v2")}
 
 
@@ -247,6 +245,7 @@ def basin(
     longest: int = 20_000,
     alike: float = 0.02,
     alike_irregular: float = 0.25,
+    settings: AttractorSettings | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Find basins of attraction: the attractor that each start of a plane leads to.
@@ -268,7 +267,7 @@ def basin(
         where neither side is given either, the mean of the attractors' states at phase 0.
     phase
         As in :func:`orchestrate.simulate`.
-    transient, settle, samples, converged, longest, alike, alike_irregular
+    transient, settle, samples, converged, longest, alike, alike_irregular, settings
         As in :func:`orchestrate.attractors`.
     **running
         ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`.
@@ -332,7 +331,7 @@ class KnownAttractors(NamedTuple):
         """Return a default axis for gap or gap velocity, twice as wide as the attractors."""
         rates = np.abs(self.samples[:, 3] - self.samples[:, 2])
         largest = {"x_rel": self.gap, "v_rel": max(float(rates.max()), self.frequency * self.gap)}
-        high = float(f"{BEYOND * largest[name]:.1e}")
+        high = float(f"{2.0 * largest[name]:.1e}")
         return PlaneAxis(name, 0.0 if name == "x_rel" else -high, high, COUNT)
 
 
@@ -341,10 +340,10 @@ def find_known_attractors(
 ) -> KnownAttractors:
     """Find attractors from a few random starts, to lay the default plane around them."""
     structure, excitation = point
-    search: Any = {name: getattr(settings, name) for name in KEYWORDS}
+    search: Any = {name: getattr(settings, name) for name in KEYWORDS} | {"settings": settings}
     search |= {name: running[name] for name in running.keys() & {"fmu", "build_folder"}}
     search |= {"frequency": excitation.frequency, "amplitude": excitation.amplitude}
-    known = attractors(structure, starts=SEARCH, **search, jobs=1, progress=False).isel(frequency=0)
+    known = attractors(structure, starts=24, **search, jobs=1, progress=False).isel(frequency=0)
     states, samples = tuple(map(tuple, known.state.values.tolist())), []
     with Instance(finder(running)(OSCILLATOR).path) as instance:
         for state, n in zip(states, known.multiplicity.values, strict=True):

@@ -35,10 +35,7 @@ from .turning_points import (
 REAL_MULTIPLIERS: dict[int, float] = {FOLD: 1.0, FLIP: -1.0}  # that lie on the unit circle
 SMOOTH_KINDS = (FOLD, FLIP, TORUS)
 FOLLOWED = (*SMOOTH_KINDS, GRAZING, TOUCHING, EARLIER_RELEASE)
-STEP = 1e-6  # of an unknown, over its scale, for differences
 OVERLAP = 1e-9  # over a eta^2: a gap, or a force, smaller by this than zero is no rounding
-FIRST_STEP = 1e-3  # in unknowns over their scale: short, as the curve is not known yet
-HALVINGS = 24  # of the last step: its end is known to 1e-7 of it
 
 
 @dataclass
@@ -145,7 +142,7 @@ class BifurcationCurve:
         spans = [(-np.inf, np.inf)] * self.family.size
         limits = [*spans, *self.family.setting.limits, *[(-np.inf, np.inf)] * len(self.extra)]
         own = [
-            central_difference(self.condition, unknowns, i, *limit, step=STEP * scale)
+            central_difference(self.condition, unknowns, i, *limit, step=1e-6 * scale)
             for i, (limit, scale) in enumerate(zip(limits, self.scale, strict=True))
         ]
         return np.vstack([np.hstack([orbit, blank]), np.array(own).T])
@@ -182,7 +179,8 @@ class BifurcationTracer(BranchTracer[BifurcationCurve, Root]):
     def __init__(
         self, curve: BifurcationCurve, start: Root, settings: ContinuationSettings
     ) -> None:
-        first, longest = min(FIRST_STEP, settings.max_step), settings.max_step
+        # short, as the curve is not known yet
+        first, longest = min(1e-3, settings.max_step), settings.max_step
         super().__init__(ArclengthStepper(curve, start, first, longest), settings.max_points)
 
     def point(self, root: Root) -> Root:
@@ -209,7 +207,7 @@ class BifurcationTracer(BranchTracer[BifurcationCurve, Root]):
         """Bisect a step for its last root that is a possible motion; return it in a list, or []."""
         low, high = 0.0, step.length
         last: list[Root] = []
-        for _ in range(HALVINGS):
+        for _ in range(24):  # its end is known to 1e-7 of the step then
             middle = 0.5 * (low + high)
             try:
                 root = self.stepper.root_after(middle)

@@ -11,12 +11,10 @@ from .orbit_point import OrbitPoint
 from .orbit_search import solve_orbit
 from .periodic_orbit import IMPACT, RELEASE, STICK, ImpactSequence, PeriodicOrbit
 
-MAX_CHANGES = 10  # impacts that come or go in one step: more are no small change of an orbit
-
 
 def add_or_remove_impacts(point: OrbitPoint) -> OrbitPoint:
     """Add or remove chattering impacts one by one until (17) holds; return the orbit."""
-    for _ in range(MAX_CHANGES):
+    for _ in range(10):  # more are no small change of an orbit
         if not point.wrong_contact:
             return point
         point = change_one_impact(point)

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from ..model import Excitation, Structure
 
 Floats = NDArray[np.float64]
-CRITICAL = 1e-14  # of omega_i^2: so near to critical damping it is critical but for rounding
 MASSES = slice(0, 2)  # oscillators 1 and 2
 
 
@@ -124,7 +123,7 @@ class ClosedForm:
         """Return ``e^{-D t} cos(nu t)`` and ``e^{-D t} sin(nu t)/nu`` of (10), overdamped too."""
         damping, square = self.damping[i], self.stiffness[i]
         nu_squared = square - damping * damping  # (11)
-        if abs(nu_squared) <= CRITICAL * square:
+        if abs(nu_squared) <= 1e-14 * square:  # critical but for rounding
             decay = np.exp(-damping * time)
             return decay, time * decay
         nu = np.sqrt(abs(nu_squared))

@@ -36,13 +36,8 @@ from .periodic_orbit import CLOSING, PeriodicOrbit
 from .turning_points import nearest_miss, turning_points
 
 DEGREE = 4  # of D: as many multipliers as states
-ON_CIRCLE = 1e-6  # of a pair of multipliers: how far its size may be from 1
 LOCATED = 1e-6  # a located point's test function, at most: what is above is no root of it
 TOLERANCE = {"xtol": 1e-14, "rtol": 1e-14}  # of Brent's method, in unknowns over their scale
-MAX_ITERATIONS = 20
-STEP = 1e-6  # of an unknown, over its scale, for differences
-CONVERGED = 1e-9  # a step of Newton's method, in unknowns over their scale
-FAR = 0.1  # a point at the end of a curve is not farther away from its last root
 
 
 class PointKind(NamedKind):
@@ -240,7 +235,7 @@ def is_point_of_kind(curve: BifurcationCurve, root: Root, kind: PointKind) -> bo
     real = 1.0 if kind == PointKind.FOLD_TORUS else -1.0
     others = characteristic_polynomial(curve, root.unknowns).others(real)
     pair = others[others.imag > 0.0]
-    return bool((np.abs(np.abs(pair) - 1.0) < ON_CIRCLE).any())
+    return bool((np.abs(np.abs(pair) - 1.0) < 1e-6).any())
 
 
 # -- where a curve ends ----------------------------------------------------------------------------
@@ -282,27 +277,27 @@ def solve_end(
 
     unknowns = root.unknowns[:size] if resonance else root.unknowns
     scale, first = curve.scale[: len(unknowns)], unknowns.copy()
-    for _ in range(MAX_ITERATIONS):
+    for _ in range(20):
         orbit = curve.family.jacobian(unknowns[:size])
         blank = np.zeros((len(orbit), len(unknowns) - size))
         free = (-np.inf, np.inf)
         rows = [
-            central_difference(conditions, unknowns, i, *free, step=STEP * float(scale[i]))
+            central_difference(conditions, unknowns, i, *free, step=1e-6 * float(scale[i]))
             for i in range(len(unknowns))
         ]
         matrix = np.vstack([np.hstack([orbit, blank]), np.array(rows).T]) * scale
         residual = np.append(curve.family.residual(unknowns[:size]), conditions(unknowns))
         step = solve_linear(matrix, residual)
         unknowns = unknowns - scale * step
-        if np.abs((unknowns - first) / scale).max() > FAR:
+        if np.abs((unknowns - first) / scale).max() > 0.1:
             raise NoConvergenceError("Newton's method went too far")
-        if np.abs(step).max() < CONVERGED:
+        if np.abs(step).max() < 1e-9:
             left = float(np.abs(conditions(unknowns)).max())
             orbit_left = float(np.abs(curve.family.residual(unknowns[:size])).max())
             if not (left <= LOCATED and orbit_left <= curve.accuracy):
                 raise NoConvergenceError(f"no root: the residuals are {orbit_left:.0e}, {left:.0e}")
             return CodimensionTwoPoint(kind, unknowns[:size], position, left)
-    raise NoConvergenceError(f"no root after {MAX_ITERATIONS} iterations")
+    raise NoConvergenceError("no root after 20 iterations")
 
 
 def grazing_test(curve: BifurcationCurve, unknowns: Floats, reason: str) -> float:

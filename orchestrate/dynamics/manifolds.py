@@ -55,7 +55,6 @@ ENDS = {0: LENGTH, 1: POINTS, 2: CONVERGED}
 COUNTS = ("impact_count", "contact_count")
 ROUNDING = 16.0 * float(np.finfo(float).eps)  # of a state's largest number, with room
 ROUNDED = 2.0**-44, 2.0**-36  # to that a saddle's numbers are rounded, and its eigenvector
-MIN_GAP = 2.0  # starting distances: a gap at phase 0 that is smaller leaves no room for a start
 
 
 @dataclass(frozen=True)
@@ -154,7 +153,7 @@ class ManifoldJob(SingleOrbitQuestion):
             raise InputError(f"start: no orbit found from there ({reason}); {expected}") from None
         saddle = Saddle.from_orbit(family.orbit(root.unknowns))
         gap = float(saddle.state[1] - saddle.state[0])
-        needed = MIN_GAP * self.distance * saddle.size
+        needed = 2.0 * self.distance * saddle.size  # a smaller gap leaves no room for a start
         moves = abs(saddle.direction[1] - saddle.direction[0]) > self.distance
         if moves and gap < needed:
             raise InputError(

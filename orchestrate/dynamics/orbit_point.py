@@ -26,7 +26,6 @@ from .periodic_orbit import CLOSING, POSITION, VELOCITY, PeriodicOrbit
 from .turning_points import nearest_miss, turning_points, weakest_force
 
 CONTACT_KINDS = (CONTACT_LOST, CONTACT_BEGUN)
-ON_CIRCLE = 1e-6  # of a located pair of multipliers: how far its size may be from 1
 STICK_TOLERANCE = 1e-10  # of (17), over a eta^2: an impact so near to sticking may do either
 
 
@@ -112,7 +111,7 @@ class OrbitPoint:
         # the product of two real multipliers may be 1 as well as that of a pair on the unit circle
         if kind != TORUS:
             return True
-        return bool((np.abs(np.abs(self.pairs) - 1.0) < ON_CIRCLE).any())
+        return bool((np.abs(np.abs(self.pairs) - 1.0) < 1e-6).any())
 
     def reversed(self) -> OrbitPoint:
         """Return the same point with its tangent reversed, to continue the other way."""

@@ -23,13 +23,6 @@ from .turning_points import (
     weakest_force,
 )
 
-SAME_PHASE = 1e-6  # rad: impacts of the FMU at these are the orbit's own
-# Of the largest closing speed: an impact below may come or stay away by rounding, where a flight or
-# an impact grazes; the square root of a gap's rounding is 1e-8
-GRAZES = 1e-6
-SAME_ORBIT = 1e-6  # of the nodes over their size: an orbit is as at its beginning again
-PHASES = 24  # at which a single impact is tried: every 15 degrees
-
 
 @dataclass(frozen=True)
 class FmuCheck:
@@ -72,7 +65,7 @@ def why_no_motion(orbit: PeriodicOrbit) -> str:
     return ""
 
 
-def least_periods(orbit: PeriodicOrbit, within: float = SAME_ORBIT) -> int:
+def least_periods(orbit: PeriodicOrbit, within: float = 1e-6) -> int:
     """Return the orbit's least period in excitation periods, by comparing shifted nodes."""
     periods, count = orbit.sequence.periods, orbit.count
     kinds, span = np.array(orbit.sequence.kinds), TURN * orbit.sequence.periods
@@ -112,13 +105,14 @@ def check_orbit_in_fmu(
         wanted, kinds = wanted[there], kinds[there]
     if len(phases) != len(wanted):
         return FmuCheck(False, away)
-    near = np.abs(phases - wanted[:, PHASE]).max(initial=0.0) < SAME_PHASE
+    near = np.abs(phases - wanted[:, PHASE]).max(initial=0.0) < 1e-6  # rad
     return FmuCheck(bool(near and (sticks == (kinds == STICK)).all()), away)
 
 
 def not_grazing(closing: Floats) -> NDArray[np.bool_]:
     """Return, for each closing speed, whether the impact is well above grazing."""
-    return np.asarray(closing > GRAZES * closing.max(initial=0.0))
+    # the square root of a gap's rounding is 1e-8
+    return np.asarray(closing > 1e-6 * closing.max(initial=0.0))
 
 
 def first_possible_orbit(
@@ -148,5 +142,5 @@ def first_possible_orbit(
 def single_impact_guesses(form: ClosedForm, periods: int) -> Iterator[Guess]:
     """Yield orbit guesses with a single impact, at phases spaced around the circle."""
     sequence = ImpactSequence(periods, (IMPACT,))
-    for phase in np.arange(PHASES) * TURN / PHASES:
+    for phase in np.arange(24) * TURN / 24:
         yield guess_from_phases(form, sequence, np.array([phase]))

@@ -35,12 +35,6 @@ from .tracer import (
     LocatedBifurcation,
 )
 
-FIRST_STEP = 1e-3  # in unknowns over their scale: short, as the branch is not known yet
-AT_BEGIN = 1e-7  # of a step: a bifurcation nearer to its begin is the one that the branch leaves
-NO_CONTACT = 1e-6  # of a permanent contact, in units of tau: so little of it is none
-HALVED = 1e-4  # of an orbit's size: how far from itself after half its period at a halving
-SAME_SIZE = 0.5, 2.0  # size of the motion over the one that its unknowns are measured in
-
 
 class OrbitTracer(BranchTracer[Family, OrbitPoint]):
     """Traces a branch of periodic orbits by pseudo-arclength continuation, with its
@@ -59,7 +53,8 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
     finds_pairs = True
 
     def __init__(self, start: OrbitPoint, settings: ContinuationSettings) -> None:
-        first, longest = min(FIRST_STEP, settings.max_step), settings.max_step
+        # short, as the branch is not known yet
+        first, longest = min(1e-3, settings.max_step), settings.max_step
         stepper = ArclengthStepper(start.family, start.root, first, longest)
         super().__init__(stepper, settings.max_points)
 
@@ -83,7 +78,7 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
 
     def confirms(self, kind: BifurcationKind, point: OrbitPoint, part: float) -> bool:
         """Return whether a located zero is a true bifurcation, and not the step's own start."""
-        return part > AT_BEGIN and point.zero_is_bifurcation(kind)
+        return part > 1e-7 and point.zero_is_bifurcation(kind)
 
     def locate(self, step: BranchStep[OrbitPoint]) -> list[LocatedBifurcation[OrbitPoint]]:
         """Locate the bifurcations in a step, up to where its orbit has half the period."""
@@ -98,7 +93,7 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         family, root = point.family, point.root
         nodes = root.unknowns[: family.size].reshape(-1, 4)
         scaled = Family.from_nodes(family.setting, family.sequence, nodes)
-        low, high = SAME_SIZE
+        low, high = 0.5, 2.0
         if len(nodes) and not low < scaled.scale[POSITION] / family.scale[POSITION] < high:
             tangent = root.tangent * family.scale / scaled.scale
             family, root = scaled, replace(root, tangent=tangent / np.linalg.norm(tangent))
@@ -130,7 +125,7 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
     def end_without_root(self, segment: BranchSegment[OrbitPoint]) -> None:
         """Set why a branch ends where Newton fails: contact lost, or no convergence."""
         last = segment.points[-1]
-        if last.orbit.contact.any() and last.contact_margin(CONTACT_LOST) < NO_CONTACT:
+        if last.orbit.contact.any() and last.contact_margin(CONTACT_LOST) < 1e-6:
             segment.add_bifurcation(CONTACT_LOST, last, 0.0)
             segment.end = KINDS[CONTACT_LOST]
         else:
@@ -142,4 +137,4 @@ def is_halved(located: LocatedBifurcation[OrbitPoint], before: OrbitPoint) -> bo
     periods = before.orbit.sequence.periods
     if located.kind != FOLD or least_periods(before.orbit) < periods:
         return False
-    return least_periods(located.point.orbit, HALVED) < periods
+    return least_periods(located.point.orbit, 1e-4) < periods

@@ -35,7 +35,6 @@ if TYPE_CHECKING:
     from ..running.options import Running
 
 MAX_PERIODS = 1000  # of an orbit that can be asked for
-SHIFTS = 12  # of all impact times in common, that are tried
 NODE = ("node_phase", "node_position", "node_velocity", "node_closing")
 
 
@@ -156,7 +155,7 @@ def orbit_guesses(
             yield guess.as_guess(job.period)
             return
         sequence = ImpactSequence(job.period, guess.kinds)
-        for shift in np.arange(SHIFTS) * TURN / SHIFTS:
+        for shift in np.arange(12) * TURN / 12:
             yield guess_from_phases(form, sequence, phases[:, 0] + shift)
     else:
         returns = close_returns(instance, point, form, job.period, job.transient, job.search)

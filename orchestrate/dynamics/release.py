@@ -14,12 +14,6 @@ from numpy.typing import NDArray
 
 from .closed_form import ClosedForm, Floats
 
-SAMPLES = 64  # of the contact force in a span at least, so that no short contact is passed over
-SAMPLES_PER_PERIOD = 16  # and in a period of the fastest oscillation: the force is a sum of two
-BEGIN = (0.0, 1 / 16, 1 / 8, 1 / 4, 1 / 2)  # samples before the first one, over its time
-BEYOND = 2  # samples after the span, which an impact may end right after a release
-MARGIN = 4.0  # times what a parabola rises above the samples: more than the force does
-
 Force = Callable[..., Floats]
 
 
@@ -37,8 +31,10 @@ def contact_durations(
         return form.force(*form.common_motion(time, *begin))
 
     periods = form.fastest * float(spans.max()) / (2.0 * math.pi)
-    count = max(SAMPLES, math.ceil(SAMPLES_PER_PERIOD * periods))
-    times = np.array([*BEGIN, *range(1, count + 1 + BEYOND)]) / count * spans[:, None]
+    # no short contact is passed over, nor a part of an oscillation
+    count = max(64, math.ceil(16 * periods))
+    early = (0.0, 1 / 16, 1 / 8, 1 / 4, 1 / 2)  # and two samples after the span
+    times = np.array([*early, *range(1, count + 3)]) / count * spans[:, None]
     begin = np.array([phase, position, velocity])
     forces = force(times, *begin[:, :, None])
     opens = forces[:, 1:] >= 0.0  # below zero at first: pressed
@@ -68,7 +64,8 @@ def short_openings(
     with np.errstate(divide="ignore", invalid="ignore"):
         slope = (rise * after - fall * before) / (before + after)
         above = slope**2 * (before + after) / (4.0 * (rise + fall))  # of the parabola's vertex
-    tops = (rise >= 0.0) & (fall > 0.0) & (middle < 0.0) & (middle + MARGIN * above >= 0.0)
+    # more than the force rises above the samples
+    tops = (rise >= 0.0) & (fall > 0.0) & (middle < 0.0) & (middle + 4.0 * above >= 0.0)
     tops &= np.arange(1, times.shape[1] - 1) < first[:, None]
     row, place = np.nonzero(tops)
     if not len(row):

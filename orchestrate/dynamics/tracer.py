@@ -21,12 +21,7 @@ from .bifurcations import KINDS, BifurcationKind
 from .continuation import SOLVER_ERRORS, AnyCurve, ArclengthStepper, Root, solve_between
 
 LIMIT, NO_CONVERGENCE, MAX_POINTS = "limit", "no convergence", "most points"  # ends of branches
-SHORTENED = 0.3  # of a step in which a bifurcation could not be located
-BEFORE_END = 1.0 - 1e-6  # of a step to the branch's end: where the other test functions are defined
 ACCURACY = 1e-14  # of a position along the branch, in unknowns over their scale
-SLOPE_PART = 1e-3  # of a step, over which the slope of a test function is taken
-LOWEST_PART = 1e-6  # of a step: how exactly a test function's extremum is located
-SPEED_UP = 2.0  # how much faster than in the step before a test function is thought to change
 
 Point = TypeVar("Point")
 
@@ -157,7 +152,7 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
                         located = [*located, LocatedBifurcation(kind, step.length, last)]
                 return step, located
             except SOLVER_ERRORS:
-                stepper.length = SHORTENED * length
+                stepper.length = 0.3 * length
                 if stepper.length < stepper.min_length:
                     raise
 
@@ -166,7 +161,7 @@ class BranchTracer(ABC, Generic[AnyCurve, Point]):
         tested = [kind for kind in self.kinds if kind in self.ending_kinds]
         ends = self.locate_kinds(step, tested)[:1]
         if ends:
-            length = ends[0].position * BEFORE_END
+            length = ends[0].position * (1.0 - 1e-6)  # where the other test functions are defined
             step = replace(step, after=step.point(length), length=length)
         others = [kind for kind in self.kinds if kind not in self.ending_kinds]
         return [*self.locate_kinds(step, others), *ends]
@@ -259,7 +254,8 @@ class BranchStep(Generic[Point]):
     def may_cross_twice(self, kind: BifurcationKind) -> bool:
         """Return whether a test function may cross zero twice: its size falls, then rises."""
         value = self.tracer.test(self.before, kind)
-        reach = SPEED_UP * abs(self.rates.get(kind, np.inf)) * self.length
+        # it may change twice as fast as in the step before
+        reach = 2.0 * abs(self.rates.get(kind, np.inf)) * self.length
         if self.length <= ACCURACY or not abs(value) < reach:
             return False
         sign = np.sign(value)
@@ -274,7 +270,7 @@ class BranchStep(Generic[Point]):
 
     def slope(self, position: float, kind: BifurcationKind) -> float:
         """Return a test function's slope at either end of the step; 0 where not computable."""
-        near = position + (SLOPE_PART if position == 0.0 else -SLOPE_PART) * self.length
+        near = position + (1e-3 if position == 0.0 else -1e-3) * self.length
         tests = self.tracer.test
         try:
             change = tests(self.point(near), kind) - tests(self.point(position), kind)
@@ -291,7 +287,7 @@ class BranchStep(Generic[Point]):
             lambda position: sign * self.test(float(position), kind),
             bounds=(0.0, self.length),
             method="bounded",
-            options={"xatol": LOWEST_PART * self.length},
+            options={"xatol": 1e-6 * self.length},
         )
         return float(minimum.x)
 

@@ -34,7 +34,6 @@ if TYPE_CHECKING:
 SOURCES = Path(__file__).parent / "page"
 HEAD = b"<title>Explorer of a vibro-impacting structure</title>"  # by which a page is known
 FLAG = {"bonded": [0.0, 1.0]}  # a range too
-READ = 4096  # bytes of a file that are read for it
 
 
 def explore(
@@ -89,7 +88,7 @@ def first_bytes(path: Path) -> bytes:
     if not path.is_file():
         return b""
     with path.open("rb") as file:
-        return file.read(READ)
+        return file.read(4096)
 
 
 def render_page(

@@ -22,9 +22,7 @@ SWEPT = ("eta", "frequency")
 RATIO = ("", "eta")
 SETTINGS = ("transient", "samples", "tolerance")
 READING = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)  # of a file
-MOST_PERIODS = 1_000_000  # of a response that a page computes within seconds
 OWN = Units("Hz", "mm", "g")  # of a beam of one's own, where nothing else is asked for
-PAPER = (0.1, 8.0)  # frequency ratios of Figure 6
 
 
 @dataclass(frozen=True)
@@ -51,7 +49,7 @@ def empty_sweep(structure: Structure, units: Units) -> SweepData:
     """Return data without a sweep: the page then computes its first diagram itself."""
     settings = {"transient": 500, "samples": 200, "tolerance": 1e-2}
     level = ("paper", 1.0) if in_ratios(structure, units) else ("g", 1.0)
-    return SweepData(structure, ("up",), settings, np.empty(0), 0, *PAPER, level, "")
+    return SweepData(structure, ("up",), settings, np.empty(0), 0, 0.1, 8.0, level, "")
 
 
 def read_sweep(data: xr.Dataset) -> SweepData:
@@ -140,7 +138,8 @@ def sweep_settings(data: xr.Dataset) -> dict[str, float]:
     transient, samples, tolerance = settings.values()
     if not (transient.is_integer() and samples.is_integer() and transient >= 0 and samples >= 1):
         raise ValueError(f"transient = {transient}, samples = {samples}")
-    if not (0.0 < tolerance < math.inf and transient + samples <= MOST_PERIODS):
+    # what a page computes within seconds
+    if not (0.0 < tolerance < math.inf and transient + samples <= 1_000_000):
         raise ValueError(f"tolerance = {tolerance}, {transient + samples} periods")
     return settings
 

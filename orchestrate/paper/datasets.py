@@ -302,14 +302,6 @@ class Datasets:
         more = {"transient": size.map_settle, "samples": size.map_keep}
         return self.get(f"map_{parameter}", orchestrate.map, ELASTIC, **axes, **more)
 
-    def map_peak(self, parameter: str) -> xr.Dataset:
-        """Return a longer run at a map's largest impulse, which depends on the time followed."""
-        impulses = self.map(parameter).impulse_max
-        best = impulses.where(impulses == impulses.max(), drop=True)
-        structure = ELASTIC.replace(**{parameter: float(best[parameter][0])})
-        more = {"eta": [float(best.eta[0])], "transient": 3000, "periods": self.size.part}
-        return self.get(f"peak_{parameter}", orchestrate.impact_statistics, structure, **more)
-
     def spectra(self) -> xr.Dataset:
         """Return spectra at the up-sweep's peak and at two other frequencies."""
         etas = float(self.up("elastic").xi_rel_max.idxmax()), 0.4, 1.13

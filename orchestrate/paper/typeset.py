@@ -1,6 +1,6 @@
 r"""Convert formulas in plain sentences to MathML, which browsers show without a script.
 
-What the paper's letters are called in plain text, in claims, captions and answers, becomes a
+What the paper's letters are called in plain text, in claims and captions, becomes a
 formula: ``xi_Rel``, ``eta``, ``e = 0.7``, ``1e-4``; so does what stands between dollars, in LaTeX.
 """
 

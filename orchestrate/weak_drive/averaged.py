@@ -28,7 +28,6 @@ from ..model.drive import Drive
 from ..model.structure import Structure
 
 FOLD, TORUS = bifurcations.FOLD.label, bifurcations.TORUS.label
-LOWEST = 0.1  # of the structure's resonance: a slower one of the box is far away
 
 
 class BifurcationPoint(NamedTuple):
@@ -99,7 +98,8 @@ def calm_speed(structure: Structure, drive: Drive) -> float:
     # least torque between both: folds below are of the box's own resonance, folds above are not
     frequencies = np.abs(free_vibration_roots(structure, drive))
     high = float(frequencies.max())
-    speeds = np.linspace(max(float(frequencies.min()), LOWEST * high), high, 2001)
+    # a slower resonance of the box is far away
+    speeds = np.linspace(max(float(frequencies.min()), 0.1 * high), high, 2001)
     return float(speeds[np.argmin(no_load_speed(structure, drive, speeds) - speeds)])
 
 

@@ -50,7 +50,6 @@ if TYPE_CHECKING:
     from ..running.options import Running
 
 DRIVE_NAMES = tuple(field.name for field in fields(Drive))
-THEORY = 2e-4  # over K omega: the averaged theory's own error of a fold, with room
 
 
 class System(NamedTuple):
@@ -127,7 +126,8 @@ class CaptureJob(Job):
         folds = np.array([self.highest_fold(system) for system in self.items()])[kept]
         known = "voltage above which no motion below the resonance exists, by the averaged theory"
         volts = np.array([drive.volts(structure) for structure, drive in self.items()])
-        above = low - folds > THEORY * volts[kept]
+        # the averaged theory's own error of a fold, with room
+        above = low - folds > 2e-4 * volts[kept]
         variables = {
             "passes": yes_or_no(over, passes > 0, "whether the motor passes the resonance"),
             "decision": (over, np.vectorize(DECISIONS.get)(decisions), {"long_name": how}),

@@ -36,14 +36,11 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 MAX_STEPS = 1e9  # more is a typing error: it would run for weeks
-TOLERANCE = 1e-7  # of the step control: errors of the displacements are about half as large
-LONGEST, FIXED = 0.4, 0.1  # steps with the control and without, in 1/omega
 DIRECTIONS = ("up", "down")
 MIRRORED = {  # where the motor turns backward
     *("jumps", "jump_low", "jump_high", "ramp_voltage", "jump_lag", "averaged_jumps"),
     *("jump_speed", "jump_speed_before", "jump_speed_after", "jump_rate"),
 }
-HOLD, HOLD_OF_ROTOR = 4000.0, 200.0  # usual longest hold: in 1/omega, and in the rotor's time 1/b
 
 
 @dataclass(frozen=True)
@@ -301,9 +298,10 @@ def scheme_from_arguments(
     """Choose communication step and tolerance from :func:`couple` arguments."""
     omega = structure.omega
     if tolerance is None:
-        tolerance = TOLERANCE if step is None else 0.0
+        # of the displacements errors are about half as large
+        tolerance = 1e-7 if step is None else 0.0
     if step is None:
-        step = (LONGEST if tolerance and not sampled else FIXED) / omega
+        step = (0.4 if tolerance and not sampled else 0.1) / omega
     rounding = 1.0 + 1e-12
     if not 1e-4 / rounding <= step * omega <= rounding:
         raise InputError(f"step = {step} s: expected {1e-4 / omega:g} <= step <= {1.0 / omega:g}")
@@ -330,7 +328,7 @@ def couple_job(
     name = "bonded" if structure.bonded else "delaminated"
     start = float(speed_start)
     if hold is None:
-        hold = (HOLD + HOLD_OF_ROTOR / drive.b(structure)) / structure.omega
+        hold = (4000.0 + 200.0 / drive.b(structure)) / structure.omega
     check("hold", hold, "s", low=0.0)
     run = (structure, drive, schedule, scheme, start, float(hold), control)
     job = CoupleJob(f"couple_{name}", *run, hysteresis or Settings())

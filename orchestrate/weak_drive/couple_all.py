@@ -36,7 +36,6 @@ if TYPE_CHECKING:
     from ..running.options import Running
 
 KINDS = ("bonded", "delaminated")
-BELOW, BEYOND, PAST = 0.97, 1.05, 0.05  # speeds over the resonance; voltage past the fold, over K w
 System = tuple[Structure, Drive]
 
 
@@ -45,10 +44,10 @@ def voltage_range(structure: Structure, drive: Drive) -> tuple[float, float]:
     low, high = own_resonance.resonances(structure, drive)
     first, last = (
         float(averaged.no_load_speed(structure, drive, speed))
-        for speed in (BELOW * low, BEYOND * high)
+        for speed in (0.97 * low, 1.05 * high)
     )
     folds = averaged.folds(structure, drive)
-    return first, max([last, *(fold.eta0 + PAST for fold in folds)])
+    return first, max([last, *(fold.eta0 + 0.05 for fold in folds)])
 
 
 def couple_job_from_numbers(

@@ -53,10 +53,7 @@ if TYPE_CHECKING:
 STRUCTURES = ("bonded", "delaminated")
 LEGS = ("from below", "from above", "first doubled", "second doubled")
 BIFURCATIONS = (FOLD, FLIP, TORUS, TOUCHING, GRAZING)  # that are located on these branches
-REPEATS = 1e-6  # of the unit: change of a motion in a part of its period, after which it repeats
-ON_CIRCLE = 1e-7  # to which multipliers are known: on the unit circle no motion is called stable
 MULTIPLIERS = 4  # the largest ones, that are kept
-GRID = 2001  # speeds at which the averaged theory's largest amplitude is sought
 COLUMNS: dict[str, tuple[str, str]] = {  # numbers of a motion, with units
     "speed": ("rad/s", "mean speed"),
     "voltage": ("V", "voltage that holds the speed"),
@@ -120,7 +117,7 @@ class DriveBranchJob(Job):
         """Trace the branch from the lowest speed, and from the highest if needed."""
         omega, drive = structure.omega, self.drive
         low, high = (speed / omega for speed in self.speeds)
-        sizes = averaged.amplitude(structure, drive, np.linspace(low, high, GRID))
+        sizes = averaged.amplitude(structure, drive, np.linspace(low, high, 2001))
         length = float(sizes.max()) * drive.length
         turns = self.max_turns(structure)
         shooter = Shooter(fmus, structure, drive, turns, self.steps, length)
@@ -162,7 +159,7 @@ class DriveBranchJob(Job):
             shooter.repeat_after(turns)
             start = motion_near(shooter, guess, up)
             for part in (part for part in range(1, turns) if turns % part == 0):
-                if np.abs(shooter.change_in(start.root.unknowns, part)).max() < REPEATS:
+                if np.abs(shooter.change_in(start.root.unknowns, part)).max() < 1e-6:
                     shooter.repeat_after(part)
                     start = motion_near(shooter, start.root.unknowns, up)
                     break
@@ -198,7 +195,8 @@ class DriveBranchJob(Job):
         variables = motion_variables(along, points)
         largest = np.nan_to_num(np.abs(points[..., len(COLUMNS)]), nan=np.inf)
         text = "whether the motion is stable"
-        variables["stable"] = variable(along, largest < 1.0 - ON_CIRCLE, "1", text)
+        # multipliers are known to 1e-7
+        variables["stable"] = variable(along, largest < 1.0 - 1e-7, "1", text)
         ends = np.array(ENDS)[table["ends"]]
         variables["end"] = variable(along[:2], ends, "1", "why the branch ends")
         kinds = table["kinds"]

@@ -38,7 +38,6 @@ if TYPE_CHECKING:
     from ..running.options import Running
 
 KINDS = ("bonded", "delaminated")
-SHARES = (0.6, 0.45, 0.3, 0.15)  # of the way from the jump down to the jump up: voltages tried
 
 
 @dataclass(frozen=True)
@@ -215,7 +214,7 @@ def drive_spectra(
     step = scheme_from_arguments(structure, step, 0.0).h
     record = (revolutions, points, float(highest))
     tried = (
-        [voltage_at_resonance(structure, drive, share) for share in SHARES]
+        [voltage_at_resonance(structure, drive, share) for share in (0.6, 0.45, 0.3, 0.15)]
         if voltage is None
         else [float(voltage)]
     )

@@ -43,15 +43,7 @@ HALVED = "meets the motion of half its period"
 UNFINISHED = KINDS[CONTACT_LOST]  # of a chattering that no longer comes to its end
 ENDS = (LIMIT, NO_CONVERGENCE, MAX_POINTS, NO_START, NOT_BEGUN, HALVED, FLIGHT, IMPACT, UNFINISHED)
 AT_GRAZING = 1e-4  # of voltage over K omega and speed over omega: so near, a grazing is located
-AWAY = (3e-3, 1e-3, 3e-4)  # of the unit: how far from a doubling twice the period is begun
-ON_CIRCLE = 1e-4  # of a located pair of multipliers: how far its size may be from 1
-COMPLEX = 1e-6  # imaginary part from which multipliers are a pair
-NARROW = 0.3  # of the widest gap: where the gap at the start is less, periods begin elsewhere;
 # or of the largest force in contact
-STUCK = 12  # motions before an end: had one a contact phase, it is that which is lost
-TOLERANCE = 1e-5  # of a step by secants, from which on the derivative at the root is worth its cost
-ACCURACY = 1e-6  # of a step: how exactly a bifurcation is located
-SHORTEST = 1e-5  # of the longest step: round a fold whose radius is 1e-4 of the amplitude too
 ITERATIONS = 12  # of Newton's method from a guess that is not of the branch itself
 
 
@@ -112,8 +104,8 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
             start.root,
             longest,
             longest,
-            min_length=SHORTEST * longest,
-            tolerance=TOLERANCE,
+            min_length=1e-5 * longest,  # round a fold whose radius is 1e-4 of the amplitude too
+            tolerance=1e-5,  # from which on the derivative at the root is worth its cost
         )
         super().__init__(stepper, settings.max_points)
 
@@ -148,12 +140,12 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
 
     def confirms(self, kind: BifurcationKind, point: Motion, part: float) -> bool:
         """Return whether a Neimark-Sacker point has a complex pair on the unit circle."""
-        pairs = point.multipliers[np.abs(point.multipliers.imag) > COMPLEX]
-        return kind != TORUS or bool((np.abs(np.abs(pairs) - 1.0) < ON_CIRCLE).any())
+        pairs = point.multipliers[np.abs(point.multipliers.imag) > 1e-6]
+        return kind != TORUS or bool((np.abs(np.abs(pairs) - 1.0) < 1e-4).any())
 
     def location_tolerances(self, length: float) -> dict[str, float]:
         """Return how exactly a bifurcation is located, given the step length."""
-        return {"xtol": ACCURACY * length}
+        return {"xtol": 1e-6 * length}
 
     def end_before(self, step: BranchStep[Motion]) -> tuple[str, Iterable[Motion]]:
         """Return why the leg ends if it has reached half the period; else empty text."""
@@ -163,7 +155,8 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
 
     def end_without_root(self, segment: BranchSegment[Motion]) -> None:
         """Set why a leg ends where Newton's method fails, such as at a grazing."""
-        if any(motion.period.sticks for motion in segment.points[-STUCK:]):
+        # had a late motion a contact phase, it is that which is lost
+        if any(motion.period.sticks for motion in segment.points[-12:]):
             segment.end = UNFINISHED
             return
         motions = [each for each in segment.points if each.together == segment.points[-1].together]
@@ -203,7 +196,7 @@ def motion_near(shooter: Shooter, guess: Floats, up: bool) -> Motion:
 
 def double_period(shooter: Shooter, flip: Motion) -> Motion:
     """Solve for a motion of twice the period near a period doubling."""
-    for distance in AWAY:
+    for distance in (3e-3, 1e-3, 3e-4):
         shooter.begin_together(flip.together)
         shooter.repeat_after(flip.period.revolutions)
         shooter.angle, shooter.matrix = flip.angle, flip.matrix
@@ -220,7 +213,7 @@ def start_far_from_impacts(shooter: Shooter, motion: Motion) -> Motion:
     """Move the start of a motion's period to where the gap is widest."""
     # a motion that begins with an impact has no derivative
     period, together = motion.period, motion.period.together
-    if period.share > NARROW and together == motion.together:
+    if period.share > 0.3 and together == motion.together:
         return motion
     root = motion.root
     unknowns = shooter.begin_later(root.unknowns, period.clear, together)

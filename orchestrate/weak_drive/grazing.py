@@ -19,7 +19,6 @@ from .record import OscillatorOutputs
 from .shooting import Shooter
 
 IMPACT, FLIGHT = KINDS[GRAZING], KINDS[TOUCHING]
-REACH = 5e-3  # of voltage over K omega and speed over omega: further on, no fall is extrapolated
 BACK = 3  # motions over which the slope of a margin is taken
 
 
@@ -76,6 +75,6 @@ def next_grazing(
         for i, each in enumerate((TOUCHING, GRAZING)):
             before, now = float(falling[first, i]), float(falling[last, i])
             ahead = distance_back * now / (before - now) if now < before < math.inf else math.inf
-            if ahead < min(distance, REACH):
+            if ahead < min(distance, 5e-3):  # further on, no fall is extrapolated
                 kind, distance = each, ahead
     return kind, distance

@@ -34,10 +34,8 @@ if TYPE_CHECKING:
 
 KINDS = ("bonded", "delaminated")
 DIRECTIONS = ("up", "down")
-USUAL_RATES = (1e-4, 5e-5, 2.5e-5)  # of eta0 in a time 1/omega
 COLUMNS = ("jumps", "jump_low", "jump_high")
 SLOTS = Settings().slots
-EARLY = 1e-3  # of the voltage at rate 0: a ramp shows its jump no earlier
 SHOWN = ("ramp_voltage", "jump_speed_before")
 
 
@@ -115,7 +113,8 @@ def first_past(jumps: np.ndarray, shown: np.ndarray) -> np.ndarray:
     """Return of the jumps that ramps show those that come next after the motion is lost."""
     signs = np.array([1.0, -1.0]) * np.sign(jumps)
     late = signs[..., np.newaxis] * (shown[..., 0] - jumps[..., np.newaxis])
-    late = np.where(late > -EARLY * np.abs(jumps[..., np.newaxis]), late, np.inf)
+    # a ramp shows its jump no earlier than by a thousandth
+    late = np.where(late > -1e-3 * np.abs(jumps[..., np.newaxis]), late, np.inf)
     first = np.argmin(late, axis=-1)[..., np.newaxis]
     chosen = np.take_along_axis(shown, first[..., np.newaxis], axis=-2)[..., 0, :]
     is_late = np.isfinite(np.take_along_axis(late, first, axis=-1))
@@ -185,7 +184,7 @@ def jump_voltages(
     """
     require_motor(drive)
     unit = drive.volts(structure) * structure.omega
-    volt_rates = [rate * unit for rate in USUAL_RATES] if rates is None else list(rates)
+    volt_rates = [rate * unit for rate in (1e-4, 5e-5, 2.5e-5)] if rates is None else list(rates)
     if not volt_rates:
         raise InputError(f"rates = {rates}: expected one or more, in V/s")
     schedules = tuple(

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 FIRST_LEG = {True: "from below", False: "from above"}
-SAME = 5e-3  # of the range of speeds: stable motions at one voltage that are closer are the same
-MOST_EVENTS = 12
 
 
 @dataclass
@@ -104,7 +102,7 @@ class Branches:
         if motions is None:
             path.end = "its branch begins with no stable motion"
             return path
-        for _ in range(MOST_EVENTS):
+        for _ in range(12):
             motions = self.follow_to_loss(motions, path, sign)
             if motions is None:
                 return path
@@ -152,7 +150,7 @@ class Branches:
         voltage, speed = self.places[fold]
         landings = self.stable_motions_at(voltage, speed, sign)
         speeds = np.array([self.landing_speed(*landing, voltage) for landing in landings])
-        if not landings or np.ptp(speeds) > SAME * self.spans[1]:
+        if not landings or np.ptp(speeds) > 5e-3 * self.spans[1]:
             count = "several stable motions" if landings else "no stable motion"
             path.end = f"these branches have {count} at {voltage:.5f} V to jump to"
             return None

@@ -15,8 +15,6 @@ import numpy as np
 from ..errors import InputError
 from ..files import read_text
 
-MAX_BYTES = 1 << 22  # of a file: some hundred thousand rows
-
 
 def check(
     name: str,
@@ -203,7 +201,7 @@ class Course(Schedule):
     def from_csv(cls, path: str | PathLike[str]) -> Course:
         """Read the course from a CSV file with columns time, s, and voltage, V."""
         try:
-            lines = read_text(path, MAX_BYTES).splitlines()
+            lines = read_text(path, 1 << 22).splitlines()  # bytes: some hundred thousand rows
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or error
             raise InputError(f"{path}: cannot be read ({reason}); expected a CSV file") from None

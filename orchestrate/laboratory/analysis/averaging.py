@@ -10,7 +10,6 @@ from ...model.arguments import checked_word
 from .channels import Channels, checked_number
 
 WINDOWS = ("hann", "hamming", "blackman", "blackmanharris", "flattop", "boxcar")
-USUAL_SEGMENTS = 16  # without overlap
 FEWEST_LINES = 8  # samples in a segment
 
 
@@ -68,7 +67,7 @@ def averaging(
     checked_word("window", window, WINDOWS)
     part = checked_number("overlap", overlap, 0.0, 0.95)
     count, rate = len(channels.time), channels.sample_rate
-    length = segment_length(channels, resolution) or max(count // USUAL_SEGMENTS, FEWEST_LINES)
+    length = segment_length(channels, resolution) or max(count // 16, FEWEST_LINES)
     shared = min(int(part * length), length - 1)
     segments = (count - shared) // (length - shared)
     if segments < fewest:

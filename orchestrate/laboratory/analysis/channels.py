@@ -22,9 +22,6 @@ CHANNELS = {  # and what the result of shake calls them
     "acceleration1": "a1_abs",
     "acceleration2": "a2_abs",
 }
-FEWEST_SAMPLES = 16
-STEP_TOLERANCE = 0.05  # of a step: how far a time may be from equal ones
-RATE_TOLERANCE = 0.01  # between the attribute sample_rate and the time's steps
 
 
 @dataclass(frozen=True)
@@ -55,8 +52,8 @@ class Channels:
             expected = " and ".join(needed) or "one of them"
             raise InputError(f"record: no {lacking}; expected {expected} over time, in m/s2")
         time = np.asarray(record.time.values, dtype=float)
-        if time.ndim != 1 or len(time) < FEWEST_SAMPLES:
-            raise InputError(f"record: {time.size} samples; expected at least {FEWEST_SAMPLES}")
+        if time.ndim != 1 or len(time) < 16:
+            raise InputError(f"record: {time.size} samples; expected at least 16")
         rate = sample_rate(time, record.attrs.get("sample_rate"))
         values = np.stack([finite(name, array, time) for name, array in present.items()])
         title, box_label = str(record.attrs.get("title", "record")), column_taken(record.attrs, BOX)
@@ -96,7 +93,7 @@ def sample_rate(time: Floats, stated: Any) -> float:
         raise InputError(f"time[{wrong + 1}] = {time[wrong + 1]!r} s: expected ascending numbers")
     rate = (len(time) - 1) / (time[-1] - time[0])
     uneven = np.abs((time - time[0]) * rate - np.arange(len(time)))
-    if uneven.max() > STEP_TOLERANCE:
+    if uneven.max() > 0.05:  # of a step
         wrong = int(np.abs(steps * rate - 1.0).argmax())
         text = f"a step of {steps[wrong]:.6g} s after it, of {1.0 / rate:.6g} s on average"
         raise InputError(f"time[{wrong}] = {time[wrong]:.9g} s: {text}; expected equal steps")
@@ -106,7 +103,7 @@ def sample_rate(time: Floats, stated: Any) -> float:
         number = float(stated)
     except (TypeError, ValueError):
         number = np.nan
-    if not abs(number / rate - 1.0) <= RATE_TOLERANCE:
+    if not abs(number / rate - 1.0) <= 0.01:
         text = f"the time has {rate:.6g} samples a second; expected the same"
         raise InputError(f"attribute sample_rate = {stated!r} Hz: {text}")
     return number

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 MOST_ORDERS = 50
 EDGE = 2.0  # periods at both ends where the Hilbert transform is not trusted
 NYQUIST = 0.45  # of the sampling rate: orders above are not resolved
-NO_SINE = 0.5  # rms of what the box does beside its sine, over the rms of the sine
-LEAST_LEVEL = 1e-6  # of the largest amplitude of the box: below, it is at rest
 
 
 @dataclass(frozen=True)
@@ -227,7 +225,7 @@ def moves_as_sine(
     rms = np.abs(amplitudes[row, first]) * 0.5**0.5
     beside = residual[row] / np.maximum(rms, 1e-300)
     forward = np.array([window.frequency > 0.0 for window in windows])
-    sine = forward & (beside <= NO_SINE) & (rms > LEAST_LEVEL * rms.max())
+    sine = forward & (beside <= 0.5) & (rms > 1e-6 * rms.max())  # below, the box is at rest
     length = np.array([len(window.phase) for window in windows])
     if length[sine].sum() < 0.5 * length.sum():
         raise InputError(

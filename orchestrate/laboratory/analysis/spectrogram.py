@@ -20,8 +20,6 @@ from .channels import (
 if TYPE_CHECKING:
     import xarray as xr
 
-USUAL_SHARE = 32.0  # lines times spectra, over the samples, without overlap
-
 
 def spectrogram(
     record: xr.Dataset,
@@ -71,7 +69,8 @@ def spectrogram(
     checked_word("window", window, WINDOWS)
     most = round(checked_number("spectra", spectra, 1, 100_000))
     count, rate = len(channels.time), channels.sample_rate
-    usual = min(max(int((USUAL_SHARE * count) ** 0.5), FEWEST_LINES), count)
+    # as many lines times spectra as 32 times the samples
+    usual = min(max(int((32.0 * count) ** 0.5), FEWEST_LINES), count)
     length = segment_length(channels, resolution) or usual
     hop = max(1, -(-(count - length) // most))
     transform = ShortTimeFFT.from_window(
