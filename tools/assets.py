@@ -92,9 +92,7 @@ def simulate_example(
 def simulate_limits(
     fmu: str | PathLike[str], points: int = 800
 ) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Simulate a growing sine of voltage, cubic from step to step, until both limits act; return
-    times and values by name.
-    """
+    """Simulate a growing sine of voltage until both limits act; return times and values."""
     names, frequency = ("voltage", "current", "box_position", "limited"), 40.0
     times = np.linspace(0.0, 1.5, points + 1)
     rows = []

@@ -87,11 +87,9 @@ class AttractorsJob(SeriesQuestion):
             )
 
     def count(self) -> int:
-        """Return the number of items: all starts at all values, and one that groups them."""
         return self.starts * super().count() + 1
 
     def items(self) -> Sequence[tuple[int, int] | None]:
-        """Return the items: value and start by number, then None, which stands for grouping."""
         return [*itertools.product(range(len(self.series.points)), range(self.starts)), None]
 
     def progress_note(self, first: int) -> str:
@@ -140,7 +138,6 @@ class AttractorsJob(SeriesQuestion):
         return np.argsort(self.series.values, kind="stable")
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset: the attractors at each value and the shares of starts they get."""
         along, shape = self.series.name, (len(self.series.values), self.starts)
         rows = table["features"].reshape(*shape, len(FEATURES))
         there = table["how"][0] != ABSENT

@@ -148,11 +148,9 @@ class BasinJob(Question):
         return Plane(Point(self.structure, self.excitation), self.x, self.y, self.at)
 
     def count(self) -> int:
-        """Return the number of items: all starts of the plane, and one that groups them."""
         return self.x.number * self.y.number + 1
 
     def items(self) -> Sequence[tuple[State, float] | None]:
-        """Return the items: state and phase of each start, then None, which stands for grouping."""
         states, phases = self.plane().starts()
         return [*zip(map(tuple, states.tolist()), phases.tolist(), strict=True), None]
 
@@ -182,7 +180,6 @@ class BasinJob(Question):
         return {**columns, "labels": labels}
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset: the attractor number of each start, and the attractors."""
         plane = self.plane()
         text = "attractor that the start leads to; -1: the masses would overlap"
         sides = (plane.y, plane.x)

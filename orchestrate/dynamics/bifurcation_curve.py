@@ -184,11 +184,9 @@ class BifurcationTracer(BranchTracer[BifurcationCurve, Root]):
         super().__init__(ArclengthStepper(curve, start, first, longest), settings.max_points)
 
     def point(self, root: Root) -> Root:
-        """Return the root unchanged: on this curve, points are roots."""
         return root
 
     def limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
-        """Return the index of the first parameter among unknowns, and both parameters' limits."""
         curve = self.stepper.curve
         return curve.first_parameter, curve.family.setting.limits
 

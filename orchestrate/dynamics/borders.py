@@ -71,7 +71,6 @@ class BorderJob(Question):
     asked: ClassVar[str] = "border"
 
     def call_text(self) -> str:
-        """Return Python source of a ``border(...)`` call that repeats this, orbit included."""
         keywords = {"over": self.setting.over, "limits": self.setting.limits}
         more = {"longest": self.longest, "most": self.most}
         values, kind = np.array(self.values), KINDS[self.kind]
@@ -96,7 +95,6 @@ class BorderJob(Question):
         }
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset of the curve and its points of codimension two."""
         setting, kind = self.setting, KINDS[self.kind]
         along, located = split_located(table, POINT)
         title = f"{kind} over {' and '.join(setting.over)}: {self.structure.label()}"

@@ -73,7 +73,6 @@ class BranchJob(Question):
     asked: ClassVar[str] = "branch"
 
     def call_text(self) -> str:
-        """Return Python source of a ``branch(...)`` call that repeats this, start included."""
         (over,), (limits,) = self.setting.over, self.setting.limits
         switch = {"switch": KINDS[self.switch]} if self.switch >= 0 else {}
         keywords = {**switch, "over": over, "limits": limits}
@@ -87,7 +86,6 @@ class BranchJob(Question):
             return branch_table(instance, segments)
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset of the branch: orbits, stability and bifurcations."""
         setting, (name,) = self.setting, self.setting.over
         along, located = split_located(table, BIFURCATION)
         periods = along["zero"].shape[1]

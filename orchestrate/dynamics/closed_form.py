@@ -53,13 +53,7 @@ class ClosedForm:
     def from_structure(
         cls, structure: Structure, excitation: Excitation, box_acceleration: float = 0.0
     ) -> ClosedForm:
-        """Return the coefficients for a structure, an excitation, and a constant acceleration.
-
-        Notes
-        -----
-        On a natural frequency without damping there is no steady response: its numbers are
-        infinite, or none. See :meth:`.Excitation.check`.
-        """
+        """Return the coefficients for a structure, an excitation, and a constant acceleration."""
         omega, m1, m2 = structure.omega, structure.m1, structure.m2
         both, springs = m1 + m2, structure.k1 + structure.k2
         unit = omega * omega
@@ -171,9 +165,7 @@ class ClosedForm:
     def common_motion(
         self, time: Floats, phase: Floats, position: Floats, velocity: Floats
     ) -> tuple[Floats, Floats]:
-        """Return displacement and velocity in contact after a time, from their start: (10), i
-        = 3.
-        """
+        """Return displacement and velocity a time after contact begins, by (10) with i = 3."""
         cosine, sine = self.basis(2, time)
         damping, square = self.damping[2], self.stiffness[2]
         x, v = self.common_response(phase)

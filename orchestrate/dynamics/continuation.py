@@ -86,16 +86,9 @@ def newton_correct(
     max_iterations: int = 8,
     max_distance: float = 0.5,
 ) -> Root:
-    """Solve by Newton's method for the root in the plane through ``guess`` with this normal.
-
-    Notes
-    -----
-    A short step alone does not make a root: with a wrong derivative steps are short anywhere. So
-    the derivative is made anew where the steps have become short, two more steps are taken with
-    it, and the root is accepted by its residual then, ``curve.accuracy`` at most. It is known to
-    rounding, and so is its tangent: nothing that is decided by them depends on how another
-    processor rounds.
-    """
+    """Solve by Newton's method for the root in the plane through ``guess`` with this normal."""
+    # with a wrong derivative steps are short anywhere: it is made anew there, two more steps are
+    # taken, and the residual decides; so nothing depends on how another processor rounds
     offset, size = np.zeros_like(guess), np.inf
     for iteration in range(1, max_iterations + 1):
         offset, step = newton_step(curve, guess, offset, normal)
@@ -229,9 +222,7 @@ class ArclengthStepper(Generic[AnyCurve]):
         limits: Sequence[tuple[float, float]],
         accepts: Callable[[Root], bool] = lambda root: True,
     ) -> tuple[Root, float, bool]:
-        """Step, at most onto a limit; return the root, the step's length, and whether it is on
-        one.
-        """
+        """Step, at most onto a limit; return the root, the length, and whether it is on one."""
         limit = self.next_limit(first, limits)
         if limit is not None:
             with contextlib.suppress(NoConvergenceError):

@@ -40,7 +40,6 @@ class ImpactsQuestion(SeriesQuestion, ABC):
     periods: int = whole(1)
 
     def items(self) -> Sequence[FollowedResponse]:
-        """Return for each parameter value the response to follow, with its start state."""
         points = self.series.points
         starts = np.broadcast_to(np.reshape(self.start, (-1, 4)), (len(points), 4)).tolist()
         return [FollowedResponse(*each) for each in zip(points, map(tuple, starts), strict=True)]

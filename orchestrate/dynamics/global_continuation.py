@@ -128,9 +128,7 @@ def may_be_different_branches(motion: SettledMotion, other: SettledMotion, dista
 
 @dataclass(frozen=True)
 class MatchedAttractors:
-    """Attractors at all values of a parameter, with one number for the same attractor
-    everywhere.
-    """
+    """Attractors at all values of a parameter; the same attractor has one number everywhere."""
 
     motions: Sequence[Sequence[SettledMotion]]  # of each value
     # numbers of these along the parameter, the most frequent attractor first

@@ -55,7 +55,6 @@ class ImpactStatisticsJob(ImpactsQuestion):
         return [numbers[name] for name in FIELDS]
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset of impact statistics over the parameter, a variable each."""
         along = self.series.name
         variables = column_variables(along, FIELDS, table["rows"].T)
         title = f"Responses along {along}, impact by impact: {self.structure.label()}"

@@ -175,7 +175,6 @@ class LyapunovJob(ImpactsQuestion):
             )
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset over the parameter: exponents, errors, verdicts, impact rates."""
         along, (exponent, error, impacts) = self.series.name, table["rows"].T[:3]
         spans = self.periods * np.array([period_in_tau(eta) for eta in self.series.etas])
         verdicts = classify_exponents(exponent, error, np.log(self.wander) / spans, self.sigmas)

@@ -138,7 +138,6 @@ class ManifoldJob(SingleOrbitQuestion):
         self.saddle()  # what is none is said before any work
 
     def call_text(self) -> str:
-        """Return Python source of a ``manifold(...)`` call that repeats this, saddle included."""
         names = ("length", "spacing", "angle", "distance", "most")
         keywords = {name: getattr(self, name) for name in names}
         return call_from_start(self, self.values, **keywords)
@@ -215,7 +214,6 @@ class ManifoldJob(SingleOrbitQuestion):
         )
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset of both sides of the manifold: points, breaks, why each side ends."""
         point = self.setting.point(self.values)
         title = f"Unstable manifold of an orbit of {self.period} periods: {self.structure.label()}"
         sides = variable("side", np.array(SIDES), "1", "on which the gap grows, or falls")

@@ -37,9 +37,7 @@ from .tracer import (
 
 
 class OrbitTracer(BranchTracer[Family, OrbitPoint]):
-    """Traces a branch of periodic orbits by pseudo-arclength continuation, with its
-    bifurcations.
-    """
+    """Traces a branch of periodic orbits by pseudo-arclength, with its bifurcations."""
 
     kinds = (FOLD, FLIP, TORUS, GRAZING, TOUCHING, EARLIER_RELEASE)
     ending_kinds = (
@@ -59,11 +57,9 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         super().__init__(stepper, settings.max_points)
 
     def point(self, root: Root) -> OrbitPoint:
-        """Return the branch point of a solved root, with its orbit and test functions."""
         return OrbitPoint(self.stepper.curve, root)
 
     def limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
-        """Return the index of the parameter among the unknowns, and its (low, high) in a list."""
         family = self.stepper.curve
         return family.size, family.setting.limits
 

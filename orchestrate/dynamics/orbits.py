@@ -101,7 +101,6 @@ class OrbitJob(SingleOrbitQuestion):
     asked: ClassVar[str] = "orbit"
 
     def call_text(self) -> str:
-        """Return Python source of an ``orbit(...)`` call that repeats this, guess included."""
         frequency = self.setting.point(self.values).excitation.frequency
         arguments = {**dict(self.excitation), "period": self.period}
         if self.box_acceleration:
@@ -119,7 +118,6 @@ class OrbitJob(SingleOrbitQuestion):
             return orbit_table([find_orbit(instance, self)])
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset of the orbit: states, impacts, multipliers, check by the FMU."""
         setting = self.setting
         title = f"Periodic orbit of {self.period} periods: {self.structure.label()}"
         variables = orbit_variables(setting, table, "point")

@@ -103,7 +103,6 @@ class MapJob(Question):
         return {**{name: plain(value) for name, value in self.given}, **others}
 
     def items(self) -> Sequence[Point]:
-        """Return the items: structure and excitation of each grid point."""
         return self.points
 
     def work(
@@ -140,7 +139,6 @@ class MapJob(Question):
             dropped = min(done, self.longest - done)
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset of the map: the variables of ``FIELDS`` over both parameters."""
         names, axes = tuple(self.axes), self.axes
         texts = {**FIELDS, **(EXPONENT if self.exponent else {})}
         shape = (-1, *(len(values) for values in axes.values()))

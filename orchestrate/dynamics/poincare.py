@@ -73,7 +73,6 @@ class PoincareJob(OneMotionQuestion):
         return impact_table(impacts)
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset of the section's points: states, times, phases, impact speeds."""
         time, columns = table["time"], dict(zip(COLUMNS, table["rows"].T, strict=True))
         phase = np.mod(time * self.excitation.frequency, TURN)
         if self.at == "phase":

@@ -109,9 +109,7 @@ class Amplitudes:
 
 
 def nearest_miss(orbit: PeriodicOrbit, turns: TurningPoints) -> tuple[float, int, float]:
-    """Return the smallest gap minimum of all flights, with its segment and phase; infinite if
-    none.
-    """
+    """Return the smallest gap minimum of all flights (infinite: none), its segment and phase."""
     which = np.flatnonzero((turns.quantity == GAP) & (turns.curvature > 0.0))
     if not len(which):
         return np.inf, -1, 0.0

@@ -23,11 +23,7 @@ log = logging.getLogger(__name__)
 
 
 def first_diagram(structure: Structure, units: Units | None = None) -> SweepData:
-    """Return the page's first diagram: Figure 6 for the paper's structure, else an empty one.
-
-    Nothing as well where the kernel is no longer the one that computed Figure 6: its states would
-    then belong to no response of the page.
-    """
+    """Return the page's first diagram: Figure 6 for the paper's structure, else an empty one."""
     units = units or Units()
     if structure != Structure() or not in_ratios(structure, units):
         return empty_sweep(structure, units)

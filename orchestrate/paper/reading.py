@@ -64,10 +64,7 @@ def parse_orbit(orbit: str) -> tuple[int, int]:
 
 
 def impacts_in_response(data: xr.Dataset) -> np.ndarray:
-    """Return each response's impacts in its own period; 0 if it does not repeat.
-
-    The mean over the samples, of a response whose period is a guess, may miss them a little.
-    """
+    """Return each response's impacts in its own period; 0 if it does not repeat."""
     n = data.multiplicity.values
     count = n * data.impacts_per_period.values
     slack = 1.5 * n / data.sizes.get("sample", 201)

@@ -142,9 +142,7 @@ def slope_polynomials(structure: Structure, drive: Drive) -> tuple[Polynomial, P
 
 
 def smallest_slope(structure: Structure, drive: Drive, count: int = 10_001) -> float:
-    """Return the smallest slope d eta0 / d Omega at the structure's resonance; negative with
-    folds.
-    """
+    """Return the smallest slope d eta0 / d Omega at the resonance; negative with folds."""
     numerator, denominator = slope_polynomials(structure, drive)
     low, peak = calm_speed(structure, drive), resonance(structure, drive)
     near = peak + resonance_half_width(structure, drive) * np.linspace(-20.0, 20.0, count)

@@ -78,7 +78,6 @@ class CaptureJob(Job):
     item: ClassVar[str] = "value"
 
     def items(self) -> Sequence[System]:
-        """Return one pair of structure and drive for each parameter value."""
         system = System(self.structure, self.drive)
         return [replace_parameter(system, self.over, value) for value in self.values] or [system]
 
@@ -112,7 +111,6 @@ class CaptureJob(Job):
         return self.tolerance / system.drive.volts(system.structure)
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Build the dataset of outcomes over voltage and of the threshold voltages."""
         import xarray as xr
 
         kept = (slice(None),) if self.over else (0,)

@@ -55,11 +55,9 @@ class CoupleJob(CoupledRun):
     item: ClassVar[str] = "step"
 
     def count(self) -> int:
-        """Return the number of items: all communication steps and one hysteresis loop."""
         return self.steps() + 1
 
     def items(self) -> Sequence[int]:
-        """Return the item indices: all communication steps, then the hysteresis loop."""
         return range(self.count())
 
     def run_here(self, fmus: Mapping[str, Path]) -> Table:
@@ -122,7 +120,6 @@ class CoupleJob(CoupledRun):
         return {"jump_rows": rows}
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Build the dataset of all revolutions, of the jumps and of their verdicts."""
         import xarray as xr
 
         if not len(table["time"]):

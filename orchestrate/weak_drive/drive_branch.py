@@ -81,7 +81,6 @@ class DriveBranchJob(Job):
     item: ClassVar[str] = "branch"
 
     def items(self) -> Sequence[Structure]:
-        """Return the structure as bonded and as delaminated."""
         return self.structure.as_bonded(), self.structure.as_delaminated()
 
     def work(
@@ -186,7 +185,6 @@ class DriveBranchJob(Job):
         return numbers
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Build the dataset of both branches and of their bifurcations."""
         import xarray as xr
 
         points = table["points"]

@@ -56,7 +56,6 @@ class DriveSpectraJob(Job):
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
 
     def items(self) -> Sequence[Structure]:
-        """Return the structure as bonded and as delaminated."""
         return self.structure.as_bonded(), self.structure.as_delaminated()
 
     def orders(self) -> np.ndarray:
@@ -109,7 +108,6 @@ class DriveSpectraJob(Job):
         return short.record_displacements(fmus, structure)[1] < threshold
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Build the dataset of acceleration amplitudes over spectral lines."""
         import xarray as xr
 
         orders, speeds = self.orders(), table["speed"]

@@ -96,7 +96,6 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         speeds: tuple[float, float],
         settings: ContinuationSettings,
     ) -> None:
-        """Create the arclength stepper that starts from the first motion."""
         self.shooter, self.speeds = shooter, speeds
         longest = settings.max_step
         stepper = ShooterStepper(
@@ -110,11 +109,9 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         super().__init__(stepper, settings.max_points)
 
     def point(self, root: Root) -> Motion:
-        """Compute the motion, with its multipliers, of a root just solved for."""
         return motion_at(self.shooter, root, self.stepper.root.tangent)
 
     def limits(self) -> tuple[int, Sequence[tuple[float, float]]]:
-        """Return the index of the speed among the unknowns, and the range of speeds."""
         return self.shooter.size + 1, [self.speeds]
 
     def go_on_from(self, point: Motion) -> Motion:
@@ -144,7 +141,6 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         return kind != TORUS or bool((np.abs(np.abs(pairs) - 1.0) < 1e-4).any())
 
     def location_tolerances(self, length: float) -> dict[str, float]:
-        """Return how exactly a bifurcation is located, given the step length."""
         return {"xtol": 1e-6 * length}
 
     def end_before(self, step: BranchStep[Motion]) -> tuple[str, Iterable[Motion]]:

@@ -49,7 +49,6 @@ class EnergyBalance:
     """Sum up the energies of a coupled run, record after record."""
 
     def __init__(self, structure: Structure) -> None:
-        """Begin with nothing lost; the energies at the start are those of the first record."""
         self.structure = structure
         self.sums = np.zeros(3)  # lost by the structure, defects, and their sizes
         self.start = np.full(ENDS, np.nan)

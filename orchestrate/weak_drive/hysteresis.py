@@ -105,7 +105,6 @@ class VoltageHolder:
         longest: float,
         settings: Settings | None = None,
     ) -> None:
-        """Store how runs begin, the ramp's schedule, the units (s, rad/s, V) and the settings."""
         # `volts` is negative where the motor turns backward; `longest` is the longest hold, s
         self.begin, self.schedule, self.step = begin, schedule, step
         self.omega, self.volts, self.longest = omega, volts, longest

@@ -52,7 +52,6 @@ class JumpVoltagesJob(Job):
     item: ClassVar[str] = "ramp"
 
     def items(self) -> Sequence[tuple[Structure, Ramp]]:
-        """Return the structure and the schedule of each ramp, the slowest first."""
         both = (self.structure.as_bonded(), self.structure.as_delaminated())
         return [(structure, schedule) for schedule in self.schedules for structure in both]
 
@@ -72,7 +71,6 @@ class JumpVoltagesJob(Job):
         return {"jumps": np.array(rows), "decided": np.array(decided), "shown": np.array(shown)}
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Build the dataset of jump voltages over the rate and at rate 0."""
         import xarray as xr
 
         rates = np.array([schedule.rate for schedule in self.schedules])

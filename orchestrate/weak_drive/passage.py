@@ -77,7 +77,6 @@ class PassageJob(Job):
     item: ClassVar[str] = "step"
 
     def items(self) -> Sequence[int]:
-        """Return the item indices: all communication steps, then the hysteresis loop."""
         return self.run.items()
 
     def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
@@ -95,7 +94,6 @@ class PassageJob(Job):
         return self.run.work_on(fmus, items, previous, self.chunk_size, revolve_with_samples)
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Build the dataset of samples over time and of the jumps."""
         import xarray as xr
 
         of_run = {name: table[name] for name in (*COLUMNS, "jump_rows")}

@@ -44,7 +44,6 @@ class Revolutions:
     """Collect a run's records into rows, one per revolution of the motor."""
 
     def __init__(self, structure: Structure) -> None:
-        """Start the record of the first revolution."""
         self.structure, self.balance = structure, EnergyBalance(structure)
         # full turns, s, and impacts so far, at the beginning of the revolution
         self.turn = self.time = self.impacts = 0.0

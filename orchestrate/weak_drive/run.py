@@ -55,7 +55,6 @@ class Run:
     """Step both FMU instances of a coupled run and collect its revolutions."""
 
     def __init__(self, job: CoupledRun, oscillator: Instance, shaker: Instance) -> None:
-        """Initialise both FMU instances and create their master."""
         self.job, self.oscillator, self.shaker = job, oscillator, shaker
         oscillator.initialize(**oscillator_start(job.structure))
         voltage = job.schedule.voltage(0.0)

@@ -79,7 +79,6 @@ class Shooter:
         steps: int,
         length: float,
     ) -> None:
-        """Store both FMU instances and the units of the unknowns."""
         self.fmus, self.structure, self.drive = fmus, structure, drive
         self.turns, self.count, self.angle = revolutions, revolutions * steps, 0.0
         self.used = False

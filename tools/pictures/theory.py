@@ -59,10 +59,7 @@ def wave_derivative(time: float | np.ndarray, order: int) -> Any:
 
 
 def safe_bound(time: float) -> Polynomial:
-    """Return a polynomial below the gap from a time on, by a bound of its second derivative.
-
-    The code has the fifth one's, and comes so close that no picture shows it.
-    """
+    """Return a polynomial below the gap from a time on, by a bound of its second derivative."""
     largest = sum(a * k**2 for a, k, _ in WAVES)
     return Polynomial(
         [float(wave_derivative(time, 0)), float(wave_derivative(time, 1)), -0.5 * largest]

@@ -36,11 +36,9 @@ class Averaging:
 
     @property
     def independent(self) -> float:
-        """Number of independent segments that would have the same random error.
-
-        Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70-73: overlapping segments are
-        correlated by the squared correlation of the window with itself.
-        """
+        """Number of independent segments that would have the same random error."""
+        # overlapping segments are correlated by the squared correlation of the window with itself
+        # (Welch, IEEE Trans. Audio Electroacoust. 15, 1967, 70-73)
         from scipy.signal import get_window
 
         w = get_window(self.window, self.length)

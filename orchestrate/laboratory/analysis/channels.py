@@ -84,9 +84,7 @@ def channel_variable(record: xr.Dataset, name: str) -> xr.DataArray | None:
 
 
 def sample_rate(time: Floats, stated: Any) -> float:
-    """Return the sampling rate of equally spaced times, Hz; the stated one if they agree with
-    it.
-    """
+    """Return the sampling rate of equally spaced times, Hz; the stated one if it agrees."""
     steps = np.diff(time)
     if not np.isfinite(time).all() or not (steps > 0.0).all():
         wrong = int(np.argmin(np.nan_to_num(steps, nan=-np.inf)))
