@@ -23,13 +23,14 @@ FILES = sorted(
     for path in (ROOT / name).rglob("*.py*")
     if path.suffix in (".py", ".pyi")
 )
-GROUND = {"constants", "errors", "files", "flags", "temporary", "units", "version"}
+GROUND = {"constants", "errors", "files", "flags", "lazy", "temporary", "units", "version"}
 GROUND |= {"model"}
 BELOW_ANSWERS = GROUND | {"fmu", "running"}
 FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know beside itself
     "constants": set(),
     "errors": set(),
     "flags": set(),
+    "lazy": set(),
     "version": set(),
     "files": {"errors"},
     "temporary": {"files"},

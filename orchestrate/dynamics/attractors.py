@@ -6,13 +6,14 @@ import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
 from ..fmu import OSCILLATOR, REST, EventInstance, Instance, begin, sampled
+from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import (
     Numbers,
@@ -27,15 +28,10 @@ from ..model.outcomes import ABSENT, WORDS
 from ..response.labels import Variable, flags, make_dataset, si_state_coordinate, variable
 from ..response.questions import Point, SeriesQuestion, ask, require_delaminated
 from ..running.job import Table
+from ..running.options import Running
 from .clusters import ABOUT, FEATURES, AttractorSettings, run_until_settled
 from .decision import MotionDecider
 from .global_continuation import MatchedAttractors, continue_attractors, instance_pair
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 ATTRACTOR = "attractor, the most frequent one first"
 OF_ATTRACTORS = {

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
+from ..lazy import xr
 from ..model.arguments import checked_integer
 from ..response.labels import variable
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 LEAST_BOXES = 4  # along each side of the plane
 Labels = NDArray[np.int64]
@@ -103,8 +101,6 @@ def basin_entropy(basins: xr.Dataset, *, box: int = 5) -> xr.Dataset:
     >>> float(found.boundary_basin_entropy.round(4)), float(found.uncertain_fraction[0])
     (0.6931, 0.0)
     """
-    import xarray as xr
-
     size = checked_integer("box", box, 2)
     labels = attractor_labels(basins)
     if min(labels.shape) < LEAST_BOXES * size:

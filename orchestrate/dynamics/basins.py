@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..constants import TURN
 from ..errors import InputError
 from ..fmu import OSCILLATOR, STATE, EventInstance, Instance, begin, finder, gap_between
+from ..lazy import Unpack, xr
 from ..model import Excitation, Structure
 from ..model.arguments import checked_integer
 from ..model.outcomes import ABSENT
@@ -29,6 +30,7 @@ from ..response.questions import (
 )
 from ..response.response_loop import stroboscopic_samples
 from ..running.job import Table
+from ..running.options import Running
 from .attractors import (
     ABSENT_ROW,
     ATTRACTOR,
@@ -44,12 +46,6 @@ from .attractors import (
 from .clusters import AttractorSettings
 from .decision import MotionDecider
 from .global_continuation import continue_attractors, instance_pair
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 Floats = NDArray[np.float64]
 AXES = {  # coordinates of a plane of starts: units, long name

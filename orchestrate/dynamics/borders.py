@@ -5,18 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import InputError
 from ..fmu import OSCILLATOR, EventInstance
+from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import checked, checked_number, whole
 from ..response.labels import variable
 from ..response.questions import EXCITATION_PARAMETERS, Question, ask, require_delaminated
 from ..running.job import Table
+from ..running.options import Running
 from .bifurcation_curve import BifurcationCurve, BifurcationTracer
 from .bifurcations import KINDS, TORUS
 from .branches import (
@@ -44,13 +46,6 @@ from .orbit_records import (
 )
 from .orbits import FirstGuess, call_from_start, excitation_arguments
 from .tracer import BranchSegment, ContinuationSettings
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
-
 
 POINT = "codimension_two"
 LEFT = "what is left of both conditions, of the multipliers' polynomial over its largest part"

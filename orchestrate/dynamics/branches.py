@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,11 +14,13 @@ from numpy.typing import ArrayLike
 from ..constants import TURN
 from ..errors import InputError
 from ..fmu import OSCILLATOR, EventInstance
+from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import checked, checked_integer, checked_number, whole
 from ..model.ranges import OF_LENGTH
 from ..response.questions import Question, ask, excitation_numbers, require_delaminated
 from ..running.job import Table
+from ..running.options import Running
 from .bifurcations import KINDS
 from .branch_switching import leaving_branch
 from .continuation import SOLVER_ERRORS
@@ -43,12 +45,6 @@ from .orbits import (
     orbit,
 )
 from .tracer import Bifurcation, BranchSegment, ContinuationSettings
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 REPORTED = ("value", "state", "xi", "xi_rel", "xi_rel_max", "multipliers", "residual")
 NODES = ("node_kind", *NODE)

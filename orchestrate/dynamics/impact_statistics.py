@@ -5,25 +5,21 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..fmu import Impacts
+from ..lazy import Unpack, xr
 from ..model import Structure
 from ..response.labels import column_variables, make_dataset
 from ..response.questions import ask
 from ..running.job import Table
+from ..running.options import Running
 from .following import FollowedResponse, ImpactsQuestion
 from .lyapunov import exponent_of
 from .variational import contact_durations_after, period_in_tau
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 FIELDS = {
     "impacts": "impacts per excitation period",

@@ -6,18 +6,20 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import InputError
 from ..fmu import OSCILLATOR, Instance, begin
+from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import positive, whole
 from ..response.labels import flags, make_dataset, nondimensional_state_coordinate, variable
 from ..response.questions import ask, require_delaminated
 from ..running.job import Table
+from ..running.options import Running
 from .branches import acceleration_at_start, complete_excitation, orbit_at, require_orbit_dataset
 from .closed_form import Floats
 from .continuation import SOLVER_ERRORS, fix_sign
@@ -43,12 +45,6 @@ from .orbits import (
 )
 from .periodic_orbit import ON_CIRCLE, PHASE, PeriodicOrbit
 from .turning_points import stroboscopic_states
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 SIDES = ("+", "-")
 ENDS = {0: LENGTH, 1: POINTS, 2: CONVERGED}

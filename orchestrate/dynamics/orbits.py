@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,11 +15,13 @@ from numpy.typing import ArrayLike
 from ..constants import TURN
 from ..errors import InputError
 from ..fmu import OSCILLATOR, EventInstance
+from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import checked, checked_integer, checked_number, checked_numbers, whole
 from ..response.labels import make_dataset
 from ..response.questions import Question, ask, checked_point, checked_state, require_delaminated
 from ..running.job import Table
+from ..running.options import Running
 from .closed_form import Floats
 from .continuation import SOLVER_ERRORS
 from .families import ACCELERATION, Setting
@@ -27,12 +29,6 @@ from .guesses import Guess, close_returns, guess_from_phases, guess_from_state
 from .orbit_records import orbit_coordinates, orbit_row, orbit_table, orbit_variables
 from .orbit_search import first_possible_orbit, single_impact_guesses
 from .periodic_orbit import IMPACT, PHASE, RELEASE, ImpactSequence
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 MAX_PERIODS = 1000  # of an orbit that can be asked for
 NODE = ("node_phase", "node_position", "node_velocity", "node_closing")

@@ -11,13 +11,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import lru_cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import InputError
 from ..fmu import OSCILLATOR, EventInstance, Instance
+from ..lazy import Unpack, xr
 from ..model import PARAMETERS, Structure
 from ..model.arguments import Numbers, checked, positive, whole
 from ..model.outcomes import UNDECIDED
@@ -43,10 +44,6 @@ from ..running.options import Running, RunOptions
 from .clusters import transient_periods
 from .following import follow_impacts
 from .lyapunov import exponent_of
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
 
 FIELDS = {
     "impacts_per_period": "impacts per excitation period",

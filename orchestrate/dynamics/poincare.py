@@ -7,27 +7,23 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..constants import TURN
 from ..fmu import OSCILLATOR, EventInstance, Impacts, Instance, begin
+from ..lazy import Unpack, xr
 from ..model import Structure
 from ..model.arguments import checked, checked_number, checked_word, whole
 from ..response.labels import make_dataset, variable, yes_or_no
 from ..response.questions import OneMotionQuestion, Point, ask, checked_point, checked_state
 from ..response.simulate import IN_TIME
 from ..running.job import Table
+from ..running.options import Running
 from .following import FollowedResponse, state_after_transient
 from .variational import contact_durations_after, nondimensional_impacts
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 COLUMNS = ("x1", "x2", "v1", "v2", "x_rel", "v_rel")
 SECTIONS = {  # what a section is, by its name

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ..flags import flag_words
-
-if TYPE_CHECKING:
-    import xarray as xr
+from ..lazy import xr
 
 
 class StableWindow(NamedTuple):

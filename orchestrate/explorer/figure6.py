@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import logging
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ..fmu import OSCILLATOR
 from ..fmu.webassembly import kernel_digest
+from ..lazy import xr
 from ..model import Structure
 from ..running.store import load
 from ..units import Units
 from .sweep_data import SweepData, empty_sweep, in_ratios, read_sweep
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 FILE = Path(__file__).with_name("figure6.nc")  # written by tools/figure6_states.py
 STAMP = "kernel"  # attribute: digest of the kernel that computed it

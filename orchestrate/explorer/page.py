@@ -8,7 +8,7 @@ import hashlib
 import zlib
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import jinja2
 from markupsafe import Markup
@@ -17,6 +17,7 @@ from ..errors import InputError
 from ..files import open_folder, write_whole
 from ..fmu import OSCILLATOR, SHAKER
 from ..fmu.webassembly import WebKernel, web_kernel
+from ..lazy import xr
 from ..model import Drive, Structure
 from ..model.ranges import STRUCTURE
 from ..units import Units, units_of
@@ -27,9 +28,6 @@ from .figure6 import first_diagram
 from .sweep_data import SweepData, check_units, read_sweep, shown_in
 from .tour import TOUR, tour_in
 from .words import WORDS
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 SOURCES = Path(__file__).parent / "page"
 HEAD = b"<title>Explorer of a vibro-impacting structure</title>"  # by which a page is known

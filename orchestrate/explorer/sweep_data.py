@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..constants import GRAVITY
 from ..errors import InputError
+from ..lazy import xr
 from ..model import Excitation, Structure
 from ..units import Units
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 EXPECTED = "expected a result of orchestrate.sweep along eta or frequency"
 SWEPT = ("eta", "frequency")

@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,12 +21,14 @@ from numpy.typing import ArrayLike
 from ..errors import InputError
 from ..fmu.exported import finder
 from ..fmu.models import OSCILLATOR, SHAKER
+from ..lazy import Unpack, xr
 from ..model.arguments import checked_integer
 from ..model.drive import Drive
 from ..model.ranges import DRIVE
 from ..model.structure import Structure
 from ..response.labels import Variable, parameter_variable, variable, yes_or_no
 from ..running.job import Job, Table
+from ..running.options import Running
 from ..running.runner import answer
 from . import averaged
 from .controllers import Controller
@@ -42,12 +44,6 @@ from .settling import (
     settling_test,
     usual_limit,
 )
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 DRIVE_NAMES = tuple(field.name for field in fields(Drive))
 
@@ -111,8 +107,6 @@ class CaptureJob(Job):
         return self.tolerance / system.drive.volts(system.structure)
 
     def dataset(self, table: Table) -> xr.Dataset:
-        import xarray as xr
-
         kept = (slice(None),) if self.over else (0,)
         along = (self.over,) if self.over else ()
         decisions, passes, times, speeds = np.moveaxis(table["outcomes"][kept], -1, 0)

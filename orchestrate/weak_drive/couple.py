@@ -10,13 +10,14 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from ..errors import InputError
 from ..fmu.instance import Instance
 from ..fmu.models import OSCILLATOR, SHAKER
+from ..lazy import Unpack, xr
 from ..model.drive import Drive
 from ..model.structure import Structure
 from ..response.labels import Variable, variable
@@ -30,10 +31,6 @@ from .ramp_record import NOT_SHOWN, RampRecord, Suspect, jump_labels, time_beyon
 from .revolutions import COLUMNS
 from .run import CoupledRun, Run, begin_run
 from .schedule import Constant, Ramp, Schedule, check
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
 
 MAX_STEPS = 1e9  # more is a typing error: it would run for weeks
 DIRECTIONS = ("up", "down")
@@ -120,8 +117,6 @@ class CoupleJob(CoupledRun):
         return {"jump_rows": rows}
 
     def dataset(self, table: Table) -> xr.Dataset:
-        import xarray as xr
-
         if not len(table["time"]):
             raise InputError(
                 f"the motor completed no revolution in {self.schedule.duration:g} s: "

@@ -10,15 +10,16 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import product
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..errors import InputError
 from ..fmu.exported import finder
+from ..lazy import Unpack, xr
 from ..model.drive import Drive
 from ..model.structure import Structure
 from ..response.labels import variable
+from ..running.options import Running
 from ..running.runner import gather
 from . import averaged, own_resonance
 from .couple import (
@@ -28,12 +29,6 @@ from .couple import (
     schedule_from_arguments,
     scheme_from_arguments,
 )
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 KINDS = ("bonded", "delaminated")
 System = tuple[Structure, Drive]
@@ -124,8 +119,6 @@ def couple_all(
     >>> found.rate.values.tolist(), bool((found.jumps.sel(jump="up") > 7.0).any())
     ([0.0004, 0.0008], False)
     """
-    import xarray as xr
-
     if not systems:
         raise InputError("systems: expected one structure with its drive, or more")
     for kind in kinds:

@@ -12,7 +12,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -23,11 +23,13 @@ from ..errors import InputError
 from ..fmu.exported import finder
 from ..fmu.instance import Instance
 from ..fmu.models import OSCILLATOR, SHAKER
+from ..lazy import Unpack, xr
 from ..model.arguments import checked_integer
 from ..model.drive import Drive
 from ..model.structure import Structure
 from ..response.labels import Variable, variable
 from ..running.job import Job, Table
+from ..running.options import Running
 from ..running.runner import answer
 from . import averaged, own_resonance
 from .couple import require_motor
@@ -43,12 +45,6 @@ from .drive_tracer import (
 )
 from .schedule import check
 from .shooting import Shooter
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 STRUCTURES = ("bonded", "delaminated")
 LEGS = ("from below", "from above", "first doubled", "second doubled")
@@ -185,8 +181,6 @@ class DriveBranchJob(Job):
         return numbers
 
     def dataset(self, table: Table) -> xr.Dataset:
-        import xarray as xr
-
         points = table["points"]
         points = points[:, :, : max(1, int(np.isfinite(points[..., 0]).sum(axis=2).max()))]
         along = ("structure", "leg", "point")

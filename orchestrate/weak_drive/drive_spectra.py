@@ -11,7 +11,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -19,23 +19,19 @@ from ..constants import TURN
 from ..errors import InputError
 from ..fmu.exported import finder
 from ..fmu.models import OSCILLATOR, SHAKER
+from ..lazy import Unpack, xr
 from ..model.arguments import checked_integer
 from ..model.drive import Drive
 from ..model.structure import Structure
 from ..response.labels import variable
 from ..response.spectra import amplitude_spectrum
 from ..running.job import Job, Table
+from ..running.options import Running
 from ..running.runner import answer
 from . import averaged, own_resonance
 from .couple import couple_job, scheme_from_arguments
 from .run import Run, begin_run
 from .schedule import Ramp, check
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 KINDS = ("bonded", "delaminated")
 
@@ -108,8 +104,6 @@ class DriveSpectraJob(Job):
         return short.record_displacements(fmus, structure)[1] < threshold
 
     def dataset(self, table: Table) -> xr.Dataset:
-        import xarray as xr
-
         orders, speeds = self.orders(), table["speed"]
         text, along = "amplitude of the absolute acceleration", ("kind", "mass", "order")
         lines = np.outer(speeds, orders)

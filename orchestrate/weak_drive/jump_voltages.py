@@ -9,28 +9,24 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from ..errors import InputError
 from ..fmu.exported import finder
 from ..fmu.models import OSCILLATOR, SHAKER
+from ..lazy import Unpack, xr
 from ..model.drive import Drive
 from ..model.structure import Structure
 from ..response.labels import variable
 from ..running.job import Job, Table
+from ..running.options import Running
 from ..running.runner import answer
 from .couple import couple_job, require_motor, schedule_from_arguments, scheme_from_arguments
 from .hysteresis import Settings
 from .master import Scheme
 from .schedule import Ramp, Schedule
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 KINDS = ("bonded", "delaminated")
 DIRECTIONS = ("up", "down")
@@ -71,8 +67,6 @@ class JumpVoltagesJob(Job):
         return {"jumps": np.array(rows), "decided": np.array(decided), "shown": np.array(shown)}
 
     def dataset(self, table: Table) -> xr.Dataset:
-        import xarray as xr
-
         rates = np.array([schedule.rate for schedule in self.schedules])
         shape = len(rates), len(KINDS), len(COLUMNS), len(DIRECTIONS)
         jumps, low, high = np.moveaxis(table["jumps"].reshape(shape), 2, 0)

@@ -10,7 +10,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -18,11 +18,13 @@ from ..constants import TURN
 from ..errors import InputError
 from ..fmu.exported import finder
 from ..fmu.models import OSCILLATOR, SHAKER
+from ..lazy import Unpack, xr
 from ..model.arguments import checked_integer
 from ..model.drive import Drive
 from ..model.structure import Structure
 from ..response.labels import variable
 from ..running.job import Job, Table
+from ..running.options import Running
 from ..running.runner import answer
 from .controllers import Controller
 from .couple import (
@@ -35,12 +37,6 @@ from .couple import (
 from .revolutions import COLUMNS
 from .run import Run
 from .schedule import Schedule, check
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
 
 SAMPLES = {
     "time": ("s", "time"),
@@ -94,8 +90,6 @@ class PassageJob(Job):
         return self.run.work_on(fmus, items, previous, self.chunk_size, revolve_with_samples)
 
     def dataset(self, table: Table) -> xr.Dataset:
-        import xarray as xr
-
         of_run = {name: table[name] for name in (*COLUMNS, "jump_rows")}
         revolutions = self.run.dataset(of_run)
         samples = {name: table[KEPT + name] for name in SAMPLES}
@@ -235,8 +229,6 @@ def waterfall(
     >>> float(strongest)
     1.0
     """
-    import xarray as xr
-
     check_spectra(found, mass, revolutions, highest)
     points = max(16, math.ceil(4.0 * highest))
     times, moved = resample_over_angle(found, mass, points)

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ...errors import InputError
+from ...lazy import xr
 from ...response.labels import Variable, variable
 from ..columns import column_taken
 from ..pieces import Floats
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 BOX = "box_acceleration"
 CHANNELS = {  # and what the result of shake calls them
@@ -39,8 +37,6 @@ class Channels:
     @classmethod
     def from_record(cls, record: xr.Dataset, needed: tuple[str, ...] = ()) -> Channels:
         """Check a record, or a result of :func:`orchestrate.shake`, and take its channels."""
-        import xarray as xr
-
         if not isinstance(record, xr.Dataset) or "time" not in record.coords:
             expected = "expected an xarray.Dataset over time with box_acceleration, acceleration1"
             raise InputError(f"record: {type(record).__name__} without time; {expected}")

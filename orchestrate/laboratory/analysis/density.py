@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...lazy import xr
 from ...response.labels import variable
 from .channels import Channels, Floats, attributes, channel_coordinate, checked_number
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 PARTS = 16  # of the record, for standard errors
 
@@ -53,8 +50,6 @@ def probability_density(record: xr.Dataset, *, bins: int = 100) -> xr.Dataset:
     >>> abs(float(answer.skewness.sel(channel="box_acceleration"))) < 0.2
     True
     """
-    import xarray as xr
-
     channels = Channels.from_record(record)
     number = round(checked_number("bins", bins, 4, 100_000))
     middles, density = histograms(channels.values, number)

@@ -5,20 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...constants import TURN
 from ...errors import InputError
+from ...lazy import xr
 from ...response.labels import variable
 from ..stepped_sine import SteppedSine
 from ..swept_sine import SweptSine
 from .channels import BOX, Channels, Floats, attributes, channel_coordinate, checked_number
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 MOST_ORDERS = 50
 EDGE = 2.0  # periods at both ends where the Hilbert transform is not trusted
@@ -95,8 +92,6 @@ def track_orders(
     >>> round(float(first.idxmax()), 1)
     12.7
     """
-    import xarray as xr
-
     channels = Channels.from_record(record, (BOX,) if phase is None else ())
     wanted = checked_orders(orders)
     length = checked_number("periods", periods, 2.0, 1e4)

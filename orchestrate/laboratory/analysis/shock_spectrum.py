@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ...errors import InputError
+from ...lazy import xr
 from ...response.labels import variable
 from .channels import (
     Channels,
@@ -18,9 +18,6 @@ from .channels import (
     checked_number,
     frequency_coordinate,
 )
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def shock_spectrum(
@@ -66,8 +63,6 @@ def shock_spectrum(
     >>> answer.maximax.sel(channel="box_acceleration").values.round(1)
     array([ 40.5, 164.8, 100.8])
     """
-    import xarray as xr
-
     channels = Channels.from_record(record)
     ratio = checked_number("damping", damping, 0.0, 1.0, open_end=True)
     natural = natural_frequencies(channels, frequencies)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from ...lazy import xr
 from ...model.arguments import checked_word
 from ...response.labels import variable
 from .averaging import FEWEST_LINES, WINDOWS, segment_length
@@ -16,9 +15,6 @@ from .channels import (
     checked_number,
     frequency_coordinate,
 )
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def spectrogram(
@@ -62,7 +58,6 @@ def spectrogram(
     >>> float(box.idxmax())
     12.0
     """
-    import xarray as xr
     from scipy.signal import ShortTimeFFT
 
     channels = Channels.from_record(record)
