@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -27,7 +26,7 @@ from ..model.arguments import (
 from ..model.outcomes import ABSENT, WORDS
 from ..response.labels import Variable, flags, make_dataset, si_state_coordinate, variable
 from ..response.questions import Point, SeriesQuestion, ask, require_delaminated
-from ..running.job import Table
+from ..running.job import Fmus, Table
 from ..running.options import Running
 from .clusters import ABOUT, FEATURES, AttractorSettings, run_until_settled
 from .decision import MotionDecider
@@ -92,7 +91,7 @@ class AttractorsJob(SeriesQuestion):
         """Return a note for the progress bar while the last item gathers attractors, else none."""
         return "attractors at neighbours" if first == self.count() - 1 else ""
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[Any], previous: Table | None) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[Any], previous: Table | None) -> Table:
         """Run starts until they settle, a row each; at the last item group them to attractors."""
         with instance_pair(fmus[OSCILLATOR]) as instances:
             if previous is not None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -29,7 +28,7 @@ from ..response.questions import (
     require_delaminated,
 )
 from ..response.response_loop import stroboscopic_samples
-from ..running.job import Table
+from ..running.job import Fmus, Table
 from ..running.options import Running
 from .attractors import (
     ABSENT_ROW,
@@ -150,7 +149,7 @@ class BasinJob(Question):
         states, phases = self.plane().starts()
         return [*zip(map(tuple, states.tolist()), phases.tolist(), strict=True), None]
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[Any], previous: Table | None) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[Any], previous: Table | None) -> Table:
         """Run starts until they settle (overlapping masses: absent), or group them at the end."""
         point = Point(self.structure, self.excitation.replace(phase=0.0))  # a start has its own
         with instance_pair(fmus[OSCILLATOR]) as instances:

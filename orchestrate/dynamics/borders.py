@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -17,7 +16,7 @@ from ..model import Structure
 from ..model.arguments import checked, checked_number, whole
 from ..response.labels import variable
 from ..response.questions import EXCITATION_PARAMETERS, Question, ask, require_delaminated
-from ..running.job import Table
+from ..running.job import Fmus, Table
 from ..running.options import Running
 from .bifurcation_curve import BifurcationCurve, BifurcationTracer
 from .bifurcations import KINDS, TORUS
@@ -71,7 +70,7 @@ class BorderJob(Question):
         values, kind = np.array(self.values), KINDS[self.kind]
         return call_from_start(self, values, bifurcation=kind, **keywords, **more)
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
         """Trace the bifurcation curve over both parameters; return its points as a table."""
         curve, root = start_root(self)
         back, forth = (trace_curve(self, curve, start) for start in (root.reversed(), root))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -19,7 +18,7 @@ from ..model import Structure
 from ..model.arguments import checked, checked_integer, checked_number, whole
 from ..model.ranges import OF_LENGTH
 from ..response.questions import Question, ask, excitation_numbers, require_delaminated
-from ..running.job import Table
+from ..running.job import Fmus, Table
 from ..running.options import Running
 from .bifurcations import KINDS
 from .branch_switching import leaving_branch
@@ -75,7 +74,7 @@ class BranchJob(Question):
         more = {"longest": self.longest, "most": self.most}
         return call_from_start(self, np.array([self.value]), **keywords, **more)
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
         """Continue the branch from its first orbit; return orbits and bifurcations as a table."""
         segments = trace_branch(self)
         with EventInstance(fmus[OSCILLATOR]) as instance:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -18,7 +17,7 @@ from ..model import Structure
 from ..model.arguments import positive, whole
 from ..response.labels import flags, make_dataset, nondimensional_state_coordinate, variable
 from ..response.questions import ask, require_delaminated
-from ..running.job import Table
+from ..running.job import Fmus, Table
 from ..running.options import Running
 from .branches import acceleration_at_start, complete_excitation, orbit_at, require_orbit_dataset
 from .closed_form import Floats
@@ -157,7 +156,7 @@ class ManifoldJob(SingleOrbitQuestion):
             )
         return saddle
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
         """Grow both sides of the manifold from the saddle; return their points as a table."""
         saddle = self.saddle()
         with Instance(fmus[OSCILLATOR]) as instance:

@@ -6,7 +6,6 @@ from abc import ABC
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
-from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -20,7 +19,7 @@ from ..model import Structure
 from ..model.arguments import checked, checked_integer, checked_number, checked_numbers, whole
 from ..response.labels import make_dataset
 from ..response.questions import Question, ask, checked_point, checked_state, require_delaminated
-from ..running.job import Table
+from ..running.job import Fmus, Table
 from ..running.options import Running
 from .closed_form import Floats
 from .continuation import SOLVER_ERRORS
@@ -108,7 +107,7 @@ class OrbitJob(SingleOrbitQuestion):
             parts.append(f"guess={self.guess.as_argument(frequency)}")
         return f"orbit({', '.join(parts)})"
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
         """Solve for the orbit by Newton's method; return its record as a table of one row."""
         with EventInstance(fmus[OSCILLATOR]) as instance:
             return orbit_table([find_orbit(instance, self)])

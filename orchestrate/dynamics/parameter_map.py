@@ -7,10 +7,9 @@ leads to.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import lru_cache, partial
-from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -39,7 +38,7 @@ from ..response.questions import (
 )
 from ..response.respond import Response, count_later_impacts, respond
 from ..response.sweep import HOW_DECIDED
-from ..running.job import Table, plain
+from ..running.job import Fmus, Table, plain
 from ..running.options import Running, RunOptions
 from .clusters import transient_periods
 from .following import follow_impacts
@@ -102,9 +101,7 @@ class MapJob(Question):
     def items(self) -> Sequence[Point]:
         return self.points
 
-    def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
-    ) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[Point], previous: Table | None) -> Table:
         """Compute a chunk of the map's points by the FMU; return them as a table."""
         with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
             rows = [self.row(plain, eventful, item) for item in items]

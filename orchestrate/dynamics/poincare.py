@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
@@ -20,7 +19,7 @@ from ..model.arguments import checked, checked_number, checked_word, whole
 from ..response.labels import make_dataset, variable, yes_or_no
 from ..response.questions import OneMotionQuestion, Point, ask, checked_point, checked_state
 from ..response.simulate import IN_TIME
-from ..running.job import Table
+from ..running.job import Fmus, Table
 from ..running.options import Running
 from .following import FollowedResponse, state_after_transient
 from .variational import contact_durations_after, nondimensional_impacts
@@ -46,9 +45,7 @@ class PoincareJob(OneMotionQuestion):
     start: tuple[float, ...]  # x1, x2 in m, v1, v2 in m/s at phase 0
     asked: ClassVar[str] = "poincare"
 
-    def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
-    ) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[Point], previous: Table | None) -> Table:
         """Simulate the motion after its transient; return states and times of the section."""
         point, period = items[0], self.excitation.period
         with Instance(fmus[OSCILLATOR]) as plain:

@@ -9,10 +9,9 @@ has not after a generous time, the start is undecided, and the border's interval
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from functools import partial
-from pathlib import Path
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -27,7 +26,7 @@ from ..model.drive import Drive
 from ..model.ranges import DRIVE
 from ..model.structure import Structure
 from ..response.labels import Variable, parameter_variable, variable, yes_or_no
-from ..running.job import Job, Table
+from ..running.job import Fmus, Job, Table
 from ..running.options import Running
 from ..running.runner import answer
 from . import averaged
@@ -77,7 +76,7 @@ class CaptureJob(Job):
         system = System(self.structure, self.drive)
         return [replace_parameter(system, self.over, value) for value in self.values] or [system]
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[System], previous: Any) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[System], previous: Any) -> Table:
         """Simulate starts at all voltages and bisect for the threshold voltage."""
         rows, borders = [], []
         for system in items:
@@ -88,7 +87,7 @@ class CaptureJob(Job):
             borders.append([*low, *high])
         return {"outcomes": np.array(rows, dtype=float), "borders": np.array(borders)}
 
-    def run_from_rest(self, fmus: Mapping[str, Path], system: System, voltage: float) -> Outcome:
+    def run_from_rest(self, fmus: Fmus, system: System, voltage: float) -> Outcome:
         """Simulate one start from rest at a voltage until the speed has settled."""
         test = settling_test(*system, self.stay, self.distance(system))
         if voltage <= system.drive.motor_constant * test.threshold:

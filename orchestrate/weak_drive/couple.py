@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
@@ -21,7 +20,7 @@ from ..lazy import Unpack, xr
 from ..model.drive import Drive
 from ..model.structure import Structure
 from ..response.labels import Variable, variable
-from ..running.job import Table
+from ..running.job import Fmus, Table
 from ..running.options import Running
 from . import averaged, own_resonance
 from .controllers import Controller
@@ -57,7 +56,7 @@ class CoupleJob(CoupledRun):
     def items(self) -> Sequence[int]:
         return range(self.count())
 
-    def run_here(self, fmus: Mapping[str, Path]) -> Table:
+    def run_here(self, fmus: Fmus) -> Table:
         """Run all chunks one after the other in this process and join their tables."""
         *chunks, _ = self.chunks()
         tables: list[Table] = []
@@ -67,13 +66,13 @@ class CoupleJob(CoupledRun):
         table = {name: np.concatenate([part[name] for part in tables]) for name in tables[0]}
         return {**table, **self.decide_jumps(fmus, table, self.chunk_size)}
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
         """Compute one chunk of communication steps, or the hysteresis loop at the end."""
         return self.work_on(fmus, items, previous, self.chunk_size, lambda run: run.revolve(items))
 
     def work_on(
         self,
-        fmus: Mapping[str, Path],
+        fmus: Fmus,
         items: Sequence[int],
         previous: Table | None,
         every: int,
@@ -92,7 +91,7 @@ class CoupleJob(CoupledRun):
         """Return the progress bar's note for the chunk of the hysteresis loop."""
         return "voltages held at jumps" if first == self.steps() else ""
 
-    def decide_jumps(self, fmus: Mapping[str, Path], table: Table, every: int) -> Table:
+    def decide_jumps(self, fmus: Fmus, table: Table, every: int) -> Table:
         """Hold voltages where the ramp's record suggests jumps; return those, in rows."""
         slots = self.hysteresis.slots
         rows = np.full((1, len(DIRECTIONS), slots, len(Jump._fields) + 2), math.nan)

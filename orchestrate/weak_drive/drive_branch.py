@@ -9,9 +9,8 @@ the unit circle before (Neimark-Sacker).
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
@@ -28,7 +27,7 @@ from ..model.arguments import checked_integer
 from ..model.drive import Drive
 from ..model.structure import Structure
 from ..response.labels import Variable, variable
-from ..running.job import Job, Table
+from ..running.job import Fmus, Job, Table
 from ..running.options import Running
 from ..running.runner import answer
 from . import averaged, own_resonance
@@ -79,9 +78,7 @@ class DriveBranchJob(Job):
     def items(self) -> Sequence[Structure]:
         return self.structure.as_bonded(), self.structure.as_delaminated()
 
-    def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Structure], previous: Table | None
-    ) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[Structure], previous: Table | None) -> Table:
         """Trace all legs of each structure and return them as arrays padded with NaN."""
         rows = []
         for structure in items:

@@ -8,9 +8,8 @@ impact is a kink of the displacement, and so is not missed between samples.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
@@ -25,7 +24,7 @@ from ..model.drive import Drive
 from ..model.structure import Structure
 from ..response.labels import variable
 from ..response.spectra import amplitude_spectrum
-from ..running.job import Job, Table
+from ..running.job import Fmus, Job, Table
 from ..running.options import Running
 from ..running.runner import answer
 from . import averaged, own_resonance
@@ -59,9 +58,7 @@ class DriveSpectraJob(Job):
         orders = np.arange(self.revolutions * self.points // 2 + 1) / self.revolutions
         return np.asarray(orders[orders <= self.highest])
 
-    def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Structure], previous: Table | None
-    ) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[Structure], previous: Table | None) -> Table:
         """Compute both masses' acceleration spectra and the mean motor speed."""
         records = [self.record_displacements(fmus, structure) for structure in items]
         lines = len(self.orders())
@@ -72,9 +69,7 @@ class DriveSpectraJob(Job):
             speeds.append(speed)
         return {"acceleration": np.array(spectra), "speed": np.array(speeds)}
 
-    def record_displacements(
-        self, fmus: Mapping[str, Path], structure: Structure
-    ) -> tuple[np.ndarray, float]:
+    def record_displacements(self, fmus: Fmus, structure: Structure) -> tuple[np.ndarray, float]:
         """Hold the voltage; return displacements (2, samples), m, and speed, rad/s."""
         scheme = scheme_from_arguments(structure, self.step, 0.0)
         job = couple_job(structure, self.drive, self.approach, scheme)
@@ -97,7 +92,7 @@ class DriveSpectraJob(Job):
         box = found["box_position"]
         return np.array([found["x1"] - rest_1 + box, found["x2"] - rest_2 + box])
 
-    def hangs_at_resonance(self, fmus: Mapping[str, Path]) -> bool:
+    def hangs_at_resonance(self, fmus: Fmus) -> bool:
         """Return whether the delaminated structure still hangs at the resonance."""
         short, structure = replace(self, revolutions=8, points=4), self.structure.as_delaminated()
         threshold = own_resonance.dividing_speed(structure, self.drive) * structure.omega

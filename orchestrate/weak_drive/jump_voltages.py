@@ -6,9 +6,8 @@ ramp shows its jump late, about as rate^(2/3).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -20,7 +19,7 @@ from ..lazy import Unpack, xr
 from ..model.drive import Drive
 from ..model.structure import Structure
 from ..response.labels import variable
-from ..running.job import Job, Table
+from ..running.job import Fmus, Job, Table
 from ..running.options import Running
 from ..running.runner import answer
 from .couple import couple_job, require_motor, schedule_from_arguments, scheme_from_arguments
@@ -51,9 +50,7 @@ class JumpVoltagesJob(Job):
         both = (self.structure.as_bonded(), self.structure.as_delaminated())
         return [(structure, schedule) for schedule in self.schedules for structure in both]
 
-    def work(
-        self, fmus: Mapping[str, Path], items: Sequence[tuple[Structure, Ramp]], previous: Any
-    ) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[tuple[Structure, Ramp]], previous: Any) -> Table:
         """Run some ramps; return their jumps, and of faster ones what their records show."""
         rows, shown, decided = [], [], []
         for structure, schedule in items:

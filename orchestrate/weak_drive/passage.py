@@ -7,9 +7,8 @@ motor's revolutions of it.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -23,7 +22,7 @@ from ..model.arguments import checked_integer
 from ..model.drive import Drive
 from ..model.structure import Structure
 from ..response.labels import variable
-from ..running.job import Job, Table
+from ..running.job import Fmus, Job, Table
 from ..running.options import Running
 from ..running.runner import answer
 from .controllers import Controller
@@ -75,7 +74,7 @@ class PassageJob(Job):
     def items(self) -> Sequence[int]:
         return self.run.items()
 
-    def work(self, fmus: Mapping[str, Path], items: Sequence[int], previous: Table | None) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
         """Compute one chunk of steps with all samples, or the hysteresis loop."""
 
         def revolve_with_samples(run: Run) -> Table:
