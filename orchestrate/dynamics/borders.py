@@ -19,7 +19,7 @@ from ..response.questions import EXCITATION_PARAMETERS, Question, ask, require_d
 from ..running.job import Fmus, Table
 from ..running.options import Running
 from .bifurcation_curve import BifurcationCurve, BifurcationTracer
-from .bifurcations import KINDS, TORUS
+from .bifurcations import KINDS, Kind
 from .branches import (
     NODES,
     acceleration_at_start,
@@ -79,7 +79,7 @@ class BorderJob(Question):
         with EventInstance(fmus[OSCILLATOR]) as instance:
             rows = [row_at(instance, curve, root.unknowns, root.residual) for root in roots]
             at = [row_at(instance, curve, each.unknowns, each.residual) for each in points]
-        angles = [root.unknowns[-1] if self.kind == TORUS else np.nan for root in roots]
+        angles = [root.unknowns[-1] if self.kind == Kind.TORUS else np.nan for root in roots]
         ends = np.array([back.end, forth.end])
         return {
             **orbit_table(rows),

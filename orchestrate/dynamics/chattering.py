@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .bifurcations import CONTACT_BEGUN, CONTACT_LOST
+from .bifurcations import Kind
 from .closed_form import Floats
 from .continuation import NoConvergenceError
 from .orbit_point import OrbitPoint
@@ -25,7 +25,7 @@ def change_one_impact(point: OrbitPoint) -> OrbitPoint:
     """Return the orbit with one more chattering impact, or without those that (17) excludes."""
     orbit, margins = point.orbit, point.sticking_margins
     kinds, nodes = list(orbit.sequence.kinds), orbit.nodes
-    if point.contact_margin(CONTACT_BEGUN) < point.contact_margin(CONTACT_LOST):
+    if point.contact_margin(Kind.CONTACT_BEGUN) < point.contact_margin(Kind.CONTACT_LOST):
         impacts = ~(orbit.contact | orbit.sequence.releases)
         sticking = int(np.where(impacts, margins, np.inf).argmin())
         kinds, nodes = without_impacts_after(kinds, nodes, sticking)

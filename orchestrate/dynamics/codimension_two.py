@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from .bifurcation_curve import BifurcationCurve
-from .bifurcations import FLIP, FOLD, GRAZING, TORUS, TOUCHING, NamedKind
+from .bifurcations import Kind, NamedKind
 from .closed_form import Floats
 from .continuation import (
     SOLVER_ERRORS,
@@ -58,21 +58,21 @@ class PointKind(NamedKind):
 
 POINT_KINDS: dict[int, str] = {kind: kind.label for kind in PointKind}
 ON_CURVE: dict[int, tuple[PointKind, ...]] = {  # with a test function, by the curve's kind
-    FOLD: (PointKind.CUSP, PointKind.FOLD_FLIP, PointKind.RESONANCE_1, PointKind.FOLD_TORUS),
-    FLIP: (PointKind.FOLD_FLIP, PointKind.RESONANCE_2, PointKind.FLIP_TORUS),
-    TORUS: (
+    Kind.FOLD: (PointKind.CUSP, PointKind.FOLD_FLIP, PointKind.RESONANCE_1, PointKind.FOLD_TORUS),
+    Kind.FLIP: (PointKind.FOLD_FLIP, PointKind.RESONANCE_2, PointKind.FLIP_TORUS),
+    Kind.TORUS: (
         PointKind.RESONANCE_3,
         PointKind.RESONANCE_4,
         PointKind.FOLD_TORUS,
         PointKind.FLIP_TORUS,
     ),
-    GRAZING: (PointKind.GRAZING_FOLD, PointKind.GRAZING_FLIP),
-    TOUCHING: (PointKind.GRAZING_FOLD, PointKind.GRAZING_FLIP),
+    Kind.GRAZING: (PointKind.GRAZING_FOLD, PointKind.GRAZING_FLIP),
+    Kind.TOUCHING: (PointKind.GRAZING_FOLD, PointKind.GRAZING_FLIP),
 }
 GRAZES: dict[int, PointKind] = {
-    FOLD: PointKind.GRAZING_FOLD,
-    FLIP: PointKind.GRAZING_FLIP,
-    TORUS: PointKind.GRAZING_TORUS,
+    Kind.FOLD: PointKind.GRAZING_FOLD,
+    Kind.FLIP: PointKind.GRAZING_FLIP,
+    Kind.TORUS: PointKind.GRAZING_TORUS,
 }
 ANGLES = {PointKind.RESONANCE_3: 2.0 * np.pi / 3.0, PointKind.RESONANCE_4: 0.5 * np.pi}
 
@@ -204,10 +204,10 @@ def test_function_value(
         return polynomial.slope(1.0)
     if kind == PointKind.RESONANCE_2:
         return polynomial.slope(-1.0)
-    if kind in (PointKind.FOLD_TORUS, PointKind.FLIP_TORUS) and curve.kind != TORUS:
+    if kind in (PointKind.FOLD_TORUS, PointKind.FLIP_TORUS) and curve.kind != Kind.TORUS:
         return polynomial.pair_test(1.0 if kind == PointKind.FOLD_TORUS else -1.0)
     fold = kind in (PointKind.FOLD_TORUS, PointKind.GRAZING_FOLD)
-    fold = fold or kind == PointKind.FOLD_FLIP and curve.kind == FLIP
+    fold = fold or kind == PointKind.FOLD_FLIP and curve.kind == Kind.FLIP
     return polynomial(1.0 if fold else -1.0).real
 
 
@@ -230,7 +230,7 @@ def cusp_test(curve: BifurcationCurve, root: Root) -> float:
 def is_point_of_kind(curve: BifurcationCurve, root: Root, kind: PointKind) -> bool:
     """Return whether a test function's zero is truly such a point (pair on the unit circle)."""
     # two real multipliers may have the product 1 too
-    if kind not in (PointKind.FOLD_TORUS, PointKind.FLIP_TORUS) or curve.kind == TORUS:
+    if kind not in (PointKind.FOLD_TORUS, PointKind.FLIP_TORUS) or curve.kind == Kind.TORUS:
         return True
     real = 1.0 if kind == PointKind.FOLD_TORUS else -1.0
     others = characteristic_polynomial(curve, root.unknowns).others(real)
@@ -246,7 +246,7 @@ def end_points(
 ) -> Iterator[CodimensionTwoPoint]:
     """Yield the codimension-two point at which a curve ends for a given reason, if it does."""
     grazes = reason in ("another impact grazes", "a flight grazes")
-    if curve.kind == TORUS and "resonance" in reason:
+    if curve.kind == Kind.TORUS and "resonance" in reason:
         first = root.unknowns[-1] < 0.5 * np.pi
         kind = PointKind.RESONANCE_1 if first else PointKind.RESONANCE_2
     elif curve.kind in GRAZES and grazes:

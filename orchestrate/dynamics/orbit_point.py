@@ -8,24 +8,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from .bifurcations import (
-    CONTACT_BEGUN,
-    CONTACT_LOST,
-    EARLIER_RELEASE,
-    FLIP,
-    FOLD,
-    GRAZING,
-    TORUS,
-    TOUCHING,
-    BifurcationKind,
-)
+from .bifurcations import Kind
 from .closed_form import Floats
 from .continuation import Root
 from .families import Family
 from .periodic_orbit import CLOSING, POSITION, VELOCITY, PeriodicOrbit
 from .turning_points import nearest_miss, turning_points, weakest_force
 
-CONTACT_KINDS = (CONTACT_LOST, CONTACT_BEGUN)
+CONTACT_KINDS = (Kind.CONTACT_LOST, Kind.CONTACT_BEGUN)
 STICK_TOLERANCE = 1e-10  # of (17), over a eta^2: an impact so near to sticking may do either
 
 
@@ -78,38 +68,38 @@ class OrbitPoint:
             return False
         return min(self.contact_margin(kind) for kind in CONTACT_KINDS) <= -STICK_TOLERANCE
 
-    def contact_margin(self, kind: BifurcationKind) -> float:
+    def contact_margin(self, kind: Kind) -> float:
         """Return the margin to losing or gaining a permanent contact: negative beyond it."""
         orbit = self.orbit
         margins = np.minimum(self.sticking_margins, 1.0)
-        if kind == CONTACT_LOST:
+        if kind == Kind.CONTACT_LOST:
             return float(np.minimum(-margins, orbit.durations)[orbit.contact].min(initial=1.0))
         return float(margins[~(orbit.contact | orbit.sequence.releases)].min(initial=1.0))
 
-    def test(self, kind: BifurcationKind) -> float:
+    def test(self, kind: Kind) -> float:
         """Return the test function of a bifurcation kind: it changes sign at the bifurcation."""
         # products are scaled: multipliers are infinite where an impact grazes
-        if kind == FOLD:
+        if kind == Kind.FOLD:
             return float(self.root.tangent[self.family.size])
-        if kind == FLIP:
+        if kind == Kind.FLIP:
             values = self.multipliers
             return float(np.prod((1.0 + values) / (1.0 + np.abs(values))).real)
-        if kind == TORUS:
+        if kind == Kind.TORUS:
             products = np.multiply.outer(self.multipliers, self.multipliers)[np.triu_indices(4, 1)]
             return float(np.prod((1.0 - products) / (1.0 + np.abs(products))).real)
-        if kind == GRAZING:
+        if kind == Kind.GRAZING:
             closing = self.orbit.nodes[~self.orbit.sequence.releases, CLOSING]
             return float(closing.min(initial=np.inf))
-        if kind == TOUCHING:
+        if kind == Kind.TOUCHING:
             return self.nearest_miss
-        if kind == EARLIER_RELEASE:
+        if kind == Kind.EARLIER_RELEASE:
             return weakest_force(self.orbit)[0]
         return self.contact_margin(kind)
 
-    def zero_is_bifurcation(self, kind: BifurcationKind) -> bool:
+    def zero_is_bifurcation(self, kind: Kind) -> bool:
         """Return whether this zero of a kind's test function is a true bifurcation."""
         # the product of two real multipliers may be 1 as well as that of a pair on the unit circle
-        if kind != TORUS:
+        if kind != Kind.TORUS:
             return True
         return bool((np.abs(np.abs(self.pairs) - 1.0) < 1e-6).any())
 

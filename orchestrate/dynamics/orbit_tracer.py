@@ -7,19 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .bifurcations import (
-    CONTACT_BEGUN,
-    CONTACT_LOST,
-    EARLIER_RELEASE,
-    FLIP,
-    FOLD,
-    GRAZING,
-    HALVING,
-    KINDS,
-    TORUS,
-    TOUCHING,
-    BifurcationKind,
-)
+from .bifurcations import KINDS, Kind
 from .chattering import add_or_remove_impacts, change_one_impact
 from .continuation import ArclengthStepper, NoConvergenceError, Root
 from .families import Family
@@ -39,14 +27,14 @@ from .tracer import (
 class OrbitTracer(BranchTracer[Family, OrbitPoint]):
     """Traces a branch of periodic orbits by pseudo-arclength, with its bifurcations."""
 
-    kinds = (FOLD, FLIP, TORUS, GRAZING, TOUCHING, EARLIER_RELEASE)
+    kinds = (Kind.FOLD, Kind.FLIP, Kind.TORUS, Kind.GRAZING, Kind.TOUCHING, Kind.EARLIER_RELEASE)
     ending_kinds = (
-        GRAZING,
-        TOUCHING,
-        EARLIER_RELEASE,
-        HALVING,
-        CONTACT_LOST,
-        CONTACT_BEGUN,
+        Kind.GRAZING,
+        Kind.TOUCHING,
+        Kind.EARLIER_RELEASE,
+        Kind.HALVING,
+        Kind.CONTACT_LOST,
+        Kind.CONTACT_BEGUN,
     )  # beyond are other impacts, or copies
     finds_pairs = True
 
@@ -68,11 +56,11 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         orbit = self.stepper.curve.orbit(root.unknowns)
         return bool((orbit.durations[~orbit.contact] > 0.0).all())
 
-    def test(self, point: OrbitPoint, kind: BifurcationKind) -> float:
+    def test(self, point: OrbitPoint, kind: Kind) -> float:
         """Return a point's test function of a bifurcation kind: it changes sign there."""
         return point.test(kind)
 
-    def confirms(self, kind: BifurcationKind, point: OrbitPoint, part: float) -> bool:
+    def confirms(self, kind: Kind, point: OrbitPoint, part: float) -> bool:
         """Return whether a located zero is a true bifurcation, and not the step's own start."""
         return part > 1e-7 and point.zero_is_bifurcation(kind)
 
@@ -81,7 +69,7 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         located = super().locate(step)
         for i, each in enumerate(located):
             if is_halved(each, step.before):
-                return [*located[:i], replace(each, kind=HALVING)]
+                return [*located[:i], replace(each, kind=Kind.HALVING)]
         return located
 
     def go_on_from(self, point: OrbitPoint) -> OrbitPoint:
@@ -96,9 +84,7 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         self.stepper.curve, self.stepper.root = family, root
         return point
 
-    def finish_step(
-        self, step: BranchStep[OrbitPoint]
-    ) -> tuple[OrbitPoint, BifurcationKind | None]:
+    def finish_step(self, step: BranchStep[OrbitPoint]) -> tuple[OrbitPoint, Kind | None]:
         """Return the step's last orbit, with impacts added or removed as chattering (17) needs."""
         # where permanent contact is lost or begins, infinitely many impacts would graze: an end
         after = step.after
@@ -107,8 +93,8 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
         try:
             return add_or_remove_impacts(after), None
         except NoConvergenceError:  # too far on: go back to where the first impact comes or goes
-            lost = after.contact_margin(CONTACT_LOST) <= -STICK_TOLERANCE
-            kind = CONTACT_LOST if lost else CONTACT_BEGUN
+            lost = after.contact_margin(Kind.CONTACT_LOST) <= -STICK_TOLERANCE
+            kind = Kind.CONTACT_LOST if lost else Kind.CONTACT_BEGUN
             position, first = step.solve_for_level(kind, 0.0, step.length, -STICK_TOLERANCE)
         try:
             changed = add_or_remove_impacts(change_one_impact(first))
@@ -121,9 +107,9 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
     def end_without_root(self, segment: BranchSegment[OrbitPoint]) -> None:
         """Set why a branch ends where Newton fails: contact lost, or no convergence."""
         last = segment.points[-1]
-        if last.orbit.contact.any() and last.contact_margin(CONTACT_LOST) < 1e-6:
-            segment.add_bifurcation(CONTACT_LOST, last, 0.0)
-            segment.end = KINDS[CONTACT_LOST]
+        if last.orbit.contact.any() and last.contact_margin(Kind.CONTACT_LOST) < 1e-6:
+            segment.add_bifurcation(Kind.CONTACT_LOST, last, 0.0)
+            segment.end = KINDS[Kind.CONTACT_LOST]
         else:
             segment.end = NO_CONVERGENCE
 
@@ -131,6 +117,6 @@ class OrbitTracer(BranchTracer[Family, OrbitPoint]):
 def is_halved(located: LocatedBifurcation[OrbitPoint], before: OrbitPoint) -> bool:
     """Return whether an orbit has half the period at a fold, of several that had not before."""
     periods = before.orbit.sequence.periods
-    if located.kind != FOLD or least_periods(before.orbit) < periods:
+    if located.kind != Kind.FOLD or least_periods(before.orbit) < periods:
         return False
     return least_periods(located.point.orbit, 1e-4) < periods

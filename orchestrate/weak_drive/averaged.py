@@ -27,7 +27,7 @@ from ..dynamics import bifurcations
 from ..model.drive import Drive
 from ..model.structure import Structure
 
-FOLD, TORUS = bifurcations.FOLD.label, bifurcations.TORUS.label
+FOLD, TORUS = bifurcations.Kind.FOLD.label, bifurcations.Kind.TORUS.label
 
 
 class BifurcationPoint(NamedTuple):

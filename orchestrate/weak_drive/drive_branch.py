@@ -15,7 +15,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..dynamics.bifurcations import FLIP, FOLD, GRAZING, KINDS, TORUS, TOUCHING
+from ..dynamics.bifurcations import KINDS, Kind
 from ..dynamics.continuation import SOLVER_ERRORS
 from ..dynamics.tracer import LIMIT, Bifurcation, BranchSegment, ContinuationSettings
 from ..errors import InputError
@@ -47,7 +47,13 @@ from .shooting import Shooter
 
 STRUCTURES = ("bonded", "delaminated")
 LEGS = ("from below", "from above", "first doubled", "second doubled")
-BIFURCATIONS = (FOLD, FLIP, TORUS, TOUCHING, GRAZING)  # that are located on these branches
+BIFURCATIONS = (
+    Kind.FOLD,
+    Kind.FLIP,
+    Kind.TORUS,
+    Kind.TOUCHING,
+    Kind.GRAZING,
+)  # located
 MULTIPLIERS = 4  # the largest ones, that are kept
 COLUMNS: dict[str, tuple[str, str]] = {  # numbers of a motion, with units
     "speed": ("rad/s", "mean speed"),
@@ -125,7 +131,7 @@ class DriveBranchJob(Job):
 
     def needs_doubled_leg(self, flip: Bifurcation[Motion], legs: Sequence[Leg], turns: int) -> bool:
         """Return whether a period doubling starts a leg that is not traced yet."""
-        if flip.kind != FLIP or 2 * flip.point.period.revolutions > turns:
+        if flip.kind != Kind.FLIP or 2 * flip.point.period.revolutions > turns:
             return False
         ends = [leg.points[-1].coordinates for leg in legs if leg.end == HALVED]
         return not any(

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..dynamics.bifurcations import CONTACT_LOST, FLIP, FOLD, KINDS, TORUS, BifurcationKind
+from ..dynamics.bifurcations import KINDS, Kind
 from ..dynamics.closed_form import Floats
 from ..dynamics.continuation import (
     ArclengthStepper,
@@ -40,7 +40,7 @@ from .shooting import Period, Shooter
 NO_START = "no motion at the start"
 NOT_BEGUN = "not begun: the other leg has gone all the way"
 HALVED = "meets the motion of half its period"
-UNFINISHED = KINDS[CONTACT_LOST]  # of a chattering that no longer comes to its end
+UNFINISHED = KINDS[Kind.CONTACT_LOST]  # of a chattering that no longer comes to its end
 ENDS = (LIMIT, NO_CONVERGENCE, MAX_POINTS, NO_START, NOT_BEGUN, HALVED, FLIGHT, IMPACT, UNFINISHED)
 AT_GRAZING = 1e-4  # of voltage over K omega and speed over omega: so near, a grazing is located
 # or of the largest force in contact
@@ -86,7 +86,7 @@ class ShooterStepper(ArclengthStepper[Shooter]):
 class DriveTracer(BranchTracer[Shooter, Motion]):
     """Trace a branch of stationary motions within a range of speeds; locate bifurcations."""
 
-    kinds = (FOLD, FLIP, TORUS)
+    kinds = (Kind.FOLD, Kind.FLIP, Kind.TORUS)
     stepper: ShooterStepper
 
     def __init__(
@@ -126,19 +126,19 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
         """Return whether a new motion has as many impacts as the one before."""
         return self.shooter.shoot(root.unknowns).is_connected_to(self.shot)
 
-    def test(self, point: Motion, kind: BifurcationKind) -> float:
+    def test(self, point: Motion, kind: Kind) -> float:
         """Evaluate the test function of a bifurcation, which is zero there."""
         values = point.multipliers
-        if kind == FOLD:
+        if kind == Kind.FOLD:
             return float(point.root.tangent[-2])
-        if kind == FLIP:
+        if kind == Kind.FLIP:
             return float(np.prod(1.0 + values).real)
         return float(np.prod([1.0 - a * b for a, b in combinations(values, 2)]).real)
 
-    def confirms(self, kind: BifurcationKind, point: Motion, part: float) -> bool:
+    def confirms(self, kind: Kind, point: Motion, part: float) -> bool:
         """Return whether a Neimark-Sacker point has a complex pair on the unit circle."""
         pairs = point.multipliers[np.abs(point.multipliers.imag) > 1e-6]
-        return kind != TORUS or bool((np.abs(np.abs(pairs) - 1.0) < 1e-4).any())
+        return kind != Kind.TORUS or bool((np.abs(np.abs(pairs) - 1.0) < 1e-4).any())
 
     def location_tolerances(self, length: float) -> dict[str, float]:
         return {"xtol": 1e-6 * length}

@@ -12,13 +12,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..dynamics.bifurcations import GRAZING, KINDS, TOUCHING, BifurcationKind
+from ..dynamics.bifurcations import KINDS, Kind
 from ..dynamics.closed_form import Floats
 from ..model.structure import Structure
 from .record import OscillatorOutputs
 from .shooting import Shooter
 
-IMPACT, FLIGHT = KINDS[GRAZING], KINDS[TOUCHING]
+IMPACT, FLIGHT = KINDS[Kind.GRAZING], KINDS[Kind.TOUCHING]
 BACK = 3  # motions over which the slope of a margin is taken
 
 
@@ -63,7 +63,7 @@ def turning_gap(
 
 def next_grazing(
     shooter: Shooter, motions: Sequence[tuple[Floats, float]]
-) -> tuple[BifurcationKind | None, float]:
+) -> tuple[Kind | None, float]:
     """Extrapolate which grazing comes next along a branch, and how far away it is."""
     last_motions = motions[-2 * BACK :]
     falling = np.array([grazing_margins(shooter, *motion) for motion in last_motions])
@@ -72,7 +72,7 @@ def next_grazing(
     for last in range(BACK, len(last_motions)):
         first = last - BACK
         distance_back = float(np.linalg.norm(places[last] - places[first]))
-        for i, each in enumerate((TOUCHING, GRAZING)):
+        for i, each in enumerate((Kind.TOUCHING, Kind.GRAZING)):
             before, now = float(falling[first, i]), float(falling[last, i])
             ahead = distance_back * now / (before - now) if now < before < math.inf else math.inf
             if ahead < min(distance, 5e-3):  # further on, no fall is extrapolated

@@ -11,7 +11,7 @@ import pytest
 import orchestrate
 from orchestrate import Structure
 from orchestrate.dynamics import codimension_two
-from orchestrate.dynamics.bifurcations import FOLD
+from orchestrate.dynamics.bifurcations import Kind
 from orchestrate.dynamics.codimension_two import CharacteristicPolynomial, PointKind, points_between
 from orchestrate.dynamics.continuation import Root, newton_correct, unit_vector
 from orchestrate.dynamics.families import Setting
@@ -108,7 +108,7 @@ def test_the_roots_of_the_polynomial_are_the_multipliers():
 class Normal:
     """A fold curve of a normal form: p1 + p2 x - x^3 = 0, with multipliers of its own."""
 
-    kind, accuracy, scale = FOLD, 1e-12, np.ones(3)
+    kind, accuracy, scale = Kind.FOLD, 1e-12, np.ones(3)
 
     def __init__(self):
         self.family = SimpleNamespace(size=1, jacobian=self.first, setting=None)
@@ -184,7 +184,7 @@ def test_what_the_multipliers_beside_1_say_on_a_fold(monkeypatch):
 class SteepCurve:
     """A curve whose equations are so steep that a Newton step is small far from any root."""
 
-    kind, scale, accuracy, steep = FOLD, np.ones(5), 1e-9, 1e6
+    kind, scale, accuracy, steep = Kind.FOLD, np.ones(5), 1e-9, 1e6
 
     def __init__(self, left):
         self.family = SimpleNamespace(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from orchestrate import couple
-from orchestrate.dynamics.bifurcations import FOLD
+from orchestrate.dynamics.bifurcations import Kind
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple_all import voltage_range
 
@@ -30,7 +30,7 @@ def test_a_trajectory():
 def test_a_fold():
     """Located on the branch, and by shooting on the monolithic solution."""
     ((kind, _, voltage, truth),) = bifurcations(SETS[1].as_bonded(), (1.003, 1.012))
-    assert kind == FOLD and voltage == pytest.approx(truth, abs=1e-6)
+    assert kind == Kind.FOLD and voltage == pytest.approx(truth, abs=1e-6)
 
 
 @pytest.mark.slow
@@ -44,7 +44,7 @@ def test_a_set(system):
         assert (np.abs(errors[np.isfinite(errors)]) < 1e-4).all(), found
         assert np.isfinite(errors[0])
         folds.append(first_fold(found)[2])
-        smooth.append(found[0][0] == FOLD)  # else it has left this branch before
+        smooth.append(found[0][0] == Kind.FOLD)  # else it has left this branch before
         here, whole = ramp_jumps(one, folds[-1])
         assert here == pytest.approx(whole, abs=1e-3)
     jumps = extrapolated_jumps(system, max(folds))

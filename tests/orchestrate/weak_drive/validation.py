@@ -7,7 +7,7 @@ but the state that it starts from.
 import numpy as np
 
 from orchestrate import Drive, Structure, jump_voltages
-from orchestrate.dynamics.bifurcations import FLIP, FOLD
+from orchestrate.dynamics.bifurcations import Kind
 from orchestrate.fmu import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple import scheme_from_arguments
@@ -152,11 +152,11 @@ class Whole:
     def test(self, kind, unknowns, period):
         """What is 0 at a bifurcation, and the motion there."""
         found, matrix = self.orbit(unknowns, period)
-        if kind == FOLD:
+        if kind == Kind.FOLD:
             slope = np.linalg.solve(matrix[:, :-1], -matrix[:, -1])
             return float(slope[-1]), found
         values = self.multipliers(matrix)
-        if kind == FLIP:
+        if kind == Kind.FLIP:
             return float(values.real.min() + 1.0), found
         pairs = np.abs(values[np.abs(values.imag) > 1e-6])
         return float(pairs[np.argmin(np.abs(pairs - 1.0))] - 1.0), found
@@ -281,5 +281,5 @@ def extrapolated_jumps(system, fold):
 
 def first_fold(found):
     """The fold that a run up meets first."""
-    folds = [row for row in found if row[0] == FOLD]
+    folds = [row for row in found if row[0] == Kind.FOLD]
     return folds[0] if folds else None
