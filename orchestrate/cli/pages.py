@@ -5,9 +5,10 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..errors import InputError
+from ..lazy import xr
 from .answer import read_earlier_result
 from .grammar import parse_changes
 from .options import read_structure_options, structure_group
@@ -21,9 +22,6 @@ from .output import (
 )
 from .stored import print_difference, structure_of
 from .table import Command, Group
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def run_build(arguments: argparse.Namespace) -> None:

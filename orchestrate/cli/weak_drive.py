@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
+from ..lazy import xr
 from ..units import range_text, text_of, units_of, with_units
 from .answer import answer
 from .drive import (
@@ -45,8 +46,6 @@ from .table import Command, Group, Question
 from .text import columns_of, extents, table
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from ..model import Drive, Structure
     from ..weak_drive.couple import CoupleJob
 
@@ -246,7 +245,6 @@ def draw_couple(
 ) -> Any:
     """Draw the runs: ramps with averaged theory and branches, others over time."""
     import numpy as np
-    import xarray as xr
 
     from ..show.passage import draw_run
     from ..show.weak_drive import draw

@@ -9,17 +9,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..lazy import xr
 from ..model import Structure
 from .analog_filter import Cells
 from .pieces import Floats, Pieces
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Flags = NDArray[np.bool_]
 SHORT = 0.1  # of a cell times the highest natural frequency, rad

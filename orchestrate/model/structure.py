@@ -10,6 +10,7 @@ from os import PathLike
 from typing import TYPE_CHECKING, Any, TypedDict, TypeVar
 
 from ..errors import InputError
+from ..lazy import Unpack
 from .described import Described
 from .plausible import warn_of_per_cent
 from .ranges import (
@@ -26,7 +27,6 @@ from .ranges import (
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
-    from typing_extensions import Unpack
 
 Values = TypeVar("Values", float, "NDArray[np.float64]")
 SI = tuple(STRUCTURE)

@@ -11,22 +11,20 @@ from abc import ABC
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
+from typing import Any, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
 from ..fmu import REST, finder, gap_between
+from ..lazy import xr
 from ..model import PARAMETERS, Excitation, Structure
 from ..model.arguments import Numbers, checked, checked_numbers
 from ..model.ranges import COMPLETE, EXCITATION, LEVEL, RATIO_QUANTITIES, expected_one_of
 from ..running.job import Job, brief
 from ..running.runner import answer
 from .labels import Variable, parameter_variable, variable
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 State = tuple[float, ...]
 Kind = TypeVar("Kind", bound="Question")

@@ -9,19 +9,17 @@ threshold.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
+from ..lazy import xr
 from ..model import Excitation, Structure
 from ..running.job import brief
 from .labels import Variable, make_dataset, parameter_variable, variable
 from .questions import excitation_numbers, require_delaminated
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Floats = NDArray[np.float64]
 GRID = 400  # frequencies between which minima of the threshold are bracketed
