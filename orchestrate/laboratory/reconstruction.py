@@ -150,10 +150,7 @@ def taylor(series: Floats, lengths: Floats) -> Floats:
 
 
 def first_fall(derivatives: Floats, scale: float, length: float) -> float | None:
-    """Return the first time in [0, length] at which a Taylor series falls below 0, or None.
-
-    Rounding errors of numbers of the size ``scale`` are not below 0.
-    """
+    """Return the first time in [0, length] at which a Taylor series falls below 0, or None."""
     from scipy.optimize import brentq
 
     factors = derivatives / np.array([math.factorial(n) for n in range(len(derivatives))])
@@ -202,10 +199,7 @@ def smooth_parts(motion: Motion, sample_rate: float) -> SmoothParts:
 
 
 def propagate(motion: Motion, nodes: Floats, releases: Floats) -> tuple[Floats, Flags, float]:
-    """Integrate from sample to sample; return states, contact, and the distance to the samples.
-
-    All intervals between samples at once: first their first cells, then their second ones.
-    """
+    """Integrate from sample to sample; return states, contact, and the distance to the samples."""
     count = len(nodes) - 1
     interval = np.searchsorted(motion.times, nodes[:-1], side="right") - 1
     first = np.searchsorted(interval, np.arange(len(motion.times)))

@@ -90,7 +90,6 @@ class Sampled(ExcitationSignal):
 
     @property
     def usual_rate(self) -> float:
-        """Default sampling rate, Hz: the record's own."""
         return self.sample_rate
 
     def pieces(self, accuracy: float = 1e-6) -> Pieces:

@@ -331,7 +331,6 @@ class Question(Job, ABC):
         return cls(**values | own)
 
     def call_text(self) -> str:
-        """Return Python source of the public function's call that repeats this job."""
         arguments: dict[str, Any] = {}
         for name, value in self.parameters().items():
             inside = isinstance(value, dict) and "sha256" not in value and name != "structure"
@@ -364,7 +363,6 @@ class OneMotionQuestion(Question, ABC):
     excitation: Excitation
 
     def items(self) -> Sequence[Point]:
-        """Return the items: a list with the structure under its excitation."""
         return [Point(self.structure, self.excitation)]
 
 
@@ -396,9 +394,7 @@ class SeriesQuestion(Question, ABC):
         )
 
     def count(self) -> int:
-        """Return the number of parameter values."""
         return len(self.series.values)
 
     def items(self) -> Sequence[Any]:
-        """Return the operating points."""
         return self.series.points

@@ -84,7 +84,6 @@ class SimulateJob(OneMotionQuestion):
         }
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset of the motion: variables over time, and its impacts."""
         contact = "whether the masses are in permanent contact"
         variables = {
             **{name: variable("time", table[name], *IN_TIME[name]) for name in IN_TIME},

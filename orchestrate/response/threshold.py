@@ -52,10 +52,7 @@ def threshold_amplitudes(structure: Structure, frequency: Floats) -> Floats:
 
 
 def exceeds_threshold(structure: Structure, excitation: Excitation) -> bool:
-    """Return whether the linear response opens or touches, so that no response can stay linear.
-
-    With a clearance only: without one the halves open at any level, unless they move alike.
-    """
+    """Return whether the linear response opens or touches, so that no response can stay linear."""
     if structure.gap_offset == 0.0:
         return False
     (level,) = threshold_amplitudes(structure, np.array([excitation.frequency])).tolist()

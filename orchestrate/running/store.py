@@ -208,10 +208,7 @@ def open_store(name: str, identity: Identity, options: RunOptions) -> Store:
 
 
 def load(path: Path) -> xr.Dataset:
-    """Return the dataset of a NetCDF file; raise ``StoreError`` if it is damaged (checksum).
-
-    A result without one, of a version that wrote none or of another tool, is taken as it is.
-    """
+    """Return the dataset of a NetCDF file; raise ``StoreError`` if it is damaged (checksum)."""
     check_path_encoding(path)
     try:
         data = xr.load_dataset(path, engine="netcdf4")
