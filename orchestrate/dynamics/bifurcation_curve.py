@@ -20,7 +20,7 @@ from .bifurcations import KINDS, Kind
 from .closed_form import Floats
 from .continuation import ArclengthStepper, NoConvergenceError, Root, leading_component
 from .families import Family, central_difference
-from .orbit_point import OrbitPoint
+from .orbit_tracer import OrbitPoint
 from .periodic_orbit import CLOSING, PeriodicOrbit
 from .tracer import BranchStep, BranchTracer, ContinuationSettings
 from .turning_points import (

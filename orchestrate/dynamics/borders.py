@@ -34,7 +34,6 @@ from .closed_form import Floats
 from .codimension_two import POINT_KINDS, locate_points
 from .continuation import SOLVER_ERRORS, Root, newton_correct, unit_vector
 from .families import ACCELERATION, Family, Setting, check_parameters
-from .orbit_point import OrbitPoint
 from .orbit_records import (
     branch_dataset,
     located_table,
@@ -43,6 +42,7 @@ from .orbit_records import (
     orbit_table,
     split_located,
 )
+from .orbit_tracer import OrbitPoint
 from .orbits import FirstGuess, call_from_start, excitation_arguments
 from .tracer import BranchSegment, ContinuationSettings
 

@@ -10,7 +10,7 @@ from .bifurcations import KINDS, Kind
 from .closed_form import Floats
 from .continuation import ArclengthStepper, Root, fix_sign, newton_correct, unit_vector
 from .families import Family
-from .orbit_point import OrbitPoint
+from .orbit_tracer import OrbitPoint
 from .periodic_orbit import CLOSING, PHASE, ImpactSequence
 from .turning_points import nearest_miss, turning_points
 

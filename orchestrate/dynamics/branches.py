@@ -24,7 +24,6 @@ from .bifurcations import KINDS
 from .branch_switching import leaving_branch
 from .continuation import SOLVER_ERRORS
 from .families import ACCELERATION, Setting, check_parameters
-from .orbit_point import OrbitPoint
 from .orbit_records import (
     branch_dataset,
     located_table,
@@ -34,7 +33,7 @@ from .orbit_records import (
     split_located,
 )
 from .orbit_search import solve_orbit
-from .orbit_tracer import OrbitTracer
+from .orbit_tracer import OrbitPoint, OrbitTracer
 from .orbits import (
     NODE,
     FirstGuess,

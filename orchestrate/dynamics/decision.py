@@ -28,8 +28,14 @@ from ..response.response_loop import stroboscopic_samples
 from .clusters import AttractorSettings, run_until_settled
 from .continuation import SOLVER_ERRORS
 from .families import Setting
-from .guesses import Guess, begin_at_state, guess_from_impacts
-from .orbit_search import least_periods, solve_orbit, why_no_motion
+from .orbit_search import (
+    Guess,
+    begin_at_state,
+    guess_from_impacts,
+    least_periods,
+    solve_orbit,
+    why_no_motion,
+)
 from .periodic_orbit import ImpactSequence, PeriodicOrbit
 from .settled_motion import Floats, SettledMotion
 from .turning_points import rotate_to_phase_zero

@@ -25,7 +25,6 @@ from .continuation import SOLVER_ERRORS, fix_sign
 from .curve_growth import (
     CONVERGED,
     LENGTH,
-    MAX_STEP,
     POINTS,
     CurveGrower,
     CurvePoint,
@@ -204,7 +203,7 @@ class ManifoldJob(SingleOrbitQuestion):
             angle=self.angle,
             max_points=self.most,
             size=saddle.size,
-            max_step=MAX_STEP * max(1.0, math.log(2.0) / growth),
+            max_step=GrowthSettings.max_step * max(1.0, math.log(2.0) / growth),
             resolution=ROUNDING * largest / (self.distance * saddle.size * growth),
         )
 

@@ -1,19 +1,29 @@
-"""Continuation of orbit branches: the tracer's steps, limits and tests for periodic orbits."""
+"""Branches of periodic orbits: their points with test functions, and how they are traced."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .bifurcations import KINDS, Kind
-from .chattering import add_or_remove_impacts, change_one_impact
+from .closed_form import Floats
 from .continuation import ArclengthStepper, NoConvergenceError, Root
 from .families import Family
-from .orbit_point import STICK_TOLERANCE, OrbitPoint
-from .orbit_search import least_periods
-from .periodic_orbit import POSITION
+from .orbit_search import least_periods, solve_orbit
+from .periodic_orbit import (
+    CLOSING,
+    IMPACT,
+    POSITION,
+    RELEASE,
+    STICK,
+    VELOCITY,
+    ImpactSequence,
+    PeriodicOrbit,
+)
 from .tracer import (
     NO_CONVERGENCE,
     BranchSegment,
@@ -22,6 +32,99 @@ from .tracer import (
     ContinuationSettings,
     LocatedBifurcation,
 )
+from .turning_points import nearest_miss, turning_points, weakest_force
+
+CONTACT_KINDS = (Kind.CONTACT_LOST, Kind.CONTACT_BEGUN)
+STICK_TOLERANCE = 1e-10  # of (17), over a eta^2: an impact so near to sticking may do either
+
+
+@dataclass(frozen=True)
+class OrbitPoint:
+    """One point of an orbit branch: the root, its orbit, multipliers and test functions."""
+
+    family: Family  # whose equations it solves
+    root: Root
+
+    @cached_property
+    def orbit(self) -> PeriodicOrbit:
+        """Return the periodic orbit of this point of a branch."""
+        return self.family.orbit(self.root.unknowns)
+
+    @property
+    def values(self) -> Floats:
+        """Return the values of the continuation parameters at this point."""
+        return self.root.unknowns[self.family.size :]
+
+    @cached_property
+    def multipliers(self) -> NDArray[np.complex128]:
+        """Return the orbit's Floquet multipliers, the largest first."""
+        return self.orbit.multipliers()
+
+    @cached_property
+    def pairs(self) -> NDArray[np.complex128]:
+        """Return one multiplier of each complex-conjugate pair, the one with imaginary part > 0."""
+        return self.multipliers[self.multipliers.imag > 0.0]
+
+    @cached_property
+    def nearest_miss(self) -> float:
+        """Return the smallest gap minimum in flight without an impact: 0 at touching."""
+        return nearest_miss(self.orbit, turning_points(self.orbit))[0]
+
+    @cached_property
+    def sticking_margins(self) -> Floats:
+        """Return each impact's margin in the sticking condition (17): negative where it sticks."""
+        orbit, form = self.orbit, self.orbit.form
+        nodes = orbit.nodes
+        force = form.force(nodes[:, POSITION], nodes[:, VELOCITY])
+        margins = 2.0 * form.parting(nodes[:, CLOSING]) + form.gamma * force
+        return np.where(force < 0.0, margins, np.inf)
+
+    @property
+    def wrong_contact(self) -> bool:
+        """Return whether an impact sticks, or not, against the sticking condition (17)."""
+        # where (17) is all but met either will do: rounding must not say how an orbit goes on
+        if not self.orbit.count:
+            return False
+        return min(self.contact_margin(kind) for kind in CONTACT_KINDS) <= -STICK_TOLERANCE
+
+    def contact_margin(self, kind: Kind) -> float:
+        """Return the margin to losing or gaining a permanent contact: negative beyond it."""
+        orbit = self.orbit
+        margins = np.minimum(self.sticking_margins, 1.0)
+        if kind == Kind.CONTACT_LOST:
+            return float(np.minimum(-margins, orbit.durations)[orbit.contact].min(initial=1.0))
+        return float(margins[~(orbit.contact | orbit.sequence.releases)].min(initial=1.0))
+
+    def test(self, kind: Kind) -> float:
+        """Return the test function of a bifurcation kind: it changes sign at the bifurcation."""
+        # products are scaled: multipliers are infinite where an impact grazes
+        if kind == Kind.FOLD:
+            return float(self.root.tangent[self.family.size])
+        if kind == Kind.FLIP:
+            values = self.multipliers
+            return float(np.prod((1.0 + values) / (1.0 + np.abs(values))).real)
+        if kind == Kind.TORUS:
+            products = np.multiply.outer(self.multipliers, self.multipliers)[np.triu_indices(4, 1)]
+            return float(np.prod((1.0 - products) / (1.0 + np.abs(products))).real)
+        if kind == Kind.GRAZING:
+            closing = self.orbit.nodes[~self.orbit.sequence.releases, CLOSING]
+            return float(closing.min(initial=np.inf))
+        if kind == Kind.TOUCHING:
+            return self.nearest_miss
+        if kind == Kind.EARLIER_RELEASE:
+            return weakest_force(self.orbit)[0]
+        return self.contact_margin(kind)
+
+    def zero_is_bifurcation(self, kind: Kind) -> bool:
+        """Return whether this zero of a kind's test function is a true bifurcation."""
+        # the product of two real multipliers may be 1 as well as that of a pair on the unit circle
+        if kind != Kind.TORUS:
+            return True
+        return bool((np.abs(np.abs(self.pairs) - 1.0) < 1e-6).any())
+
+    def reversed(self) -> OrbitPoint:
+        """Return the same point with its tangent reversed, to continue the other way."""
+        return OrbitPoint(self.family, self.root.reversed())
 
 
 class OrbitTracer(BranchTracer[Family, OrbitPoint]):
@@ -120,3 +223,56 @@ def is_halved(located: LocatedBifurcation[OrbitPoint], before: OrbitPoint) -> bo
     if located.kind != Kind.FOLD or least_periods(before.orbit) < periods:
         return False
     return least_periods(located.point.orbit, 1e-4) < periods
+
+
+def add_or_remove_impacts(point: OrbitPoint) -> OrbitPoint:
+    """Add or remove chattering impacts one by one until (17) holds; return the orbit."""
+    for _ in range(10):  # more are no small change of an orbit
+        if not point.wrong_contact:
+            return point
+        point = change_one_impact(point)
+    raise NoConvergenceError("impacts of a chattering come and go")
+
+
+def change_one_impact(point: OrbitPoint) -> OrbitPoint:
+    """Return the orbit with one more chattering impact, or without those that (17) excludes."""
+    orbit, margins = point.orbit, point.sticking_margins
+    kinds, nodes = list(orbit.sequence.kinds), orbit.nodes
+    if point.contact_margin(Kind.CONTACT_BEGUN) < point.contact_margin(Kind.CONTACT_LOST):
+        impacts = ~(orbit.contact | orbit.sequence.releases)
+        sticking = int(np.where(impacts, margins, np.inf).argmin())
+        kinds, nodes = without_impacts_after(kinds, nodes, sticking)
+    else:
+        last = int(np.where(orbit.contact, margins, -np.inf).argmax())
+        kinds = [*kinds[:last], IMPACT, STICK, *kinds[last + 1 :]]
+        nodes = np.insert(nodes, last + 1, estimated_next_impact(orbit, last), axis=0)
+    sequence = ImpactSequence(orbit.sequence.periods, tuple(kinds))
+    guess, setting = (sequence, nodes), point.family.setting
+    changed = OrbitPoint(
+        *solve_orbit(setting, guess, point.values, max_iterations=12, max_distance=1.0)
+    )
+    if (changed.orbit.durations <= 0.0).any():
+        raise NoConvergenceError("no time is left for contact")
+    same_direction = point.root.tangent[-1] * changed.root.tangent[-1] >= 0.0
+    return changed if same_direction else changed.reversed()
+
+
+def without_impacts_after(
+    kinds: list[int], nodes: Floats, sticking: int
+) -> tuple[list[int], Floats]:
+    """Remove the impacts between a sticking one and its release; return kinds and nodes."""
+    releases = [i for i in range(sticking + 1, len(kinds)) if kinds[i] == RELEASE]
+    if not releases:
+        raise NoConvergenceError("an impact sticks that is not of a chattering")
+    kept = [*range(sticking + 1), *range(releases[0], len(kinds))]
+    return [STICK if i == sticking else kinds[i] for i in kept], nodes[kept]
+
+
+def estimated_next_impact(orbit: PeriodicOrbit, node: int) -> Floats:
+    """Return the node of the impact after a short flight, estimated as a parabola."""
+    phase, position, velocity, closing = orbit.nodes[node]
+    parting = orbit.form.parting(closing)
+    time = 2.0 * parting / -float(orbit.form.force(position, velocity))
+    if not 0.0 < time < orbit.durations[node]:
+        raise NoConvergenceError("no time is left for another impact")
+    return np.array([phase + orbit.form.eta * time, position + velocity * time, velocity, parting])

@@ -24,9 +24,15 @@ from ..running.options import Running
 from .closed_form import Floats
 from .continuation import SOLVER_ERRORS
 from .families import ACCELERATION, Setting
-from .guesses import Guess, close_returns, guess_from_phases, guess_from_state
 from .orbit_records import orbit_coordinates, orbit_row, orbit_table, orbit_variables
-from .orbit_search import first_possible_orbit, single_impact_guesses
+from .orbit_search import (
+    Guess,
+    close_returns,
+    first_possible_orbit,
+    guess_from_phases,
+    guess_from_state,
+    single_impact_guesses,
+)
 from .periodic_orbit import IMPACT, PHASE, RELEASE, ImpactSequence
 
 MAX_PERIODS = 1000  # of an orbit that can be asked for

@@ -17,8 +17,7 @@ import numpy as np
 
 from ..fmu import Impacts
 from ..response.questions import Point
-from .closed_form import ClosedForm, Floats
-from .release import contact_durations
+from .closed_form import ClosedForm, Floats, contact_durations
 
 
 def period_in_tau(eta: float) -> float:

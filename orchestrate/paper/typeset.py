@@ -12,7 +12,7 @@ import re
 from docutils.utils.math.latex2mathml import tex2mathml
 from markupsafe import Markup, escape
 
-from .readable import plain
+from .claims import plain
 
 LETTERS = ("eta", "kappa", "lambda", "omega", "gamma", "tau", "mu", "nu", "xi", "pi")
 WORDS = {  # regular expressions and what they become, the longest first

@@ -27,7 +27,6 @@ module                  idea
 :mod:`.averaged`        the averaged theory of the bonded structure
 :mod:`.own_resonance`   the delaminated structure's resonance and its dividing speed
 :mod:`.shooting`        stationary motions of structure and motor, by shooting
-:mod:`.grazing`         how near a stationary motion is to grazing
 :mod:`.drive_tracer`    one branch of stationary motions, by arclength continuation
 :mod:`.drive_branch`    branches of stationary motions, stable and unstable
 :mod:`.drive_spectra`   spectra at the resonance (Figure 3)

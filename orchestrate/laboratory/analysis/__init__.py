@@ -3,8 +3,7 @@
 ======================  ===========================================================================
 module                  idea
 ======================  ===========================================================================
-:mod:`.channels`        the channels of a record, checked; labels of the results
-:mod:`.averaging`       overlapping segments, and how many independent averages they are worth
+:mod:`.channels`        the channels of a record, checked; its overlapping segments; labels
 :mod:`.frf`             frequency response functions over the box's acceleration, and coherence
 :mod:`.psd`             power spectral densities
 :mod:`.orders`          amplitude and phase of the orders of a swept sine

@@ -11,8 +11,15 @@ import numpy as np
 from ...errors import InputError
 from ...lazy import xr
 from ...response.labels import variable, yes_or_no
-from .averaging import averaging
-from .channels import BOX, Channels, Floats, attributes, channel_coordinate, frequency_coordinate
+from .channels import (
+    BOX,
+    Channels,
+    Floats,
+    attributes,
+    averaging,
+    channel_coordinate,
+    frequency_coordinate,
+)
 
 ESTIMATORS = ("H1", "H2", "Hv")
 EXCITED = 1e-2  # of the largest power density of the box: below, a response has no meaning

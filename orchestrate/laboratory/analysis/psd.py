@@ -6,8 +6,7 @@ import numpy as np
 
 from ...lazy import xr
 from ...response.labels import variable
-from .averaging import averaging
-from .channels import Channels, attributes, channel_coordinate, frequency_coordinate
+from .channels import Channels, attributes, averaging, channel_coordinate, frequency_coordinate
 
 
 def psd(

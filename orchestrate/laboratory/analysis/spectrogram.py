@@ -7,13 +7,15 @@ import numpy as np
 from ...lazy import xr
 from ...model.arguments import checked_word
 from ...response.labels import variable
-from .averaging import FEWEST_LINES, WINDOWS, segment_length
 from .channels import (
+    FEWEST_LINES,
+    WINDOWS,
     Channels,
     attributes,
     channel_coordinate,
     checked_number,
     frequency_coordinate,
+    segment_length,
 )
 
 
