@@ -44,11 +44,6 @@ def section_table(rows: Sequence[Mapping[str, str]]) -> list[str]:
     return lines
 
 
-def escape_cell(text: str) -> str:
-    """Return a text escaped for a cell of a Markdown table."""
-    return text.replace("|", "\\|").replace("*", "\\*").replace("_", "\\_")
-
-
 def claim_table(rows: Sequence[Mapping[str, str]]) -> list[str]:
     """Return Markdown tables, one for each section, of all claims with their verdicts."""
     lines = []
@@ -58,7 +53,7 @@ def claim_table(rows: Sequence[Mapping[str, str]]) -> list[str]:
         for row in rows:
             if row["section"] == section:
                 texts = (row["text"], row["printed"], IMPLIED.sub("", row["found"]))
-                cells = [escape_cell(text) for text in texts]
+                cells = [re.sub(r"([|*_])", r"\\\1", text) for text in texts]
                 lines.append(f"| {' | '.join(cells)} | {WORDS[row['verdict']]} |")
         lines.append("")
     return lines[:-1]

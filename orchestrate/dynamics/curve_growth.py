@@ -47,10 +47,6 @@ class ItineraryChange(NamedTuple):
     distance: float  # of both
     power: float  # of the distance of their numbers, with which that distance falls
 
-    def is_break(self, size: float) -> bool:
-        """Return whether the curve jumps here, rather than only changing its itinerary."""
-        return self.distance > STILL * size and self.power < 0.25  # half of a grazing impact's
-
 
 @dataclass(frozen=True)
 class GrowthSettings:
@@ -162,7 +158,8 @@ class CurveGrower:
 
     def cross_change(self, curve: GrownCurve, change: ItineraryChange) -> None:
         """Append the point beyond a change of itinerary: connected, or after a break."""
-        broken = change.is_break(self.settings.size)
+        # less than half of the power of a grazing impact is a jump
+        broken = change.distance > STILL * self.settings.size and change.power < 0.25
         if broken:
             curve.breaks[len(curve.points)] = change
         curve.add(change.high, 0.0 if broken else change.distance)

@@ -62,24 +62,22 @@ def response_statistics(impacts: Impacts, item: FollowedResponse, periods: int) 
     structure, excitation = item.point
     span = period_in_tau(excitation.eta(structure))
     exponent = exponent_of(impacts, periods, item.point)
-    return {
-        **impact_counts(impacts, span, periods),
-        "contact_share": contact_time(impacts, item, periods * span) / (periods * span),
-        **impact_extremes(impacts, span, periods),
-        "exponent": exponent.value,
-        "standard_error": exponent.error,
-    }
-
-
-def impact_counts(impacts: Impacts, span: float, periods: int) -> dict[str, float]:
-    """Return impacts and contacts per period, fewest and most impacts in a period, by name."""
     which = np.minimum((impacts.time / span).astype(int), periods - 1)
     each = np.bincount(which, minlength=periods)
+    distances, closing = np.diff(impacts.time) / span, impacts.closing
     return {
         "impacts": len(impacts.time) / periods,
         "fewest": float(each.min()),
         "most": float(each.max()),
         "contacts": impacts.sticks.sum() / periods,
+        "contact_share": contact_time(impacts, item, periods * span) / (periods * span),
+        "closing_max": closing.max() if len(closing) else math.nan,
+        "closing_min": closing.min() if len(closing) else math.nan,
+        "closing_sum": closing.sum() / periods,
+        "distance_min": distances.min() if len(distances) else math.nan,
+        "distance_max": distances.max() if len(distances) else math.nan,
+        "exponent": exponent.value,
+        "standard_error": exponent.error,
     }
 
 
@@ -98,18 +96,6 @@ def contact_time(impacts: Impacts, item: FollowedResponse, end: float) -> float:
         )
     ends = np.append(impacts.time[1:], end)
     return float(contact_durations_after(impacts, ends, item.point).sum())
-
-
-def impact_extremes(impacts: Impacts, span: float, periods: int) -> dict[str, float]:
-    """Return extremes and sum of closing speeds, extremes of intervals; NaN without impacts."""
-    distances, closing = np.diff(impacts.time) / span, impacts.closing
-    return {
-        "closing_max": closing.max() if len(closing) else math.nan,
-        "closing_min": closing.min() if len(closing) else math.nan,
-        "closing_sum": closing.sum() / periods,
-        "distance_min": distances.min() if len(distances) else math.nan,
-        "distance_max": distances.max() if len(distances) else math.nan,
-    }
 
 
 def impact_statistics(

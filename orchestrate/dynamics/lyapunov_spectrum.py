@@ -35,11 +35,6 @@ class Spectrum(NamedTuple):
     exponents: Floats
     errors: Floats
 
-    @property
-    def dimension(self) -> float:
-        """Kaplan-Yorke dimension of the attractor in the stroboscopic section."""
-        return kaplan_yorke_dimension(self.exponents)
-
 
 class BlockGrowth(NamedTuple):
     """Logarithmic growth of a vector over successive blocks of matrices, and their durations."""

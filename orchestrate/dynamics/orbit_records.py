@@ -90,7 +90,7 @@ VARIABLES: dict[str, tuple[tuple[str, ...], str, str, Mapping[int, str]]] = {
 def orbit_row(instance: EventInstance, family: Family, unknowns: Floats, residual: float) -> Table:
     """Return all stored numbers of a root's orbit, checked by a run in the FMU."""
     orbit, values = family.orbit(unknowns), unknowns[family.size :]
-    check = check_orbit_in_fmu(instance, family.setting, values, orbit)
+    same, away = check_orbit_in_fmu(instance, family.setting, values, orbit)
     turns = turning_points(orbit)
     nodes, first = rotate_to_phase_zero(orbit.nodes, orbit.sequence.periods)
     multipliers, amplitudes = orbit.multipliers(), Amplitudes.from_orbit(orbit, turns)
@@ -104,8 +104,8 @@ def orbit_row(instance: EventInstance, family: Family, unknowns: Floats, residua
         "amplitudes": (amplitudes.xi_1, amplitudes.xi_2, amplitudes.gap),
         "nearest_miss": nearest_miss(orbit, turns)[0],
         "residual": residual,
-        "same": check.same,
-        "away": check.away,
+        "same": same,
+        "away": away,
     }
     return {name: np.asarray(number) for name, number in row.items()}
 

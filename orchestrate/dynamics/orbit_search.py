@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -98,32 +97,14 @@ def close_returns(
     period = point.excitation.period
     begin_at_state(instance, point, form, np.zeros(4))
     instance.advance(0.0, transient * period)
-    states = simulate_stroboscopic_states(instance, point, transient, max_periods)
+    states = np.empty((max_periods, 4))
+    for i, state in enumerate(states):
+        instance.advance((transient + i) * period, (transient + i + 1) * period)
+        state[:] = instance.read("x1", "x2", "v1", "v2")
     scale = np.maximum(np.abs(states).max(axis=0), 1e-300)
     distance = (np.abs(states[periods:] - states[:-periods]) / scale).max(axis=1)
     for i in np.argsort(distance, kind="stable"):
         yield states[i], float(distance[i])
-
-
-def simulate_stroboscopic_states(
-    instance: EventInstance, point: Point, first: int, count: int
-) -> Floats:
-    """Run the FMU on for ``count`` periods; return the states at phase 0, shape (count, 4)."""
-    period = point.excitation.period
-    states = np.empty((count, 4))
-    for i in range(count):
-        instance.advance((first + i) * period, (first + i + 1) * period)
-        states[i] = instance.read("x1", "x2", "v1", "v2")
-    return states
-
-
-@dataclass(frozen=True)
-class FmuCheck:
-    """Result of running an orbit in the FMU: same impacts or not, and the error of its return."""
-
-    # whether it has the same impacts, contacts included, from the orbit's state at phase 0 on
-    same: bool
-    away: float  # how far from that state it is after the orbit's periods, over a eta^2
 
 
 def solve_orbit(
@@ -179,7 +160,7 @@ def least_periods(orbit: PeriodicOrbit, within: float = 1e-6) -> int:
 
 def check_orbit_in_fmu(
     instance: EventInstance, setting: Setting, values: Floats, orbit: PeriodicOrbit
-) -> FmuCheck:
+) -> tuple[bool, float]:
     """Run the FMU through an orbit; return whether impacts agree, and the error of its return."""
     point = setting.point(values)
     state = stroboscopic_states(orbit)[0]
@@ -197,9 +178,9 @@ def check_orbit_in_fmu(
         phases, sticks = phases[here], sticks[here]
         wanted, kinds = wanted[there], kinds[there]
     if len(phases) != len(wanted):
-        return FmuCheck(False, away)
+        return False, away
     near = np.abs(phases - wanted[:, PHASE]).max(initial=0.0) < 1e-6  # rad
-    return FmuCheck(bool(near and (sticks == (kinds == STICK)).all()), away)
+    return bool(near and (sticks == (kinds == STICK)).all()), away
 
 
 def not_grazing(closing: Floats) -> NDArray[np.bool_]:

@@ -641,11 +641,6 @@ class Structure(Described):
         first, second = (format_short(self.get(f"{letter}{half}")) for half in (1, 2))
         return f"{letter}{first}-{second}"
 
-    def _is_by_halves(self) -> bool:
-        """Return whether f1, f2, zeta1 and zeta2 reproduce the SI values to the last bit."""
-        numbers = {name: self.get(name) for name in HALVES}
-        return all(getattr(self, name) == value for name, value in self._by_halves(numbers).items())
-
     def label(self) -> str:
         """Return a short text of the parameters for file names and titles, unique per structure."""
         default = type(self)()
@@ -656,7 +651,9 @@ class Structure(Described):
         else:
             masses, *si = (self._pair(letter) for letter in ("m", "k", "d"))
             halves = [self._pair(letter) for letter in ("f", "zeta")]
-            shorter = self._is_by_halves() and len("".join(halves)) < len("".join(si))
+            numbers = self._by_halves({name: self.get(name) for name in HALVES})
+            exact = all(getattr(self, name) == value for name, value in numbers.items())
+            shorter = exact and len("".join(halves)) < len("".join(si))
             parts = [f"e{format_short(self.e)}", masses, *(halves if shorter else si)]
             names = ("gamma", *ADDED)
         for name in names:

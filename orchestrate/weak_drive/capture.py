@@ -25,7 +25,7 @@ from ..model.arguments import checked_integer
 from ..model.drive import Drive
 from ..model.ranges import DRIVE
 from ..model.structure import Structure
-from ..response.labels import Variable, parameter_variable, variable, yes_or_no
+from ..response.labels import parameter_variable, variable, yes_or_no
 from ..running.job import Fmus, Job, Table
 from ..running.options import Running
 from ..running.runner import answer
@@ -134,8 +134,11 @@ class CaptureJob(Job):
         }
         tried = variable("voltage", np.array(self.voltages), "V", "voltage switched on from rest")
         coordinates = {"voltage": tried}
-        if self.over:
-            coordinates[self.over] = parameter_coordinate(self.over, self.values)
+        if self.over in DRIVE:
+            of = DRIVE[self.over]
+            coordinates[of.name] = variable(of.name, np.array(self.values), of.unit, of.description)
+        elif self.over:
+            coordinates[self.over] = parameter_variable(self.over, self.over, self.values)
         state = "bonded" if self.structure.bonded else "delaminated"
         title = f"Capture at the resonance from rest, {state} structure"
         return xr.Dataset(variables, coordinates, {"title": title})
@@ -211,14 +214,6 @@ def replace_parameter(system: System, over: str, value: float) -> System:
     if over in DRIVE_NAMES:
         return system._replace(drive=system.drive.replace(**{over: value}))
     return system._replace(structure=system.structure.replace(**{over: value}))
-
-
-def parameter_coordinate(over: str, values: ArrayLike) -> Variable:
-    """Build the dataset's coordinate for the varied parameter, with its unit."""
-    if over in DRIVE:
-        numbers = np.asarray(values, dtype=float)
-        return variable(over, numbers, DRIVE[over].unit, DRIVE[over].description)
-    return parameter_variable(over, over, values)
 
 
 def voltage_grid(voltage: tuple[float, float], count: int) -> tuple[float, ...]:

@@ -37,10 +37,10 @@ from .drive_tracer import (
     HALVED,
     NO_START,
     NOT_BEGUN,
+    DriveTracer,
     Motion,
     double_period,
     motion_near,
-    trace_branch,
 )
 from .schedule import check
 from .shooting import Shooter
@@ -141,7 +141,8 @@ class DriveBranchJob(Job):
     def trace_doubled_leg(self, shooter: Shooter, flip: Motion, speeds: tuple[float, float]) -> Leg:
         """Trace the leg of twice the period from a period doubling."""
         try:
-            return trace_branch(shooter, double_period(shooter, flip), speeds, self.settings)
+            start = double_period(shooter, flip)
+            return DriveTracer(shooter, start, speeds, self.settings).trace(start)
         except SOLVER_ERRORS:
             return Leg(end=NO_START)
 
@@ -163,7 +164,7 @@ class DriveBranchJob(Job):
                     break
         except SOLVER_ERRORS:
             return Leg(end=NO_START)
-        return trace_branch(shooter, start, speeds, self.settings)
+        return DriveTracer(shooter, start, speeds, self.settings).trace(start)
 
     def motion_table(self, motions: Sequence[Motion]) -> np.ndarray:
         """Convert motions to a table of speed, voltage, amplitude and multipliers."""

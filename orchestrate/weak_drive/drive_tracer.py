@@ -231,13 +231,6 @@ class DriveTracer(BranchTracer[Shooter, Motion]):
             segment.add_bifurcation(kind, last, 0.0)
 
 
-def trace_branch(
-    shooter: Shooter, start: Motion, speeds: tuple[float, float], settings: ContinuationSettings
-) -> BranchSegment[Motion]:
-    """Trace a branch from a motion until it leaves the speed range or Newton's method fails."""
-    return DriveTracer(shooter, start, speeds, settings).trace(start)
-
-
 def motion_at(shooter: Shooter, root: Root, direction: Floats) -> Motion:
     """Compute multipliers and period of a root just solved for; return them as a motion."""
     along = root if root.tangent @ direction > 0.0 else root.reversed()

@@ -25,7 +25,7 @@ from ..running.runner import answer
 from .couple import couple_job, require_motor, schedule_from_arguments, scheme_from_arguments
 from .hysteresis import Settings
 from .master import Scheme
-from .schedule import Ramp, Schedule
+from .schedule import Ramp
 
 KINDS = ("bonded", "delaminated")
 DIRECTIONS = ("up", "down")
@@ -176,19 +176,13 @@ def jump_voltages(
     volt_rates = [rate * unit for rate in (1e-4, 5e-5, 2.5e-5)] if rates is None else list(rates)
     if not volt_rates:
         raise InputError(f"rates = {rates}: expected one or more, in V/s")
-    schedules = tuple(
-        require_ramp(
-            schedule_from_arguments(structure, drive, voltage, None, rate, settle, 0.0, back)
-        )
+    every = (
+        schedule_from_arguments(structure, drive, voltage, None, rate, settle, 0.0, back)
         for rate in sorted(set(volt_rates))
     )
+    schedules = tuple(schedule for schedule in every if isinstance(schedule, Ramp))
+    if not schedules:
+        raise InputError("voltage: expected (first, last) in V, the ends of ramps")
     scheme = scheme_from_arguments(structure, step)
     job = JumpVoltagesJob("jump_voltages", structure, drive, schedules, scheme)
     return answer(job, running, finder(running))
-
-
-def require_ramp(schedule: Schedule) -> Ramp:
-    """Return the schedule if it is a ramp; raise an error otherwise."""
-    if not isinstance(schedule, Ramp):
-        raise InputError("voltage: expected (first, last) in V, the ends of ramps")
-    return schedule

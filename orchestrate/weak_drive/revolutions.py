@@ -53,7 +53,9 @@ class Revolutions:
     def add(self, record: Record) -> tuple[Table, Energies]:
         """Return the revolutions that a record completes, and the energies at its rows."""
         energies = self.balance.add(record)
-        largest = largest_in_steps(self.structure, record)
+        x, y = range_of_mass(self.structure, record), range_of_box(record)
+        acceleration = np.abs(record.after["box_acceleration"])
+        largest = np.stack([x.high, -x.low, y.high, -y.low, acceleration])
         voltage, x1, y = record["voltage"], record["x1"], record["box_position"]
         rows, begin = [], 0
         for end, time, speed, impacts in self.completed(record):
@@ -95,9 +97,3 @@ class Revolutions:
         """Restore the state that :meth:`get_state` returned."""
         self.turn, self.time, self.impacts = numbers[:3]
         self.largest = np.array(numbers[3:])
-
-
-def largest_in_steps(structure: Structure, record: Record) -> Floats:
-    """Return by steps the largest x1, -x1, box position, its negative, and its acceleration."""
-    x, y = range_of_mass(structure, record), range_of_box(record)
-    return np.stack([x.high, -x.low, y.high, -y.low, np.abs(record.after["box_acceleration"])])
