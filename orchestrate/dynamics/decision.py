@@ -1,7 +1,7 @@
 """Decide to which motion a response settles, by Newton's method where repetition is doubtful.
 
 A response is continued until its state repeats. Newton's method starts from the impacts in these
-periods, counted from a phase far from any impact. The response is assigned to the resulting orbit if
+periods, counted from a phase far from any impact. The response belongs to the resulting orbit if
 
 - the orbit's multipliers lie inside the unit circle,
 - it is a possible motion, which the FMU repeats with the same impacts, and
