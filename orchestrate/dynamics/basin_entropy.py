@@ -80,7 +80,11 @@ def basin_entropy(basins: xr.Dataset, *, box: int = 5) -> xr.Dataset:
     (0.6931, 0.0)
     """
     size = checked_integer("box", box, 2)
-    labels = attractor_labels(basins)
+    known = getattr(basins, "attractor_of", None)
+    if known is None or len(known.dims) != 2:
+        kind = type(basins).__name__
+        raise InputError(f"basins: {kind} is no answer of basin; expected one")
+    labels = np.asarray(known.values, dtype=np.int64)
     if min(labels.shape) < LEAST_BOXES * size:
         raise InputError(
             f"box = {size}: of a plane of {labels.shape[1]} x {labels.shape[0]} starts; expected "
@@ -111,12 +115,3 @@ def basin_entropy(basins: xr.Dataset, *, box: int = 5) -> xr.Dataset:
         {"box_size": side},
         {"title": "Basin entropy", "box": size},
     )
-
-
-def attractor_labels(basins: object) -> Labels:
-    """Return a basin dataset's attractor numbers, shape (y, x); raise if it is no basin's."""
-    known = getattr(basins, "attractor_of", None)
-    if known is None or len(known.dims) != 2:
-        kind = type(basins).__name__
-        raise InputError(f"basins: {kind} is no answer of basin; expected one")
-    return np.asarray(known.values, dtype=np.int64)

@@ -75,9 +75,27 @@ class BranchJob(Question):
 
     def work(self, fmus: Fmus, items: Sequence[int], previous: Table | None) -> Table:
         """Continue the branch from its first orbit; return orbits and bifurcations as a table."""
-        segments = trace_branch(self)
+        guess = self.start.as_guess(self.period)
+        settings = ContinuationSettings(self.longest, self.most)
+        try:
+            start = OrbitPoint(*solve_orbit(self.setting, guess, np.array([self.value])))
+            starts = (
+                [start.reversed(), start]
+                if self.switch < 0
+                else [leaving_branch(self.switch, start)]
+            )
+        except SOLVER_ERRORS as reason:
+            expected = "expected an orbit of this structure"
+            raise InputError(f"start: no orbit found from there ({reason}); {expected}") from None
+        segments = [OrbitTracer(point, settings).trace(point) for point in starts]
         with EventInstance(fmus[OSCILLATOR]) as instance:
-            return branch_table(instance, segments)
+            points, bifurcations = join_segments(segments)
+            ends = [segments[0].end if len(segments) > 1 else "start", segments[-1].end]
+            every = [*points, *(each.point for each in bifurcations)]
+            rows = [orbit_row(instance, p.family, p.root.unknowns, p.root.residual) for p in every]
+            along, at = orbit_table(rows[: len(points)]), rows[len(points) :]
+            located = located_table(BIFURCATION, at, bifurcations)
+            return {**along, **located, "ends": np.array(ends)}
 
     def dataset(self, table: Table) -> xr.Dataset:
         setting, (name,) = self.setting, self.setting.over
@@ -90,32 +108,6 @@ class BranchJob(Question):
         kinds = "kind of bifurcation", KINDS
         at = located_variables(setting, located, BIFURCATION, kinds, {name: "value"}, KEPT)
         return branch_dataset(setting, along, at, attributes)
-
-
-def trace_branch(job: BranchJob) -> list[OrbitSegment]:
-    """Continue the branch in both directions (one if it leaves another); return its segments."""
-    guess = job.start.as_guess(job.period)
-    settings = ContinuationSettings(job.longest, job.most)
-    try:
-        start = OrbitPoint(*solve_orbit(job.setting, guess, np.array([job.value])))
-        starts = (
-            [start.reversed(), start] if job.switch < 0 else [leaving_branch(job.switch, start)]
-        )
-    except SOLVER_ERRORS as reason:
-        expected = "expected an orbit of this structure"
-        raise InputError(f"start: no orbit found from there ({reason}); {expected}") from None
-    return [OrbitTracer(point, settings).trace(point) for point in starts]
-
-
-def branch_table(instance: EventInstance, segments: list[OrbitSegment]) -> Table:
-    """Return arrays of a branch's orbits and of its bifurcations, each checked by the FMU."""
-    points, bifurcations = join_segments(segments)
-    ends = [segments[0].end if len(segments) > 1 else "start", segments[-1].end]
-    every = [*points, *(each.point for each in bifurcations)]
-    rows = [orbit_row(instance, p.family, p.root.unknowns, p.root.residual) for p in every]
-    along, at = orbit_table(rows[: len(points)]), rows[len(points) :]
-    located = located_table(BIFURCATION, at, bifurcations)
-    return {**along, **located, "ends": np.array(ends)}
 
 
 def join_segments(

@@ -99,9 +99,14 @@ class MotionDecider:
 
     def possible_periods(self, response: Response) -> list[int]:
         """Return candidate periods of a response, from its repetition at another phase."""
-        seen = sample_at_another_phase(
-            self.plain, self.point, response, self.settings.irregular_samples
+        begin(self.plain, *self.point, response.end)
+        self.plain.step(0.0, 2.4 / self.point.excitation.frequency)
+        there = self.plain.get(*STATE)
+        begin(self.plain, self.point.structure, self.point.excitation.replace(phase=2.4), there)
+        states, gap = stroboscopic_samples(
+            self.plain, self.point.excitation.period, 0, self.settings.irregular_samples
         )
+        seen = replace(response, samples=states, x_rel_max=gap)
         close, nearly = self.settings.converged, self.settings.apart * self.settings.converged
         counts = [seen.repetition(tolerance).multiplicity for tolerance in (close, nearly)]
         return [n for n in dict.fromkeys(counts) if n]
@@ -277,18 +282,6 @@ def phase_far_from_impacts(orbit: PeriodicOrbit) -> float:
     longest = int(orbit.durations.argmax())
     middle = 0.5 * (orbit.begins[longest] + orbit.ends[longest])
     return float(middle % (TURN * orbit.sequence.periods))
-
-
-def sample_at_another_phase(
-    instance: Instance, point: Point, response: Response, samples: int
-) -> Response:
-    """Continue a response in the FMU, sampled at another phase than 0; return it."""
-    begin(instance, *point, response.end)
-    instance.step(0.0, 2.4 / point.excitation.frequency)
-    there = instance.get(*STATE)
-    begin(instance, point.structure, point.excitation.replace(phase=2.4), there)
-    states, gap = stroboscopic_samples(instance, point.excitation.period, 0, samples)
-    return replace(response, samples=states, x_rel_max=gap)
 
 
 def count_impacts_from_pause(

@@ -159,7 +159,16 @@ class ManifoldJob(SingleOrbitQuestion):
         """Grow both sides of the manifold from the saddle; return their points as a table."""
         saddle = self.saddle()
         with Instance(fmus[OSCILLATOR]) as instance:
-            settings = self.growth_settings(saddle)
+            growth, largest = math.log(saddle.growth_factor), float(np.abs(saddle.state).max())
+            settings = GrowthSettings(
+                length=self.length * saddle.size,
+                spacing=self.spacing * saddle.size,
+                angle=self.angle,
+                max_points=self.most,
+                size=saddle.size,
+                max_step=GrowthSettings.max_step * max(1.0, math.log(2.0) / growth),
+                resolution=ROUNDING * largest / (self.distance * saddle.size * growth),
+            )
             curves = [
                 CurveGrower(self.point_function(instance, saddle, sign), settings).grow()
                 for sign in (1.0, -1.0)
@@ -193,19 +202,6 @@ class ManifoldJob(SingleOrbitQuestion):
             return CurvePoint(s, state, tuple(int(n) for n in counts - returns * own))
 
         return image
-
-    def growth_settings(self, saddle: Saddle) -> GrowthSettings:
-        """Return settings for growing a side, in the saddle's units, four points a doubling."""
-        growth, largest = math.log(saddle.growth_factor), float(np.abs(saddle.state).max())
-        return GrowthSettings(
-            length=self.length * saddle.size,
-            spacing=self.spacing * saddle.size,
-            angle=self.angle,
-            max_points=self.most,
-            size=saddle.size,
-            max_step=GrowthSettings.max_step * max(1.0, math.log(2.0) / growth),
-            resolution=ROUNDING * largest / (self.distance * saddle.size * growth),
-        )
 
     def dataset(self, table: Table) -> xr.Dataset:
         point = self.setting.point(self.values)

@@ -241,7 +241,11 @@ def change_one_impact(point: OrbitPoint) -> OrbitPoint:
     if point.contact_margin(Kind.CONTACT_BEGUN) < point.contact_margin(Kind.CONTACT_LOST):
         impacts = ~(orbit.contact | orbit.sequence.releases)
         sticking = int(np.where(impacts, margins, np.inf).argmin())
-        kinds, nodes = without_impacts_after(kinds, nodes, sticking)
+        releases = [i for i in range(sticking + 1, len(kinds)) if kinds[i] == RELEASE]
+        if not releases:
+            raise NoConvergenceError("an impact sticks that is not of a chattering")
+        kept = [*range(sticking + 1), *range(releases[0], len(kinds))]
+        kinds, nodes = [STICK if i == sticking else kinds[i] for i in kept], nodes[kept]
     else:
         last = int(np.where(orbit.contact, margins, -np.inf).argmax())
         kinds = [*kinds[:last], IMPACT, STICK, *kinds[last + 1 :]]
@@ -255,17 +259,6 @@ def change_one_impact(point: OrbitPoint) -> OrbitPoint:
         raise NoConvergenceError("no time is left for contact")
     same_direction = point.root.tangent[-1] * changed.root.tangent[-1] >= 0.0
     return changed if same_direction else changed.reversed()
-
-
-def without_impacts_after(
-    kinds: list[int], nodes: Floats, sticking: int
-) -> tuple[list[int], Floats]:
-    """Remove the impacts between a sticking one and its release; return kinds and nodes."""
-    releases = [i for i in range(sticking + 1, len(kinds)) if kinds[i] == RELEASE]
-    if not releases:
-        raise NoConvergenceError("an impact sticks that is not of a chattering")
-    kept = [*range(sticking + 1), *range(releases[0], len(kinds))]
-    return [STICK if i == sticking else kinds[i] for i in kept], nodes[kept]
 
 
 def estimated_next_impact(orbit: PeriodicOrbit, node: int) -> Floats:

@@ -63,7 +63,13 @@ class PoincareJob(OneMotionQuestion):
             if self.at == "releases":
                 times = release_times(impacts, point, self.periods * period)
                 return {"time": times, "rows": states_at_times(plain, point, start, times)}
-        return impact_table(impacts)
+        rate = np.where(impacts.sticks, 0.0, impacts.state[:, 3] - impacts.state[:, 2])
+        return {
+            "time": impacts.time,
+            "rows": np.column_stack([impacts.state, np.zeros(len(rate)), rate]),
+            "impact_velocity": impacts.closing,
+            "sticks": impacts.sticks,
+        }
 
     def dataset(self, table: Table) -> xr.Dataset:
         time, columns = table["time"], dict(zip(COLUMNS, table["rows"].T, strict=True))
@@ -106,17 +112,6 @@ def release_times(impacts: Impacts, point: Point, end: float) -> Floats:
     released = scaled.sticks & (lasting < ends - scaled.time)
     times: Floats = (scaled.time + lasting)[released] / omega
     return times
-
-
-def impact_table(impacts: Impacts) -> Table:
-    """Return impacts as a table: times, states just after them, closing speeds, sticking."""
-    rate = np.where(impacts.sticks, 0.0, impacts.state[:, 3] - impacts.state[:, 2])
-    return {
-        "time": impacts.time,
-        "rows": np.column_stack([impacts.state, np.zeros(len(rate)), rate]),
-        "impact_velocity": impacts.closing,
-        "sticks": impacts.sticks,
-    }
 
 
 def poincare(

@@ -246,7 +246,16 @@ class BranchStep(Generic[Point]):
         if before * after < 0.0:
             return [(0.0, self.length)]
         if self.tracer.finds_pairs and self.may_cross_twice(kind):
-            middle = self.extremum_position(kind)
+            from scipy.optimize import minimize_scalar
+
+            sign = np.sign(self.tracer.test(self.before, kind))
+            minimum = minimize_scalar(
+                lambda position: sign * self.test(float(position), kind),
+                bounds=(0.0, self.length),
+                method="bounded",
+                options={"xatol": 1e-6 * self.length},
+            )
+            middle = float(minimum.x)
             if before * self.test(middle, kind) < 0.0:
                 return [(0.0, middle), (middle, self.length)]
         return []
@@ -277,19 +286,6 @@ class BranchStep(Generic[Point]):
         except SOLVER_ERRORS:
             return 0.0
         return change / (near - position) if np.isfinite(change) else 0.0
-
-    def extremum_position(self, kind: Kind) -> float:
-        """Return the position where a test function is nearest to zero, or deepest beyond it."""
-        from scipy.optimize import minimize_scalar
-
-        sign = np.sign(self.tracer.test(self.before, kind))
-        minimum = minimize_scalar(
-            lambda position: sign * self.test(float(position), kind),
-            bounds=(0.0, self.length),
-            method="bounded",
-            options={"xatol": 1e-6 * self.length},
-        )
-        return float(minimum.x)
 
     def solve_for_level(
         self, kind: Kind, low: float, high: float, level: float = 0.0

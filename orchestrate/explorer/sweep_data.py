@@ -68,7 +68,9 @@ def read_checked(data: xr.Dataset, direction: str) -> SweepData:
     directions = ("up", "down") if direction == "both" else (direction,)
     (parameter,) = map(str, set(data.impacts_per_period.dims) - {"direction"})
     data = data.sortby(parameter)
-    scale = state_scales(data, structure)
+    pairs = zip(data.frequency.values, data.amplitude.values, strict=True)
+    lengths = np.array([Excitation(frequency=f, amplitude=a).length(structure) for f, a in pairs])
+    scale = lengths[:, None] * np.array([1.0, 1.0, structure.omega, structure.omega])
     rows = [np.stack([data[name].values for name in ("eta", "frequency", "amplitude")])]
     for one_way in directions:
         part = data.sel(direction=one_way) if "direction" in data.dims else data
@@ -166,13 +168,6 @@ def parse_state(text: Any) -> NDArray[np.float64]:
     if state.shape != (4,):
         raise ValueError(f"start = {text}")
     return state
-
-
-def state_scales(data: xr.Dataset, structure: Structure) -> NDArray[np.float64]:
-    """Return the SI units of the non-dimensional states' coordinates, shape (n, 4)."""
-    pairs = zip(data.frequency.values, data.amplitude.values, strict=True)
-    lengths = np.array([Excitation(frequency=f, amplitude=a).length(structure) for f, a in pairs])
-    return lengths[:, None] * np.array([1.0, 1.0, structure.omega, structure.omega])
 
 
 def start_states(

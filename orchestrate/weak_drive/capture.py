@@ -216,19 +216,6 @@ def replace_parameter(system: System, over: str, value: float) -> System:
     return system._replace(structure=system.structure.replace(**{over: value}))
 
 
-def voltage_grid(voltage: tuple[float, float], count: int) -> tuple[float, ...]:
-    """Return equally spaced voltages between the two given ends, V."""
-    try:
-        low, high = (float(value) for value in voltage)
-    except (TypeError, ValueError):
-        raise InputError(f"voltage = {voltage!r}: expected (lowest, highest) in V") from None
-    check("voltage", low, "V", low=0.0)
-    check("voltage", high, "V", low=0.0)
-    if not low < high:
-        raise InputError(f"voltage = ({low:g}, {high:g}) V: expected (lowest, highest)")
-    return tuple(np.linspace(low, high, checked_integer("count", count, 2)).tolist())
-
-
 def check_parameter_values(
     over: str | None, values: ArrayLike | None, system: System
 ) -> tuple[float, ...]:
@@ -336,7 +323,15 @@ def capture(
     require_motor(drive)
     system = System(structure, drive)
     parameter_values = check_parameter_values(over, values, system)
-    voltages = voltage_grid(voltage, count)
+    try:
+        low, high = (float(value) for value in voltage)
+    except (TypeError, ValueError):
+        raise InputError(f"voltage = {voltage!r}: expected (lowest, highest) in V") from None
+    check("voltage", low, "V", low=0.0)
+    check("voltage", high, "V", low=0.0)
+    if not low < high:
+        raise InputError(f"voltage = ({low:g}, {high:g}) V: expected (lowest, highest)")
+    voltages = tuple(np.linspace(low, high, checked_integer("count", count, 2)).tolist())
     check("tolerance", tolerance, "V", low=0.0, exclusive=True)
     if time is not None:
         check("time", time, "s", low=0.0, exclusive=True)

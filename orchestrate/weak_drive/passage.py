@@ -230,7 +230,15 @@ def waterfall(
     """
     check_spectra(found, mass, revolutions, highest)
     points = max(16, math.ceil(4.0 * highest))
-    times, moved = resample_over_angle(found, mass, points)
+    from scipy.interpolate import CubicHermiteSpline
+
+    angle, time = np.abs(found.angle.values - found.angle.values[0]), found.time.values
+    forward = np.concatenate([[True], np.diff(np.maximum.accumulate(angle)) > 0.0])
+    last = math.floor(angle[forward][-1] * points / TURN)
+    times = np.interp(np.arange(last) * TURN / points, angle[forward], time[forward])
+    position = (found[f"x{mass}"] + found.box_position).values
+    velocity = (found[f"v{mass}"] + found.box_velocity).values
+    moved = CubicHermiteSpline(time, position, velocity)(times)
     length, hop = revolutions * points, max(1, revolutions // 4) * points
     begins = np.arange(0, len(times) - length + 1, hop)
     if not begins.size:
@@ -255,19 +263,6 @@ def waterfall(
         "order": variable("order", order[shown], "1", "multiple of the motor's speed"),
     }
     return xr.Dataset(variables, coordinates, {"title": "Spectra over the motor's revolutions"})
-
-
-def resample_over_angle(data: xr.Dataset, mass: int, points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Interpolate a mass's absolute displacement at equal steps of the motor's angle."""
-    from scipy.interpolate import CubicHermiteSpline
-
-    angle, time = np.abs(data.angle.values - data.angle.values[0]), data.time.values
-    forward = np.concatenate([[True], np.diff(np.maximum.accumulate(angle)) > 0.0])
-    last = math.floor(angle[forward][-1] * points / TURN)
-    times = np.interp(np.arange(last) * TURN / points, angle[forward], time[forward])
-    position = (data[f"x{mass}"] + data.box_position).values
-    velocity = (data[f"v{mass}"] + data.box_velocity).values
-    return times, CubicHermiteSpline(time, position, velocity)(times)
 
 
 def hann_spectrum(pieces: np.ndarray) -> np.ndarray:

@@ -217,22 +217,18 @@ class Shooter:
         together, sticks = self.together and not sizes.any(), False
         if self.structure.preload > 0.0:
             sticks = bool((sizes == 0.0).any())
-            forces = self.contact_forces(kept)
+            s = self.structure
+            x1, v1, x2, v2, gap = (kept[name] for name in ("x1", "v1", "x2", "v2", "x_rel"))
+            parting = (s.k1 * x1 + s.d1 * v1) / s.m1 - (s.k2 * x2 + s.d2 * v2) / s.m2
+            touching = (gap == 0.0) & (v1 == v2)
+            inside = touching & np.roll(touching, 1) & np.roll(touching, -1)
+            force = -parting * s.m1 * s.m2 / (s.m1 + s.m2)
+            forces = np.where(inside, np.maximum(force, 0.0), 0.0)
             together = together or bool(forces.any())
             sizes = forces if together else sizes
         clear = int(np.argmax(sizes))
         share = float(sizes[0] / sizes[clear]) if sizes[clear] > 0.0 else 1.0
         return clear, share, together, sticks
-
-    def contact_forces(self, kept: Record) -> Floats:
-        """Compute the contact force at each communication point, N."""
-        s = self.structure
-        x1, v1, x2, v2, gap = (kept[name] for name in ("x1", "v1", "x2", "v2", "x_rel"))
-        parting = (s.k1 * x1 + s.d1 * v1) / s.m1 - (s.k2 * x2 + s.d2 * v2) / s.m2
-        touching = (gap == 0.0) & (v1 == v2)
-        inside = touching & np.roll(touching, 1) & np.roll(touching, -1)
-        force = -parting * s.m1 * s.m2 / (s.m1 + s.m2)
-        return np.where(inside, np.maximum(force, 0.0), 0.0)
 
     def begin_later(self, unknowns: Floats, steps: int, together: bool) -> Floats:
         """Shift the period's start by some steps; return the unknowns there."""

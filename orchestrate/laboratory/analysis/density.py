@@ -52,7 +52,9 @@ def probability_density(record: xr.Dataset, *, bins: int = 100) -> xr.Dataset:
     """
     channels = Channels.from_record(record)
     number = round(checked_number("bins", bins, 4, 100_000))
-    middles, density = histograms(channels.values, number)
+    counted = [np.histogram(channel, number, density=True) for channel in channels.values]
+    middles = np.stack([0.5 * (edges[:-1] + edges[1:]) for _, edges in counted])
+    density = np.stack([heights for heights, _ in counted])
     moments = {name: variable("channel", *row) for name, row in statistics(channels.values).items()}
     over = ("channel", "bin")
     return xr.Dataset(
@@ -64,16 +66,6 @@ def probability_density(record: xr.Dataset, *, bins: int = 100) -> xr.Dataset:
         },
         attributes("probability_density", "Probability density", channels.title),
     )
-
-
-def histograms(values: Floats, bins: int) -> tuple[Floats, Floats]:
-    """Return bin centres and densities of each channel, both of shape (channels, bins)."""
-    middles, densities = [], []
-    for channel in values:
-        density, edges = np.histogram(channel, bins, density=True)
-        densities.append(density)
-        middles.append(0.5 * (edges[:-1] + edges[1:]))
-    return np.stack(middles), np.stack(densities)
 
 
 def statistics(values: Floats) -> dict[str, tuple[Floats, str, str]]:
