@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 import orchestrate
-from orchestrate.explorer.figure6 import FILE, STAMP
+from orchestrate.explorer.sweep_data import FILE, STAMP
 from orchestrate.files import write_whole
 from orchestrate.fmu import OSCILLATOR
 from orchestrate.fmu.webassembly import kernel_digest

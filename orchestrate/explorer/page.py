@@ -24,8 +24,7 @@ from ..units import Units, units_of
 from ..version import __version__
 from .branches import branch_json
 from .bundle import bundle
-from .figure6 import first_diagram
-from .sweep_data import SweepData, check_units, read_sweep, shown_in
+from .sweep_data import SweepData, check_units, first_diagram, read_sweep, shown_in
 from .tour import TOUR, tour_in
 from .words import WORDS
 

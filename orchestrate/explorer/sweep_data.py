@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import logging
 import math
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,8 +13,11 @@ from numpy.typing import NDArray
 
 from ..constants import GRAVITY
 from ..errors import InputError
+from ..fmu import OSCILLATOR
+from ..fmu.webassembly import kernel_digest
 from ..lazy import xr
 from ..model import Excitation, Structure
+from ..running.store import load
 from ..units import Units
 
 EXPECTED = "expected a result of orchestrate.sweep along eta or frequency"
@@ -177,3 +182,26 @@ def start_states(
     if direction == "up":
         return np.concatenate([start[None], ends[:-1]])
     return np.concatenate([ends[1:], start[None]])
+
+
+FILE = Path(__file__).with_name("figure6.nc")  # written by tools/figure6_states.py
+STAMP = "kernel"  # attribute: digest of the kernel that computed it
+
+log = logging.getLogger(__name__)
+
+
+def first_diagram(structure: Structure, units: Units | None = None) -> SweepData:
+    """Return the page's first diagram: Figure 6 for the paper's structure, else an empty one."""
+    units = units or Units()
+    if structure != Structure() or not in_ratios(structure, units):
+        return empty_sweep(structure, units)
+    data = load(FILE)
+    if not is_current(data):
+        log.warning("Figure 6 was computed by another kernel: the page computes its own")
+        return empty_sweep(structure, units)
+    return read_sweep(data)
+
+
+def is_current(data: xr.Dataset) -> bool:
+    """Return whether the present kernel computed a stored Figure 6."""
+    return bool(data.attrs.get(STAMP) == kernel_digest(OSCILLATOR))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from os import PathLike
@@ -12,7 +13,6 @@ from typing import TYPE_CHECKING, Any, TypedDict, TypeVar
 from ..errors import InputError
 from ..lazy import Unpack
 from .described import Described
-from .plausible import warn_of_per_cent
 from .ranges import (
     ADDED,
     OF_LENGTH,
@@ -82,6 +82,17 @@ def checked_thicknesses(thicknesses: tuple[float, float]) -> tuple[float, float]
         text = "expected two numbers > 0, of layers 1 and 2"
         raise InputError(f"thicknesses = {thicknesses!r}: {text}")
     return h1, h2
+
+
+def warn_of_per_cent(ratios: Mapping[str, float]) -> None:
+    """Warn about damping ratios, by name, so large that per cent was probably meant."""
+    for name, ratio in ratios.items():
+        if ratio > 0.3:  # damping ratio above which a half of a beam would hardly ring
+            warnings.warn(
+                f"{name} = {ratio:g} is {100.0 * ratio:.4g} % of critical damping: a ratio is "
+                f"meant, {ratio:g} % is {0.01 * ratio:g}",
+                stacklevel=3,
+            )
 
 
 def format_short(value: float) -> str:

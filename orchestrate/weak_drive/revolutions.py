@@ -53,9 +53,9 @@ class Revolutions:
     def add(self, record: Record) -> tuple[Table, Energies]:
         """Return the revolutions that a record completes, and the energies at its rows."""
         energies = self.balance.add(record)
-        x, y = range_of_mass(self.structure, record), range_of_box(record)
-        acceleration = np.abs(record.after["box_acceleration"])
-        largest = np.stack([x.high, -x.low, y.high, -y.low, acceleration])
+        mass, box = range_of_mass(self.structure, record), range_of_box(record)
+        shaken = np.abs(record.after["box_acceleration"])
+        largest = np.stack([mass.high, -mass.low, box.high, -box.low, shaken])
         voltage, x1, y = record["voltage"], record["x1"], record["box_position"]
         rows, begin = [], 0
         for end, time, speed, impacts in self.completed(record):
