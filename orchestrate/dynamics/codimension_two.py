@@ -1,7 +1,7 @@
 """Locate points of codimension two on a bifurcation curve, by test functions.
 
 Names and conditions: Kuznetsov, Elements of Applied Bifurcation Theory, chapter 9, for maps; Thota
-and Dankowicz, SIAM Journal on Applied Dynamical Systems 5, 672 (2006), for grazing. All but the cusp
+and Dankowicz, SIAM Journal on Applied Dynamical Systems 5, 672 (2006), for grazing. All but cusps
 are signs of the polynomial whose roots are the multipliers: it is finite where an impact grazes and
 multipliers are not. A point is located by Brent's method on the curve, or where the curve ends by
 Newton's on the equations of the point.
