@@ -19,9 +19,14 @@ def folder(exported, tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def small(monkeypatch):
-    """All questions are small ones, and pictures are coarse."""
+def coarse(monkeypatch):
+    """Pictures are coarse."""
     monkeypatch.setitem(STYLE, "savefig.dpi", 20)
+
+
+@pytest.fixture
+def small(monkeypatch, coarse):
+    """All questions are small ones too."""
     for name in QUESTIONS:
         if name in orchestrate.__all__:
             monkeypatch.setattr(orchestrate, name, smaller(getattr(orchestrate, name)))

@@ -91,17 +91,6 @@ def test_a_window_begins_where_a_flight_grazes(period):
     assert abs(truth.gap(fine).min()) < 1e-9
 
 
-@pytest.mark.parametrize(("kind", "multiplier"), [(FLIP, -1.0), (TORUS, None)])
-def test_multipliers_at_bifurcations(kind, multiplier):
-    found = windows(2)
-    at = found.bifurcation_multipliers.values[found.bifurcation_kind.values == kind] @ [1, 1j]
-    for row in at:
-        if multiplier is None:
-            assert np.abs(np.abs(row) - 1.0).min() < 1e-9
-        else:
-            assert np.abs(row - multiplier).min() < 1e-9
-
-
 def test_period_doubling_against_a_stiff_wall():
     """At omega = 2.5 and restitution 0.8 the orbit doubles its period at a wall 0.07667521 away."""
     structure = wall(0.0, 0.8)

@@ -159,27 +159,6 @@ def test_exponents_of_linear_motions_and_of_orbits():
         assert float(found.exponent[0]) == pytest.approx(float(orbit.exponent), abs=2e-3)
 
 
-def test_statistics_and_maps_over_the_clearance():
-    structure = DAMPED.replace(e=0.0)
-    counted = orchestrate.impact_statistics(
-        structure, over="clearance", values=[-0.3, 0.3], frequency=0.9, amplitude=1.0, periods=20
-    )
-    assert counted.impacts.values.tolist() == [1.0, 1.0]
-    motion = orchestrate.simulate(
-        structure.replace(clearance=-0.3), frequency=0.9, amplitude=1.0, transient=500, periods=1,
-        points=4000,
-    )  # fmt: skip
-    share = float(motion.in_contact.mean())
-    assert float(counted.contact_share[0]) == pytest.approx(share, abs=1e-3)
-    table = orchestrate.map(
-        structure, clearance=[-9.0, -0.3, 0.3, 9.0], amplitude=[0.5, 1.0], frequency=0.9,
-        exponent=True,
-    )  # fmt: skip
-    counts = table.impacts_per_period.transpose("clearance", "amplitude").values
-    assert counts.tolist() == [[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.0, 0.0]]
-    assert (table.exponent.values < 0.0).all()
-
-
 @pytest.mark.parametrize("clearance", [0.6, -0.15])
 def test_attractors_and_a_basin_of_them(clearance):
     """States on them are states of the FMU that come back; overlapping starts are none."""

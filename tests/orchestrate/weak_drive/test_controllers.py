@@ -92,18 +92,6 @@ def test_a_machine_that_is_captured_gets_across():
     assert swung.no_jump.values.tolist() == ["a controller sets the voltage"] * 2
 
 
-def test_proportional_control_and_a_wanted_speed_that_rises():
-    control, memory = SpeedControl(speed=10.0, gain=2.0, rise=4.0), None
-    memory = control.begin(5.0)
-    for expected in (5.0, 7.0, 9.0, 10.0, 10.0):
-        assert memory[0] == expected
-        voltage, memory = control.update(Measurement(0.0, expected - 1.0, 12.0, 0.5), memory)
-        assert voltage == 2.0
-    assert control.update(Measurement(0.0, 0.0, -3.0, 0.5), memory)[0] == 0.0  # only what there is
-    backward = SpeedControl(speed=-10.0, gain=2.0)
-    assert backward.update(Measurement(0.0, -9.0, -3.0, 0.5), backward.begin(0.0))[0] == -2.0
-
-
 def test_backward_too():
     control = SpeedGradient(filter_time=1.0, passed=5.0)
     assert control.update(Measurement(0.0, -3.0, -8.0, 0.01), (-2.0,))[0] == -8.0
