@@ -5,8 +5,6 @@ name of a module of ours in a string (``python -m ...``, an entry point). An imp
 is put together at run time cannot be read, so it is not allowed outside the places named here.
 """
 
-from __future__ import annotations
-
 import ast
 import functools
 import re

@@ -1,7 +1,5 @@
 """A folder as a reader has it: the FMUs in ``build/``, nothing else."""
 
-from __future__ import annotations
-
 import pytest
 
 import orchestrate

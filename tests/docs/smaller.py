@@ -1,7 +1,5 @@
 """Public questions made small, so that what a page shows runs in a second or two."""
 
-from __future__ import annotations
-
 import functools
 import inspect
 

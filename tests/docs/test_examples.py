@@ -1,7 +1,5 @@
 """Every script of ``examples/`` runs as it stands, and the one in C says what its twin says."""
 
-from __future__ import annotations
-
 import runpy
 import shutil
 import subprocess

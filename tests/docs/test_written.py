@@ -1,7 +1,5 @@
 """Every block of Python and every command line of the README and the manual runs."""
 
-from __future__ import annotations
-
 import atexit
 import functools
 import shutil

@@ -1,7 +1,5 @@
 """A notebook, where many users work."""
 
-from __future__ import annotations
-
 import pytest
 
 CELLS = (

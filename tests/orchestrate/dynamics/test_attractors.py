@@ -1,7 +1,5 @@
 """Coexisting attractors: reproducible starts, known attractors, states that stay on them."""
 
-from __future__ import annotations
-
 from unittest.mock import patch
 
 import numpy as np

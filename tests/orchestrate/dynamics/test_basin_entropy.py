@@ -1,7 +1,5 @@
 """Basin entropy and uncertainty exponent: smooth boundaries, Newton's fractal, a Cantor set."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

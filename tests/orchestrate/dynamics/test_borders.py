@@ -19,7 +19,7 @@ from .single_impact import SingleImpact
 PAPER = Structure.nondimensional(e=0.7, D=0.005)
 LIMITS = {"e": (0.6, 0.8), "D": (0.003, 0.01), "kappa": (1.15, 1.3)}
 KINDS = ("Neimark-Sacker", "period_doubling", "grazing_of_a_flight")
-CURVES = [  # every kind and every parameter stands among the first three
+CURVES = [
     (kind, list(LIMITS)[(i + shift) % 3]) for shift in range(3) for i, kind in enumerate(KINDS)
 ]
 
@@ -37,7 +37,7 @@ def number(kind):
     return there[-1]
 
 
-@pytest.mark.parametrize(("kind", "over"), ordinary(CURVES, 3, several_names=True))
+@pytest.mark.parametrize(("kind", "over"), ordinary(CURVES, several_names=True))
 def test_curves_are_where_the_closed_form_has_the_bifurcation(kind, over):
     limits, at = [(2.5, 5.0), LIMITS[over]], number(kind)
     found = border(

@@ -1,7 +1,5 @@
 """Points of codimension two: against closed forms, normal forms, and from both of their curves."""
 
-from __future__ import annotations
-
 import functools
 from types import SimpleNamespace
 
@@ -43,7 +41,7 @@ def points(period, kind, over, limits):
         bifurcation=numbers[0],
         over=("eta", over),
         limits=[(1.0, 7.0), limits],
-        longest=0.15,
+        longest=0.5,
         **QUIET,
     )
     words = flag_words(found.codimension_two_kind.attrs)
@@ -55,6 +53,7 @@ def points(period, kind, over, limits):
     return table
 
 
+@pytest.mark.slow
 def test_a_resonance_1_3_is_where_the_closed_form_has_it():
     (eta, kappa), at = points(1, "Neimark-Sacker", "kappa", (1.05, 2.2))["resonance 1:3"]
     truth = SingleImpact(eta, 1, kappa=kappa).multipliers
@@ -62,6 +61,7 @@ def test_a_resonance_1_3_is_where_the_closed_form_has_it():
     assert float(at.codimension_two_residual) < 1e-12
 
 
+@pytest.mark.slow
 def test_a_flip_neimark_sacker_point_is_on_both_curves():
     limits = (1.05, 2.2)
     both = [

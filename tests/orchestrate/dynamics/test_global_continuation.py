@@ -1,7 +1,5 @@
 """Attractors carried along a parameter: found as far as they exist, matched, with their shares."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

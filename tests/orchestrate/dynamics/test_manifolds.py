@@ -1,7 +1,5 @@
 """Unstable manifolds: curves that are known exactly, and that of a saddle by its inverse map."""
 
-from __future__ import annotations
-
 import functools
 import math
 
@@ -88,7 +86,7 @@ def test_a_curve_that_converges_ends():
 
 @functools.cache
 def curve(**more):
-    return orchestrate.manifold(PAPER, eta=3.0, **{"length": 2.0, **more}, **QUIET)
+    return orchestrate.manifold(PAPER, eta=3.0, **{"length": 1.0, **more}, **QUIET)
 
 
 def test_its_direction_is_the_eigenvector_at_phase_0():

@@ -1,7 +1,5 @@
 """Impacts by the clock: all of them, at the same bits as without events."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

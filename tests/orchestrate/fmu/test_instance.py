@@ -1,7 +1,5 @@
 """What is set is what is read, errors are the FMU's words, states come back bit by bit."""
 
-from __future__ import annotations
-
 import math
 import os
 
