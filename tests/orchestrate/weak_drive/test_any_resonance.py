@@ -48,6 +48,7 @@ def test_the_least_torque_divides_both_resonances():
     assert averaged.dividing_speed(*NEAR) == pytest.approx(0.5 * (1.25575 + 1.30321), abs=1e-4)
 
 
+@pytest.mark.slow
 def test_between_both_resonances_the_motor_is_captured():
     """It was said that it passes: the threshold lay between the resonances."""
     volts = NEAR.drive.volts(NEAR.structure)

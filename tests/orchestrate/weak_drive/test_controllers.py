@@ -71,6 +71,7 @@ def test_speed_gradient():
     assert set(np.unique(found.voltage.values.round(9))) == {5.238, 8.73}
 
 
+@pytest.mark.slow
 def test_speed_control_may_hang_where_the_source_passes():
     """Near the speed that is wanted it gives less than the source, and the rotor its momentum."""
     quick, asked = QUICK.as_bonded(), {"voltage": 1.5465, "duration": 500.0, "progress": False}

@@ -27,12 +27,14 @@ def points(branch, structure, kind):
     return branch.bifurcation_voltage.values[chosen.values]
 
 
+@pytest.mark.slow
 def test_folds(branch):
     """By the averaged theory, to 1e-4."""
     expected = [fold.eta0 for fold in averaged.folds(*QUICK.as_bonded())]
     assert points(branch, "bonded", "fold") == pytest.approx(expected, abs=1e-4)
 
 
+@pytest.mark.slow
 def test_voltage_of_the_bonded_branch(branch):
     """The fluctuation of the speed changes little."""
     bonded = branch.sel(structure="bonded", leg="from below").dropna("point")
@@ -41,6 +43,7 @@ def test_voltage_of_the_bonded_branch(branch):
     assert branch.end.sel(structure="bonded").values[0] == "limit"
 
 
+@pytest.mark.slow
 def test_between_the_folds_it_is_unstable(branch):
     """Speeds between both folds, and only they."""
     bonded = branch.sel(structure="bonded", leg="from below").dropna("point")

@@ -256,6 +256,7 @@ def bracket(found, system):
     return np.sort([found.jump_low.values / volts, found.jump_high.values / volts], axis=0)
 
 
+@pytest.mark.slow
 def test_folds_that_are_close_through_both_fmus():
     """A record of a ramp does not tell them from a steep branch."""
     found = run(CLOSE, (1.2, 1.08), 2e-4, **DOWN).sel(jump="down")
@@ -282,6 +283,7 @@ def test_a_ramp_that_ends_before_the_jump_shows():
     assert low < 1.5831 < high and 1e-3 < high - low < 4.1e-3
 
 
+@pytest.mark.slow
 def test_a_motor_that_turns_backward_has_the_mirrored_jump():
     quick = QUICK.as_bonded()
     found = run(quick, (-1.5, -1.65), 2e-4, back=False, step=None)
