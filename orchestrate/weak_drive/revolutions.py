@@ -53,9 +53,9 @@ class Revolutions:
     def add(self, record: Record) -> tuple[Table, Energies]:
         """Return the revolutions that a record completes, and the energies at its rows."""
         energies = self.balance.add(record)
-        mass, box = range_of_mass(self.structure, record), range_of_box(record)
+        of_mass, of_box = range_of_mass(self.structure, record), range_of_box(record)
         shaken = np.abs(record.after["box_acceleration"])
-        largest = np.stack([mass.high, -mass.low, box.high, -box.low, shaken])
+        largest = np.stack([of_mass.high, -of_mass.low, of_box.high, -of_box.low, shaken])
         voltage, x1, y = record["voltage"], record["x1"], record["box_position"]
         rows, begin = [], 0
         for end, time, speed, impacts in self.completed(record):

@@ -1,7 +1,5 @@
 """The manual as its readers have it: short pages, small pictures, limits beside every verdict."""
 
-from __future__ import annotations
-
 import re
 import runpy
 

@@ -1,7 +1,5 @@
 """The manual's pages of the paper: their numbers are those of the claims beside them."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

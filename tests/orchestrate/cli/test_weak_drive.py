@@ -235,17 +235,6 @@ def test_stationary_motions_are_listed():
     assert branch.split() == ["bonded,", "from", "below", "7", "4", "limit", "0.8", "rad/s"]
 
 
-def test_titles_state_voltages_and_rates():
-    asked = {"voltage": (1.2, 1.65), "rates": [1e-4, 2.5e-5]}
-    title = "1.2 V to 1.65 V, 2.5e-05 V/s to 0.0001 V/s, and at rate 0"
-    assert weak_drive.jump_voltages_title({}, asked) == title
-    motions = xr.Dataset({"voltage": ("point", [1.1, 1.3, 1.2])})
-    title = weak_drive.drive_branch_title({"": motions}, {})
-    assert title == "stationary motions, 1.1 V to 1.3 V"
-    title = weak_drive.capture_title({}, {"voltage": (1.2, 1.65), "control": None})
-    assert title == "switched on from rest, 1.2 V to 1.65 V"
-
-
 def test_the_weak_drive_as_a_package(ask, tmp_path):
     path = tmp_path / "weak_drive.ssp"
     for options, state in (((), "delaminated"), (("--only", "bonded"), "bonded")):

@@ -1,7 +1,5 @@
 """Basin entropy and uncertainty exponent: smooth boundaries, Newton's fractal, a Cantor set."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -59,14 +57,6 @@ def test_one_basin_has_no_boundary():
     assert float(found.basin_entropy) == 0.0
     assert math.isnan(float(found.boundary_basin_entropy))
     assert math.isnan(float(found.uncertainty_exponent))
-
-
-def test_of_an_answer_of_basin(exported):
-    sides = {"x": ("x_rel", 0.0, 1.3, 16), "y": ("v_rel", -1.3, 1.3, 16)}
-    found = orchestrate.basin_entropy(
-        orchestrate.basin(orchestrate.Structure.nondimensional(), eta=1.315, **sides), box=4
-    )
-    assert 0.0 < float(found.basin_entropy) < math.log(2.0)
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,5 @@
 """All four exponents: against the mean divergence, a QR method, multipliers, and known maps."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Flow and saltation matrices against neighbouring runs of the FMU and matrix exponentials."""
 
-from __future__ import annotations
-
 import dataclasses
 import itertools
 

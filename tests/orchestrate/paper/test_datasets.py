@@ -1,7 +1,5 @@
 """The paper's datasets through the FMU: small ones, each of a call of the public functions."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What is read off datasets: runs, windows, edges, peaks, regions, crossings of curves."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

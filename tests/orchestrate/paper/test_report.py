@@ -1,7 +1,5 @@
 """The page: nothing from the network, all pictures and verdicts in it, every text escaped."""
 
-from __future__ import annotations
-
 import base64
 import re
 from importlib import resources
