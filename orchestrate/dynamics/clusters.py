@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..fmu import Instance
-from ..response.multiplicity import Repetition
 from ..response.questions import Point
-from ..response.respond import Response, respond
+from ..response.respond import Response, responses_from
+from ..response.response_loop import LoopSettings, response_loop
 
 FEATURES = ("multiplicity", "impacts_per_period", "xi_rel_max", "mean", "deviation")
 ABOUT = "; mean and deviation are those of the samples of the gap"
@@ -55,30 +55,54 @@ class SettledResponse(NamedTuple):
 
 
 def run_until_settled(
-    instance: Instance, point: Point, start: ArrayLike, settings: AttractorSettings
-) -> SettledResponse:
-    """Simulate from a state at phase 0 until samples repeat or the limit; return the response."""
+    instance: Instance, point: Point, starts: ArrayLike, settings: AttractorSettings
+) -> list[SettledResponse]:
+    """Simulate from states at phase 0 until samples repeat or the limit; return the responses.
+
+    All starts are run together, then those that do not repeat yet as long again.
+    """
+    ends, converged = np.atleast_2d(np.asarray(starts, dtype=float)), settings.converged
+    loop, loose = response_loop(instance), settings.apart * converged
     dropped = transient_periods(
         settings.transient, settings.settle, point.excitation.eta(point.structure)
     )
-    done, before = 0, Repetition(0, np.inf)
-    while True:
-        response = respond(instance, *point, start, dropped, settings.samples, settings.converged)
-        done, start = done + dropped + settings.samples, response.end
-        nearly = response.repetition(settings.apart * settings.converged)
+    settled: dict[int, SettledResponse] = {}
+    done, left = 0, np.arange(len(ends))
+    before, deviation = np.zeros(len(ends), dtype=int), np.full(len(ends), np.inf)
+    while len(left):
+        rule = LoopSettings(
+            transient=dropped, samples=settings.samples, tolerance=converged, loose=loose
+        )
+        results = loop.respond([point] * len(left), ends, rule)
+        done += dropped + settings.samples
+        n, nearly = results.counts["multiplicity"], results.counts["nearly"]
         # a deviation that dies while it turns round is smaller after some periods than after one
-        if response.multiplicity and nearly.multiplicity == response.multiplicity:
-            return SettledResponse(response, done)
+        repeats = (n > 0) & (nearly == n)
+        if done >= settings.longest:
+            dying = (nearly > 0) & (nearly == before) & (2.0 * results.deviations < deviation)
+        else:
+            dying = np.zeros(len(left), dtype=bool)
+        decided = np.flatnonzero(repeats | dying)
+        chosen = responses_from(results.rows(decided), [point] * len(decided), converged)
+        for k, response in zip(decided.tolist(), chosen, strict=True):
+            tolerance = converged if repeats[k] else loose
+            known = replace(response, tolerance=tolerance, known_multiplicity=int(nearly[k]))
+            settled[int(left[k])] = SettledResponse(known, done)
+        rest = np.flatnonzero(~(repeats | dying))
+        left, ends = left[rest], results.ends[rest]
+        before, deviation = nearly[rest], results.deviations[rest]
         if done >= settings.longest:
             break
-        before, dropped = nearly, min(done, settings.longest - done)
-    same = nearly.multiplicity == before.multiplicity
-    if nearly.multiplicity and same and 2.0 * nearly.deviation < before.deviation:
-        return SettledResponse(
-            replace(response, tolerance=settings.apart * settings.converged), done
-        )
-    response = respond(instance, *point, start, 0, settings.irregular_samples, settings.converged)
-    return SettledResponse(response, done + settings.irregular_samples)
+        dropped = min(done, settings.longest - done)
+    if len(left):
+        points, done = [point] * len(left), done + settings.irregular_samples
+        rule = LoopSettings(transient=0, samples=settings.irregular_samples)
+        irregular = responses_from(loop.respond(points, ends, rule), points, converged)
+        settled |= {
+            i: SettledResponse(response, done)
+            for i, response in zip(left.tolist(), irregular, strict=True)
+        }
+    return [settled[i] for i in range(len(settled))]
 
 
 def irregular_clusters(rows: ArrayLike, settings: AttractorSettings) -> NDArray[np.intp]:
