@@ -5,7 +5,7 @@ What a periodic response settles to is decided by its orbit: see :mod:`.decision
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -82,12 +82,14 @@ def run_until_settled(
             dying = (nearly > 0) & (nearly == before) & (2.0 * results.deviations < deviation)
         else:
             dying = np.zeros(len(left), dtype=bool)
-        decided = np.flatnonzero(repeats | dying)
-        chosen = responses_from(results.rows(decided), [point] * len(decided), converged)
-        for k, response in zip(decided.tolist(), chosen, strict=True):
-            tolerance = converged if repeats[k] else loose
-            known = replace(response, tolerance=tolerance, known_multiplicity=int(nearly[k]))
-            settled[int(left[k])] = SettledResponse(known, done)
+        for chosen, tolerance in ((repeats, converged), (dying & ~repeats, loose)):
+            rows = np.flatnonzero(chosen)
+            points = [point] * len(rows)
+            found = responses_from(results.rows(rows), points, tolerance, nearly[rows].tolist())
+            settled |= {
+                i: SettledResponse(response, done)
+                for i, response in zip(left[rows].tolist(), found, strict=True)
+            }
         rest = np.flatnonzero(~(repeats | dying))
         left, ends = left[rest], results.ends[rest]
         before, deviation = nearly[rest], results.deviations[rest]

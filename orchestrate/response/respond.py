@@ -89,7 +89,7 @@ class Response:
         """Return the gap at the samples, m."""
         return gap_between(self.samples, self.gap_offset)
 
-    @property
+    @cached_property
     def end(self) -> tuple[float, ...]:
         """Return the rounded state at the last sample, from which the next response starts."""
         return round_state(self.samples[-1], self.gap_offset)
@@ -112,9 +112,12 @@ def respond(
 
 
 def responses_from(
-    results: Responses, points: Sequence[Point], tolerance: float
+    results: Responses,
+    points: Sequence[Point],
+    tolerance: float,
+    multiplicity: Sequence[int] | None = None,
 ) -> Iterator[Response]:
-    """Yield the responses of a loop's rows."""
+    """Yield the responses of a loop's rows, with their multiplicity where it has been found."""
     count = results.states.shape[1]
     columns = zip(*(results.counts[name].tolist() for name in COUNTS), strict=True)
     exceeding: dict[int, bool] = {}  # by point: a basin's responses have one in common
@@ -132,6 +135,7 @@ def responses_from(
             tolerance=tolerance,
             gap_offset=point.structure.gap_offset,
             has_to_impact=exceeding[id(point)],
+            known_multiplicity=None if multiplicity is None else multiplicity[i],
         )
 
 
