@@ -5,6 +5,7 @@ What a periodic response settles to is decided by its orbit: see :mod:`.decision
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -78,18 +79,13 @@ def run_until_settled(
         n, nearly = results.counts["multiplicity"], results.counts["nearly"]
         # a deviation that dies while it turns round is smaller after some periods than after one
         repeats = (n > 0) & (nearly == n)
-        if done >= settings.longest:
-            dying = (nearly > 0) & (nearly == before) & (2.0 * results.deviations < deviation)
-        else:
-            dying = np.zeros(len(left), dtype=bool)
+        dying = (nearly > 0) & (nearly == before) & (2.0 * results.deviations < deviation)
+        dying &= done >= settings.longest
         for chosen, tolerance in ((repeats, converged), (dying & ~repeats, loose)):
             rows = np.flatnonzero(chosen)
             points = [point] * len(rows)
             found = responses_from(results.rows(rows), points, tolerance, nearly[rows].tolist())
-            settled |= {
-                i: SettledResponse(response, done)
-                for i, response in zip(left[rows].tolist(), found, strict=True)
-            }
+            settled |= numbered(left[rows], found, done)
         rest = np.flatnonzero(~(repeats | dying))
         left, ends = left[rest], results.ends[rest]
         before, deviation = nearly[rest], results.deviations[rest]
@@ -100,11 +96,16 @@ def run_until_settled(
         points, done = [point] * len(left), done + settings.irregular_samples
         rule = LoopSettings(transient=0, samples=settings.irregular_samples)
         irregular = responses_from(loop.respond(points, ends, rule), points, converged)
-        settled |= {
-            i: SettledResponse(response, done)
-            for i, response in zip(left.tolist(), irregular, strict=True)
-        }
+        settled |= numbered(left, irregular, done)
     return [settled[i] for i in range(len(settled))]
+
+
+def numbered(
+    numbers: NDArray[np.intp], responses: Iterable[Response], periods: int
+) -> dict[int, SettledResponse]:
+    """Return responses that so many periods have settled, by the numbers of their starts."""
+    pairs = zip(numbers.tolist(), responses, strict=True)
+    return {number: SettledResponse(response, periods) for number, response in pairs}
 
 
 def irregular_clusters(rows: ArrayLike, settings: AttractorSettings) -> NDArray[np.intp]:
