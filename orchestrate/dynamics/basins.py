@@ -170,8 +170,8 @@ class BasinJob(Question):
             )
             states = np.array([state for state, _ in items])
             apart = np.flatnonzero(gap_between(states, self.structure.gap_offset) >= 0.0)
-            starts = [run_to_phase_zero(decider.plain, point, *items[i]) for i in apart]
-            for i, row in zip(apart, settled_rows(decider, starts), strict=True):
+            starts = [run_to_phase_zero(decider.plain, point, *items[i]) for i in apart.tolist()]
+            for i, row in zip(apart.tolist(), settled_rows(decider, starts), strict=True):
                 rows[i] = row
             return settled_table(rows)
 

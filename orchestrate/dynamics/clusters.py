@@ -62,7 +62,7 @@ def run_until_settled(
 
     All starts are run together, then those that do not repeat yet as long again.
     """
-    ends, converged = np.atleast_2d(np.asarray(starts, dtype=float)), settings.converged
+    ends, converged = np.reshape(np.asarray(starts, dtype=float), (-1, 4)), settings.converged
     loop, loose = response_loop(instance), settings.apart * converged
     dropped = transient_periods(
         settings.transient, settings.settle, point.excitation.eta(point.structure)

@@ -66,7 +66,7 @@ class MotionDecider:
 
     def decide(self, state: ArrayLike) -> tuple[SettledMotion, Floats]:
         """Run from a state at phase 0 until its motion is known; return it and a state on it."""
-        return self.decide_all([state])[0]
+        return self.decide_all(np.asarray(state)[np.newaxis])[0]
 
     def decide_all(self, states: ArrayLike) -> list[tuple[SettledMotion, Floats]]:
         """Run from states at phase 0, as :meth:`decide` from one."""

@@ -144,7 +144,7 @@ class MapJob(Question):
         done, decided = np.zeros(len(items), dtype=int), {}
         left = np.arange(len(items))
         while len(left):
-            points = [items[i] for i in left]
+            points = [items[i] for i in left.tolist()]
             settings = LoopSettings(
                 transient=dropped[left].tolist(),
                 samples=self.samples,

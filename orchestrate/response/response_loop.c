@@ -227,18 +227,15 @@ static bool respond(Calls *calls, const Task *task, size_t i, const double *star
     return look_at_periods(calls, task, period, transient + task->samples, last, task->orbits + STATES * (task->points + 1) * i, counts);
 }
 
-/* Compute responses from the first one given; returns DONE, or FAILED. */
-EXPORT int run(Calls *calls, const Task *task) {
-    double start[STATES], gap = task->gap;
-    bool has_gap = task->has_gap;
-    for (size_t i = 0; i < task->count; i++) {
+/* Compute the responses from number first up to, not including, last; returns DONE, or FAILED. */
+EXPORT int run(Calls *calls, const Task *task, size_t first, size_t last) {
+    for (size_t i = first; i < last; i++) {
         const double *given = task->is_chain && i ? task->ends + STATES * (i - 1) : task->starts + (task->is_chain ? 0 : STATES * i);
-        double offset = task->rests[3 * i];
+        double start[STATES], offset = task->rests[3 * i], gap = i ? task->rests[3 * (i - 1)] : task->gap;
+        bool has_gap = i || task->has_gap;
         for (int j = 0; j < STATES; j++) start[j] = given[j];
         if (task->is_chain && has_gap && gap != offset && is_any(start)) for (int j = 0; j < STATES; j++) start[j] += j == X2 ? gap - offset : 0.0;
         if (!respond(calls, task, i, start)) return FAILED;
-        has_gap = true;
-        gap = offset;
     }
     return DONE;
 }

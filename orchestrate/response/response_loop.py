@@ -42,6 +42,7 @@ COUNTED = ("impacts_before", "contacts_before", "touching", "impacts_after", "co
 COUNTS = (*COUNTED, "multiplicity", "decided", "later_impacts", "nearly")
 NOT_FINITE = -1  # a status that FMI does not have
 MIN_EXPONENT = -970  # of two: smaller numbers are not rounded
+MAX_PERIODS = 200_000  # of one call, a second's work: between two calls an interrupt is heard
 MAX_REALS = 64  # numbers set before a start, for which the C source has room
 Floats = NDArray[np.float64]
 
@@ -261,8 +262,11 @@ class CompiledResponseLoop(ResponseLoop):
             *(table.ctypes.data for table in (*inputs, *outputs)),
         )
         self.instance._messages.clear()
-        if self.run(byref(self.calls), byref(task)):
-            raise self.error(series)
+        pointers, count = (byref(self.calls), byref(task)), len(points)
+        step = max(1, int(MAX_PERIODS // (float(transients.max(initial=0)) + chosen.samples)))
+        for first in range(0, count, step):
+            if self.run(*pointers, first, min(first + step, count)):
+                raise self.error(series)
         return results._replace(counts=dict(zip(COUNTS, counts.T, strict=True)))
 
     def rows(self, points: Sequence[Point]) -> tuple[NDArray[Any], ...]:

@@ -45,7 +45,7 @@ def bits(results):
 
 
 @pytest.mark.parametrize("is_chain", [False, True])
-def test_the_compiled_loop_has_the_bits_of_python(instance, is_chain):
+def test_the_compiled_loop_has_the_bits_of_python(instance, is_chain, monkeypatch):
     some, random = list(points(3)), np.random.default_rng(4)
     starts = [(0.0,) * 4, *random.uniform(0.0, 1.0, (len(some) - 1, 4)) * (-1, 5, 1, 1)]
     settings = LoopSettings(
@@ -61,6 +61,7 @@ def test_the_compiled_loop_has_the_bits_of_python(instance, is_chain):
     chosen = starts[1:2] if is_chain else starts
     loop = response_loop(instance)
     assert type(loop) is CompiledResponseLoop
+    monkeypatch.setattr("orchestrate.response.response_loop.MAX_PERIODS", 200)  # several calls
     compiled = loop.respond(some, chosen, settings)
     assert bits(compiled) == bits(ResponseLoop(instance).respond(some, chosen, settings))
     decided = compiled.counts["multiplicity"], compiled.counts["later_impacts"]
