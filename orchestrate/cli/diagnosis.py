@@ -12,8 +12,16 @@ from typing import TYPE_CHECKING
 from ..errors import InputError
 from ..units import with_units
 from .options import read_structure_options
-from .output import Files, digest, read_record_units, read_running_options, result_groups, unit_note
-from .table import Command, Group
+from .output import (
+    READING,
+    Files,
+    digest,
+    read_record_units,
+    read_running_options,
+    result_groups,
+    unit_note,
+)
+from .table import Command, Group, values_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -21,11 +29,14 @@ if TYPE_CHECKING:
     from ..model import Structure
 
 LINES = {  # attributes of a verdict that are printed below it, and what stands before them
+    "wiring": "wiring",
     "reason": "decided by",
     "simulated": "simulated records",
     "settle": "to settle it",
     "record_columns": "columns",
     "record_unit_note": "unit",
+    "record_converted": "converted",
+    "record_time_base": "times",
 }
 CHANNELS = {  # in the order of --columns, and what they are called towards the user
     "time": "time",
@@ -52,7 +63,7 @@ def run_diagnose(arguments: argparse.Namespace) -> None:
     verdicts = compute_verdicts(arguments, records, names, guess) if records else {}
     units = read_record_units(arguments)
     for path, verdict in verdicts.items():
-        for line in verdict_lines(path, with_units(verdict, units)):
+        for line in verdict_lines(path, with_units(verdict, units), arguments):
             print(line)
         signs = orchestrate.signs(records[path], other=others, structure=guess)
         write_files(arguments, names[path], {"": verdict, "_signs": signs})
@@ -63,7 +74,7 @@ def run_diagnose(arguments: argparse.Namespace) -> None:
 
 def file_stem(path: Path, guess: Structure, arguments: argparse.Namespace) -> str:
     """Return the name of a record's result files, unique for content, guess and reading options."""
-    read_as = [arguments.columns, arguments.unit, arguments.sample_rate, arguments.participation]
+    read_as = [arguments.columns, arguments.participation, *values_of(arguments, READING).items()]
     return f"diagnose_{path.stem}_{digest(file_checksum(path), guess.parameters(), read_as)}"
 
 
@@ -97,9 +108,7 @@ def read_one_record(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
     from .. import read_record
 
     columns = parse_columns(arguments)
-    record = read_record(
-        path, columns=columns, unit=arguments.unit, sample_rate=arguments.sample_rate
-    )
+    record = read_record(path, columns=columns, **values_of(arguments, READING))
     if "acceleration1" not in record and "acceleration2" not in record:
         taken = record.attrs.get("columns", "no columns")
         text = "expected a face's beside the base's, such as --columns 0,1,2 or Time,Table,Beam"
@@ -169,6 +178,8 @@ def origin_attributes(
         "record_columns": record.attrs.get("columns", ""),
         "record_unit": record.attrs.get("unit", ""),
         "record_unit_note": unit_note(record.attrs),
+        "record_converted": record.attrs.get("converted", ""),
+        "record_time_base": record.attrs.get("time_base", ""),
         "sensors": record.attrs.get("sensors", ""),
         "guess_file": str(arguments.structure),
         "command": getattr(arguments, "command_line", ""),
@@ -195,15 +206,16 @@ def write_files(
     print(report(*answers.values(), output=page, notes=arguments.notes or "", units=units))
 
 
-def verdict_lines(path: Path, verdict: xr.Dataset) -> Iterator[str]:
+def verdict_lines(path: Path, verdict: xr.Dataset, arguments: argparse.Namespace) -> Iterator[str]:
     """Yield a record's verdict in a few lines: what it is, its reason, what would settle it."""
     from ..show.verdict import make_verdict
+    from . import with_option_names
 
     shown = make_verdict(verdict)
     yield f"{path}: {shown.word} {shown.sentence}"
     for name, label in LINES.items():
         if verdict.attrs.get(name):
-            yield f"  {label}: {verdict.attrs[name]}"
+            yield f"  {label}: {with_option_names(verdict.attrs[name], arguments)}"
 
 
 DIAGNOSE = Command(
@@ -212,7 +224,8 @@ DIAGNOSE = Command(
     """  {program} diagnose record.csv --structure beam.toml
   {program} diagnose left.csv right.uff --structure beam.toml --set e=0.4 --jobs 2
   {program} diagnose up.csv --other down.csv --other louder.csv --structure beam.toml
-  {program} diagnose export.txt --columns 0,3,4 --unit g --sample-rate 2000 --structure beam.toml
+  {program} diagnose export.txt --columns 0,3,4 --unit g --structure beam.toml
+  {program} diagnose laser.csv --unit face=mm/s --sensitivity "base=100 mV/g" --structure beam.toml
 
 what it needs:
   a record of a swept sine over the beam's resonance: the acceleration of its base (the shaker's
@@ -227,7 +240,9 @@ what it gives:
   undecided        this record does not tell; the report says which one would
   and for each record a report to read, print and sign (.html), the answers (.nc), a picture""",
     (
-        Group(options="records FILE +  measured: .csv, .txt, .uff, .unv, .mat, .nc; one beam each"),
+        Group(
+            options="records FILE +  .csv, .txt, .uff, .unv, .mat, .lvm, .tdms, .nc; one beam each"
+        ),
         Group(
             "the guess",
             """
@@ -237,16 +252,17 @@ what it gives:
         ),
         Group(
             "records",
-            """
+            (
+                """
             --other FILE ...  record of the same beam at another level or in the other direction,
                 for the signs
-            --unit UNIT  m/s2, g ... (default: what the file says)
-            --columns A,B,...  of time, base, face 1 and face 2, by name or number from 0 (default:
-                by usual names)
-            --sample-rate HZ  where the file has no times; then --columns begins with the base
+            --columns A,B,...  of time, base, face 1 and face 2, by name or number from 0, without
+                time where --sample-rate is given (default: by usual names)
             --participation G,...  of the sensors on face 1 and face 2: the beam's mode there over
                 that of a mass on a spring, 1.57 at the tip of a cantilever (default: fitted)
             """,
+                READING,
+            ),
         ),
         Group("report", "--notes WORDS  below the title: which beam, who, when"),
         *result_groups(store=False),

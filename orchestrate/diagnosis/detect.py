@@ -24,6 +24,7 @@ from .fit import Results, checked_data, checked_free, delaminated_guess, text_co
 from .hypotheses import FREE
 from .search_job import SearchJob, cached_coarse_evidence, cached_orders
 from .simulation import SIMULATED, Fitted
+from .wiring import wiring_notes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -108,7 +109,8 @@ def detect(
         ``participation_error`` over ``channel`` (NaN but of the hypotheses that the verdict is
         about and that describe the record), ``misfit_at`` and the ``fitted`` orders over
         ``window``, beside what is ``measured``. Attributes ``reason``, ``settle``,
-        ``simulated``, ``seen_up_to``, ``assumed`` and ``direction`` of the sweep.
+        ``simulated``, ``seen_up_to``, ``assumed``, ``direction`` of the sweep and ``wiring``, the
+        doubts about the channels (:func:`orchestrate.diagnosis.wiring.wiring_notes`).
 
     Raises
     ------
@@ -204,6 +206,7 @@ class DetectJob(SearchJob):
             seen_up_to=findings.seen_up_to(),
             assumed="; ".join(ASSUMED),
             direction=sweep_direction(whole.windows.frequency),
+            wiring="; ".join(note.text for note in wiring_notes(whole.channels)),
         )
 
 
