@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 LINES = {  # attributes of a verdict that are printed below it, and what stands before them
     "reason": "decided by",
-    "simulated": "simulated records",
     "settle": "to settle it",
     "record_columns": "columns",
     "record_unit_note": "unit",
