@@ -26,8 +26,7 @@ from ..laboratory.pieces import Floats
 from .response_signs import default_band_edge
 from .settings import SETTINGS, Settings
 
-AVERAGING_TIME, MIN_INTERVALS = 2.0, 16  # s of each mean of the power; how many there are at least
-QUIET = 0.2  # quantile of the means that is taken for the power of noise
+MIN_INTERVALS = 16  # means of the power at least
 FINER = 4  # samples of the finer grid on which a signal half a period later is read
 
 
@@ -39,7 +38,9 @@ def burst_excess(channels: Channels, highest: float, settings: Settings = SETTIN
     phase = np.maximum.accumulate(measured_phase(channels))
     ends = phase[0] + 2.0 * math.pi * EDGE, phase[-1] - 2.0 * math.pi * EDGE
     first, last = np.searchsorted(phase, ends)
-    width = min(round(AVERAGING_TIME * channels.sample_rate), int(last - first) // MIN_INTERVALS)
+    width = min(
+        round(settings.burst_time * channels.sample_rate), int(last - first) // MIN_INTERVALS
+    )
     if math.isnan(edge) or width < MIN_INTERVALS:
         return math.nan
     share = 1.0 - 2.0 * edge / channels.sample_rate
@@ -75,7 +76,7 @@ def one_sided_rise(
     even, odd = (
         mean_power(0.5 * (signal[part] + s * opposite), turns, width, most) for s in (1.0, -1.0)
     )
-    noise = np.quantile(even, QUIET), np.quantile(odd, QUIET)
+    noise = [float(np.quantile(power, settings.quiet)) for power in (even, odd)]
     if not min(noise) > 0.0:
         return 0.0
     one_sided = even - noise[0] >= settings.one_sided * (odd - noise[1])

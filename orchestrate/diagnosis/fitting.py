@@ -23,8 +23,7 @@ STEPS = {  # of the differences that make derivatives; f and common: parts of th
     **{"square": 0.01, "cube": 0.02, "friction": 0.01, "stop": 0.02, "position": 0.02},
     **{"apart": 3e-3, "share1": 0.01, "share2": 0.01},
 }
-TOLERANCE = 1e-3  # relative: a way downhill that gains less in a step ends
-MIN_GAIN, MIN_CLOUD = 2e-3, 0.1  # least gain of a round; of the clouds' variance
+MIN_CLOUD = 0.1  # least size of the clouds' variance
 SAME_MISFIT = 0.03  # relative difference of misfits below which two minima count as one
 MIN_DISTANCES = {"split": 0.04, "clearance": 0.1}  # between two solutions that count as two
 
@@ -81,7 +80,7 @@ class Search:
 
     def minima(self, starts: Sequence[Mapping[str, float]]) -> list[Solution]:
         """Go downhill from the best starts that differ; return the minima, the best first."""
-        count = int(self.evidence.settings.starts)
+        count = self.evidence.settings.starts
         chosen = without_neighbours(self.rank_starts(starts))[:count]
         return sorted((self.refine(one.values) for one in chosen), key=lambda one: one.misfit)
 
@@ -99,9 +98,9 @@ class Search:
             loss="soft_l1",
             f_scale=SOFT_LIMIT,
             x_scale="jac",
-            max_nfev=int(self.evidence.settings.steps),
-            ftol=TOLERANCE,
-            xtol=TOLERANCE,
+            max_nfev=self.evidence.settings.steps,
+            ftol=self.evidence.settings.tolerance,
+            xtol=self.evidence.settings.tolerance,
             Dfun=lambda parameters: self.derivatives(parameters.valuesdict(), bounds),
         )
         values = dict(result.params.valuesdict())
@@ -120,7 +119,7 @@ class Search:
             1.0,
         )
         bounds = self.hypothesis.bounds(self.evidence)
-        for number in range(int(self.evidence.settings.rounds)):
+        for number in range(self.evidence.settings.rounds):
             model = LinearModel.from_cloud(
                 self.residuals, bounds, here.values, size * shape, number
             )
@@ -128,7 +127,7 @@ class Search:
             if model.lowest < best.misfit:
                 best = Solution(best.name, model.best, model.lowest)
             shape = model.cloud_covariance()
-            if best.misfit < (1.0 - MIN_GAIN) * here.misfit:
+            if best.misfit < (1.0 - self.evidence.settings.gain) * here.misfit:
                 here, size = best, min(1.0, 1.5 * size)
             elif size > MIN_CLOUD:
                 size *= 0.2

@@ -46,7 +46,6 @@ DAMPING_RANGE = (3e-4, 0.2)  # damping ratios that are looked for
 MAX_SPLIT = 0.9  # largest |ln(f2/f1)|
 RESTITUTION_RANGE = (0.0, 0.95)
 STARTING_SPLITS = (0.08, -0.08, 0.18, -0.18, 0.3, -0.3, 0.45, -0.45)  # ln(f2/f1) of the scan
-SLOW_SHARE = 0.01  # of the largest speed: below it friction is viscous
 
 
 class Hypothesis(ABC):
@@ -170,7 +169,7 @@ class DryFriction(Sound):
     def single_mass(self, values: Values, evidence: Evidence) -> SingleMass:
         """Build the single mass; its friction is relative to the base's median acceleration."""
         friction = values["friction"] * float(np.median(evidence.level))
-        slow = SLOW_SHARE * TURN * evidence.resonance * evidence.displacement
+        slow = evidence.settings.slow * TURN * evidence.resonance * evidence.displacement
         return replace(super().single_mass(values, evidence), friction=friction, slow=slow)
 
 

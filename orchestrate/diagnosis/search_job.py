@@ -27,8 +27,6 @@ from .orders import MIN_WINDOWS, SAMPLES_PER_PERIOD, RecordOrders, channel_order
 from .settings import SETTINGS, Settings
 
 COARSE_SAMPLES = 7.0  # samples in a period of the highest frequency for a coarse search
-CLOSE_RATIO = 1.3  # of misfits, up to which the second best minimum is polished too
-MAX_GUESS_SQUARES = 20.0  # of a guess's squared deviations: more of them count no more
 # Rows and columns of tables: solutions, values in each, misfits of minima
 MAX_SOLUTIONS, MAX_NUMBERS, MAX_MINIMA = 4, 6, 8
 
@@ -108,9 +106,9 @@ def is_worth_a_search(data: RecordData | CurveData) -> bool:
 
 @lru_cache(maxsize=2)
 def cached_onset(data: RecordData | CurveData) -> Onset | None:
-    """Return where order 2 begins, and the bonded structure of the windows that are silent.
+    """Return where order 2 begins and what moves before; None where nothing is silent or loud.
 
-    None where none is silent, or all are: then there is no level at which faces begin to open.
+    Before, in the windows that are silent, faces that are pressed together move as bonded ones.
     """
     evidence = cached_evidence(data)
     even = even_orders(evidence, np.zeros_like(evidence.measured))
@@ -201,9 +199,10 @@ class SearchJob(Job):
     def finish(self, previous: Table, player: Player) -> Table:
         """Refine the best solutions of each hypothesis, and compute all misfits and errors.
 
-        - What each search found is ranked by its misfit with the whole record, together with the
-          best numbers of a hypothesis that is contained in this one.
-        - The best is improved by regressions over clouds, and the next one where it is close.
+        - What each search found is ranked, together with the best numbers of a hypothesis that is
+          contained in this one.
+        - The best, of two halves also the next one where it is close, is improved by regressions
+          over clouds near the resonance, and the better of them on the whole record.
         - Errors follow for the bonded fit, the best sound one, and those of two halves.
         """
         worth = is_worth_a_search(self.data)
@@ -233,47 +232,50 @@ class SearchJob(Job):
         worth: bool,
     ) -> list[Solution]:
         """Return a hypothesis's minima, the best first, from the ends of all its searches."""
-        hypothesis = search.hypothesis
-        names = hypothesis.bounds(self.evidence)
+        hypothesis, contained = search.hypothesis, others[:1]
         if isinstance(hypothesis, Delaminated):
             guessed = hypothesis.values_from_structure(self.guess, self.evidence)
             starts = [*starts, guessed, with_halves_exchanged(guessed)]
-        inside = others[-1:] if isinstance(hypothesis, DelaminatedWithClearance) else others[:1]
-        starts = [*starts, *({**dict.fromkeys(names, 0.0), **one[0].values} for one in inside)]
-        ranked = search.rank_starts(starts)
-        if isinstance(hypothesis, Delaminated):
-            ranked = self.sort_by_misfit_and_guess(search, ranked)
-            if not worth:
-                return ranked
-        best, *rest = without_neighbours(ranked)
-        close = [one for one in rest[:1] if one.misfit < CLOSE_RATIO * best.misfit]
-        polished = [search.polish(one) for one in (best, *close)]
-        if isinstance(hypothesis, Delaminated):
-            polished = self.sort_by_misfit_and_guess(search, polished)
-        else:
-            polished.sort(key=lambda one: one.misfit)
-        return [*polished, *rest[len(close) :]]
+            contained = others[len(self.sound) :]
+        zero = dict.fromkeys(hypothesis.bounds(self.evidence), 0.0)
+        starts = [*starts, *({**zero, **one[0].values} for one in contained)]
+        coarse = Search(hypothesis, cached_coarse_evidence(self.data), search.player)
+        best, *rest = without_neighbours(
+            self.sort_by_misfit_and_guess(search, coarse.rank_starts(starts))
+        )
+        if hypothesis.is_rugged and not worth:
+            return search.rank_starts([best.values])
+        close = [one for one in rest[:1] if one.misfit < self.data.settings.close * best.misfit]
+        tried = [best, *close] if hypothesis.is_rugged else [best]
+        polished = [coarse.polish(one).values for one in tried]
+        search.evaluations += coarse.evaluations
+        best, *rest = self.sort_by_misfit_and_guess(
+            search, search.rank_starts([*polished, *starts[len(starts) - len(contained) :]])
+        )
+        return [search.polish(best), *rest]
 
     def sort_by_misfit_and_guess(
         self, search: Search, solutions: Sequence[Solution]
     ) -> list[Solution]:
-        """Sort delaminated solutions by misfit, with a penalty for distance from the guess.
+        """Sort solutions by misfit, those of two halves with a penalty for distance from the guess.
 
         Of one sensor's record both halves may change places at nearly the same misfit; what is
         known of the halves before then decides, as far as a guess may be trusted.
         """
         hypothesis, settings = search.hypothesis, self.data.settings
-        assert isinstance(hypothesis, Delaminated)
 
         def penalised_misfit(solution: Solution) -> float:
             """Return the misfit, raised by the distance of f1 and f2 from the guess."""
+            if not isinstance(hypothesis, Delaminated):
+                return solution.misfit
             made = hypothesis.structure_from_values(solution.values, self.evidence)
             off = (
                 math.log(made.get(f) / self.guess.get(f)) / settings.guess_deviation
                 for f in ("f1", "f2")
             )
             return solution.misfit * (
-                1.0 + settings.guess_weight * min(sum(one**2 for one in off), MAX_GUESS_SQUARES)
+                1.0
+                + settings.guess_weight * min(sum(one**2 for one in off), settings.guess_squares)
             )
 
         return sorted(solutions, key=penalised_misfit)

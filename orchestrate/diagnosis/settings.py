@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 from ..errors import InputError
 from ..laboratory.analysis.channels import checked_number
@@ -53,6 +53,8 @@ class Settings:
     response: float = 0.1  # of the largest order 1: windows where less moves are not taken
 
     # -- what counts as heard: see `bursts` --
+    burst_time: float = 2.0  # s of each mean of the power
+    quiet: float = 0.2  # quantile of the means that is taken for the power of noise
     burst_rise: float = 1.5  # power over that of noise
     burst_deviations: float = 6.0  # standard deviations of a mean by which noise may exceed it
     burst_periods: float = 1.0 / 3.0  # share of an interval's periods: fewer are lost samples
@@ -74,14 +76,29 @@ class Settings:
     gain_error: float = 0.12
     delay: float = 1e-3
 
+    slow: float = 0.01  # of the largest speed: below it dry friction is viscous
+
+    # -- standard errors: see `errors` --
+    # doubt about a restitution; of damping ratios it is the mean of both halves'
+    restitution_doubt: float = 0.12
+    contact_misfit: float = 0.3  # beyond noise: from here on a contact is another than the model's
+    # part of the squares beyond noise by which they may be larger at the truth, and squares over
+    # those that noise makes: less of them has no other cause
+    hidden_share: float = 0.1
+    noise_squares: float = 1.3
+
     # -- the search: see `fitting.Search.minima` --
-    starts: float = 3  # from which to go downhill
-    steps: float = 8  # on each way
-    rounds: float = 7  # of the regressions over clouds that follow
+    starts: int = 3  # from which to go downhill
+    steps: int = 8  # on each way
+    tolerance: float = 1e-3  # relative: a way downhill that gains less in a step ends
+    rounds: int = 7  # of the regressions over clouds that follow
+    gain: float = 2e-3  # relative: a round that gains less is one with too large a cloud
+    close: float = 1.3  # misfit over the best, up to which the second best minimum goes on too
     # standard deviation of a guessed frequency's logarithm, and the part of the squared deviations
     # by which a misfit counts more
     guess_deviation: float = 0.06
     guess_weight: float = 0.02
+    guess_squares: float = 20.0  # of these deviations: more of them count no more
 
 
 SETTINGS = Settings()
@@ -98,8 +115,10 @@ def checked_settings(changes: Changes) -> Settings:
     names = [one.name for one in fields(Settings)]
     if unknown := [name for name in changes or {} if name not in names]:
         raise InputError(f"settings: {unknown[0]!r} is none; expected some of {', '.join(names)}")
-    known = {
-        name: checked_number(f"settings[{name!r}]", value, 0.0, 1e6, "", True)
-        for name, value in (changes or {}).items()
-    }
-    return Settings(**known)
+    made = SETTINGS
+    for name, value in (changes or {}).items():
+        kind = type(getattr(SETTINGS, name))
+        least = 1.0 if kind is int else 0.0
+        number = checked_number(f"settings[{name!r}]", value, least, 1e6)
+        made = replace(made, **{name: kind(number)})
+    return made
