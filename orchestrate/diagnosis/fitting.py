@@ -21,7 +21,7 @@ STEPS = {  # of the differences that make derivatives; f and common: parts of th
     **{"common": 3e-4, "f": 1e-4, "split": 3e-3, "e": 0.02, "clearance": 0.01},
     **{"log_zeta": 0.02, "log_zeta1": 0.05, "log_zeta2": 0.05},
     **{"square": 0.01, "cube": 0.02, "friction": 0.01, "stop": 0.02, "position": 0.02},
-    **{"apart": 3e-3, "share1": 0.01, "share2": 0.01},
+    "apart": 3e-3,
 }
 MIN_CLOUD = 0.1  # least size of the clouds' variance
 SAME_MISFIT = 0.03  # relative difference of misfits below which two minima count as one

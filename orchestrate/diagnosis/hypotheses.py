@@ -37,8 +37,6 @@ REPORTED = {  # units and long names
     "stop": ("1", "stiffness of a stop over that of the spring"),
     "position": ("m", "displacement in the stop's direction from which it pushes"),
     "apart": ("1", "logarithm of the second mode's frequency over the first one's"),
-    "share1": ("1", "part of the second mode in sensor 1, over that of the first"),
-    "share2": ("1", "part of the second mode in sensor 2, over that of the first"),
 }
 FREE = tuple(REPORTED)[:6]  # of a delaminated structure
 Values = Mapping[str, float]
@@ -210,26 +208,16 @@ class NegativeStop(PositiveStop):
 class TwoModes(Sound):
     """A linear structure with a second mode in the sweep, such as torsion.
 
-    Each sensor reads a part of it beside the first mode, by its place.
+    Each sensor reads a share of it beside the first mode, by its place: in closed form by order 1.
     """
 
     name = "bonded, with two modes"
-    extra = {"apart": (-0.35, 0.35), "share1": (-1.0, 1.0), "share2": (-1.0, 1.0)}
-
-    def bounds(self, evidence: Evidence) -> dict[str, tuple[float, float]]:
-        """Return the bounds of the numbers; a sensor that there is not has no share."""
-        shares = {f"share{mass + 1}" for mass in evidence.masses}
-        every = super().bounds(evidence)
-        return {n: b for n, b in every.items() if n in shares or not n.startswith("share")}
+    extra = {"apart": (-0.35, 0.35)}
 
     def starts(self, evidence: Evidence, part: int = 0) -> Sequence[dict[str, float]]:
-        """Return starts with a second mode above or below, seen by both sensors or against."""
-        found = []
-        for apart in (-0.12, -0.06, 0.03, 0.06, 0.12):
-            for one, other in ((0.1, 0.1), (0.1, -0.1), (-0.1, 0.1), (-0.1, -0.1)):
-                start = {"f": evidence.resonance, "log_zeta": math.log(0.01), "apart": apart}
-                found.append({**start, "share1": one, "share2": other})
-        return found
+        """Return starts with a second mode above and below."""
+        every = super().starts(evidence)
+        return [{**one, "apart": apart} for one in every for apart in (-0.12, -0.05, 0.05, 0.12)]
 
     def displacements(self, values: Values, evidence: Evidence, player: Player | None) -> Floats:
         """Compute the sum of both modes at each sensor."""
@@ -238,13 +226,25 @@ class TwoModes(Sound):
             super(TwoModes, self).displacements(one, evidence, player)[0]
             for one in (values, second)
         )
-        shares = np.array([[values.get(f"share{number}", 0.0)] for number in (1, 2)])
-        return np.asarray(first + shares * other)
+        found = np.tile(first, (2, 1))
+        for row, mass in enumerate(evidence.masses):
+            found[mass] += self.share(evidence, row, np.stack([first, other])) * other
+        return found
+
+    def share(self, evidence: Evidence, row: int, motions: Floats) -> float:
+        """Return the second mode's part over the first one's that is nearest to order 1."""
+        base = evidence.base[0]
+        modes = np.stack([evidence.orders_of_motion(one[np.newaxis])[row, 0] for one in motions])
+        measured = evidence.first_order(row, modes[0]) - base
+        columns = ((modes - base) / evidence.error[row, 0]).T
+        wanted = measured / evidence.error[row, 0]
+        both = np.concatenate([columns.real, columns.imag])
+        parts = np.linalg.lstsq(both, np.concatenate([wanted.real, wanted.imag]), rcond=None)[0]
+        return float(np.clip(parts[1] / parts[0], -1.0, 1.0)) if parts[0] else 0.0
 
     def reported(self, values: Values, evidence: Evidence) -> dict[str, float]:
-        """Return frequency and damping ratio of the first mode, and the numbers of the second."""
-        rest = {name: values[name] for name in self.extra if name in values}
-        return {"f": values["f"], "zeta": math.exp(values["log_zeta"]), **rest}
+        """Return frequency and damping ratio of the first mode, and the second's frequency."""
+        return {"f": values["f"], "zeta": math.exp(values["log_zeta"]), "apart": values["apart"]}
 
 
 # -- delaminated ----------------------------------------------------------------------------------

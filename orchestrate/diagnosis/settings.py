@@ -88,7 +88,7 @@ class Settings:
     noise_squares: float = 1.3
 
     # -- the search: see `fitting.Search.minima` --
-    starts: int = 3  # from which to go downhill
+    starts: int = 2  # of each part, from which to go downhill
     steps: int = 8  # on each way
     tolerance: float = 1e-3  # relative: a way downhill that gains less in a step ends
     rounds: int = 7  # of the regressions over clouds that follow
