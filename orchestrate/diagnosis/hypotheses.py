@@ -227,6 +227,8 @@ class TwoModes(Sound):
             for one in (values, second)
         )
         found = np.tile(first, (2, 1))
+        if not np.isfinite(first + other).all():
+            return np.full_like(found, np.nan)
         for row, mass in enumerate(evidence.masses):
             found[mass] += self.share(evidence, row, np.stack([first, other])) * other
         return found
