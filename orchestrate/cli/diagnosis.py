@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 LINES = {  # attributes of a verdict that are printed below it, and what stands before them
     "wiring": "wiring",
     "reason": "decided by",
-    "simulated": "simulated records",
     "settle": "to settle it",
     "record_columns": "columns",
     "record_unit_note": "unit",
