@@ -44,6 +44,8 @@ class Connection:
     links: Mapping[str, Link]  # by our names
     inputs: tuple[str, ...] = ()  # its others, by its names
     outputs: tuple[str, ...] = ()
+    recorded: tuple[str, ...] = ()  # what is read at the end of each interval
+    cubic: int = -1  # place among its inputs of one with its three derivatives; -1: all are held
 
 
 MOTOR = Connection(  # the first two outputs are what the step control needs

@@ -238,6 +238,15 @@ class Course(Schedule):
         low, high = self.voltages[last - 1], self.voltages[last]
         return low + (high - low) * (time - begin) / (end - begin)
 
+    def at(self, times: np.ndarray) -> np.ndarray:
+        """Return the values at many times, as :meth:`voltage` does at one."""
+        known, values = np.array(self.times), np.array(self.voltages)
+        last = known.searchsorted(times, side="right").clip(max=len(known) - 1)
+        begin, low = known[last - 1], values[last - 1]
+        with np.errstate(invalid="ignore"):
+            inside = low + (values[last] - low) * (times - begin) / (known[last] - begin)
+        return np.where(times < known[-1], inside, values[-1])
+
     def trend(self, times: np.ndarray) -> np.ndarray:
         """Return at each time 1 if the voltage rises, -1 if it falls, 0 if constant."""
         places = np.clip(np.searchsorted(self.times, times) - 1, 0, len(self.times) - 2)
