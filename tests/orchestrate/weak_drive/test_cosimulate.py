@@ -196,6 +196,20 @@ def test_an_electrodynamic_shaker_of_ours_is_coupled_with_its_limits(exported):
 
 
 @pytest.mark.usefixtures("exported")
+def test_a_level_is_held_on_a_drive_of_somebody_else(drive):
+    """It takes the command without its derivatives: its mean over each step."""
+    sine = orchestrate.SteppedSine(frequencies=(8.0,), acceleration=2.0, settle_cycles=60)
+    control = orchestrate.LevelControl(sine=sine, start=1.0)
+    run = {**RUN, "inputs": {"volts": control}, "duration": 8.0, "record": ["volts"]}
+    found = orchestrate.cosimulate(STRUCTURE.as_bonded(), drive, connect=CONNECT, step=5e-3, **run)
+    last = found.sel(time=slice(7.0, 8.0 - 1e-9))
+    turns = np.exp(-1j * sine.phase(last.time.values))
+    table, volts = (complex((last[n] * turns).mean()) for n in ("box_acceleration", "volts"))
+    assert 2.0 * abs(table) == pytest.approx(2.0, rel=0.03)
+    assert abs(volts) > 1.0 and np.isnan(found.control_aborted)
+
+
+@pytest.mark.usefixtures("exported")
 def test_the_work_on_the_drive_is_what_the_system_loses(exported):
     """Energy of the masses: what the box's motion puts in, less dampers and impacts."""
     structure = STRUCTURE.replace(d1=0.0, d2=0.0)
