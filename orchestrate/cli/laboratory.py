@@ -162,7 +162,8 @@ def shake_summary(data: xr.Dataset) -> Iterator[str]:
     if "transient_time" in data:
         yield f"a linear transient decays within {float(data.transient_time):.3g} s"
     elif data.control_aborted.notnull():
-        yield f"warning: the level could not be held, aborted at {float(data.control_aborted):.4g} s"
+        end = float(data.control_aborted)
+        yield f"warning: the level could not be held; the control aborted at {end:.4g} s"
     yield from impact_lines(data)
 
 
