@@ -39,7 +39,7 @@ from .compiled import create_master
 from .connection import OURS, Connection, checked_links, checked_variable
 from .controllers import InputControl
 from .energy_balance import given_work
-from .inputs import Input, Inputs, require_acceleration
+from .inputs import Input, Inputs, check_inputs
 from .master import Scheme
 from .polynomials import end_value
 from .record import Floats, Record, joined
@@ -364,7 +364,7 @@ def cosimulate(
         connect, drive = connect or OURS, finder(running)(model).path
     path = Path(drive).resolve()
     description = describe(path)
-    checked_links(connect or {}, description)
+    links = checked_links(connect or {}, description)
     for name, value in (("duration", duration), ("step", step)):
         check(name, value, "s", low=0.0, exclusive=True)
     count = checked_step_count(duration, step, description)
@@ -380,7 +380,7 @@ def cosimulate(
         record=checked_record(record or (), description),
         start=checked_state("start", start, checked_structure(structure)),
     )
-    require_acceleration(job.inputs, list(dict(job.connect)))
+    check_inputs(job.inputs, links)
     return answer(job, running, finder(running), foreign)
 
 
@@ -399,7 +399,8 @@ def checked_parameters(parameters: Mapping[str, Any], drive: Description) -> Val
     """Return start values of the drive by its names; raise ``InputError`` for what it has not."""
     checked: list[tuple[str, float | bool]] = []
     for name, value in parameters.items():
-        checked_variable(drive, name, "", any_type=True)
+        if checked_variable(drive, name, "", any_type=True).initial == "calculated":
+            raise InputError(f"parameters: {name} of the FMU {drive.name} has no start value")
         if isinstance(value, (bool, np.bool_)):
             checked.append((name, bool(value)))
             continue

@@ -6,12 +6,13 @@ inputs for its derivatives (``command_1`` to ``command_3``) takes it whole, anot
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
 from ..errors import InputError
 from ..fmu.description import Description
+from .connection import Link
 from .controllers import InputControl
 from .master import Master
 from .polynomials import end_derivatives, mean_value
@@ -70,10 +71,13 @@ class Inputs:
             yield row
 
 
-def require_acceleration(inputs: Sequence[tuple[str, Input]], connect: Sequence[str]) -> None:
-    """Raise unless at most one input is controlled, by an acceleration that is connected."""
+def check_inputs(inputs: Sequence[tuple[str, Input]], links: Mapping[str, Link]) -> None:
+    """Raise unless no input is connected, and one at most controlled by a known acceleration."""
+    connected = {link.theirs for link in links.values()}
+    for name in [name for name, _ in inputs if name in connected]:
+        raise InputError(f"inputs: {name} is connected; expected it in one of connect and inputs")
     controlled = [name for name, one in inputs if isinstance(one, InputControl)]
     if len(controlled) > 1:
         raise InputError(f"inputs: {' and '.join(controlled)} are controlled; expected one of them")
-    if controlled and "box_acceleration" not in connect:
+    if controlled and "box_acceleration" not in links:
         raise InputError(f"inputs: {controlled[0]} is controlled; connect box_acceleration for it")

@@ -222,7 +222,10 @@ class Course(Schedule):
                 continue  # names of the columns
             rows.append([time, voltage])
         times, voltages = zip(*rows, strict=True) if rows else ((), ())
-        return cls(times, voltages)
+        try:
+            return cls(times, voltages)
+        except InputError as error:
+            raise InputError(f"{path}: {error}") from None
 
     @property
     def duration(self) -> float:

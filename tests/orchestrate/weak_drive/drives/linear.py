@@ -18,7 +18,7 @@ SIZE = 4
 
 @dataclass(frozen=True)
 class LinearDrive:
-    """``x' = A x + B u``, u: force and command; acceleration ``C x + D u``; x: position, velocity ..."""
+    """``x' = A x + B u``, u: force, command; acceleration ``C x + D u``; x: position, velocity."""
 
     a: np.ndarray
     b: np.ndarray
