@@ -153,7 +153,7 @@ class Master:
     def run_controlled(
         self, inputs: Iterable[Sequence[float]], count: int, h: float | None = None
     ) -> Record:
-        """Run a number of intervals; the inputs of each are asked for when it begins."""
+        """Run a number of intervals; its inputs are requested at its start."""
         rows, ends, recorded = [list(self.row)], [], []
         own = len(self.connection.inputs)
         for values in inputs:
