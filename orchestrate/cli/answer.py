@@ -36,8 +36,8 @@ UNIT_OF_KEY = {  # of a structure's file
 }
 VARIED = ("eta", "frequency", "level", "values")
 OVERLAY = """
---overlay FILE ...  NetCDF file of a branch that is drawn over the picture, solid where stable,
-    dashed where not; may be repeated
+--overlay FILE,... ...  NetCDF files of branches that are drawn over the picture, solid where
+    stable, dashed where not
 """
 
 
@@ -123,7 +123,8 @@ def read_overlay(
     arguments: argparse.Namespace, structure: Structure, question: Mapping[str, Any]
 ) -> list[xr.Dataset]:
     """Return the branches of ``--overlay``; raise for one that does not fit the question."""
-    paths = getattr(arguments, "overlay", [])
+    texts = getattr(arguments, "overlay", [])
+    paths = [Path(name) for text in texts for name in text.split(",")]
     if not paths:
         return []
     if arguments.command == "resonance" and "level" in question:

@@ -46,7 +46,7 @@ def table(columns: Mapping[str, Iterable[str]], most: int = MOST_ROWS) -> Iterat
         yield f"  ... and {len(rows) - most} more"
 
 
-def columns_of(data: xr.Dataset, names: str, prefix: str = "") -> Columns:
+def columns_of(data: xr.Dataset, names: str, prefix: str = "", form: str = ".6g") -> Columns:
     """Return columns of variables along one dimension, in display units."""
     columns: Columns = {}
     for name in names.split():
@@ -60,7 +60,7 @@ def columns_of(data: xr.Dataset, names: str, prefix: str = "") -> Columns:
         elif array.ndim > 1:
             columns[title] = [",".join(f"{number:.6g}" for number in row) for row in values]
         elif array.dtype.kind == "f":
-            columns[title] = [f"{value / factor:.6g}" for value in values]
+            columns[title] = [format(value / factor, form) for value in values]
         else:
             columns[title] = [str(value) for value in values]
     return columns

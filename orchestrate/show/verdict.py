@@ -193,6 +193,7 @@ def fits_section(answer: xr.Dataset) -> Section | None:
     if "measured" not in answer or "fitted" not in answer:
         return None
     picture = draw_detect(answer.assign_attrs(title=""))
+    picture.set_size_inches(max(9.0, picture.get_figwidth()), 5.6)  # wide, as the page is
     words = "What was measured, and what the best structures of each kind do, order by order."
     return Section("The measurement over the fits", picture=picture, caption=words, place="front")
 
