@@ -98,7 +98,7 @@ def lyapunov_summary(data: xr.Dataset) -> Iterator[str]:
     if needed > float(data.attrs["periods"]):
         yield (
             "neutral: quasi-periodic, or too few periods: exponents of these sizes take about "
-            f"--periods {math.ceil(needed)}"
+            f"--periods {float(f'{needed:.2g}'):.0f}"
         )
 
 
@@ -160,6 +160,7 @@ POINCARE = Command(
     poincare_summary,
 )
 
+IRREGULAR_PERIODS = 60  # that are drawn of an irregular attractor
 MAX_VALUES_IN_FULL = 5  # values up to which every attractor is printed
 
 
@@ -189,6 +190,30 @@ def attractors_summary(data: xr.Dataset) -> Iterator[str]:
     yield from table(columns)
 
 
+def draw_coexisting(data: xr.Dataset) -> Any:
+    """Draw attractors over a parameter; at one value their motions; return the figure."""
+    import orchestrate
+
+    from ..model import Structure
+    from ..show.planes import draw_motions
+
+    name = varied_parameter(data)
+    if data.sizes[name] > 1:
+        return orchestrate.plot(data)
+    at = data.isel({name: 0})
+    at = at.isel(attractor=at.multiplicity.notnull().values)
+    about = {str(key): value for key, value in data.attrs.items()}
+    structure = Structure.from_attributes(about)
+    if name not in ("eta", "frequency"):
+        structure = structure.replace(**{name: float(at[name])})
+    motions = []
+    for state, n in zip(at.state.values, at.multiplicity.values, strict=True):
+        periods = int(n) or IRREGULAR_PERIODS
+        box = {"frequency": float(at.frequency), "amplitude": float(at.amplitude)}
+        motions.append(orchestrate.simulate(structure, **box, start=state, periods=periods))
+    return draw_motions(at, [with_units(motion, units_of(data)) for motion in motions])
+
+
 ATTRACTORS = Command(
     "attractors",
     "coexisting motions: how many, and how many random starts lead to each",
@@ -212,7 +237,7 @@ alone may miss one whose basin is small.""",
     answer,
     ask_along_parameter,
     attractors_summary,
-    has_picture=is_curve,
+    draw_coexisting,
 )
 
 FEWEST_STARTS = 32  # along a side, for entropies
