@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import hashlib
+import logging
 import math
 from collections.abc import Iterator, Mapping
 from functools import partial
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
 
     from ..model import Structure
 
+log = logging.getLogger(__name__)
 LINES = {  # attributes of a verdict that are printed below it, and what stands before them
     "reason": "decided by",
     "simulated": "simulated records",
@@ -60,6 +62,7 @@ def run_diagnose(arguments: argparse.Namespace) -> None:
     others = [read_one_record(arguments, path) for path in arguments.other]
     if others and len(arguments.records) > 1:
         raise InputError("--other: of one beam; expected one record with it")
+    log.info("reading %s", ", ".join(path.name for path in arguments.records))
     records, refused = read_all_records(arguments)
     names = {path: file_stem(path, guess, arguments) for path in records}
     verdicts = compute_verdicts(arguments, records, names, guess) if records else {}
@@ -67,6 +70,7 @@ def run_diagnose(arguments: argparse.Namespace) -> None:
     for path, verdict in verdicts.items():
         for line in verdict_lines(path, with_units(verdict, units)):
             print(line)
+        log.info("%s: signs, pictures and page", path.name)
         signs = orchestrate.signs(records[path], other=others, structure=guess)
         write_files(arguments, names[path], {"": verdict, "_signs": signs})
     if refused:

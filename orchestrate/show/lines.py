@@ -128,7 +128,7 @@ def draw_sweep(
         part = {"direction": direction} if both else {}
         samples = shown.sel(part).transpose(parameter, "sample").values
         marks = usual if branches else MARKS.get(direction, usual)
-        draw_samples(top, x, samples, marks, "" if branches else direction)
+        draw_samples(top, x, samples, marks, "the sweep" if branches else direction)
         impacts = data.impacts_per_period.sel(part).values
         width = {"up": 2.6, "down": 1.0}.get(direction, 0.8)
         draw_steps(bottom, x, impacts, MARKS.get(direction, MarkStyle(BLACK)).colour, width)
