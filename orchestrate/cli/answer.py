@@ -36,8 +36,7 @@ UNIT_OF_KEY = {  # of a structure's file
 }
 VARIED = ("eta", "frequency", "level", "values")
 OVERLAY = """
---overlay FILE,... ...  NetCDF files of branches that are drawn over the picture, solid where
-    stable, dashed where not
+--overlay FILE,... ...  NetCDF files of branches that are drawn over the picture
 """
 
 
@@ -127,6 +126,15 @@ def read_overlay(
     paths = [Path(name) for text in texts for name in text.split(",")]
     if not paths:
         return []
+    branches = [read_earlier_result("--overlay", path) for path in paths]
+    if arguments.command == "map":
+        from ..show.overlay import explain_border_mismatch
+
+        over = {name for name, value in question.items() if isinstance(value, tuple)}
+        for path, curve in zip(paths, branches, strict=True):
+            if why := explain_border_mismatch(curve, over, structure.parameters()):
+                raise InputError(f"--overlay {path}: {why}")
+        return branches
     if arguments.command == "resonance" and "level" in question:
         raise InputError(f"--overlay: with several levels, --g {arguments.g}; expected one")
     if not is_curve(question):
@@ -137,7 +145,6 @@ def read_overlay(
     parameters = structure.parameters()
     if arguments.command == "resonance":  # of both
         parameters.pop("bonded")
-    branches = [read_earlier_result("--overlay", path) for path in paths]
     for path, branch in zip(paths, branches, strict=True):
         if why := explain_mismatch(branch, over, parameters):
             raise InputError(f"--overlay {path}: {why}")

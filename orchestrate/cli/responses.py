@@ -409,11 +409,12 @@ MAP = Command(
   {program} map --eta 1.2 --over e --values 0.1:0.9:0.1 --over D --values 0.005,0.02,0.05
   {program} map --structure beam --hz 8:20:0.25 --amplitude 1e-4 --over e --values 0.3,0.5,0.7
   {program} map --structure beam --set clearance=2e-5 --hz 8:20:0.25 --g 0.002:0.05:0.002
+  {program} map --eta 2.4:2.9:0.02 --over e --values 0.6:0.8:0.02 --overlay border.nc
 Each point starts from rest. The picture has impacts per period, multiplicity and largest gap.""",
     response_groups(
         Group(
             "question",
-            over_options(twice=True),
+            (over_options(twice=True), OVERLAY.replace("branches", "borders")),
             declared="exponent transient settle samples periods tolerance longest",
         )
     ),

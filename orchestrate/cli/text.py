@@ -72,7 +72,7 @@ def parameter_column(data: xr.Dataset, name: str, values: Any, form: str = ".6g"
     """Return the column of a parameter's values in display units."""
     parts = [parameter_parts(data, name, float(value), form) for value in values]
     before, _, unit = parts[0] if parts else (name, "", "")
-    title = before or f"{'frequency' if name == 'eta' else name} {unit}"
+    title = f"{before or ('frequency' if name == 'eta' else name)} {unit}".rstrip()
     return {title: [number for _, number, _ in parts]}
 
 

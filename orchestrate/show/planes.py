@@ -47,8 +47,8 @@ STATES = (BLUE, RED, GREY)  # separate motion, sequence of impacts, permanent co
 
 
 @styled
-def draw_map(*maps: xr.Dataset, title: str = "") -> Figure:
-    """Draw maps over two parameters, one row per dataset; return the figure."""
+def draw_map(*maps: xr.Dataset, title: str = "", overlay: Sequence[xr.Dataset] = ()) -> Figure:
+    """Draw maps over two parameters, one row per dataset, under borders; return the figure."""
     columns = [name for name in COLUMNS if all(name in data for data in maps)]
     size = (max(3.1 * len(columns), 4.5), 0.4 + 2.8 * len(maps))
     words = title or (title_from_attributes(maps[0]) if len(maps) == 1 else "")
@@ -64,6 +64,18 @@ def draw_map(*maps: xr.Dataset, title: str = "") -> Figure:
             words = "" if column or title or len(maps) == 1 else title_from_attributes(data)
             plane.set_title("\n".join(filter(None, [words, label])))
             plane.set(ylabel="" if column else y.label, xlabel=x.label)
+            limits = plane.axis()
+            for curve in overlay:
+                scales = (parameter_scale(data, name)[0] for name in (right, up))
+                across, along = (
+                    curve[n] / scale for n, scale in zip((right, up), scales, strict=True)
+                )
+                kind = str(curve.attrs["kind"])
+                draw_line(plane, across, along, "-", "white", 2.6)
+                draw_line(plane, across, along, "-", BORDERS[kind], 1.3, kind)
+            plane.axis(limits)
+    if overlay:
+        legend_below(figure, axes)
     return figure
 
 
