@@ -1,4 +1,4 @@
-"""How often a response repeats: the rule of :mod:`.multiplicity`, written once for Python and C.
+"""After how many periods a response repeats: :func:`decide`, written once for Python and C.
 
 In the subset of Python that :mod:`fmu_src.export.translation` translates, over a flat memory: a
 head, the stroboscopic states as they come, some of them over the motion's size, a row for each
@@ -27,7 +27,19 @@ def memory_size(count: int) -> int:
 
 
 def decide(m, time):
-    """Decide a response's multiplicity: its deviations must have died or be decaying."""
+    """Decide a response's multiplicity: its deviations must have died or be decaying.
+
+    Of the later half of the samples, as parts of the motion's size:
+
+    - *Repeated* after n periods: states n apart agree within the tolerance; what they still drift
+      is less than the tolerance too; and states a divisor of n apart keep a steady difference.
+    - An n above a quarter of these samples is seen too seldom for that: it counts if no smaller one
+      agrees and the deviation is below ``NEGLIGIBLE`` of the tolerance.
+    - *Undecided*, with the best guess: some n agrees but drifts or has not been confirmed, or a
+      deviation shrinks by ``MAX_CONTRACTION`` (``MAX_DYING_RATIO`` where some n agrees).
+    - *Undecided* too if only n up to three quarters of all samples agrees.
+    - *Irregular*: all else.
+    """
     scale(m, int(m[COUNT] / 2))
     count, limit, tolerance = int(m[LATER]), longest(m), m[TOLERANCE]
     many = int(count / 4)

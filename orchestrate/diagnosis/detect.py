@@ -75,8 +75,8 @@ def detect(
         and ``acceleration2``, as :func:`orchestrate.record` or :func:`orchestrate.read_record` make
         it.
     guess : Structure
-        As the delaminated structure would be; frequencies may be 10 % off, of the masses the ratio
-        alone acts.
+        Estimate of the delaminated structure. Frequencies may be off by 10 %; of the masses only
+        the ratio matters.
     free : sequence of str
         What is fitted of the delaminated structure, as for :func:`fit`.
     participation : float or mapping of str to float, optional

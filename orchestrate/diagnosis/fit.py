@@ -94,8 +94,8 @@ def fit(
     Raises
     ------
     InputError
-        Where the record is none of a swept or stepped sine and no resonance curve, is one tone that
-        has fewer numbers than are fitted, or an argument is no such name.
+        If the record is neither a swept or stepped sine nor a resonance curve, if a single tone
+        gives fewer numbers than are fitted, or if a name is invalid.
 
     Notes
     -----
@@ -110,7 +110,7 @@ def fit(
     Of a resonance curve each frequency is a window. A stepped sine of its levels is played until
     the motion has settled, in the curve's direction; phases and orders are compared where the curve
     has them, over 3 % of order 1 and its ``floor``. Its noise is what the residuals scatter from
-    one frequency to the next. Order 1 of one face alone does not hold ``f1`` and ``f2``.
+    one frequency to the next. ``f1`` and ``f2`` cannot be identified from order 1 of one face.
 
     Examples
     --------
@@ -278,10 +278,10 @@ class Results:
         if not np.isfinite(self.job.evidence.measured[:, 1]).any():
             if self.is_opening_seen():
                 return "the two faces move differently; order 2 is not in the curve"
-            return "order 2 is not in the curve: order 1 of a face alone does not hold f1 and f2"
+            return "order 2 is not in the curve: f1 and f2 cannot be told from order 1 of one face"
         if self.is_opening_seen():
             return f"{size}, {even.excess:.2g} times the size from which it counts as seen"
-        return f"no opening is seen ({size}): the record does not hold f1 and f2"
+        return f"no opening is seen ({size}): f1 and f2 cannot be identified from this record"
 
     def reported_values(self, position: int) -> tuple[dict[str, float], Floats]:
         """Return the reported parameters of a hypothesis by name, and their covariance."""

@@ -1,10 +1,13 @@
 """Decide to which motion a response settles, by Newton's method where repetition is doubtful.
 
-A response is run on until its state repeats. Its impacts over exactly those periods, counted from a
-phase far from any impact, are what Newton's method begins with. The orbit it finds says what the
-response is, if its multipliers lie inside the unit circle, if it is a possible motion that the FMU
-repeats with the same impacts, and if the response comes nearer to it as the multipliers say. Copies
-of a shorter orbit are that orbit.
+A response is continued until its state repeats. Newton's method starts from the impacts in these
+periods, counted from a phase far from any impact. The response belongs to the resulting orbit if
+
+- the orbit's multipliers lie inside the unit circle,
+- it is a possible motion, which the FMU repeats with the same impacts, and
+- the response approaches it as the multipliers predict.
+
+Copies of a shorter orbit count as that orbit.
 """
 
 from __future__ import annotations

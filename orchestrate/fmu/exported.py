@@ -171,7 +171,7 @@ def find(
             return export_once(model, candidate, folders[0], level)
         except CannotExport as reason:
             reasons.append(reason)
-    text = f"FMU {model}: there is none of the present sources, and none can be made here"
+    text = f"FMU {model}: none matches the current sources, and none can be built here"
     raise InputError(f"{text}: {reasons[0]}, or an FMU of your own")
 
 

@@ -60,7 +60,7 @@ def web_kernel(model: str, folder: str | PathLike[str] | None = None) -> WebKern
         with made_once(paths[0]):
             module = read_module(paths[0], guid) or compile_module(model, folders[0]).read_bytes()
     except CannotExport as reason:
-        text = f"{model}.wasm: there is none of the present sources, and none can be made here"
+        text = f"{model}.wasm: none matches the current sources, and none can be built here"
         raise InputError(f"{text}: {reason}") from None
     return WebKernel(module, *tables, guid)
 

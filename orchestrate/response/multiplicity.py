@@ -3,8 +3,9 @@
 A tolerance alone decides little: a transient that turns round, or that changes sides as next to a
 period doubling, comes back closer after some periods than after one; a torus comes back as close as
 one likes after enough of them; and a narrow period doubling stays within any tolerance. So
-:func:`decide_multiplicity` asks how deviations develop: those of a response that repeats have died,
-or die away. The rule itself is :mod:`fmu_src.kernels.repetition`, for Python and C alike.
+:func:`decide_multiplicity` follows how deviations develop: those of a response that repeats have
+died, or decay. The rule is :func:`fmu_src.kernels.repetition.decide`, for Python and C alike;
+:meth:`.respond.Response.conclude` makes it undecided where the impacts contradict it.
 """
 
 from __future__ import annotations

@@ -273,7 +273,7 @@ def resonance(
     Parameters
     ----------
     structure : Structure
-        Whether it is bonded does not matter: both kinds are answered.
+        ``bonded`` is ignored: results are returned for both, bonded and delaminated.
     eta, frequency, amplitude
         As in :func:`orchestrate.sweep`.
     direction : {"up", "down", "both"}

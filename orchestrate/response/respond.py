@@ -50,11 +50,14 @@ class Response:
         return decide_multiplicity(self.samples, self.frequency, self.x_rel_max, tolerance)
 
     def conclude(self, decision: Decision, count: Callable[[int], int]) -> tuple[Decision, float]:
-        """Return a decision, undecided where impacts speak against it, and impacts per period.
+        """Return a decision, undecided where impacts contradict it, and impacts per period.
 
-        A response that still converges, by less than the tolerance, may yet gain or lose impacts:
-        ``count`` gives those of the next n periods. Impacts per period are exact where it repeats,
-        else the mean over the samples.
+        ``count`` gives the impacts of the next n periods. A repeated response is undecided if
+
+        - the samples do not have that number of impacts per n periods, up to one at either end, or
+        - there are none though n > 1 or no motion without impacts exists.
+
+        Impacts per period are exact where it repeats, else the mean over the samples.
         """
         (n, decided), mean = decision, self.impacts_per_period
         if decided != REPEATED:

@@ -156,7 +156,7 @@ def spectra(
     Parameters
     ----------
     structure : Structure
-        Whether it is bonded does not matter: both kinds are answered.
+        ``bonded`` is ignored: results are returned for both, bonded and delaminated.
     eta, frequency, amplitude
         As in :func:`orchestrate.sweep`.
     periods : int

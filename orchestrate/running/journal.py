@@ -138,7 +138,7 @@ class Journal:
         for digest, data in rows:
             if isinstance(data, bytes) and self._row_checksum(index, data) == digest:
                 return unpack(data)
-        raise StoreError(f"{self.path}: chunk {index} is damaged; the same call goes on from it")
+        raise StoreError(f"{self.path}: chunk {index} is damaged; repeat the call to recompute it")
 
     def put(self, index: int, table: Table) -> None:
         """Store a computed chunk (dict of arrays) under its number, with a checksum."""

@@ -54,7 +54,7 @@ TOGETHER = {  # what belongs into one picture with a result of this function
 }
 OVER_OTHERS = ("border", "branch", "drive_branch")
 EXPECTED = (
-    f"expected answers of one of {', '.join(sorted(DRAW))}; several of one of border, branch, "
+    f"expected results of one of {', '.join(sorted(DRAW))}; several of one of border, branch, "
     "lyapunov, map; a sweep or resonance with branches over it, a map with borders; simulate or "
     "shake with the bonded structure's; couple with drive_branch"
 )
@@ -159,6 +159,6 @@ def function_name(answer: object) -> str:
     call = attributes.get("call")
     if not isinstance(call, str):
         kind = type(answer).__name__
-        raise InputError(f"plot: {kind} is no answer of a question; {EXPECTED}")
+        raise InputError(f"plot: cannot plot {kind}; {EXPECTED}")
     name = call.partition("(")[0].removesuffix("Job")  # a job by its class: CoupleJob
     return re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower()

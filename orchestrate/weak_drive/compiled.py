@@ -134,7 +134,7 @@ class CompiledMaster(Master):
         ):
             if side.status:
                 return channel.failure(side.failed.decode(), side.status)
-        raise AssertionError("a step failed, and none of both sides")
+        raise AssertionError("a step failed, but neither FMU reported an error")
 
 
 def fill_fmu_side(channel: Channel) -> FmuSide:

@@ -413,9 +413,9 @@ def couple(
         Communication step, s. By default its defect controls it, up to 0.4/omega; with a controller
         up to 0.1/omega.
     tolerance : float, optional
-        Of the control: halve a step whose defect is a larger part of the work exchanged in it, and
-        take longer ones again where they will do. 1e-7 by default, where no ``step`` is given, else
-        0: no control.
+        Of the control: a step is halved when its energy defect exceeds this fraction of the work
+        exchanged in it, and lengthened again when the defect falls well below. By default 1e-7, or
+        0 (no control) if ``step`` is given.
     **running
         ``jobs``, ``cluster``, ``progress``, ``store`` and so on, see
         :class:`orchestrate.running.options.Running`.

@@ -248,7 +248,7 @@ def drive_branch(
     Parameters
     ----------
     structure : Structure
-        Whether it is bonded does not matter: both kinds are answered.
+        ``bonded`` is ignored: results are returned for both, bonded and delaminated.
     drive : Drive
     speed : (float, float), optional
         Range of the mean speed, rad/s; by default 0.95 and 1.25 times the resonance.

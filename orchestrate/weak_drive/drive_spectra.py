@@ -158,7 +158,7 @@ def drive_spectra(
     Parameters
     ----------
     structure : Structure
-        Whether it is bonded does not matter: both kinds are answered.
+        ``bonded`` is ignored: results are returned for both, bonded and delaminated.
     drive : Drive
     voltage : float, optional
         V; by default 0.6 of the way between the jumps of the averaged theory, see

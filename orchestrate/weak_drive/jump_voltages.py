@@ -159,7 +159,7 @@ def jump_voltages(
     Parameters
     ----------
     structure : Structure
-        Whether it is bonded does not matter: both kinds are answered.
+        ``bonded`` is ignored: results are returned for both, bonded and delaminated.
     drive : Drive
     voltage : (float, float)
         Ends of the ramps, V.

@@ -150,7 +150,7 @@ class Master:
     def run_controlled(
         self, inputs: Iterable[Sequence[float]], count: int, h: float | None = None
     ) -> Record:
-        """Run a number of intervals; the inputs of each are asked for when it begins."""
+        """Run a number of intervals; its inputs are requested at its start."""
         rows, ends = [list(self.row)], []
         for values in inputs:
             rows += self._interval(list(values), h or self.scheme.h)

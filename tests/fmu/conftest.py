@@ -11,6 +11,7 @@ from .driver import FMUS
 from .programs.driver import free_all
 
 FORMS = list(FMUS)
+OF_NUMBERS = ("test_motion", "test_guarantees", "test_energy", "test_outputs", "test_importers")
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -49,22 +50,20 @@ def form(request):
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """Leave to ``-m slow`` all but the first case of a test on every form, and others on one form.
+    """Leave to ``-m slow`` all cases but one form of each, which goes round.
 
-    All forms give the same bits (tests/native/test_bit_identity.py), so each case is proved by one
-    of them; which one goes round.
+    All forms give the same bits (tests/native/test_bit_identity.py). Where a test is not about
+    numbers, its first case runs on every form.
     """
     cases = Counter()
     for item in items:
         names = getattr(item, "callspec", None)
-        if (
-            names is None
-            or "fmu" not in names.params
-            or Path(__file__).parent not in item.path.parents
-        ):
+        here = Path(__file__).parent in item.path.parents
+        if names is None or "fmu" not in names.params or not here:
             continue
+        numbers = item.path.stem in OF_NUMBERS
         form = names.params["fmu"]
-        number = cases[item.path, item.originalname, form]
-        cases[item.path, item.originalname, form] += 1
-        if number and number % len(FORMS) != FORMS.index(form):
+        number = cases[item.path, "" if numbers else item.originalname, form]
+        cases[item.path, "" if numbers else item.originalname, form] += 1
+        if (number or numbers) and number % len(FORMS) != FORMS.index(form):
             item.add_marker(pytest.mark.slow)

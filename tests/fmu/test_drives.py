@@ -9,8 +9,7 @@ import pytest
 
 from ..kernels.electrodynamic_shaker.truth import Shaker
 from ..kernels.shaker.truth import solve
-from ..sparing import ordinary
-from .driver import DRIVES, FORMS, path_of, run, run_with_output
+from .driver import DRIVES, FORMS, path_of, run
 from .programs.driver import Refused, open_fmu
 
 MOTOR, COIL = DRIVES
@@ -128,12 +127,6 @@ def test_acceleration_belongs_to_the_inputs_as_set_now(model, form):
 MISTAKES = [  # a model, what is done to a new instance, and what the message must name
     (MOTOR, lambda f: f.start(box_mass=0.0), "box_mass = 0.0 kg; 1e-30 <= box_mass <= 1e+30"),
     (MOTOR, lambda f: f.start(armature_resistance=-1.0), "armature_resistance = -1.0 Ohm; 1e-30"),
-    (
-        MOTOR,
-        lambda f: f.start().set(voltage=math.nan),
-        "voltage = nan V; -1e+30 <= voltage <= 1e+30",
-    ),
-    (MOTOR, lambda f: f.start().set(box_force_2=math.inf), "box_force_2 = inf N/s2; expected"),
     (MOTOR, lambda f: f.start().set(rotor_inertia=1.0), "rotor_inertia = 1.0; fixed parameter"),
     (MOTOR, lambda f: f.start().set(speed=1.0), "speed = 1.0; output"),
     (
@@ -146,22 +139,11 @@ MISTAKES = [  # a model, what is done to a new instance, and what the message mu
         lambda f: f.start(armature_inductance=1e-9, voltage=5.0).step(1.0),
         "armature_inductance = 1e-09 H; expected 0 H; cannot finish; reached 0.0 s",
     ),
-    (
-        MOTOR,
-        lambda f: f.start().step(math.nan),
-        "communicationStepSize = nan s; expected every finite number >= 0",
-    ),
     (MOTOR, lambda f: f.start().step(-1.0), "communicationStepSize = -1.0 s; expected"),
     (MOTOR, lambda f: f.start(voltage=1e30).step(1.0), "range of floating-point numbers"),
     (COIL, lambda f: f.start(table_mass=0.0), "table_mass = 0.0 kg; 1e-30 <= table_mass <= 1e+30"),
-    (COIL, lambda f: f.start(force_factor=math.nan), "force_factor = nan N/A; expected"),
     (COIL, lambda f: f.start(voltage_limit=-5.0), "voltage_limit = -5.0 V; 0.0 <= voltage_limit"),
-    (
-        COIL,
-        lambda f: f.start().set(command=math.nan),
-        "command = nan V; -1e+30 <= command <= 1e+30",
-    ),
-    (COIL, lambda f: f.start().set(current=1.0), "current = 1.0; output"),
+    (COIL, lambda f: f.start().set(command=math.nan), "command = nan V; -1e+30 <= command"),
     (
         COIL,
         lambda f: f.start(position_start=-0.02, travel_limit=0.01),
@@ -207,22 +189,3 @@ def test_a_failed_step_leaves_the_instance_where_it_was(model, form):
     f.refused("doStep", 0.01, 10.0)
     assert f.motion() == other.motion()
     assert f.step(0.02).motion() == other.step(0.02).motion()
-
-
-@drives
-@pytest.mark.parametrize("form", ordinary(["fmi2", "fmi2-python"]))
-def test_libcosim(model, form, tmp_path):
-    """Another reader of the XML and another loop: the same bits."""
-    pytest.importorskip("libcosimpy")
-    if model == MOTOR:
-        names, values = ["box_position", "angle", "motor_energy"], {"voltage": 7.0}
-    else:
-        names = ["box_position", "current", "voltage", "energy"]
-        values = {name: value for name, value in LIMITED.items() if value}
-    arguments = (values, names, 0.03125, 16)
-    (rows, known), done = run_with_output(
-        "libcosim.simulate", path_of(model, form), *arguments, cwd=tmp_path
-    )
-    f = open_fmu(path_of(model, form)).start(**values)
-    assert [row[1:] for row in rows] == [f.step(k * 0.03125).get(*names) for k in range(1, 17)]
-    assert known > 30 and "error" not in done.stderr.lower()

@@ -97,27 +97,6 @@ def test_cubic_inputs_run_on_over_steps(fmu):
     assert found[0][1] != open_fmu(fmu).start(**harmonic(1.13), **CUBIC).step(12.0).motion()
 
 
-FAST, PLASTIC = {"box_frequency": 5.720780758293891}, {"box_frequency": 4.530369234871276}
-STROBOSCOPIC = [
-    ({**FAST, "box_amplitude": 0.03055549976383381, "e": 0.3}, 59, 59),
-    ({**PLASTIC, "box_amplitude": 0.04872286314565522, "e": 0.0, "gamma": 1e-3}, 59, 59),
-    ({"d1": 100.0, "x1_start": -0.2, "x2_start": 0.3, "v1_start": -0.3, "v2_start": 0.6}, 1, 1024),
-    ({"box_frequency": 1.13, "e": 0.3}, 60, 60),
-]
-
-
-@pytest.mark.parametrize(("values", "periods", "pieces"), STROBOSCOPIC)
-def test_steps_of_a_period_end_where_one_step_ends(fmu, values, periods, pieces):
-    """An importer's grid decides neither whether a step can be done; x_rel_max, which looks at each
-    step, included.
-    """
-    size = 2.0 * math.pi / values.get("box_frequency", 0.4) * (periods / pieces)
-    whole = open_fmu(fmu).start(**values).step(pieces * size)
-    parts = open_fmu(fmu).start(**values).at(*(k * size for k in range(1, pieces + 1)))
-    names = ("x1", "x2", "impact_count")
-    assert parts.get(*names) == pytest.approx(whole.get(*names), abs=1e-9)
-
-
 @pytest.mark.parametrize(
     ("clearance", "e_slope"), [(0.0, 0.0), (0.3, 0.0), (-0.3, 0.7), (0.0, 0.7)]
 )

@@ -2,7 +2,6 @@
 line, libcosim, fmuloader and ecos; and another checker reads it.
 """
 
-import csv
 import itertools
 import subprocess
 import sys
@@ -70,34 +69,6 @@ def test_steps_that_differ_in_the_last_bits(fmu):
     assert [rows[name][-1] for name in names] == pytest.approx(one, abs=1e-11)
 
 
-@pytest.mark.parametrize("form", ordinary(FORMS, ["fmi3"]))
-def test_fmpy_command_line(form, tmp_path, reference):
-    """``fmpy simulate`` writes the same numbers into its table."""
-    command = [
-        sys.executable,
-        "-m",
-        "fmpy",
-        "simulate",
-        str(FMUS[form]),
-        "--stop-time",
-        str(STEP * COUNT),
-    ]
-    command += ["--output-interval", str(STEP), "--start-values"]
-    command += [text for name, value in VALUES.items() for text in (name, str(value))]
-    command += ["--output-variables", *NAMES, "--output-file", "out.csv"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
-    # pythonfmu's library writes into freed memory when a process ends, which now and then aborts
-    # it: see test_limits
-    aborted = form == "fmi2-python" and done.returncode == -6
-    assert done.returncode == 0 or aborted, done.stderr
-    assert done.stderr.replace("corrupted double-linked list", "").strip() == ""
-    with (tmp_path / "out.csv").open(newline="") as file:
-        head, *rows = list(csv.reader(file))
-    columns = [[name.strip('"') for name in head].index(name) for name in ["time", *NAMES]]
-    found = np.array(rows, dtype=float)[:, columns]
-    assert found == pytest.approx(reference, rel=1e-12, abs=1e-12)
-
-
 @pytest.mark.parametrize("form", ["fmi2-python", "fmi2"])
 def test_libcosim(form, tmp_path, reference):
     """Another reader of the XML and another loop, with nanoseconds for a clock: bits again. It
@@ -134,7 +105,7 @@ def test_ecos(tmp_path, reference):
     assert rows[-1, -1] > 20
 
 
-@pytest.mark.parametrize("form", ordinary(FORMS, ["fmi2", "fmi3"]))
+@pytest.mark.parametrize("form", ordinary(FORMS, ["fmi3"]))
 def test_fmutool_finds_nothing_to_say(form):
     """The checks of the FMU manipulation toolbox: the XSD, and what the standard says besides."""
     pytest.importorskip("fmu_manipulation_toolbox")

@@ -7,17 +7,8 @@ import pytest
 
 from .programs.driver import open_fmu
 
-VALUES = {
-    "m1": 1.2,
-    "m2": 0.8,
-    "k1": 1.5,
-    "k2": 2.0,
-    "d1": 0.02,
-    "d2": 0.05,
-    "e": 0.6,
-    "box_amplitude": 0.7,
-    "box_frequency": 0.6,
-}
+VALUES = {"m1": 1.2, "m2": 0.8, "k1": 1.5, "k2": 2.0, "d1": 0.02, "d2": 0.05, "e": 0.6}
+VALUES |= {"box_amplitude": 0.7, "box_frequency": 0.6}
 
 
 def test_outputs_follow_their_definitions(fmu):

@@ -30,21 +30,10 @@ def test_the_example_passes_on_the_exported_file(form, tmp_path):
     assert int(re.search(r"(\d+) passed", done.stdout).group(1)) > 25
 
 
-@pytest.mark.parametrize(
-    ("fmu", "reason"),
-    ordinary(
-        [
-            (FMUS["fmi2"].with_name("MotorShaker.fmu"), "expected a TwoMassImpactOscillator"),
-            (None, "environment variable FMU is not set: expected the path of"),
-            ("nowhere/beam.fmu", "environment variable FMU names no file, 'nowhere/beam.fmu'"),
-        ],
-        several_names=True,
-    ),
-)
-def test_the_example_says_in_one_line_that_it_has_no_oscillator(fmu, reason, tmp_path):
-    done = run_pipeline(fmu, tmp_path)
+def test_the_example_says_in_one_line_that_it_has_no_oscillator(tmp_path):
+    done = run_pipeline("nowhere/beam.fmu", tmp_path)
     assert done.returncode == 2
     head, line = done.stdout.strip().splitlines()[1:3]
     assert "ERROR collecting test_fmu.py" in head
-    assert reason in line
+    assert "environment variable FMU names no file, 'nowhere/beam.fmu'" in line
     assert not re.search("in <module>|Traceback|^E ", done.stdout, re.MULTILINE)

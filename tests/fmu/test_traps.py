@@ -3,7 +3,6 @@
 import gc
 import math
 import re
-import subprocess
 import sys
 import tempfile
 import zipfile
@@ -12,7 +11,6 @@ from pathlib import Path
 import fmpy
 import pytest
 
-from ..fresh import ROOT
 from .driver import FMUS, run, run_with_output
 from .programs.driver import Refused, describe, harmonic, messages, open_fmu
 
@@ -86,15 +84,6 @@ def test_many_instances_and_resets():
             assert f.reset().start(**harmonic(1.13)).step(20.0).outputs() == expected
 
 
-@pytest.mark.parametrize("pure", [False, True])
-def test_instantiation_takes_less_than_a_second(tmp_path, pure):
-    """The first of a process, with all that is imported, and later ones, to the first step."""
-    program = "traps.instantiation_takes_less_than_a_second"
-    for made, stepped in run(program, PYTHON, cwd=tmp_path, pure=pure):
-        assert made < 1.0
-        assert stepped < 1.0
-
-
 @pytest.mark.parametrize(
     "name", ["%s%n%s%n", "%d %100000d %p", "ü €", "", "a" * 2000, "two\nlines"]
 )
@@ -151,15 +140,6 @@ def test_a_step_too_short_to_advance_is_reported_once(fmu):
     (message,) = texts + messages
     for part in ("communicationStepSize = 1e-09 s", "1000000000.0 s", "expected a longer one"):
         assert part in message
-
-
-def test_own_access_leaves_other_importers_their_messages():
-    """A notebook that has used the project's functions, then FMPy itself."""
-    program = Path(__file__).with_name("programs") / "own_access.py"
-    command = [sys.executable, str(program), str(PYTHON)]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
-    assert done.stdout.count("cannot finish") == 1  # raised, by the project
-    assert done.stderr.count("cannot finish") == 1  # printed, for FMPy's loop
 
 
 def test_working_folder_and_paths(fmu, tmp_path, monkeypatch):

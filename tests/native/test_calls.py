@@ -1,7 +1,6 @@
 """Which function may be called when, and what a call that may not be changes: nothing."""
 
 import ctypes
-import math
 import re
 
 import pytest
@@ -157,16 +156,3 @@ def test_a_damaged_state_is_refused(fmus, version):
             with pytest.raises(Refused):
                 f.restore(one, time)
         assert f.outputs() == before
-
-
-@pytest.mark.parametrize("version", VERSIONS)
-def test_a_step_of_no_length_and_the_shortest_there_is(fmus, version):
-    with open_fmu(fmus[version]) as f:
-        before = f.start().step(20.0).motion()
-        for size in (-1.0, -5e-324, math.nan, math.inf, -math.inf):
-            assert "communicationStepSize = " in f.refused("doStep", 20.0, size)
-        for point in (-20.0, 19.0, 21.0, math.nan, math.inf, 1e300):
-            told = f.refused("doStep", point, 1.0)
-            assert "currentCommunicationPoint = " in told and "20.0 s" in told
-        f.call("doStep", 20.0, 0.0)
-        assert f.motion() == before

@@ -1,7 +1,5 @@
 """The way from C to an object file: where a new ziglang breaks it, these tests say so."""
 
-import shutil
-import subprocess
 from importlib.util import find_spec
 
 import pytest
@@ -9,10 +7,9 @@ import pytest
 from fmu_src.export import compiler
 from fmu_src.export.compiler import kernel_object
 from fmu_src.export.errors import CannotExport
-from fmu_src.export.source_code import kernel_source
+from tools import importers
 
-from .conftest import cannot
-from .object_files import Pe
+from .object_files import Pe, needs_objdump, objdump
 
 WINDOWS = b"""
 __declspec(dllexport) int print(char *text, double value) {
@@ -21,37 +18,13 @@ __declspec(dllexport) int print(char *text, double value) {
 """
 
 
-@pytest.fixture(scope="module")
-def kernel():
-    """The oscillator's object file for Linux; nothing of the FMUs' own build."""
-    try:
-        return kernel_object("x86_64-linux", kernel_source("oscillator"))
-    except CannotExport as reason:
-        return cannot(reason)  # a failure, not a skip, where ziglang is there
-
-
-@pytest.mark.skipif(shutil.which("objdump") is None, reason="objdump is not installed")
-def test_kernel_has_no_instruction_beyond_the_baseline(kernel, tmp_path):
-    """No fused multiply-add, whose bits would differ, and no AVX, which older processors lack;
-    nothing is called but what the linker has.
-    """
-    (tmp_path / "kernel.o").write_bytes(kernel)
-    code = subprocess.run(
-        ["objdump", "-d", "--no-show-raw-insn", "kernel.o"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=True,
-    ).stdout
-    instructions = {
-        line.split("\t")[1].split()[0] for line in code.splitlines() if line.count("\t") > 0
-    }
+@needs_objdump
+def test_the_binary_has_no_instruction_beyond_the_baseline(fmus, tmp_path):
+    """No fused multiply-add, whose bits would differ, and no AVX, which older processors lack."""
+    lines = objdump("-d", importers.unpack_binary(fmus["fmi3"], "fmi3", tmp_path)).splitlines()
+    instructions = {line.split("\t")[2].split()[0] for line in lines if line.count("\t") > 1}
     assert {"mulsd", "addsd"} <= instructions
     assert not [name for name in instructions if name.startswith("v") or name == "fld"]
-    symbols = subprocess.run(
-        ["objdump", "-t", "kernel.o"], cwd=tmp_path, capture_output=True, text=True, check=True
-    ).stdout
-    assert {line.split()[-1] for line in symbols.splitlines() if "*UND*" in line} <= {"memset"}
 
 
 def test_the_compiler_s_first_error_is_one_line():
@@ -62,9 +35,10 @@ def test_the_compiler_s_first_error_is_one_line():
     assert "\n" not in str(e.value)
 
 
+@needs_objdump
 @pytest.mark.skipif(find_spec("ziglang") is None, reason="ziglang is not installed")
-def test_windows_libraries_need_no_c_library_compiled_first():
+def test_windows_libraries_need_no_c_library_compiled_first(tmp_path):
     """A minute of a fresh machine: what they import is the system's own."""
     files = {"one.c": b"#include <stdio.h>\n" + WINDOWS}
-    library = compiler.link("x86_64-windows", "one", files)
-    assert set(Pe(library).imports) == {"api-ms-win-crt-stdio-l1-1-0.dll"}
+    (tmp_path / "one.dll").write_bytes(compiler.link("x86_64-windows", "one", files))
+    assert set(Pe(tmp_path / "one.dll").imports) == {"api-ms-win-crt-stdio-l1-1-0.dll"}

@@ -106,19 +106,3 @@ def test_a_cubic_runs_on_where_other_inputs_are_set(fmus, form):
     for name in ("x1", "v1", "box_force"):
         place = STATE.index(name)
         assert found[place] == pytest.approx(expected[place], rel=1e-13)
-
-
-def test_input_derivatives_of_fmi2_begin_a_cubic(fmus):
-    with (
-        open_fmu(fmus["fmi2"]) as fmu,
-        open_fmu(fmus["fmi2"]) as twin,
-        open_fmu(fmus["fmi2"]) as untouched,
-    ):
-        reference = fmu.variables["box_acceleration"].valueReference
-        for one in (fmu, twin, untouched):
-            one.start(**harmonic(1.13), box_jerk=0.03)
-            one.step(3.0)
-        fmu.fmu.setRealInputDerivatives([reference], [1], [0.03])
-        twin.set(box_jerk=0.03)
-        found, expected, other = (at_end(one, 4.0, 9.0) for one in (fmu, twin, untouched))
-    assert found == expected != other

@@ -1,12 +1,11 @@
 """Machines that lack a tool: what can be made is made, and one line says what could not."""
 
 import zipfile
-from types import SimpleNamespace
 
 import pytest
 from fmpy.validation import validate_fmu
 
-from fmu_src.export import compiler, errors, pythonfmu_form
+from fmu_src.export import compiler, pythonfmu_form
 from fmu_src.export.errors import CannotExport
 from fmu_src.export.forms import FORMS, export
 from fmu_src.export.platforms import this_machine
@@ -119,15 +118,3 @@ def test_without_a_compiler_of_its_own_the_machine_makes_the_same_bytes(
         form: fmus[form].read_bytes() for form in FORMS
     }
     assert not caplog.messages
-
-
-@pytest.mark.slow  # compiles for 4 s
-def test_without_pythonfmu_the_native_forms_are_made(fmus, hide, monkeypatch, tmp_path):
-    """What is missing is named, with the extra that has it."""
-    hide()
-    found = SimpleNamespace(find_spec=lambda name: None if name == "pythonfmu" else name)
-    monkeypatch.setattr(errors, "importlib", SimpleNamespace(util=found))
-    made, reasons = build(tmp_path)
-    assert list(made) == ["fmi2", "fmi3"]
-    for reason in reasons.values():
-        assert "pythonfmu, which" in reason and 'pip install "vibroimpact[build]"' in reason

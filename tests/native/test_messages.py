@@ -19,7 +19,6 @@ from ..fmu.programs.driver import (
     messages,
     open_fmu,
 )
-from ..sparing import ordinary
 from .conftest import VERSIONS
 
 OTHER = "{00000000-0000-0000-0000-000000000000}"
@@ -116,18 +115,6 @@ def test_a_wrong_type_is_named_with_its_variable(fmus, version):
         assert f"valueReference = 99999: expected one of the {whole} variables" in said
 
 
-@pytest.mark.parametrize("version", ordinary(VERSIONS))
-def test_counts_in_messages_are_whole_numbers(fmus, version):
-    """Of a step that cannot finish: chattering without an end."""
-    with open_fmu(fmus[version]) as fmu:
-        fmu.start(box_amplitude=0.0, box_acceleration=-1.0, x2_start=1.0, e=1.0, gamma=1e-9)
-        fmu.fmu.doStep(0.0, 1.0)
-        said = fmu.refused("doStep", 1.0, 1e12)
-    assert "evaluations (at most 10000000)" in said
-    counted = said.split("after ")[1].split(" impacts")[0]
-    assert counted.isdigit() and int(counted) > 0
-
-
 @versions
 def test_unknown_log_categories_are_refused(fmus, version):
     with open_fmu(fmus[version]) as fmu:
@@ -137,28 +124,6 @@ def test_unknown_log_categories_are_refused(fmus, version):
         fmu.fmu.setDebugLogging(False, [])
         said = fmu.refused("setDebugLogging", True, [known[0].name, "logNonsense"])
         assert "logNonsense" in said and known[0].name in said
-
-
-def test_a_state_saved_in_event_mode_is_stepped_on_without_it(fmus):
-    with (
-        open_fmu(fmus["fmi3"], event_mode=True, early_return=True) as fmu,
-        open_fmu(fmus["fmi3"]) as other,
-    ):
-        fmu.start(**harmonic(1.13))
-        while not fmu.go(fmu.time + 4.0)[0]:
-            pass
-        fmu.fmu.enterEventMode()
-        saved = fmu.save()
-        fmu.update()
-        fmu.fmu.enterStepMode()
-        end = other.restore(*saved).time + 20.0
-        while fmu.time < end:
-            if fmu.go(end)[0]:
-                fmu.handle()
-        other.step(end)
-        assert other.get("x1", "v2", "impact_count") == fmu.get("x1", "v2", "impact_count")
-        fmu.restore(*saved)  # where there is event mode, the state is still in it
-        fmu.update()
 
 
 @versions

@@ -17,7 +17,6 @@ from fmu_src.export.source_code import kernel_source
 from tools import importers
 
 from ..fmu.programs.driver import COMMON, harmonic
-from ..sparing import ordinary
 
 MULTIPLY_ADD = b"""
 int kernel_advance(double *memory, double time) {
@@ -114,8 +113,9 @@ def test_a_dylib_bears_the_name_it_is_given(platform):
     assert install_name(library).rsplit("/", 1)[-1] == "MotorShaker.dylib"
 
 
-@pytest.mark.parametrize("name", ordinary(ALL, ["aarch64-linux"]))
-@pytest.mark.parametrize("folder", ordinary(forms.MODELS.values()))
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ALL)
+@pytest.mark.parametrize("folder", forms.MODELS.values())
 def test_no_platform_fuses_a_multiply_add_in_the_kernel(folder, name, tmp_path):
     """Neither ARM's nor Intel's: the assembly that the binaries are made of."""
     code = assembly(kernel_source(folder), name, tmp_path)

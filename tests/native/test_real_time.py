@@ -102,17 +102,6 @@ def test_no_compiler_warns(folders, version, model):
         sources.run_command(compiler, *WARNINGS, "-fsyntax-only", *files)
 
 
-@pytest.mark.slow
-@needs("clang")
-@pytest.mark.parametrize("model", MODELS)
-@pytest.mark.parametrize("version", VERSIONS)
-def test_clangs_analyser_finds_nothing(folders, version, model):
-    files = sources.c_files(folders[version, model])
-    command = ["clang", "--analyze", "-std=c99", "-Xclang", "-analyzer-output=text", *files]
-    done = subprocess.run(command, cwd=files[0].parent, capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (0, "")
-
-
 def guarded(lines):
     """Lines with the conditions of the preprocessor they lie in."""
     stack = []
@@ -158,17 +147,7 @@ def test_microsofts_dialect_is_held_to(folders, version, model):
                     assert re.search(macro, conditions), f"{file.name}: {line}"
 
 
-@needs("gcc", "nm")
-@pytest.mark.parametrize("version", ordinary(VERSIONS, ["fmi3"]))
-def test_no_global_variable_changes(folders, version, tmp_path):
-    """All that is global can lie in read-only memory."""
-    for file in sources.c_files(folders[version, MODELS[0]]):
-        made = tmp_path / f"{file.stem}.o"
-        sources.run_command("gcc", "-O0", "-std=c99", "-fno-pie", "-c", file, "-o", made)
-        kinds = sources.run_command("nm", "--defined-only", made).split()[1::3]
-        assert kinds and set(kinds) <= set("TtRr"), file.name
-
-
+@pytest.mark.slow
 @needs("gcc", "nm")
 def test_sources_of_several_fmus_are_linked_into_one_program(folders, fmus, tmp_path):
     """By the prefix of the standard's headers: no name is there twice, and each has its bits."""
@@ -222,6 +201,7 @@ def test_the_manual_states_the_stack(folders, machine):
     assert graph.stack_bytes(footprint.CALLS["a step"]) <= stated(machine, "a refusal")
 
 
+@pytest.mark.slow
 @needs("gcc")
 def test_the_manual_states_the_memory(folders, tmp_path):
     """Of an instance, as the program prints it; the trajectory is the one of the bare targets."""

@@ -41,23 +41,6 @@ def test_samples_do_not_change_the_run_and_their_number_may(fmus, form):
     assert found[0] == found[1] == found[2]
 
 
-@pytest.mark.parametrize("count", [0, 7])
-def test_largest_gap_is_that_of_small_steps(fmus, count):
-    """Not below what small steps see, and not above by more than a summit differs from the largest
-    of two rounded numbers.
-    """
-    f = open_fmu(fmus["fmi3"]).start(sample_count=count, **harmonic(1.13))
-    fine = open_fmu(fmus["fmi3"]).start(**harmonic(1.13))
-    for k in range(30):
-        f.step(10.0 * (k + 1))
-        largest = seen = 0.0
-        for i in range(80):
-            fine.step(10.0 * k + 0.125 * (i + 1))
-            largest, seen = max(largest, fine.one("x_rel_max")), max(seen, fine.one("x_rel"))
-        assert f.one("x_rel_max") >= seen
-        assert f.one("x_rel_max") == pytest.approx(largest, rel=1e-12)
-
-
 @pytest.mark.parametrize("count", [-1, ROOM + 1])
 def test_sample_count_out_of_range(native_fmu, count):
     f = open_fmu(native_fmu).start()

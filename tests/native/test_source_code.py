@@ -64,9 +64,8 @@ def reference(fmus, tmp_path_factory):
     return rows(fmus["fmi2"], tmp_path_factory.mktemp("reference") / "run")
 
 
-@pytest.mark.parametrize(
-    "flags", ordinary([FAST, ("-Ofast", "-mfma"), ("-O0",), ("-O3", "-march=native")])
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("flags", [FAST, ("-Ofast", "-mfma"), ("-O0",), ("-O3", "-march=native")])
 def test_fast_options_change_no_bit(fmus, flags, tmp_path, reference):
     """The sources say what gcc may not do."""
     folder = unpacked(fmus["fmi2"], tmp_path / "fmu")

@@ -1,14 +1,12 @@
 """Hosts that an FMU in Python could trip over, in processes of their own."""
 
 import sys
-import tempfile
-import time
 import types
 from pathlib import Path
 
 import fmpy
 import numpy as np
-from driver import Fmu2, Refused, describe, harmonic, open_fmu
+from driver import Fmu2, Refused, harmonic, open_fmu
 
 NAMES = (
     *("fmu_src", "fmu_src.runtime", "runtime", "kernels", "models", "runtime.slave"),
@@ -29,19 +27,6 @@ def host_with_modules_of_the_same_names(path):
     files = {name: str(getattr(m, "__file__", "")) for name, m in sys.modules.items()}
     new = sorted(name for name, file in files.items() if file.startswith(folder))
     return [outputs, [name for name in NAMES if sys.modules[name] is not hosts[name]], new]
-
-
-def instantiation_takes_less_than_a_second(path):
-    describe(path)
-    Fmu2.folders[path] = fmpy.extract(path, tempfile.mkdtemp(dir=Path.cwd()))
-    seconds = []
-    for k in range(6):
-        begin = time.process_time()
-        f = open_fmu(path, name=f"instance {k}")
-        made = time.process_time()
-        f.start().step(0.1)
-        seconds.append([made - begin, time.process_time() - begin])
-    return seconds
 
 
 def percent_signs_in_a_message_reach_the_importer(path):

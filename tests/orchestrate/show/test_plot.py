@@ -97,7 +97,7 @@ def test_all_public_questions_are_drawn_or_known_to_have_no_picture():
 @pytest.mark.parametrize(
     ("kinds", "words"),
     [
-        ((), "plot: no picture of nothing; expected answers of one of"),
+        ((), "plot: no picture of nothing; expected results of one of"),
         (("simulate", "sweep"), "plot: no picture of simulate and sweep"),
         (("couple", "branch"), "plot: no picture of couple and branch"),
         (("orbit",), "plot: no picture of orbit"),
@@ -111,5 +111,5 @@ def test_what_has_no_picture(kinds, words):
 
 @pytest.mark.parametrize("given", [3, xr.Dataset(), None])
 def test_what_is_no_answer(given):
-    with pytest.raises(InputError, match="is no answer of a question"):
+    with pytest.raises(InputError, match="cannot plot"):
         plot(given)

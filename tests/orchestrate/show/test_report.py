@@ -140,7 +140,7 @@ def test_numbers_have_the_digits_of_their_errors():
 def test_nothing_is_no_report(tmp_path):
     with pytest.raises(InputError, match="no answer given"):
         orchestrate.report(output=tmp_path / "r.html")
-    with pytest.raises(InputError, match="no answer of a question"):
+    with pytest.raises(InputError, match="cannot plot"):
         orchestrate.report(xr.Dataset(), output=tmp_path / "r.html")
     assert not list(tmp_path.iterdir())
 
