@@ -36,7 +36,7 @@ UNIT_OF_KEY = {  # of a structure's file
 }
 VARIED = ("eta", "frequency", "level", "values")
 OVERLAY = """
---overlay FILE,... ...  NetCDF files of branches that are drawn over the picture
+--overlay FILE,... +  NetCDF files of branches that are drawn over the picture
 """
 
 
@@ -130,9 +130,9 @@ def read_overlay(
     if arguments.command == "map":
         from ..show.overlay import explain_border_mismatch
 
-        over = {name for name, value in question.items() if isinstance(value, tuple)}
+        both = {name for name, value in question.items() if isinstance(value, tuple)}
         for path, curve in zip(paths, branches, strict=True):
-            if why := explain_border_mismatch(curve, over, structure.parameters()):
+            if why := explain_border_mismatch(curve, both, structure.parameters()):
                 raise InputError(f"--overlay {path}: {why}")
         return branches
     if arguments.command == "resonance" and "level" in question:

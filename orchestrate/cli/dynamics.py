@@ -211,7 +211,7 @@ def draw_coexisting(data: xr.Dataset) -> Any:
     motions = []
     for state, n in zip(at.state.values, at.multiplicity.values, strict=True):
         periods = int(n) or IRREGULAR_PERIODS
-        box = {"frequency": float(at.frequency), "amplitude": float(at.amplitude)}
+        box: Question = {"frequency": float(at.frequency), "amplitude": float(at.amplitude)}
         motions.append(orchestrate.simulate(structure, **box, start=state, periods=periods))
     return draw_motions(at, [with_units(motion, units_of(data)) for motion in motions])
 

@@ -240,7 +240,9 @@ class Files:
         units = str(read_units(arguments)).replace(", ", "-").replace("/", "_")
         text = getattr(arguments, "size", None)
         size = SIZE("--size", text) if text else None
-        files = cls(result, formats, plots, fresh, units, size and (size[0], size[1]), over)
+        files = cls(
+            result, formats, plots, fresh, units, (size[0], size[1]) if size else None, over
+        )
         others = [*files.table_paths(), *files.picture_paths()]
         existing = [path for path in others if existing_files(path)]
         if store is not None and existing and not result.exists():

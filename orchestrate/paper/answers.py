@@ -33,7 +33,7 @@ def region_rows(data: Datasets) -> list[dict[str, str]]:
 def largest_text(data: Datasets, case: str, region: Region) -> str:
     """Return a region's largest exponent with its error and place, from long runs.
 
-    The largest of many exponents is chosen for its error too: they only say where to look. One of
+    The largest of many exponents is biased by its error: they only say where to look. One of
     which less than half is left in a long run is named: its chaos has ended.
     """
     part, first = (between(one, *region[:2]) for one in (data.largest(case), data.exponent(case)))

@@ -226,7 +226,7 @@ def hypothesis_table(answer: xr.Dataset) -> Table:
         rows.append((str(one.hypothesis.values), misfit, minima, computed))
     parted = {"delaminated": True, "no opening seen": False}.get(str(answer.verdict.values))
     deciding = [i for i, row in enumerate(rows) if row[0].startswith(PARTED) == parted][:1]
-    columns = ("structure", "misfit", "minima found", "motions computed")
+    columns = ("structure", "misfit", "distinct fits", "motions computed")
     return Table(columns, rows, frozenset(deciding))
 
 

@@ -228,7 +228,7 @@ def jump_voltages(
         raise InputError(f"over = {over!r}: {expected}")
     varied = tuple(float(value) for value in values or ())
     for value in varied:
-        structure.replace(**{over: value})  # raises where it is out of range
+        structure.replace(**{str(over): value})  # raises where it is out of range
     job = JumpVoltagesJob("jump_voltages", structure, drive, schedules, scheme, over or "", varied)
     return answer(job, running, finder(running))
 
