@@ -22,7 +22,7 @@ import numpy as np
 
 from ..files import open_folder
 from ..lazy import xr
-from .bar import DELAY, progress_bar, relabel
+from .bar import DELAY, progress_bar, refresh
 from .executors import Workers, compute, in_this_process, processes, threads
 from .identity import Fmu, identity_of
 from .job import Job, Table
@@ -168,6 +168,11 @@ class Runner:
                 state.add_result(task, *future.result())
                 self.computed_items += len(task.items)
             bar.update(self.done() - bar.n)
+            if time.perf_counter() - self.start_time > DELAY:
+                notes = (
+                    state.job.progress_note(t.chunk.start) for state, t in self.futures.values()
+                )
+                refresh(bar, next(filter(None, notes), self.title()))
 
     def fmus_to_send(self, workers: Workers) -> dict[str, Path | bytes]:
         """Return FMUs by model as workers get them: paths, or bytes for remote workers."""
@@ -185,8 +190,6 @@ class Runner:
                     break
                 chosen = {model: fmus[model] for model in state.job.models}
                 state.under_way.add(task.chunk.index)
-                if time.perf_counter() - self.start_time > DELAY:
-                    relabel(bar, state.job.progress_note(task.chunk.start) or self.title())
                 code = state.identity["code"] if workers.remote else None
                 future = workers.executor.submit(
                     compute, state.job, chosen, task.items, task.previous, task.warmup_items, code

@@ -363,7 +363,10 @@ def test_a_record_says_which_unit_was_taken_in_place_of_the_file_s(tmp_path):
         (lines(r10="0.010,1,2,3"), "row 12: 4 columns; expected 3"),
         (lines(r10="0.0105,1,2"), "time, row 12: a step of 0.0015 s where others are 0.001 s"),
         (lines(r10="0.005,1,2"), "time, row 12: 0.005 s after 0.009 s; expected ascending"),
-        ("t [s],base [V]\n0,1\n1,2\n2,3\n3,1\n", 'column "base": in V, without a sensitivity; expected one'),
+        (
+            "t [s],base [V]\n0,1\n1,2\n2,3\n3,1\n",
+            'column "base": in V, without a sensitivity; expected one',
+        ),
         ("t,base\n0,1\n1,2\n2,3\n3,1\n", 'column "base": no unit; expected one such as m/s2, g'),
         ("t [s],base [g]\n0,1\n1,2\n", "base_acceleration"),
         ("\0\1\2", "no text; expected columns of numbers"),
