@@ -162,17 +162,17 @@ class Runner:
             if not self.futures:
                 assert self.finished() or not go_on(), "nothing is under way, nothing is ready"
                 continue
+            if time.perf_counter() - self.start_time > DELAY:
+                notes = (
+                    state.job.progress_note(t.chunk.start) for state, t in self.futures.values()
+                )
+                refresh(bar, next(filter(None, notes), self.title()))
             finished, _ = wait(self.futures, timeout=POLL_SECONDS, return_when=FIRST_COMPLETED)
             for future in finished:
                 state, task = self.futures.pop(future)
                 state.add_result(task, *future.result())
                 self.computed_items += len(task.items)
             bar.update(self.done() - bar.n)
-            if time.perf_counter() - self.start_time > DELAY:
-                notes = (
-                    state.job.progress_note(t.chunk.start) for state, t in self.futures.values()
-                )
-                refresh(bar, next(filter(None, notes), self.title()))
 
     def fmus_to_send(self, workers: Workers) -> dict[str, Path | bytes]:
         """Return FMUs by model as workers get them: paths, or bytes for remote workers."""
