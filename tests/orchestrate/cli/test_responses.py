@@ -100,23 +100,6 @@ def test_what_is_trivial_is_said(ask, words, said):
     assert done.code == 0 and said in done.out, done.err
 
 
-def test_frequencies_in_hertz_are_told_whose_structure_they_meet(ask, caplog):
-    short = ("--periods", "1", "--plot", "none")
-    done = ask("simulate", "--hz", "47", "--g", "0.5", *short)
-    assert "structure: the paper's, omega = 1 rad/s, 0.1592 Hz (--structure names" in done.out
-    assert caplog.messages[-1].startswith(
-        "frequencies of 295 times the structure's 0.1592 Hz are far from it"
-    )
-    caplog.clear()
-    done = ask("simulate", "--hz", "12", "--g", "0.02", "--structure", "beam", *short)
-    assert "structure:" not in done.out
-    done = ask("simulate", "--eta", "30", *short)
-    assert "structure:" not in done.out and caplog.messages == []
-    low = ("resonance", "--structure", "beam", "--hz", "0.1,12", "--amplitude", "1e-3")
-    ask(*low, "--transient", "1", "--samples", "1", "--plot", "none")
-    assert caplog.messages[-1].startswith("frequencies of 0.00838 to 1.01 times")
-
-
 def made_sweep(kinds, impacts, **sizes):
     """A made-up sweep of responses: their kinds, as ``multiplicity_decided`` has them."""
     words = {"flag_values": [0, 1, 2], "flag_meanings": "irregular repeated undecided"}
@@ -291,16 +274,6 @@ def test_shaken_as_in_the_laboratory(ask, folder, options, words):
     assert all(word in done.out for word in words), done.out
     assert len(list(folder.glob("*.nc"))) == 1 + drawn
     assert not drawn or shows_something(next(folder.glob("*.png")))
-
-
-def test_another_record_has_files_of_its_own(ask, folder, tmp_path):
-    """Though it has as many samples at the same rate."""
-    for name, level in (("one", 1.0), ("other", 2.0)):
-        rows = [f"{i / 200.0!r},{level * (i % 7)!r}" for i in range(60)]
-        (tmp_path / f"{name}.csv").write_text("time [s],box [m/s2]\n" + "\n".join(rows) + "\n")
-        asked = ("shake", "--structure", "beam", "--record", tmp_path / f"{name}.csv")
-        ask(*asked, "--plot", "none").success()
-    assert len(list(folder.glob("*.nc"))) == 2
 
 
 def test_a_record_is_played_again(ask, folder, tmp_path):

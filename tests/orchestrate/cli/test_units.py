@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import hashlib
 import re
 
@@ -11,9 +10,8 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-import orchestrate
 from orchestrate import cli
-from orchestrate.cli import diagnosis, dynamics, responses
+from orchestrate.cli import dynamics, responses
 from orchestrate.cli.text import attractor_table
 from orchestrate.dynamics.orbit_records import STABILITY
 from orchestrate.response.labels import flags
@@ -235,77 +233,3 @@ def test_the_picture_of_an_orbit_says_whether_it_is_stable():
 def test_a_command_without_such_numbers_says_why(ask):
     ask("paper", "--units", "Hz").complaint("--units Hz: ", REFUSED["paper"])
     assert cli.main(["build", "--units", "Hz"]) == 2
-
-
-def answer_with(monkeypatch, name, data):
-    """Let a public function give a made-up answer; its signature stays."""
-    function = functools.wraps(getattr(orchestrate, name))(lambda *_, **__: data)
-    monkeypatch.setattr(orchestrate, name, function)
-
-
-def variable(values, unit, dims=()):
-    return (dims, values, {"units": unit})
-
-
-def test_the_weak_drive_prints_speeds_in_the_unit_asked_for(ask, monkeypatch, tmp_path):
-    """Made-up answers, as their functions give them."""
-    speed = np.array([[[100.0, 110.0, 105.0]], [[101.0, 111.0, 106.0]]])
-    along = {"structure": ["bonded", "delaminated"], "leg": ["from below"]}
-    dims = (*along, "point")
-    branch = {
-        "voltage": variable(speed / 100.0, "V", dims),
-        "speed": variable(speed, "rad/s", dims),
-    }
-    branch |= {"amplitude": variable(1e-5 * speed, "m", dims), "stable": (dims, speed < 200.0)}
-    branch |= {"revolutions": (dims, np.ones_like(speed)), "end": (tuple(along), [["limit"]] * 2)}
-    at = {"structure": ["bonded"], "kind": ["period doubling"]}
-    branch |= {f"bifurcation_{name}": ("bifurcation", value) for name, value in at.items()}
-    numbers = {"voltage": (1.05, "V"), "speed": (105.0, "rad/s"), "amplitude": (1e-3, "m")}
-    for name, (value, unit) in {**numbers, "revolutions": (1.0, "1")}.items():
-        branch[f"bifurcation_{name}"] = variable([value], unit, ("bifurcation",))
-    (tmp_path / "results").mkdir()
-    about = {"k1": 8437.5, "m1": 1.5, "call": "drive_branch()"}
-    branch = xr.Dataset(branch, along, about)
-    answer_with(monkeypatch, "drive_branch", branch)
-    done = ask("drive-branch", "--drive", "beam", "--units", "rpm,um").success()
-    assert re.search(r"speed rpm.*\n.* 1002\.68", done.out) and "rad/s" not in done.out
-    assert next((tmp_path / "results").glob("*.png")).stem.endswith("_rpm-um")
-    assert "speed rad/s" in ask("drive-branch", "--drive", "beam", "--plot", "none").out
-
-    each = {"structure": ["bonded", "delaminated"], "jump": ["up", "down"]}
-    jumps = {"jumps": variable([[1.5, 1.4]] * 2, "V", tuple(each))}
-    jumps["standard_error"] = variable([[0.1, 0.1]] * 2, "V", tuple(each))
-    jumps["decided"] = (tuple(each), [["by held voltages"] * 2] * 2)
-    answer_with(monkeypatch, "jump_voltages", xr.Dataset(jumps, each))
-    asked = ("jump-voltages", "--plot", "none")
-    note = "--units rpm: these have no such numbers, only V"
-    assert note in ask(*asked, "--units", "rpm").success().out
-    assert "--units" not in ask(*asked).success().out
-
-    capture = {"passes": ("voltage", [0, 1]), "decision": ("voltage", ["converged"] * 2)}
-    capture |= {"passage_time": variable([np.nan, 5.0], "s", ("voltage",)), "above_fold": 0.0}
-    capture |= {"border": ((), 1.5, {"units": "V", "tolerance": 1.0}), "border_low": 1.4}
-    capture |= {"border_high": 1.6, "speed_low": variable(100.0, "rad/s")}
-    capture |= {"speed_high": variable(110.0, "rad/s")}
-    tried = xr.Dataset(capture, {"voltage": [1.4, 1.6]}, {"k1": 8437.5, "m1": 1.5})
-    answer_with(monkeypatch, "capture", tried)
-    options = ("capture", "--plot", "none", "--only", "bonded")
-    assert "954.9 rpm    1050 rpm" in ask(*options, "--units", "rpm").success().out
-    assert "eta = 1.333  eta = 1.467" in ask(*options, "--units", "eta").success().out
-    assert "100 rad/s    110 rad/s" in ask(*options).success().out
-    sheet = ("--rated-voltage", "2", "--no-load-rpm", "16", "--stall-torque", "60")
-    assert "1050 rpm" in ask(*options, *sheet, "--eta0", "1:2").success().out
-
-
-def test_a_verdict_is_said_in_the_units_asked_for(tmp_path):
-    """Made-up: nothing opens up to 0.5 g over 40 to 56 Hz, 20 um would have been seen."""
-    numbers = {"level_high": (4.903325, "m/s2"), "smallest_opening": (2e-5, "m")}
-    numbers |= {"frequency_low": (40.0, "Hz"), "frequency_high": (56.0, "Hz")}
-    made = {name: variable(value, unit) for name, (value, unit) in numbers.items()}
-    verdict = xr.Dataset({"verdict": "no opening seen", **made})
-    for units, level, words in (
-        ("", "4.9 m/s² over 40 to 56 Hz", "20 µm"),
-        ("rpm, g, mm", "0.5 g over 2400 to 3360 rpm", "0.02 mm"),
-    ):
-        said = " ".join(diagnosis.verdict_lines(tmp_path / "a.csv", with_units(verdict, units)))
-        assert f" up to {level}. Faces at the sensor that part by {words} or more would" in said
