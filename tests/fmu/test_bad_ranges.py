@@ -132,13 +132,6 @@ def test_a_run_of_divided_steps_comes_to_the_same_end(model, form):
         assert f.motion() == free
 
 
-def test_an_output_counts_the_evaluations_of_a_step(fmu):
-    """The first is a long one, and the others have no impact."""
-    f = open_fmu(fmu).start(x2_start=1e3, box_amplitude=1e-3)
-    first, *others = (f.step(time).one("evaluations") for time in (3.0, 3.0001, 3.0002))
-    assert first > 0 and others == [0, 0]
-
-
 @pytest.mark.parametrize("value", [0, -1, 10_000_001])
 def test_a_limit_out_of_range_is_refused(fmu, value):
     f = open_fmu(fmu).start()

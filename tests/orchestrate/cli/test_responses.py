@@ -202,6 +202,7 @@ def test_a_file_of_ones_own_is_not_replaced_by_another_question(ask, folder):
     assert fingerprint(folder) == {"mine.png": before["mine.png"]}
 
 
+@pytest.mark.slow
 def test_a_failed_picture_is_drawn_by_the_same_command(ask, folder):
     ask(*SWEEP)
     (picture,) = folder.glob("*.png")

@@ -2,6 +2,8 @@
 
 import json
 
+import pytest
+
 import orchestrate
 
 from .conftest import typed
@@ -23,6 +25,7 @@ return JSON.stringify([values, texts, diagram.points.length, diagram.low, diagra
 """
 
 
+@pytest.mark.slow
 def test_reset_brings_back_the_page_as_it_was_opened(browser):
     browser.until(READY)
     before = json.loads(browser.run(SEEN))
@@ -57,6 +60,7 @@ EXPONENTS = {  # of a motion that has not repeated: value and error, headline, l
 }
 
 
+@pytest.mark.slow
 def test_an_exponent_has_an_error_that_decides(browser):
     """It covers the careful exponent, and an exponent within it decides nothing."""
     for eta in (1.7, 3.05, 2.9):

@@ -46,6 +46,7 @@ def own(browser):
     browser.until(READY)
 
 
+@pytest.mark.slow
 def test_the_papers_motions_are_those_of_a_beam_in_hertz(browser):
     """Its ratios stay, and so do motion, impacts and diagram; back in the paper's units it is
     Figure 6's structure again, bit for bit.
@@ -148,6 +149,7 @@ def record(frequency=30.0, level=2.0, rate=1000.0, count=3000):
     return time, level * np.sin(phase) + 0.1 * level * np.sin(3.0 * phase)
 
 
+@pytest.mark.slow
 def test_a_measured_record_is_laid_over_the_models_spectrum(browser):
     browser.chosen()
     time, values = record()
@@ -183,6 +185,7 @@ UNREADABLE = {  # a file, and what is said of it
 }
 
 
+@pytest.mark.slow
 def test_what_cannot_be_read_is_said_in_a_line_and_nothing_changes(browser):
     browser.chosen()
     before = browser.run(STATE)

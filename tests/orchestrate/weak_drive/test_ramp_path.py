@@ -64,19 +64,6 @@ def test_a_jump_that_lands_before_another_fold():
     assert up.jumps == [0, 2] and len(up.landings) == 2 and up.landings[0] < 1.3 < up.landings[1]
 
 
-def test_several_motions_to_jump_to():
-    """One is as good as the other: the path ends, and says why."""
-    other = [(1.39, 1.2, 1), (1.45, 1.25, 1)]
-    up = paths({"from below": S_CURVE, "second doubled": other}, FOLDS)["up"]
-    assert up.jumps == [0] and not up.landings and "several stable motions at 1.41" in up.end
-
-
-def test_a_jump_up_does_not_land_at_a_lower_speed():
-    lower = [(1.39, 0.8, 1), (1.45, 0.85, 1)]
-    up = paths({"from below": S_CURVE, "second doubled": lower}, FOLDS)["up"]
-    assert up.landings == [pytest.approx(1.41)]
-
-
 def test_a_slow_loss_before_the_fold():
     """Down, a Neimark-Sacker point comes first; the ramp goes on to the fold."""
     motions = [*S_CURVE[:4], (1.2, 1.2, 0), (1.25, 1.27, 0), (1.3, 1.3, 1), (1.5, 1.5, 1)]
@@ -108,8 +95,3 @@ def test_what_the_branches_do_not_tell():
     assert "no stable motion" in short["down"].end
     nowhere = paths({"from below": S_CURVE[:5]}, FOLDS)["up"]
     assert nowhere.jumps == [0] and "no stable motion at 1.41" in nowhere.end
-
-
-def test_a_leg_that_begins_unstable_and_becomes_stable():
-    begun = [(0.9, 0.88, 0), *S_CURVE]
-    assert paths({"from below": begun}, FOLDS)["up"].jumps == [0]
