@@ -21,13 +21,14 @@ FILES = sorted(
     for path in (ROOT / name).rglob("*.py*")
     if path.suffix in (".py", ".pyi")
 )
-GROUND = {"constants", "errors", "files", "flags", "temporary", "units", "version"}
+GROUND = {"constants", "errors", "files", "flags", "lazy", "temporary", "units", "version"}
 GROUND |= {"model"}
 BELOW_ANSWERS = GROUND | {"fmu", "running"}
 FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know beside itself
     "constants": set(),
     "errors": set(),
     "flags": set(),
+    "lazy": set(),
     "version": set(),
     "files": {"errors"},
     "temporary": {"files"},
@@ -285,11 +286,27 @@ def definitions(tree: ast.AST) -> Iterator[ast.AST]:
     """Public functions, methods and classes, those inside functions left out."""
     stack: list[ast.AST] = [tree]
     while stack:
-        for node in ast.iter_child_nodes(stack.pop()):
+        parent = stack.pop()
+        for node in ast.iter_child_nodes(parent):
             if isinstance(node, ast.ClassDef):
                 stack.append(node)
-            if isinstance(node, (*FUNCTIONS, ast.ClassDef)) and not node.name.startswith("_"):
+            if not isinstance(node, (*FUNCTIONS, ast.ClassDef)) or node.name.startswith("_"):
+                continue
+            if ast.get_docstring(node) or node.name not in OVERRIDDEN or not is_derived(parent):
                 yield node
+
+
+OVERRIDDEN = {  # methods of base classes: that of a derived class has the same docstring
+    *("items", "count", "dataset", "call_text", "get_state", "set_state"),
+    *("voltage", "trend", "duration", "begin", "point", "limits", "usual_rate"),
+    "location_tolerances",
+}
+
+
+def is_derived(node: ast.AST) -> bool:
+    """Whether a class has a base of our own."""
+    bases = [ast.unparse(base) for base in getattr(node, "bases", [])]
+    return not {"ABC", "NamedTuple", "Protocol"} >= set(bases)
 
 
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)

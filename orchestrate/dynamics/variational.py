@@ -17,10 +17,7 @@ import numpy as np
 
 from ..fmu import Impacts
 from ..response.questions import Point
-from .closed_form import ClosedForm, Floats
-from .release import contact_durations
-
-LEAST_SPEED = 1e-300  # a grazing impact has no closing speed: its matrix is very large instead
+from .closed_form import ClosedForm, Floats, contact_durations
 
 
 def period_in_tau(eta: float) -> float:
@@ -43,7 +40,8 @@ def saltation_matrices(impacts: Impacts, point: Point) -> Floats:
     before = form.field(impacts.before(point.structure), phase)
     jump = after - before @ restitution.T - slower * (before @ exchange.T)
     normal = np.array([-1.0, 1.0, 0.0, 0.0])
-    speed = np.maximum(impacts.closing, LEAST_SPEED)[:, None, None]
+    # a grazing impact has no closing speed: its matrix is very large instead
+    speed = np.maximum(impacts.closing, 1e-300)[:, None, None]
     derivative = restitution + slower[:, :, None] * exchange
     matrices: Floats = derivative - jump[:, :, None] * normal / speed
     matrices[impacts.sticks] = form.centre()

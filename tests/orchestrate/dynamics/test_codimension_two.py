@@ -9,7 +9,7 @@ import pytest
 import orchestrate
 from orchestrate import Structure
 from orchestrate.dynamics import codimension_two
-from orchestrate.dynamics.bifurcations import FOLD
+from orchestrate.dynamics.bifurcations import Kind
 from orchestrate.dynamics.codimension_two import CharacteristicPolynomial, PointKind, points_between
 from orchestrate.dynamics.continuation import newton_correct, unit_vector
 from orchestrate.dynamics.families import Setting
@@ -108,7 +108,7 @@ def test_the_roots_of_the_polynomial_are_the_multipliers():
 class Normal:
     """A fold curve of a normal form: p1 + p2 x - x^3 = 0, with multipliers of its own."""
 
-    kind, accuracy, scale = FOLD, 1e-12, np.ones(3)
+    kind, accuracy, scale = Kind.FOLD, 1e-12, np.ones(3)
 
     def __init__(self):
         self.family = SimpleNamespace(size=1, jacobian=self.first, setting=None)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from orchestrate.dynamics.bifurcations import FOLD
+from orchestrate.dynamics.bifurcations import Kind
 
 from .validation import (
     bifurcations,
@@ -22,7 +22,7 @@ def test_a_trajectory():
 def test_a_fold():
     """Located on the branch, and by shooting on the monolithic solution."""
     ((kind, _, voltage, truth),) = bifurcations(SETS[1].as_bonded(), (1.003, 1.012))
-    assert kind == FOLD and voltage == pytest.approx(truth, abs=1e-6)
+    assert kind == Kind.FOLD and voltage == pytest.approx(truth, abs=1e-6)
 
 
 @pytest.mark.slow

@@ -7,7 +7,7 @@ but the state that it starts from.
 import numpy as np
 
 from orchestrate import Drive, Structure
-from orchestrate.dynamics.bifurcations import FLIP, FOLD
+from orchestrate.dynamics.bifurcations import Kind
 from orchestrate.fmu import OSCILLATOR, SHAKER, Instance, find
 from orchestrate.weak_drive import averaged
 from orchestrate.weak_drive.couple import scheme_from_arguments
@@ -150,11 +150,11 @@ class Whole:
     def test(self, kind, unknowns, period):
         """What is 0 at a bifurcation, and the motion there."""
         found, matrix = self.orbit(unknowns, period)
-        if kind == FOLD:
+        if kind == Kind.FOLD:
             slope = np.linalg.solve(matrix[:, :-1], -matrix[:, -1])
             return float(slope[-1]), found
         values = self.multipliers(matrix)
-        if kind == FLIP:
+        if kind == Kind.FLIP:
             return float(values.real.min() + 1.0), found
         pairs = np.abs(values[np.abs(values.imag) > 1e-6])
         return float(pairs[np.argmin(np.abs(pairs - 1.0))] - 1.0), found
