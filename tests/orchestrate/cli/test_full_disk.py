@@ -1,7 +1,5 @@
 """A limit of file sizes ends a command in one line; what is stored is kept, and it resumes."""
 
-from __future__ import annotations
-
 import resource
 
 import pytest

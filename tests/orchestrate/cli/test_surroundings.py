@@ -1,7 +1,5 @@
 """A command in a hostile place: outputs that are closed, full or not read, few files, signals."""
 
-from __future__ import annotations
-
 import dataclasses
 import io
 import os

@@ -1,7 +1,5 @@
 """What sensors read against an independent solution of motion and filter together."""
 
-from __future__ import annotations
-
 import dataclasses
 import functools
 import math

@@ -1,7 +1,5 @@
 """Shaken structures against independent integrations, and what the record must not change."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Spectra hold the impulses: against the sum over the impacts that the FMU reports."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.integrate import trapezoid

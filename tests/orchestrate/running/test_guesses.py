@@ -1,7 +1,5 @@
 """A sequential job on many workers: guessed chunks that stand, and others that do not."""
 
-from __future__ import annotations
-
 import random
 from unittest.mock import patch
 

@@ -1,7 +1,5 @@
 """Orders of swept sines: of signals that are known, and of shaken structures."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -59,6 +59,7 @@ def test_random_error_is_the_one_stated():
     assert stats.kstest(chances, "uniform").pvalue > 1e-3
 
 
+@pytest.mark.slow
 def test_estimators_where_the_noise_is():
     """H1 is right with noise on the response, H2 with noise on the box, Hv with the same on both.
 

@@ -1,7 +1,5 @@
 """Shock spectra against integrations, densities against closed forms, and what records may be."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
