@@ -38,7 +38,7 @@ FLOORS: dict[str, set[str]] = {  # what each package of orchestrate may know bes
     "running": GROUND,
     "response": BELOW_ANSWERS,
     "dynamics": BELOW_ANSWERS | {"response"},
-    "laboratory": BELOW_ANSWERS | {"response"},
+    "laboratory": BELOW_ANSWERS | {"response", "weak_drive"},
     "diagnosis": BELOW_ANSWERS | {"response", "laboratory"},
     "weak_drive": BELOW_ANSWERS | {"response", "dynamics"},
     "show": GROUND | {"running"},

@@ -43,7 +43,7 @@ from .grammar import parse_rates, plain_float, read_pairs
 from .options import START, read_over, read_structure_options, structure_group
 from .output import Files, digest, read_running_options, result_groups, user_fmus
 from .table import Command, Group, Question
-from .text import columns_of, extents, table
+from .text import Columns, columns_of, extents, parameter_column, table
 
 if TYPE_CHECKING:
     from ..model import Drive, Structure
@@ -566,6 +566,8 @@ def ask_jump_voltages(arguments: argparse.Namespace) -> tuple[Structure, Drive, 
         "rates": [rate * unit for rate in parse_rates("--rate", arguments.rate or USUAL_LIST)],
         "back": not arguments.one_way,
     }
+    if (values := read_over(arguments)) is not None:
+        question |= {"over": arguments.over, "values": values[0]}
     return structure, drive, question | times_in_seconds(arguments, structure, "settle", "step")
 
 
@@ -579,7 +581,13 @@ def jump_voltages_title(_: Results, question: Question) -> str:
 def jump_voltage_lines(results: Results) -> Iterator[str]:
     """Yield a table of the jump voltages at rate 0, and advice if one is missing."""
     (data,) = results.values()
-    rows = {"jump at rate 0": [str(jump) for jump in data.jump.values]}
+    (over,) = {str(dim) for dim in data.jumps.dims} - {"structure", "jump"} or {""}
+    rows: Columns = {"jump at rate 0": [str(jump) for jump in data.jump.values]}
+    if over:
+        count, parts = data.sizes["jump"], data[over].values
+        rows = parameter_column(data, over, [v for v in parts for _ in range(count)])
+        rows["jump at rate 0"] = [str(jump) for _ in parts for jump in data.jump.values]
+        data = data.stack(row=(over, "jump"), create_index=False)
     for name in map(str, data.structure.values):
         at = data.sel(structure=name)
         cells = zip(at.jumps.values, at.standard_error.values, at.decided.values, strict=True)
@@ -591,7 +599,7 @@ def jump_voltage_lines(results: Results) -> Iterator[str]:
         ]
     changes = data.jumps.isel(structure=1) - data.jumps.isel(structure=0)
     rows["change V"] = ["" if math.isnan(change) else f"{change:.5f}" for change in changes.values]
-    yield from table(rows)
+    yield from table(rows, len(rows["change V"]))
     if (data.decided == "undecided").any():
         yield "undecided by constant voltages; drive-branch computes folds, where the speed jumps"
 
@@ -601,6 +609,7 @@ JUMP_VOLTAGES = Command(
     "voltages at which the speed jumps, at rate 0 and on ramps of several rates",
     f"""  {{program}} jump-voltages                                 quick, up and down
   {{program}} jump-voltages --rate 1e-4,3e-5,1e-5 --one-way
+  {{program}} jump-voltages --over clearance --values 0,1e-5,3e-5 --drive beam --one-way
   {{program}} jump-voltages --drive beam --eta0 1.33:1.57 --rate 4e-5,2e-5,1e-5 --one-way
 {ETA0}
 {RESUME}""",
@@ -614,6 +623,8 @@ JUMP_VOLTAGES = Command(
                 --rate A,B,...  change of eta0 in a time 1/omega, a list (default: {USUAL_LIST})
                 {SETTLE}
                 --one-way  do not come back: jumps up only
+                --over NAME  a parameter that the bonded structure ignores, such as clearance
+                --values VALUES  its values, FIRST:LAST:STEP or a list A,B,...
                 """,
                 STEP,
             ),

@@ -100,7 +100,7 @@ class AttractorsJob(SeriesQuestion):
             for index, group in itertools.groupby(items, lambda item: item[0]):
                 decider = MotionDecider(*instances, self.series.points[index], self.settings)
                 starts = self.draw_starts(decider, index)
-                rows += [settled_row(decider, starts[number]) for _, number in group]
+                rows += settled_rows(decider, starts[[number for _, number in group]])
             return settled_table(rows)
 
     def draw_starts(self, decider: MotionDecider, index: int) -> NDArray[np.float64]:
@@ -173,10 +173,10 @@ SettledRow = tuple[Sequence[float], NDArray[np.float64], int]  # features, a sta
 ABSENT_ROW: SettledRow = ([np.nan] * len(FEATURES), np.full(4, np.nan), ABSENT)  # masses overlap
 
 
-def settled_row(decider: MotionDecider, start: ArrayLike) -> SettledRow:
-    """Return a row of what a start settles to: features, a state at phase 0, how decided."""
-    motion, state = decider.decide(start)
-    return motion.features, state, motion.decided
+def settled_rows(decider: MotionDecider, starts: ArrayLike) -> list[SettledRow]:
+    """Return rows of what starts settle to: features, a state at phase 0, how decided."""
+    decided = decider.decide_all(starts)
+    return [(motion.features, state, motion.decided) for motion, state in decided]
 
 
 def settled_table(rows: Sequence[SettledRow]) -> Table:
@@ -246,7 +246,7 @@ class SizeFromRest(NamedTuple):
 
 def size_from_rest(instance: Instance, point: Point, settings: AttractorSettings) -> SizeFromRest:
     """Run from rest until settled; return a state there, largest displacement and gap, m."""
-    response = run_until_settled(instance, point, REST, settings).response
+    response = run_until_settled(instance, point, REST, settings)[0].response
     begin(instance, *point, response.end)
     span = 8 * point.excitation.period
     states = sampled(instance, 0.0, span, 512)

@@ -39,7 +39,7 @@ from .attractors import (
     attractor_settings,
     attractor_variables,
     attractors,
-    settled_row,
+    settled_rows,
     settled_table,
 )
 from .clusters import AttractorSettings
@@ -155,11 +155,15 @@ class BasinJob(Question):
         with instance_pair(fmus[OSCILLATOR]) as instances:
             if previous is not None:
                 return self.gather_attractors(instances, point, previous)
-            decider, rows = MotionDecider(*instances, point, self.settings), []
-            for state, phase in items:
-                overlap = gap_between(np.array(state), self.structure.gap_offset) < 0.0
-                start = state if overlap else run_to_phase_zero(decider.plain, point, state, phase)
-                rows.append(ABSENT_ROW if overlap else settled_row(decider, start))
+            decider, rows = (
+                MotionDecider(*instances, point, self.settings),
+                [ABSENT_ROW] * len(items),
+            )
+            states = np.array([state for state, _ in items])
+            apart = np.flatnonzero(gap_between(states, self.structure.gap_offset) >= 0.0)
+            starts = [run_to_phase_zero(decider.plain, point, *items[i]) for i in apart.tolist()]
+            for i, row in zip(apart.tolist(), settled_rows(decider, starts), strict=True):
+                rows[i] = row
             return settled_table(rows)
 
     def gather_attractors(

@@ -64,7 +64,15 @@ class MotionDecider:
 
     def decide(self, state: ArrayLike) -> tuple[SettledMotion, Floats]:
         """Run from a state at phase 0 until its motion is known; return it and a state on it."""
-        response, done = run_until_settled(self.plain, self.point, state, self.settings)
+        return self.decide_all(np.asarray(state)[np.newaxis])[0]
+
+    def decide_all(self, states: ArrayLike) -> list[tuple[SettledMotion, Floats]]:
+        """Run from states at phase 0, as :meth:`decide` from one."""
+        settled = run_until_settled(self.plain, self.point, states, self.settings)
+        return [self.motion_of(*each) for each in settled]
+
+    def motion_of(self, response: Response, done: int) -> tuple[SettledMotion, Floats]:
+        """Run a settled response on until its motion is known; return it and a state on it."""
         unstable = False
         while True:
             motion, doubtful = self.periodic_motion(response)

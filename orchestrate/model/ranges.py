@@ -174,9 +174,17 @@ RATIO_QUANTITIES = {
 def expected_one_of(name: str, known: Iterable[str]) -> str:
     """Return error text "expected one of ..." with the known names and the closest match."""
     names = list(known)
-    near = [candidate for candidate in names if candidate.lower() == name.lower()]
-    near = near or difflib.get_close_matches(name, names, n=1, cutoff=0.5)
-    return f"expected one of {', '.join(names)}" + (f" (did you mean {near[0]}?)" if near else "")
+    near = closest(name, names)
+    return f"expected one of {', '.join(names)}" + (f" (did you mean {near}?)" if near else "")
+
+
+def closest(name: str, names: Iterable[str]) -> str:
+    """Return the name that begins so, whatever its case, or is most alike; empty if none is."""
+    known = {one.lstrip("-"): one for one in sorted(names, key=len)}
+    plain = name.lstrip("-")
+    near = [one for one in known if plain and one.lower().startswith(plain.lower())]
+    near = near or difflib.get_close_matches(plain, known, n=1, cutoff=0.5)
+    return known[near[0]] if near else ""
 
 
 def construct_or_explain(

@@ -652,6 +652,37 @@ class Structure(Described):
         first, second = (format_short(self.get(f"{letter}{half}")) for half in (1, 2))
         return f"{letter}{first}-{second}"
 
+    def _described(self) -> dict[str, str]:
+        """Return texts of the halves' masses, frequencies and damping, of e, and of what is set."""
+        halves = {
+            "masses": ("m", " kg"),
+            "natural frequencies": ("f", " Hz"),
+            "damping": ("zeta", " %"),
+        }
+        texts = {}
+        for words, (letter, unit) in halves.items():
+            scale = 100.0 if letter == "zeta" else 1.0
+            pair = [f"{scale * float(getattr(self, f'{letter}{half}')):.4g}" for half in "12"]
+            texts[words] = " and ".join(pair) + unit
+        texts["e"] = f"{self.e:g}"
+        added = {name: getattr(self, name) for name in ADDED if getattr(self, name)}
+        return texts | {name: f"{value:g} {STRUCTURE[name].unit}" for name, value in added.items()}
+
+    def __str__(self) -> str:
+        """Return the structure in a line, frequencies in Hz and damping ratios in per cent."""
+        kind = "bonded" if self.bonded else "delaminated"
+        return f"{kind}: " + ", ".join(f"{name} {text}" for name, text in self._described().items())
+
+    def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
+        """Print the line of ``str`` in IPython."""
+        printer.text(f"Structure({self})")
+
+    def _repr_html_(self) -> str:
+        """Return a table for notebooks."""
+        rows = {"structure": "bonded" if self.bonded else "delaminated", **self._described()}
+        cells = (f"<tr><th>{name}</th><td>{text}</td></tr>" for name, text in rows.items())
+        return f"<table>{''.join(cells)}</table>"
+
     def label(self) -> str:
         """Return a short text of the parameters for file names and titles, unique per structure."""
         default = type(self)()

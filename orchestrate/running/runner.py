@@ -22,7 +22,7 @@ import numpy as np
 
 from ..files import open_folder
 from ..lazy import xr
-from .bar import DELAY, progress_bar, relabel
+from .bar import DELAY, progress_bar, refresh
 from .executors import Workers, compute, in_this_process, processes, threads
 from .identity import Fmu, identity_of
 from .job import Job, Table
@@ -162,6 +162,11 @@ class Runner:
             if not self.futures:
                 assert self.finished() or not go_on(), "nothing is under way, nothing is ready"
                 continue
+            if time.perf_counter() - self.start_time > DELAY:
+                notes = (
+                    state.job.progress_note(t.chunk.start) for state, t in self.futures.values()
+                )
+                refresh(bar, next(filter(None, notes), self.title()))
             finished, _ = wait(self.futures, timeout=POLL_SECONDS, return_when=FIRST_COMPLETED)
             for future in finished:
                 state, task = self.futures.pop(future)
@@ -185,8 +190,6 @@ class Runner:
                     break
                 chosen = {model: fmus[model] for model in state.job.models}
                 state.under_way.add(task.chunk.index)
-                if time.perf_counter() - self.start_time > DELAY:
-                    relabel(bar, state.job.progress_note(task.chunk.start) or self.title())
                 code = state.identity["code"] if workers.remote else None
                 future = workers.executor.submit(
                     compute, state.job, chosen, task.items, task.previous, task.warmup_items, code

@@ -44,8 +44,31 @@ def explain_mismatch(branch: xr.Dataset, over: str, parameters: Mapping[str, Any
         return f"a branch along {name}; expected one along {over}"
     if branch.attrs.get("box_acceleration", 0.0) or "box_acceleration" in branch.coords:
         return "a branch with a constant acceleration of the box; expected one without"
+    return explain_other_structure(branch, {name}, parameters)
+
+
+def explain_border_mismatch(
+    curve: xr.Dataset, over: set[str], parameters: Mapping[str, Any]
+) -> str:
+    """Return a text on why a dataset is no border of a map over two parameters; else ""."""
+    question = str(curve.attrs.get("call", "")).partition("(")[0] or "nothing"
+    if question != "border":
+        return f"an answer of {question}; expected one of border"
+    names = set(map(str, curve.attrs["over"]))
+    if names != over or not over & ALIKE[0]:
+        return (
+            f"a border over {' and '.join(names)}; expected {' and '.join(over)}, one a frequency"
+        )
+    return explain_other_structure(curve, names, parameters)
+
+
+def explain_other_structure(
+    branch: xr.Dataset, varied: set[str], parameters: Mapping[str, Any]
+) -> str:
+    """Return a text on how a result's structure differs in what does not vary; else ""."""
+    moved = set().union(*(MOVED.get(name, {name}) for name in varied))
     for key in SI:
-        if key in MOVED.get(name, {name}) or key not in parameters:
+        if key in moved or key not in parameters:
             continue
         own, other = float(branch.attrs.get(key, 0.0)), float(parameters[key])
         if not math.isclose(own, other, rel_tol=SAME):

@@ -13,6 +13,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from .polynomials import Cubic
 from .schedule import check
 
 ControllerState = tuple[float, ...]
@@ -46,6 +47,24 @@ class Controller(ABC):
         text = "Controller.act is called update now; the old name goes with the next release"
         warnings.warn(text, DeprecationWarning, stacklevel=2)
         return self.update(measured, state)
+
+
+class InputControl(ABC):
+    """Define the interface of a control law for an input of a drive, see ``cosimulate``."""
+
+    @abstractmethod
+    def begin(self) -> ControllerState:
+        """Return the controller's initial state."""
+
+    @abstractmethod
+    def update(
+        self, time: float, h: float, acceleration: float, state: ControllerState
+    ) -> tuple[Cubic, ControllerState]:
+        """Return the input over a step as a cubic, from the box's acceleration at its beginning."""
+
+    @abstractmethod
+    def aborted(self, state: ControllerState) -> float:
+        """Return the time at which the controller gave up, s; NaN if it did not."""
 
 
 def limit_voltage(voltage: float, available: float) -> float:

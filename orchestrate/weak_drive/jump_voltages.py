@@ -17,6 +17,7 @@ from ..fmu.exported import finder
 from ..fmu.models import OSCILLATOR, SHAKER
 from ..lazy import Unpack, xr
 from ..model.drive import Drive
+from ..model.ranges import STRUCTURE
 from ..model.structure import Structure
 from ..response.labels import variable
 from ..running.job import Fmus, Job, Table
@@ -27,6 +28,7 @@ from .hysteresis import Settings
 from .master import Scheme
 from .schedule import Ramp
 
+IGNORED = ("clearance", "e", "e_slope", "gamma")  # by the bonded structure
 KINDS = ("bonded", "delaminated")
 DIRECTIONS = ("up", "down")
 COLUMNS = ("jumps", "jump_low", "jump_high")
@@ -42,13 +44,17 @@ class JumpVoltagesJob(Job):
     drive: Drive
     schedules: tuple[Ramp, ...]  # one for each rate, slowest first
     scheme: Scheme
+    over: str = ""  # a parameter that the bonded structure ignores
+    values: tuple[float, ...] = ()
 
     models: ClassVar[tuple[str, ...]] = (OSCILLATOR, SHAKER)
     item: ClassVar[str] = "ramp"
 
     def items(self) -> Sequence[tuple[Structure, Ramp]]:
-        both = (self.structure.as_bonded(), self.structure.as_delaminated())
-        return [(structure, schedule) for schedule in self.schedules for structure in both]
+        parted = self.structure.as_delaminated()
+        varied = [parted.replace(**{self.over: value}) for value in self.values] or [parted]
+        structures = (self.structure.as_bonded(), *varied)
+        return [(structure, schedule) for schedule in self.schedules for structure in structures]
 
     def work(self, fmus: Fmus, items: Sequence[tuple[Structure, Ramp]], previous: Any) -> Table:
         """Run some ramps; return their jumps, and of faster ones what their records show."""
@@ -65,9 +71,18 @@ class JumpVoltagesJob(Job):
 
     def dataset(self, table: Table) -> xr.Dataset:
         rates = np.array([schedule.rate for schedule in self.schedules])
-        shape = len(rates), len(KINDS), len(COLUMNS), len(DIRECTIONS)
-        jumps, low, high = np.moveaxis(table["jumps"].reshape(shape), 2, 0)
-        every, each = ("rate", "structure", "jump"), ("structure", "jump")
+        count = 1 + max(1, len(self.values))  # of structures
+        at: Any = np.arange(len(KINDS))  # of both kinds among them; the bonded one at each value
+        each: tuple[str, ...] = ("structure", "jump")
+        if self.over:
+            at = np.stack([np.zeros(count - 1, dtype=int), np.arange(1, count)])
+            each = ("structure", self.over, "jump")
+        every = ("rate", *each)
+        table = {
+            name: values.reshape(len(rates), count, *values.shape[1:])[:, at]
+            for name, values in table.items()
+        }
+        jumps, low, high = np.moveaxis(table["jumps"], -2, 0)
         shown = table["shown"].reshape(*jumps.shape, SLOTS, len(SHOWN))
         voltages, speeds = np.moveaxis(first_past(jumps[0], shown), -1, 0)
         late = "voltage at which the speed jumps on the ramp"
@@ -80,13 +95,17 @@ class JumpVoltagesJob(Job):
             "speed_before": variable(every, speeds, "rad/s", before),
             "jumps": variable(each, jumps[0], "V", "the same at rate 0"),
             "standard_error": variable(each, halves, "V", error),
-            "decided": (each, table["decided"][: len(KINDS)], {"long_name": how}),
+            "decided": (each, table["decided"][0], {"long_name": how}),
         }
         coordinates = {
             "rate": variable("rate", rates, "V/s", "change of the voltage"),
             "structure": ("structure", list(KINDS), {"long_name": "structure"}),
             "jump": ("jump", list(DIRECTIONS), {"long_name": "direction in which the speed jumps"}),
         }
+        if self.over:
+            quantity = STRUCTURE[self.over]
+            words = (np.array(self.values), quantity.unit, quantity.description)
+            coordinates[self.over] = variable(self.over, *words)
         return xr.Dataset(variables, coordinates, {"title": "Jump voltages of the weak drive"})
 
 
@@ -119,6 +138,8 @@ def jump_voltages(
     back: bool = True,
     settle: float | None = None,
     step: float | None = None,
+    over: str | None = None,
+    values: Sequence[float] | None = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Find the voltages of the speed's jumps, bonded and delaminated, at ramp rate 0.
@@ -139,6 +160,11 @@ def jump_voltages(
         Time at the first voltage before, s; 300/omega by default.
     step : float, optional
         Communication step, s; controlled by its defect by default.
+    over : str, optional
+        A parameter that the bonded structure ignores: ``"clearance"``, ``"e"``, ``"e_slope"`` or
+        ``"gamma"``. The bonded structure is computed once.
+    values : sequence of float, optional
+        Its values, which are a dimension of the result then.
     **running
         ``jobs``, ``store`` and others, see :class:`orchestrate.running.options.Running`; the ramps
         run side by side.
@@ -184,5 +210,13 @@ def jump_voltages(
     if not schedules:
         raise InputError("voltage: expected (first, last) in V, the ends of ramps")
     scheme = scheme_from_arguments(structure, step)
-    job = JumpVoltagesJob("jump_voltages", structure, drive, schedules, scheme)
+    if (over is None) != (values is None):
+        raise InputError("over and values: expected both, or none of them")
+    if over not in (None, *IGNORED):
+        expected = f"expected {' or '.join(IGNORED)}, which the bonded structure ignores"
+        raise InputError(f"over = {over!r}: {expected}")
+    varied = tuple(float(value) for value in values or ())
+    for value in varied:
+        structure.replace(**{str(over): value})  # raises where it is out of range
+    job = JumpVoltagesJob("jump_voltages", structure, drive, schedules, scheme, over or "", varied)
     return answer(job, running, finder(running))

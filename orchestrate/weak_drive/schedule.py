@@ -210,7 +210,10 @@ class Course(Schedule):
                 continue  # names of the columns
             rows.append([time, voltage])
         times, voltages = zip(*rows, strict=True) if rows else ((), ())
-        return cls(times, voltages)
+        try:
+            return cls(times, voltages)
+        except InputError as error:
+            raise InputError(f"{path}: {error}") from None
 
     @property
     def duration(self) -> float:
@@ -223,6 +226,15 @@ class Course(Schedule):
         begin, end = self.times[last - 1], self.times[last]
         low, high = self.voltages[last - 1], self.voltages[last]
         return low + (high - low) * (time - begin) / (end - begin)
+
+    def at(self, times: np.ndarray) -> np.ndarray:
+        """Return the values at many times, as :meth:`voltage` does at one."""
+        known, values = np.array(self.times), np.array(self.voltages)
+        last = known.searchsorted(times, side="right").clip(max=len(known) - 1)
+        begin, low = known[last - 1], values[last - 1]
+        with np.errstate(invalid="ignore"):
+            inside = low + (values[last] - low) * (times - begin) / (known[last] - begin)
+        return np.where(times < known[-1], inside, values[-1])
 
     def trend(self, times: np.ndarray) -> np.ndarray:
         places = np.clip(np.searchsorted(self.times, times) - 1, 0, len(self.times) - 2)

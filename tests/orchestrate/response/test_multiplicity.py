@@ -348,7 +348,6 @@ def test_impacts_of_all_samples_are_those_of_the_response(found, impacts, n, sam
         tolerance=TOLERANCE,
     )
     assert response.repeats(impacts, n) == same
-    count = lambda periods: impacts  # noqa: E731
-    decided = response.conclude(Decision(n, REPEATED), count)[0].decided
+    decided = response.conclude(Decision(n, REPEATED), impacts)[0].decided
     assert decided == (REPEATED if same else UNDECIDED)
-    assert response.conclude(Decision(n, IRREGULAR), count)[0].decided == IRREGULAR
+    assert response.conclude(Decision(n, IRREGULAR), impacts)[0].decided == IRREGULAR

@@ -5,10 +5,11 @@ import math
 
 import numpy as np
 import pytest
+import xarray as xr
 from scipy.signal import butter, freqs, welch
 
 import orchestrate
-from tools.benches import recipe, tutorial
+from tools.benches import recipe, tutorial, verdicts
 from tools.benches.bench import Bench
 from tools.benches.excitation import Random, Swept
 from tools.benches.lumped import TURN, Halves
@@ -120,3 +121,13 @@ def test_the_records_of_the_tutorial_are_read_as_they_are():
     guess = orchestrate.Structure.from_file(tutorial.FOLDER / "beam.toml")
     for name in ("m1", "m2", "f1", "f2"):
         assert getattr(guess, name) == pytest.approx(getattr(tutorial.BEAM, name), rel=0.1)
+
+
+def test_a_table_of_verdicts_counts_what_is_wrong_and_ends_with_its_budget(monkeypatch, short):
+    """Whatever the record, the answer is "delaminated"."""
+    numbers = {"verdict": "delaminated", "ratio": 2.0, "misfit": 1.0, "smallest_opening": 1e-5}
+    monkeypatch.setattr(verdicts.orchestrate, "detect", lambda *a, **k: xr.Dataset(numbers))
+    beam, head, row = verdicts.table_rows(["sound"], 1, 1, math.inf)
+    assert "is sound" in beam and head.split()[-1] == "wrong"
+    assert row.split() == ["sound", "0", "0", "0", "0", "1"]
+    assert [line.split()[-1] for line in verdicts.table_rows(["gap"], 1, 1, 0.0)] == ["wrong", "0"]
