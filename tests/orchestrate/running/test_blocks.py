@@ -26,6 +26,7 @@ def small(monkeypatch):
 
     monkeypatch.setattr(blocks, "BLOCK", 400)
     monkeypatch.setattr(blocks, "CHUNK", 100)
+    monkeypatch.setattr(store, "MIN_COMPRESSED", 100)
     monkeypatch.setattr(store, "MAX_LOADED", 1000)
     monkeypatch.setattr(store.StoredRows, "rows", counted)
     return counts
