@@ -274,17 +274,16 @@ def load(path: Path) -> xr.Dataset:
     return data
 
 
-def write_blocks(variable: xr.Variable, file: netCDF4.Dataset, name: str) -> None:
-    """Write a variable that is larger than memory into an open file, block by block."""
-    for dimension, size in variable.sizes.items():
+def create_variable(file: netCDF4.Dataset, name: str, array: xr.DataArray) -> Any:
+    """Create a variable for a large array in an open file, to be written block by block."""
+    for dimension, size in array.sizes.items():
         if dimension not in file.dimensions:
             file.createDimension(str(dimension), size)
     create: Any = file.createVariable
-    compression = {"zlib": True, "complevel": ZLIB_LEVEL, "chunksizes": chunk_shape(variable.shape)}
-    target = create(name, variable.dtype, variable.dims, fill_value=np.nan, **compression)
-    target.setncatts(variable.attrs)
-    for block in blocks(variable.shape):
-        target[block] = variable[block].values
+    compression = {"zlib": True, "complevel": ZLIB_LEVEL, "chunksizes": chunk_shape(array.shape)}
+    target = create(name, array.dtype, array.dims, fill_value=np.nan, **compression)
+    target.setncatts(array.attrs)
+    return target
 
 
 def is_netcdf(path: Path) -> bool:
@@ -334,9 +333,11 @@ def write_netcdf(dataset: xr.Dataset, path: Path) -> Path:
         # xarray's to_netcdf imports Dask's scheduler to find a lock that nobody needs here
         """Write the dataset to a netCDF file."""
         with open_file(path_to_write, mode="w", lock=False) as file:
+            targets = {name: create_variable(file.ds, str(name), dataset[name]) for name in bulk}
             others = {name: options for name, options in encoding.items() if name not in bulk}
             dataset.drop_vars(bulk).dump_to_store(file, encoding=others)
-            for name in bulk:
-                write_blocks(dataset.variables[name], file.ds, str(name))
+            for name, target in targets.items():
+                for block in blocks(dataset[name].shape):
+                    target[block] = dataset.variables[name][block].values
 
     return write_whole(path, write)
