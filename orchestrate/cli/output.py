@@ -15,13 +15,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
+from ..lazy import xr
+from ..running.options import Running
 from .table import Group
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from ..model import Structure
-    from ..running.options import Running
     from ..units import Units
 
 FORMATS = ("nc", "csv", "mat", "xlsx")

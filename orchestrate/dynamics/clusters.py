@@ -31,16 +31,25 @@ class AttractorSettings:
     settle: float = 300.0
     samples: int = 48
     converged: float = 1e-6
+    longest: int = 20_000
+    alike: float = 0.02
+    alike_irregular: float = 0.25
     # over `converged`: within so much a state nearly repeats; states differ by more after fewer
     # periods than those of the response
     apart: float = 1e3
-    longest: int = 20_000  # as in orchestrate.attractors
     irregular_samples: int = 400  # periods kept of an irregular response
-    # as in orchestrate.attractors
-    alike: float = 0.02
-    alike_irregular: float = 0.25
     # weight of the impacts per period of irregular responses, a mean over the samples
     count_weight: float = 0.2
+    residual: float = 1e-9  # of an orbit's equations in units of a eta^2, at most
+    max_nodes: int = 400  # of an orbit that Newton's method is tried on
+    margin: float = 1e-9  # by which the multipliers of a stable orbit are smaller than 1 at least
+    # distances over the motion's size: where the FMU is again after the periods of an orbit; from
+    # which a response may be coming to an orbit, and lies on it
+    returns: float = 1e-6
+    near: float = 0.1
+    same: float = 1e-5
+    # beyond which attractors of neighbouring values may be different ones, other things equal
+    neighbour: float = 0.2
 
 
 def transient_periods(transient: int, settle: float, eta: float) -> int:

@@ -7,17 +7,17 @@ leads to.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import lru_cache
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import InputError
 from ..fmu import OSCILLATOR, EventInstance, Instance
+from ..lazy import Unpack, xr
 from ..model import PARAMETERS, Structure
 from ..model.arguments import Numbers, checked, positive, whole
 from ..model.outcomes import UNDECIDED
@@ -39,15 +39,11 @@ from ..response.questions import (
 from ..response.respond import DecidedResponse, Response, decisions_from, responses_from
 from ..response.response_loop import LoopSettings, response_loop
 from ..response.sweep import HOW_DECIDED
-from ..running.job import Table, plain
+from ..running.job import Fmus, Table, plain
 from ..running.options import Running, RunOptions
 from .clusters import transient_periods
 from .following import follow_impacts
 from .lyapunov import exponent_of
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
 
 FIELDS = {
     "impacts_per_period": "impacts per excitation period",
@@ -104,12 +100,9 @@ class MapJob(Question):
         return {**{name: plain(value) for name, value in self.given}, **others}
 
     def items(self) -> Sequence[Point]:
-        """Return the items: structure and excitation of each grid point."""
         return self.points
 
-    def work(
-        self, fmus: Mapping[str, Path], items: Sequence[Point], previous: Table | None
-    ) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[Point], previous: Table | None) -> Table:
         """Compute a chunk of the map's points by the FMU; return them as a table."""
         with Instance(fmus[OSCILLATOR]) as plain, EventInstance(fmus[OSCILLATOR]) as eventful:
             decided = zip(items, self.decided_responses(plain, items), strict=True)
@@ -163,7 +156,6 @@ class MapJob(Question):
         return [decided[i] for i in range(len(items))]
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Return the dataset of the map: the variables of ``FIELDS`` over both parameters."""
         names, axes = tuple(self.axes), self.axes
         texts = {**FIELDS, **(EXPONENT if self.exponent else {})}
         shape = (-1, *(len(values) for values in axes.values()))
@@ -254,8 +246,7 @@ def map(
     Raises
     ------
     InputError
-        Where a required argument is missing, arguments contradict each other, or a number is out
-        of its range.
+        Where an argument is missing, contradicts another one, or is out of its range.
 
     Notes
     -----

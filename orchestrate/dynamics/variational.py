@@ -17,10 +17,7 @@ import numpy as np
 
 from ..fmu import Impacts
 from ..response.questions import Point
-from .closed_form import ClosedForm, Floats
-from .release import contact_durations
-
-LEAST_SPEED = 1e-300  # a grazing impact has no closing speed: its matrix is very large instead
+from .closed_form import ClosedForm, Floats, contact_durations
 
 
 def period_in_tau(eta: float) -> float:
@@ -46,7 +43,8 @@ def saltation_matrices(impacts: Impacts, point: Point) -> Floats:
         slower = (form.parting_rate(impacts.closing) - form.e)[:, None]
         jump -= slower * (before @ exchange.T)
         matrices += slower[:, :, None] * exchange
-    jump /= np.maximum(impacts.closing, LEAST_SPEED)[:, None]
+    # a grazing impact has no closing speed: its matrix is very large instead
+    jump /= np.maximum(impacts.closing, 1e-300)[:, None]
     matrices[:, :, 0] += jump  # times the normal (-1, 1, 0, 0)
     matrices[:, :, 1] -= jump
     matrices[impacts.sticks] = form.centre()

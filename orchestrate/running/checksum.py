@@ -9,14 +9,12 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from ..lazy import xr
 from .blocks import blocks
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 ATTRIBUTE = "content_sha256"
 

@@ -10,23 +10,20 @@ import time
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError, StaleError, StoreError
 from ..files import check_path_encoding, open_folder, write_whole
+from ..lazy import xr
 from .blocks import blocks, chunk_shape
 from .checksum import ATTRIBUTE, checksum
 from .identity import Identity, difference, same_question
 from .job import Table
 from .journal import ANEW, Journal, Lock, discard, journal_path
 from .options import RunOptions
-
-if TYPE_CHECKING:
-    import netCDF4
-    import xarray as xr
 
 log = logging.getLogger(__name__)
 MIN_COMPRESSED = 10_000  # values from which a variable is worth compressing
@@ -250,12 +247,7 @@ def open_store(name: str, identity: Identity, options: RunOptions) -> Store:
 
 
 def load(path: Path) -> xr.Dataset:
-    """Return the dataset of a NetCDF file; raise ``StoreError`` if it is damaged (checksum).
-
-    A result without one, of a version that wrote none or of another tool, is taken as it is.
-    """
-    import xarray as xr
-
+    """Return the dataset of a NetCDF file; raise ``StoreError`` if it is damaged (checksum)."""
     check_path_encoding(path)
     try:
         is_large = path.stat().st_size > MAX_LOADED
@@ -274,7 +266,7 @@ def load(path: Path) -> xr.Dataset:
     return data
 
 
-def create_variable(file: netCDF4.Dataset, name: str, array: xr.DataArray) -> Any:
+def create_variable(file: Any, name: str, array: xr.DataArray) -> Any:
     """Create a variable for a large array in an open file, to be written block by block."""
     for dimension, size in array.sizes.items():
         if dimension not in file.dimensions:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import hashlib
-import json
 import re
 
 import numpy as np
@@ -14,12 +13,11 @@ import xarray as xr
 
 import orchestrate
 from orchestrate import cli
-from orchestrate.cli import diagnosis, dynamics, responses, weak_drive
+from orchestrate.cli import diagnosis, dynamics, responses
 from orchestrate.cli.text import attractor_table
 from orchestrate.dynamics.orbit_records import STABILITY
 from orchestrate.response.labels import flags
-from orchestrate.show import weak_drive as figures
-from orchestrate.units import Units, with_units
+from orchestrate.units import with_units
 
 from ...exports import BUILD
 
@@ -299,76 +297,6 @@ def test_the_weak_drive_prints_speeds_in_the_unit_asked_for(ask, monkeypatch, tm
     assert "1050 rpm" in ask(*options, *sheet, "--eta0", "1:2").success().out
 
 
-def test_a_passage_prints_its_motion_in_the_unit_asked_for(monkeypatch):
-    moved = {"x1": variable([1e-3, -2e-3], "m", ("time",)), "passage_time": 0.5}
-    moved["speed"] = variable([100.0, 110.0], "rad/s", ("time",))
-    moved |= {"jumps": ("jump", [np.nan]), "decided": ("jump", ["no"])}
-    data = xr.Dataset(moved, {"time": [0.0, 1.0], "jump": ["up"]}, {"kept": "all"})
-    monkeypatch.setattr("orchestrate.show.passage.jump_texts", lambda _: [])
-    (line,) = weak_drive.passage_lines({"bonded": data})
-    assert "largest |x1| 0.002 m, speed up to 110 rad/s" in line
-    (line,) = weak_drive.passage_lines({"bonded": with_units(data, "rpm, mm")})
-    assert "largest |x1| 2 mm, speed up to 1050 rpm" in line
-
-
-def test_pictures_of_the_weak_drive_move_with_their_axes(ask, tmp_path):
-    """Runs and the averaged theory under them."""
-    short = ("--eta0", "1.4:1.41", "--rate", "2e-4", "--step", "0.2", "--settle", "9", "--one-way")
-    ask("couple", *short, "--only", "delaminated", "--units", "rpm,um").success()
-    (result,), (picture,) = ((tmp_path / "results").glob(f"*.{e}") for e in ("nc", "png"))
-    assert picture.stem == f"{result.stem}_rpm-um"
-    data = xr.load_dataset(result)
-    plain = figures.draw({"delaminated": data})
-    shown = figures.draw({"delaminated": with_units(data, "rpm, um")})
-    in_rpm = 60.0 / (2.0 * np.pi)
-    for figure, speed, length in ((plain, 1.0, 1.0), (shown, in_rpm, 1e6)):
-        x, y = figure.axes[1].lines[0].get_xydata()[-1]
-        expected = figures.drop_spin_up(data)
-        part = figures.split_directions(expected)[0][0]
-        assert x == pytest.approx(speed * float(expected.speed[part][-1]))
-        assert y == pytest.approx(length * float(expected.amplitude[part][-1]))
-    assert plain.axes[1].get_ylabel() == "amplitude of $x_1$ in m"
-    assert shown.axes[1].get_ylabel() == "amplitude of $x_1$ in µm"
-    assert shown.axes[1].get_xlabel() == shown.axes[0].get_ylabel() == "mean speed in rpm"
-    text = next(weak_drive.couple_lines({"delaminated": with_units(data, "eta")}, 1.0))
-    assert re.search(r"at eta = [\d.]+ to [\d.]+", text)
-
-
-@pytest.fixture
-def record(tmp_path):
-    """A swept sine of 2 g, and a response of twice as much."""
-    time = np.arange(4000) / 500.0
-    angle = 2.0 * np.pi * (20.0 * time + time**2)
-    box = 19.6133 * np.sin(angle)
-    data = {"time [s]": time, "base [m/s2]": box, "acc 1 [m/s2]": 2.0 * box}
-    path = tmp_path / "swept.csv"
-    pd.DataFrame(data).to_csv(path, index=False)
-    return path
-
-
-def test_what_an_analyser_shows(ask, record, tmp_path):
-    show = ("--show", "psd,orders,density", "--to", "6")
-    plain = ask("analyse", record, *show, "--plot", "none").success().out
-    stored = sums(tmp_path / "results")
-    done = ask(
-        "analyse", record, *show, "--units", "rpm,g", "--format", "csv", "--plot", "none"
-    ).success()
-    assert sums(tmp_path / "results") == stored and len(stored) == 3
-    assert "rms m/s2" in plain and "(m/s2)2/Hz at" in plain and " Hz" in plain
-    for words in (r"rms g\n.* 1\.41", r"g2/Hz at [\d.]+ rpm", r"  4(\.0\d+)? g at"):
-        assert re.search(words, done.out), words
-    assert not re.search(r"m/s2| Hz\b", done.out.replace("g2/Hz", ""))
-    tables = [path for path in (tmp_path / "results").glob("*.csv") if "_psd_" in path.name]
-    columns = {name for path in tables for name in pd.read_csv(path).columns}
-    assert {"frequency [rpm]", "psd [g2/Hz]", "rms [g]"} <= columns
-    (name,) = (n for n in stored if "_density_" in n)
-    data = xr.load_dataset(tmp_path / "results" / name)
-    curves = [
-        orchestrate.plot(data, units=units).axes[0].lines[-1].get_xydata() for units in ("", "g")
-    ]
-    np.testing.assert_allclose(*curves)
-
-
 def test_a_verdict_is_said_in_the_units_asked_for(tmp_path):
     """Made-up: nothing opens up to 0.5 g over 40 to 56 Hz, 20 um would have been seen."""
     numbers = {"level_high": (4.903325, "m/s2"), "smallest_opening": (2e-5, "m")}
@@ -381,23 +309,3 @@ def test_a_verdict_is_said_in_the_units_asked_for(tmp_path):
     ):
         said = " ".join(diagnosis.verdict_lines(tmp_path / "a.csv", with_units(verdict, units)))
         assert f" up to {level}. Faces at the sensor that part by {words} or more would" in said
-
-
-TOURS = {  # what the page says of the pressed beam
-    **dict.fromkeys(["", "Hz,mm,g"], "by 0.05 mm, the halves stay shut at 30 Hz and"),
-    "rad/s,um,m/s2": "by 50 µm, the halves stay shut at 188.5 rad/s and 4.903 m/s²:",
-}
-
-
-def test_the_explorer_opens_in_the_units_asked_for(ask, tmp_path):
-    page = tmp_path / "page.html"
-    asked = (("", "paper"), ("Hz,mm,g", "g"), ("rad/s,um,m/s2", "g"))
-    for units, level in asked:
-        more = ("--units", units) if units else ()
-        ask("explore", "--no-open", *more, output=page).success()
-        text = page.read_text(encoding="utf-8")
-        assert re.search(rf'"level": ?\["{level}", ?1', text), units
-        shown = json.loads(re.search(r'"shown": ?(\{[^}]*\})', text)[1])
-        words = Units.from_text(units).with_defaults(Units("Hz", "mm", "g"))
-        assert level == "paper" or Units(**shown) == words
-        assert TOURS[units] in text, units

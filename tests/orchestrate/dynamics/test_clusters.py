@@ -1,7 +1,5 @@
 """Responses told apart: clusters against SciPy's single linkage, and cases with a known answer."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

@@ -1,7 +1,5 @@
 """TOML files: what is written is read, units are said by the key, the shipped sets are exact."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -1,7 +1,5 @@
 """A structure in SI units and by the paper's numbers: both ways, scaled, changed, refused."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 import pickle

@@ -1,7 +1,5 @@
 """The table of claims, the rule of its verdicts, and that numbers which change turn them over."""
 
-from __future__ import annotations
-
 import inspect
 
 import numpy as np

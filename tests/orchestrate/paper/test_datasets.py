@@ -1,7 +1,5 @@
 """The paper's datasets through the FMU: small ones, each of a call of the public functions."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +7,6 @@ import pytest
 import xarray as xr
 
 import orchestrate
-from orchestrate.paper.answers import describe_largest_impulse
 from orchestrate.paper.cases import CASES
 from orchestrate.paper.curves import CONTACT, FLIGHT, SEQUENCE, Panel, trace
 from orchestrate.paper.datasets import Datasets, most_even
@@ -119,24 +116,6 @@ def test_the_limit_of_permanent_contact_does_not_depend_on_gamma(data, monkeypat
     monkeypatch.setattr("orchestrate.paper.datasets.CONTACT_RANGES", {"elastic": (0.415, 0.421)})
     monkeypatch.setattr("orchestrate.paper.datasets.GAMMAS", (1e-4, 1e-2))
     assert data.last_contact("elastic").tolist() == [0.417, 0.417]
-
-
-def test_the_largest_impulse_of_a_map_is_followed_longer(data):
-    data.map = lambda parameter: orchestrate.map(
-        CASES["elastic"],
-        eta=[1.04, 1.05],
-        e=[0.7, 0.95],
-        transient=50,
-        settle=1.0,
-        samples=20,
-        **RUNNING,
-    )
-    found = data.map_peak("e")
-    assert found.eta.values.tolist() == [1.05] and found.attrs["periods"] == QUICK.part
-    assert float(found.exponent[0]) > 3.0 * float(found.standard_error[0])  # chaos, at e = 0.95
-    text = describe_largest_impulse(data, "e")
-    assert "impulses are largest at eta = 1.05, e = 0.95: " in text and text.endswith("1.05.")
-    assert f"in {QUICK.part} periods of the irregular response there" in text
 
 
 def test_the_frequency_at_which_two_attractors_share_starts_most_evenly():

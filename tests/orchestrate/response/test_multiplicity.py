@@ -8,8 +8,12 @@ from hypothesis import strategies as st
 from fmu_src.kernels import repetition
 from orchestrate.dynamics.continuation import NoConvergenceError
 from orchestrate.dynamics.families import Setting
-from orchestrate.dynamics.guesses import guess_from_state
-from orchestrate.dynamics.orbit_search import least_periods, solve_orbit, why_no_motion
+from orchestrate.dynamics.orbit_search import (
+    guess_from_state,
+    least_periods,
+    solve_orbit,
+    why_no_motion,
+)
 from orchestrate.dynamics.turning_points import stroboscopic_states
 from orchestrate.fmu import OSCILLATOR, EventInstance, Instance, find
 from orchestrate.model import Excitation, Structure

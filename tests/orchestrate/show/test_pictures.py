@@ -250,21 +250,6 @@ def test_maps_have_a_row_each_and_say_where_there_is_none():
     assert bars[0].get_position().x1 < panels[1].get_position().x0
 
 
-def test_a_map_has_impulses_in_newton_seconds_where_the_structure_is_in_si():
-    """m1 omega a eta^2 of 1.5 kg, 75 rad/s, 1 mm at eta 1 and 2."""
-    sides = {"e": [0.3, 0.5], "frequency": [75.0, 150.0], "eta": ("frequency", [1.0, 2.0])}
-    attributes = {**made.known(True), "amplitude": 1e-3}
-    names = ("impacts_per_period", "multiplicity", "xi_rel_max", "impulse_max")
-    data = xr.Dataset({name: (("e", "frequency"), np.ones((2, 2))) for name in names}, sides)
-    values, label = planes.shown_values(data.assign_attrs(attributes), "impulse_max")
-    assert label == "largest impulse in mN s"
-    assert values.transpose("e", "frequency").values[0] == pytest.approx([112.5, 450.0])
-    assert planes.shown_values(data.assign_attrs(attributes), "xi_rel_max")[1].endswith("in mm")
-    by_ratio = made.mapped(False)
-    by_ratio["impulse_max"] = by_ratio.xi_rel_max
-    assert planes.shown_values(by_ratio, "impulse_max")[1] == planes.COLUMNS["impulse_max"]
-
-
 def test_a_basin_names_all_that_is_in_it():
     figure = planes.draw_basin(made.plane(False), "here", ("gap", ""))
     (axes,) = figure.axes
@@ -274,36 +259,12 @@ def test_a_basin_names_all_that_is_in_it():
     assert texts[-2:] == ["25.0%: 2 others", "no states: the gap would be below 0"]
 
 
-def test_a_basin_says_its_frequency_once_and_gaps_as_asked(exported):
-    plane = {"x": ("x_rel", 0.1, 0.2, 2), "y": ("v_rel", 0.0, 0.1, 2)}
-    data = orchestrate.basin(PAPER, eta=1.7, **plane, **HERE)
-    for units in ("", "eta"):
-        figure = planes.draw_basin(with_units(data, units))
-        title = figure.get_suptitle() + figure.axes[0].get_title(loc="left")
-        assert title.count(r"\eta") == 1
-    (legend,) = planes.draw_basin(with_units(data, "mm")).legends
-    gap = 1e3 * float(data.xi_rel_max[0])
-    assert any(f"largest gap = {gap:.4g} mm" in text.get_text() for text in legend.get_texts())
-
-
 def test_sections_have_the_points_of_their_kind(exported):
     for at, kinds in (("phase", 1), ("impacts", 2), ("releases", 1)):
         data = orchestrate.poincare(PAPER, eta=0.4, periods=20, at=at, **HERE)
         (axes,) = orchestrate.plot(data).axes
         assert len(axes.lines) == kinds
         assert sum(len(points) for points in drawn(axes)) == data.sizes["point"] > 0
-
-
-def test_a_manifold_has_the_unit_asked_for():
-    over = ("side", "point")
-    gaps = xr.Dataset(
-        {"x_rel": (over, np.full((2, 3), 2e-5)), "v_rel": (over, np.full((2, 3), 1e-3))},
-        {"side": ["+", "-"]},
-        {**made.known(True), "shown_in": "mm"},
-    )
-    axes = planes.draw_manifold(gaps).axes[0]
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("gap in mm", "gap velocity in mm/s")
-    assert axes.lines[0].get_xdata()[0] == pytest.approx(0.02)
 
 
 # -- time histories and spectra -------------------------------------------------------------------
@@ -339,18 +300,6 @@ def test_two_structures_have_one_unit_on_an_axis(exported):
         tops.append([max(top for (_, _), (_, top) in lines) for lines in stems if len(lines)])
     assert len(tops[0]) == 3
     assert np.allclose(tops[0], GRAVITY * np.array(tops[1]))
-
-
-def test_what_shook_the_box_is_said_in_the_unit_asked_for(exported):
-    level = 0.02 * GRAVITY
-    sine = orchestrate.SweptSine(first=9.0, last=16.0, acceleration=level, duration=2.0)
-    steps = orchestrate.SteppedSine(frequencies=(9.0, 16.0), acceleration=level)
-    shock = orchestrate.Shock(peak=5.0 * GRAVITY, length=0.011)
-    told = {sine: f"{sine.label} at 0.02 g; ", steps: f"{steps.label} at 0.02 g; "}
-    for excitation, words in {**told, shock: "half-sine shock, 5 g for"}.items():
-        data = orchestrate.shake(BEAM, excitation, progress=False)
-        assert histories.draw_shake(with_units(data, "g")).get_suptitle().startswith(words)
-    assert "49.03 m/s$^2$" in histories.draw_shake(data).get_suptitle()
 
 
 def test_both_sides_of_a_line_are_visible():
