@@ -163,21 +163,25 @@ def run_command(arguments: Sequence[str]) -> int:
 
 
 def with_option_names(message: str, chosen: argparse.Namespace) -> str:
-    """Return a message in which keywords without a value are options: ``--unit`` for ``unit=``.
+    """Return a message in which keywords are options: ``--unit`` for ``unit=`` without a value.
 
     Examples
     --------
     >>> chosen = argparse.Namespace(sample_rate=None, columns=None)
     >>> with_option_names("expected columns=, sample_rate= or e=, not columns=3", chosen)
     'expected --columns, --sample-rate or e=, not columns=3'
+    >>> with_option_names('polarity? columns="0,2,1"', chosen)
+    'polarity? --columns "0,2,1"'
     """
 
     def option(keyword: re.Match[str]) -> str:
         """Return the option's spelling of a matched keyword, if it is one."""
         name = keyword["name"]
-        return f"--{name.replace('_', '-')}" if name in vars(chosen) else keyword[0]
+        spelling = f"--{name.replace('_', '-')}{' ' if keyword['quoted'] else ''}"
+        return spelling if name in vars(chosen) else keyword[0]
 
-    return re.sub(r"(?<![\w-])(?P<name>[a-z_]\w*)=(?=[\s,;:.)]|$)", option, message)
+    pattern = r"(?<![\w-])(?P<name>[a-z_]\w*)=((?=[\s,;:.)]|$)|(?=(?P<quoted>\")))"
+    return re.sub(pattern, option, message)
 
 
 def report_interruption(ended: KeyboardInterrupt) -> int:

@@ -17,6 +17,7 @@ from ..units import Units, range_text, text_of, with_readable_lengths, with_unit
 from .grammar import parse_values
 from .options import read_structure_options, structure_group
 from .output import (
+    READING,
     Files,
     digest,
     read_record_units,
@@ -26,7 +27,7 @@ from .output import (
     result_name,
     unit_note,
 )
-from .table import Command, Group, Question
+from .table import Command, Group, Question, values_of
 from .text import columns_of, parameter_column, table
 
 if TYPE_CHECKING:
@@ -36,11 +37,13 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 LINES = {  # attributes of a verdict that are printed below it, and what stands before them
+    "wiring": "wiring",
     "reason": "decided by",
-    "simulated": "simulated records",
     "settle": "to settle it",
     "record_columns": "columns",
     "record_unit_note": "unit",
+    "record_converted": "converted",
+    "record_time_base": "times",
 }
 CHANNELS = {  # in the order of --columns, and what they are called towards the user
     "time": "time",
@@ -68,7 +71,7 @@ def run_diagnose(arguments: argparse.Namespace) -> None:
     verdicts = compute_verdicts(arguments, records, names, guess) if records else {}
     units = read_record_units(arguments)
     for path, verdict in verdicts.items():
-        for line in verdict_lines(path, with_units(verdict, units)):
+        for line in verdict_lines(path, with_units(verdict, units), arguments):
             print(line)
         log.info("%s: signs, pictures and page", path.name)
         signs = orchestrate.signs(records[path], other=others, structure=guess)
@@ -80,7 +83,7 @@ def run_diagnose(arguments: argparse.Namespace) -> None:
 
 def file_stem(path: Path, guess: Structure, arguments: argparse.Namespace) -> str:
     """Return the name of a record's result files, unique for content, guess and reading options."""
-    read_as = [arguments.columns, arguments.unit, arguments.sample_rate, arguments.participation]
+    read_as = [arguments.columns, arguments.participation, *values_of(arguments, READING).items()]
     return f"diagnose_{path.stem}_{digest(file_checksum(path), guess.parameters(), read_as)}"
 
 
@@ -114,9 +117,7 @@ def read_one_record(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
     from .. import read_record
 
     columns = parse_columns(arguments)
-    record = read_record(
-        path, columns=columns, unit=arguments.unit, sample_rate=arguments.sample_rate
-    )
+    record = read_record(path, columns=columns, **values_of(arguments, READING))
     if "acceleration1" not in record and "acceleration2" not in record:
         taken = record.attrs.get("columns", "no columns")
         text = "expected a face's beside the base's, such as --columns 0,1,2 or Time,Table,Beam"
@@ -186,6 +187,8 @@ def origin_attributes(
         "record_columns": record.attrs.get("columns", ""),
         "record_unit": record.attrs.get("unit", ""),
         "record_unit_note": unit_note(record.attrs),
+        "record_converted": record.attrs.get("converted", ""),
+        "record_time_base": record.attrs.get("time_base", ""),
         "sensors": record.attrs.get("sensors", ""),
         "guess_file": str(arguments.structure),
         "command": getattr(arguments, "command_line", ""),
@@ -212,15 +215,16 @@ def write_files(
     print(report(*answers.values(), output=page, notes=arguments.notes or "", units=units))
 
 
-def verdict_lines(path: Path, verdict: xr.Dataset) -> Iterator[str]:
+def verdict_lines(path: Path, verdict: xr.Dataset, arguments: argparse.Namespace) -> Iterator[str]:
     """Yield a record's verdict in a few lines: what it is, its reason, what would settle it."""
     from ..show.verdict import make_verdict
+    from . import with_option_names
 
     shown = make_verdict(verdict)
     yield f"{path}: {shown.word} {shown.sentence}"
     for name, label in LINES.items():
         if verdict.attrs.get(name):
-            yield f"  {label}: {verdict.attrs[name]}"
+            yield f"  {label}: {with_option_names(verdict.attrs[name], arguments)}"
 
 
 DIAGNOSE = Command(
@@ -229,7 +233,8 @@ DIAGNOSE = Command(
     """  {program} diagnose record.csv --structure beam.toml
   {program} diagnose left.csv right.uff --structure beam.toml --set e=0.4 --jobs 2
   {program} diagnose up.csv --other down.csv --other louder.csv --structure beam.toml
-  {program} diagnose export.txt --columns 0,3,4 --unit g --sample-rate 2000 --structure beam.toml
+  {program} diagnose export.txt --columns 0,3,4 --unit g --structure beam.toml
+  {program} diagnose laser.csv --unit face=mm/s --sensitivity "base=100 mV/g" --structure beam.toml
 
 what it needs:
   a record of a swept sine over the beam's resonance: the acceleration of its base (the shaker's
@@ -244,7 +249,9 @@ what it gives:
   undecided        this record does not tell; the report says which one would
   and for each record a report to read, print and sign (.html), the answers (.nc), a picture""",
     (
-        Group(options="records FILE +  measured: .csv, .txt, .uff, .unv, .mat, .nc; one beam each"),
+        Group(
+            options="records FILE +  .csv, .txt, .uff, .unv, .mat, .lvm, .tdms, .nc; one beam each"
+        ),
         Group(
             "the guess",
             """
@@ -254,16 +261,17 @@ what it gives:
         ),
         Group(
             "records",
-            """
+            (
+                """
             --other FILE ...  record of the same beam at another level or in the other direction,
                 for the signs
-            --unit UNIT  m/s2, g ... (default: what the file says)
-            --columns A,B,...  of time, base, face 1 and face 2, by name or number from 0 (default:
-                by usual names)
-            --sample-rate HZ  where the file has no times; then --columns begins with the base
+            --columns A,B,...  of time, base, face 1 and face 2, by name or number from 0, without
+                time where --sample-rate is given (default: by usual names)
             --participation G,...  of the sensors on face 1 and face 2: the beam's mode there over
                 that of a mass on a spring, 1.57 at the tip of a cantilever (default: fitted)
             """,
+                READING,
+            ),
         ),
         Group("report", "--notes WORDS  below the title: which beam, who, when"),
         *result_groups(store=False),

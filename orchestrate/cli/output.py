@@ -15,14 +15,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
+from ..lazy import xr
+from ..running.options import Running
 from .grammar import floats
 from .table import Group
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from ..model import Structure
-    from ..running.options import Running
     from ..units import Units
 
 FORMATS = ("nc", "csv", "mat", "xlsx")
@@ -34,6 +33,14 @@ OWN_NAME = re.compile(rf"[a-z-]+_(.+)_[0-9a-f]{{{DIGITS}}}")  # of a result's fi
 
 # -- options --------------------------------------------------------------------------------------
 
+READING = """
+--unit UNIT  g, mm/s ..., or by channel: base=V,face1=mm/s (default: what the file says)
+--sensitivity VALUE  of voltages: "100 mV/g", or by channel "base=100 mV/g,face1=50 mV/(mm/s)"
+--sample-rate HZ  where the file has no times
+--scale FACTOR  by channel, such as face1=-1; of WAV files m/s2 at the full scale
+--delay SECONDS  by which channels are late, such as face1=0.002
+--resample  make uneven times equal, by splines
+"""
 UNITS = Group(
     "units",
     """

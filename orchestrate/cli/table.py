@@ -95,6 +95,12 @@ def parse_options(lines: Lines) -> tuple[Option, ...]:
     return tuple(parse_option(entry) for block in blocks for entry in block)
 
 
+def values_of(chosen: argparse.Namespace, options: Lines) -> dict[str, Any]:
+    """Return the values of those options that are given, by name."""
+    values = {one.name: one.value(chosen) for one in parse_options(options)}
+    return {name: value for name, value in values.items() if value is not None}
+
+
 def parse_option(entry: str) -> Option:
     """Return the option that an entry describes."""
     match = ENTRY.fullmatch(entry)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
+from ..lazy import xr
 from ..units import range_text, text_of, units_of, with_units
 from .answer import answer
 from .drive import (
@@ -45,8 +46,6 @@ from .table import Command, Group, Question
 from .text import Columns, columns_of, extents, parameter_column, table
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from ..model import Drive, Structure
     from ..weak_drive.couple import CoupleJob
 
@@ -246,7 +245,6 @@ def draw_couple(
 ) -> Any:
     """Draw the runs: ramps with averaged theory and branches, others over time."""
     import numpy as np
-    import xarray as xr
 
     from ..show.passage import draw_run
     from ..show.weak_drive import draw
@@ -663,29 +661,12 @@ def unlocated_changes(leg: xr.Dataset, located: Any) -> str:
 
 
 def drive_branch_lines(results: Results) -> Iterator[str]:
-    """Yield tables of the bifurcations, with what a slow ramp does there, and of the branches."""
-    from ..weak_drive.ramp_path import ramp_paths
-
+    """Yield tables of the bifurcations and of the branches."""
     (data,) = results.values()
-    count = data.sizes["bifurcation"]
-    effects = [""] * count
-    ends = []
-    for name in map(str, data.structure.values):
-        for direction, path in ramp_paths(data, name).items():
-            for number, fold in enumerate(path.jumps):
-                landing = path.landings[number : number + 1]
-                where = f" to {text_of(data, landing[0], 'rad/s', '.5g')}" if landing else ""
-                effects[fold] = f"jumps {direction}{where}"
-            for i in path.slow_losses:
-                effects[i] = f"continues {direction} to the fold, unless disturbed"
-            if path.end:
-                ends.append(f"{name}, a slow ramp {direction}: {path.end}")
-    if count:
-        rows = columns_of(data, "structure kind voltage speed", "bifurcation_")
-        yield from table({**rows, "a slow ramp": effects}, count)
+    if count := data.sizes["bifurcation"]:
+        yield from table(columns_of(data, "structure kind voltage speed", "bifurcation_"), count)
     else:
         yield "no bifurcations"
-    yield from ends
     legs = [data.sel(structure=name, leg=leg) for name in data.structure for leg in data.leg]
     legs = [leg for leg in legs if leg.voltage.notnull().any()]
     columns = {

@@ -199,18 +199,8 @@ def construct_or_explain(
 
 
 def exact_inverse(guess: float, forward: Callable[[float], float], target: float) -> float:
-    """Return the float near ``guess`` for which ``forward`` gives ``target`` exactly, if any.
-
-    Division does not undo a multiplication exactly. Of the few numbers about ``guess`` that give
-    the target, the one with the fewest digits is taken: it is the one that somebody wrote down.
-
-    Examples
-    --------
-    >>> 0.05 * 0.7 / 0.7
-    0.049999999999999996
-    >>> exact_inverse(0.05 * 0.7 / 0.7, lambda number: number * 0.7, 0.05 * 0.7)
-    0.05
-    """
+    """Return the float near ``guess`` for which ``forward`` gives ``target`` exactly, if any."""
+    # of the few numbers that do, the one with the fewest digits: the one that somebody wrote down
     near = [guess]
     for _ in range(3):
         near = [math.nextafter(near[0], -math.inf), *near, math.nextafter(near[-1], math.inf)]

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from os import PathLike
 from typing import TYPE_CHECKING, Any, TypedDict, TypeVar
 
 from ..errors import InputError
+from ..lazy import Unpack
 from .described import Described
-from .plausible import warn_of_per_cent
 from .ranges import (
     ADDED,
     OF_LENGTH,
@@ -26,7 +27,6 @@ from .ranges import (
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
-    from typing_extensions import Unpack
 
 Values = TypeVar("Values", float, "NDArray[np.float64]")
 SI = tuple(STRUCTURE)
@@ -82,6 +82,17 @@ def checked_thicknesses(thicknesses: tuple[float, float]) -> tuple[float, float]
         text = "expected two numbers > 0, of layers 1 and 2"
         raise InputError(f"thicknesses = {thicknesses!r}: {text}")
     return h1, h2
+
+
+def warn_of_per_cent(ratios: Mapping[str, float]) -> None:
+    """Warn about damping ratios, by name, so large that per cent was probably meant."""
+    for name, ratio in ratios.items():
+        if ratio > 0.3:  # damping ratio above which a half of a beam would hardly ring
+            warnings.warn(
+                f"{name} = {ratio:g} is {100.0 * ratio:.4g} % of critical damping: a ratio is "
+                f"meant, {ratio:g} % is {0.01 * ratio:g}",
+                stacklevel=3,
+            )
 
 
 def format_short(value: float) -> str:
@@ -641,11 +652,6 @@ class Structure(Described):
         first, second = (format_short(self.get(f"{letter}{half}")) for half in (1, 2))
         return f"{letter}{first}-{second}"
 
-    def _is_by_halves(self) -> bool:
-        """Return whether f1, f2, zeta1 and zeta2 reproduce the SI values to the last bit."""
-        numbers = {name: self.get(name) for name in HALVES}
-        return all(getattr(self, name) == value for name, value in self._by_halves(numbers).items())
-
     def _described(self) -> dict[str, str]:
         """Return texts of the halves' masses, frequencies and damping, of e, and of what is set."""
         halves = {
@@ -687,7 +693,9 @@ class Structure(Described):
         else:
             masses, *si = (self._pair(letter) for letter in ("m", "k", "d"))
             halves = [self._pair(letter) for letter in ("f", "zeta")]
-            shorter = self._is_by_halves() and len("".join(halves)) < len("".join(si))
+            numbers = self._by_halves({name: self.get(name) for name in HALVES})
+            exact = all(getattr(self, name) == value for name, value in numbers.items())
+            shorter = exact and len("".join(halves)) < len("".join(si))
             parts = [f"e{format_short(self.e)}", masses, *(halves if shorter else si)]
             names = ("gamma", *ADDED)
         for name in names:

@@ -24,11 +24,11 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..files import write_whole
 from ..flags import flag_words
+from ..lazy import xr
 from ..units import as_shown
 
 if TYPE_CHECKING:
     import pandas as pd
-    import xarray as xr
 
 MAX_SHEET_ROWS = 1_048_575  # Excel's limit, less the header
 MAX_SHEET_NAME = 31  # letters, Excel's limit

@@ -16,11 +16,12 @@ from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import AbstractContextManager, suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ..files import open_folder
+from ..lazy import xr
 from .bar import DELAY, progress_bar, refresh
 from .executors import Workers, compute, in_this_process, processes, threads
 from .identity import Fmu, identity_of
@@ -28,9 +29,6 @@ from .job import Job, Table
 from .options import RunOptions
 from .progress import Progress, Task
 from .store import open_store
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 log = logging.getLogger(__name__)
 FmuFinder = Callable[[str], Fmu]  # from a model's name to its FMU
@@ -164,17 +162,17 @@ class Runner:
             if not self.futures:
                 assert self.finished() or not go_on(), "nothing is under way, nothing is ready"
                 continue
+            if time.perf_counter() - self.start_time > DELAY:
+                notes = (
+                    state.job.progress_note(t.chunk.start) for state, t in self.futures.values()
+                )
+                refresh(bar, next(filter(None, notes), self.title()))
             finished, _ = wait(self.futures, timeout=POLL_SECONDS, return_when=FIRST_COMPLETED)
             for future in finished:
                 state, task = self.futures.pop(future)
                 state.add_result(task, *future.result())
                 self.computed_items += len(task.items)
             bar.update(self.done() - bar.n)
-            if time.perf_counter() - self.start_time > DELAY:
-                notes = (
-                    state.job.progress_note(t.chunk.start) for state, t in self.futures.values()
-                )
-                refresh(bar, next(filter(None, notes), self.title()))
 
     def fmus_to_send(self, workers: Workers) -> dict[str, Path | bytes]:
         """Return FMUs by model as workers get them: paths, or bytes for remote workers."""
@@ -210,8 +208,6 @@ class Runner:
 def import_xarray() -> None:
     """Import xarray and what datasets need early, as it takes most of a second."""
     with suppress(Exception):  # a process that ends lets nobody import; it comes again where used
-        import xarray as xr
-
         xr.Dataset({"number": ("place", np.zeros(1))})
 
 

@@ -77,10 +77,7 @@ def explain_other_structure(
 
 
 def explain_other_excitation(branch: xr.Dataset, data: xr.Dataset, over: str) -> str:
-    """Return a text on why a branch has another excitation than the responses; else "".
-
-    The box's amplitude does not matter where everything grows with it, as without a clearance.
-    """
+    """Return a text on why a branch has another excitation than the responses; else ""."""
     at = branch.frequency.values
     if over not in ALIKE[0]:
         same = [differ(branch[key].values, data[key].values) for key in ("eta", "frequency")]
@@ -104,10 +101,7 @@ def differ(some: np.ndarray, others: np.ndarray) -> bool:
 
 
 def amplitude_at(data: xr.Dataset, frequency: np.ndarray) -> np.ndarray:
-    """Return the box's amplitude, m, interpolated to frequencies between the responses'.
-
-    Where the level is held, exactly that; else linear between the responses.
-    """
+    """Return the box's amplitude, m, interpolated to frequencies between the responses'."""
     order = np.argsort(data.frequency.values, kind="stable")
     own = data.frequency.values[order]
     amplitude = np.broadcast_to(data.amplitude.values, own.shape)[order]

@@ -163,10 +163,7 @@ def decision_section(answer: xr.Dataset) -> Section:
     reason, settle = (str(answer.attrs.get(name, "")) for name in ("reason", "settle"))
     points = [f"What decided: {make_sentence(reason)}"] if reason else []
     odds = scalar(answer, "odds")
-    simulated = str(answer.attrs.get("simulated", ""))
-    if simulated:
-        points.append(f"{make_sentence(simulated)} Both models were fitted to each of them.")
-    elif math.isfinite(odds) and odds > 0.0:
+    if math.isfinite(odds) and odds > 0.0:
         points.append(
             "The odds of the delaminated against the best sound structure are "
             f"{format_odds(odds)}. They were counted in records put together of blocks of this "

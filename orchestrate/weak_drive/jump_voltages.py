@@ -6,40 +6,33 @@ ramp shows its jump late, about as rate^(2/3).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from ..errors import InputError
 from ..fmu.exported import finder
 from ..fmu.models import OSCILLATOR, SHAKER
+from ..lazy import Unpack, xr
 from ..model.drive import Drive
 from ..model.ranges import STRUCTURE
 from ..model.structure import Structure
 from ..response.labels import variable
-from ..running.job import Job, Table
+from ..running.job import Fmus, Job, Table
+from ..running.options import Running
 from ..running.runner import answer
 from .couple import couple_job, require_motor, schedule_from_arguments, scheme_from_arguments
 from .hysteresis import Settings
 from .master import Scheme
-from .schedule import Ramp, Schedule
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from typing_extensions import Unpack
-
-    from ..running.options import Running
+from .schedule import Ramp
 
 IGNORED = ("clearance", "e", "e_slope", "gamma")  # by the bonded structure
 KINDS = ("bonded", "delaminated")
 DIRECTIONS = ("up", "down")
-USUAL_RATES = (1e-4, 5e-5, 2.5e-5)  # of eta0 in a time 1/omega
 COLUMNS = ("jumps", "jump_low", "jump_high")
 SLOTS = Settings().slots
-EARLY = 1e-3  # of the voltage at rate 0: a ramp shows its jump no earlier
 SHOWN = ("ramp_voltage", "jump_speed_before")
 
 
@@ -58,15 +51,12 @@ class JumpVoltagesJob(Job):
     item: ClassVar[str] = "ramp"
 
     def items(self) -> Sequence[tuple[Structure, Ramp]]:
-        """Return the structure and the schedule of each ramp, the slowest first."""
         parted = self.structure.as_delaminated()
         varied = [parted.replace(**{self.over: value}) for value in self.values] or [parted]
         structures = (self.structure.as_bonded(), *varied)
         return [(structure, schedule) for schedule in self.schedules for structure in structures]
 
-    def work(
-        self, fmus: Mapping[str, Path], items: Sequence[tuple[Structure, Ramp]], previous: Any
-    ) -> Table:
+    def work(self, fmus: Fmus, items: Sequence[tuple[Structure, Ramp]], previous: Any) -> Table:
         """Run some ramps; return their jumps, and of faster ones what their records show."""
         rows, shown, decided = [], [], []
         for structure, schedule in items:
@@ -80,9 +70,6 @@ class JumpVoltagesJob(Job):
         return {"jumps": np.array(rows), "decided": np.array(decided), "shown": np.array(shown)}
 
     def dataset(self, table: Table) -> xr.Dataset:
-        """Build the dataset of jump voltages over the rate and at rate 0."""
-        import xarray as xr
-
         rates = np.array([schedule.rate for schedule in self.schedules])
         count = 1 + max(1, len(self.values))  # of structures
         at: Any = np.arange(len(KINDS))  # of both kinds among them; the bonded one at each value
@@ -134,7 +121,8 @@ def first_past(jumps: np.ndarray, shown: np.ndarray) -> np.ndarray:
     """Return of the jumps that ramps show those that come next after the motion is lost."""
     signs = np.array([1.0, -1.0]) * np.sign(jumps)
     late = signs[..., np.newaxis] * (shown[..., 0] - jumps[..., np.newaxis])
-    late = np.where(late > -EARLY * np.abs(jumps[..., np.newaxis]), late, np.inf)
+    # a ramp shows its jump no earlier than by a thousandth
+    late = np.where(late > -1e-3 * np.abs(jumps[..., np.newaxis]), late, np.inf)
     first = np.argmin(late, axis=-1)[..., np.newaxis]
     chosen = np.take_along_axis(shown, first[..., np.newaxis], axis=-2)[..., 0, :]
     is_late = np.isfinite(np.take_along_axis(late, first, axis=-1))
@@ -211,15 +199,16 @@ def jump_voltages(
     """
     require_motor(drive)
     unit = drive.volts(structure) * structure.omega
-    volt_rates = [rate * unit for rate in USUAL_RATES] if rates is None else list(rates)
+    volt_rates = [rate * unit for rate in (1e-4, 5e-5, 2.5e-5)] if rates is None else list(rates)
     if not volt_rates:
         raise InputError(f"rates = {rates}: expected one or more, in V/s")
-    schedules = tuple(
-        require_ramp(
-            schedule_from_arguments(structure, drive, voltage, None, rate, settle, 0.0, back)
-        )
+    every = (
+        schedule_from_arguments(structure, drive, voltage, None, rate, settle, 0.0, back)
         for rate in sorted(set(volt_rates))
     )
+    schedules = tuple(schedule for schedule in every if isinstance(schedule, Ramp))
+    if not schedules:
+        raise InputError("voltage: expected (first, last) in V, the ends of ramps")
     scheme = scheme_from_arguments(structure, step)
     if (over is None) != (values is None):
         raise InputError("over and values: expected both, or none of them")
@@ -231,10 +220,3 @@ def jump_voltages(
         structure.replace(**{str(over): value})  # raises where it is out of range
     job = JumpVoltagesJob("jump_voltages", structure, drive, schedules, scheme, over or "", varied)
     return answer(job, running, finder(running))
-
-
-def require_ramp(schedule: Schedule) -> Ramp:
-    """Return the schedule if it is a ramp; raise an error otherwise."""
-    if not isinstance(schedule, Ramp):
-        raise InputError("voltage: expected (first, last) in V, the ends of ramps")
-    return schedule

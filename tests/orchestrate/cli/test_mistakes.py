@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import shlex
-import socket
 import sys
 
 import netCDF4
@@ -289,15 +288,6 @@ def test_debug_shows_where_an_error_came_from(tmp_path):
     for arguments in (["--debug", "sweep"], ["sweep", "--debug"]):
         with pytest.raises(InputError, match="e = 2"):
             main([*arguments, "--set", "e=2", "--output", str(tmp_path)])
-
-
-@pytest.mark.slow
-def test_no_scheduler_but_something_that_takes_calls_and_is_silent(ask, monkeypatch):
-    monkeypatch.setattr("orchestrate.running.cluster.CONNECT_TIMEOUT", "1s")
-    with socket.create_server(("127.0.0.1", 0)) as silent:
-        address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
-        asked = ask("sweep", "--eta", "1", "--cluster", address)
-    asked.complaint(f"cluster {address}", "no scheduler")
 
 
 @pytest.mark.parametrize("asked", [("--eta", "1"), ("--frequency", "1", "--amplitude", "1")])

@@ -153,15 +153,6 @@ def test_help_takes_no_time_and_loads_nothing_numerical():
     pytest.fail(f"it took {taken:.2f} s")
 
 
-@pytest.mark.slow
-def test_without_docstrings_options_are_the_same(tmp_path):
-    """As ``python -OO`` leaves them out."""
-    command = [sys.executable, "-OO", "-m", "orchestrate", "resonance", "--eta", "1.1,1.2"]
-    words = ["--direction", "up", "--transient", "5", "--samples", "8", "--plot", "none"]
-    done = subprocess.run([*command, *words, "--output", str(tmp_path)], cwd=ROOT)
-    assert done.returncode == 0 and list(tmp_path.glob("resonance_paper_*.nc"))
-
-
 # -- grammar --------------------------------------------------------------------------------------
 
 
