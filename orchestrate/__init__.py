@@ -15,7 +15,8 @@ What is asked
     :func:`sweep`, :func:`spectra`; :func:`map`, :func:`lyapunov`, :func:`poincare`,
     :func:`attractors`, :func:`basin`, :func:`basin_entropy`, :func:`impact_statistics`;
     :func:`shake` as in the laboratory, by a :class:`SweptSine` or :class:`SteppedSine`,
-    :class:`Random` vibration, a :class:`Shock` or :class:`Sampled` acceleration; :func:`measure`
+    :class:`Random` vibration, a :class:`Shock` or :class:`Sampled` acceleration, or on a
+    :class:`Shaker` by :class:`LevelControl`; :func:`measure`
     what a :class:`Sensor` reads of it, :func:`record`, :func:`read_record` and
     :func:`write_record` what was measured, :func:`read_curve` and :func:`resonance_curve` if that
     is a table of amplitudes; :func:`frf`, :func:`psd`, :func:`track_orders`,
