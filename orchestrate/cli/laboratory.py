@@ -25,6 +25,7 @@ from .options import (
 from .output import (
     FORMAT,
     OUTPUT,
+    READING,
     UNITS,
     Files,
     digest,
@@ -34,7 +35,7 @@ from .output import (
     result_groups,
     unit_note,
 )
-from .table import Command, Group, Question, parse_options
+from .table import Command, Group, Question, parse_options, values_of
 from .text import Columns, columns_of, extents, impact_lines, table
 
 if TYPE_CHECKING:
@@ -259,12 +260,9 @@ ANALYSES = {
     "shock": Analysis("shock_spectrum", ("damping",), "shock response spectrum"),
     "density": Analysis("probability_density", ("bins",), "probability density, skewness"),
 }
-READING = f"""
---unit UNIT  of accelerations: m/s2, g, mg ...
+COLUMNS = f"""
 --columns A=X,B=Y  columns by name or number from 0: CHANNEL=COLUMN,... with the channels time,
     {", ".join(MASSES)}
---sample-rate HZ  where there is no time
---scale X  m/s2 at the full scale of WAV files
 """
 SETTINGS = """
 --resolution HZ  distance of the lines, Hz, of frf, psd and spectrogram
@@ -277,12 +275,6 @@ SETTINGS = """
 --bins X  of density (default: 100)
 """
 SHOWN = ", ".join(f"{name} ({one.text})" for name, one in ANALYSES.items())
-
-
-def values_of(arguments: argparse.Namespace, options: str) -> dict[str, Any]:
-    """Return the values of those options that are given, by name."""
-    values = {one.name: one.value(arguments) for one in parse_options(options)}
-    return {name: value for name, value in values.items() if value is not None}
 
 
 def run_analyse(arguments: argparse.Namespace) -> None:
@@ -302,7 +294,7 @@ def run_analyse(arguments: argparse.Namespace) -> None:
     warn_without_sensor(arguments, records)
     units = read_record_units(arguments)
     reading = [getattr(arguments, name) for name in ("from", "to", "sensor")]
-    reading += values_of(arguments, READING).items()
+    reading += values_of(arguments, (COLUMNS, READING)).items()
     for name in names:
         results = {
             label: analyse(ANALYSES[name], record, paths[label], settings[name])
@@ -385,7 +377,7 @@ def read_record_file(arguments: argparse.Namespace, path: Path) -> xr.Dataset:
         return stored if units <= {"m/s2"} else read_record(path)
     if not path.is_file():
         raise InputError(f"{path}: no such file; expected a record")
-    reading = values_of(arguments, READING)
+    reading = values_of(arguments, (COLUMNS, READING))
     if path.suffix.lower() != ".wav":  # the scale is of the others
         reading.pop("scale", None)
     return read_record(path, **reading)
@@ -425,8 +417,8 @@ ANALYSE = Command(
     (
         Group(
             options=f"""
-            record FILE  a result of shake (.nc), or a record: .csv, .txt, .uff, .unv, .mat, .wav,
-                .nc
+            record FILE  a result of shake (.nc), or a record: .csv, .txt, .uff, .unv, .mat, .lvm,
+                .tdms, .wav, .nc
             --show A,B,... = frf,psd  {SHOWN}
             """
         ),
@@ -442,7 +434,7 @@ ANALYSE = Command(
             --to S  time it ends at, s
             """,
         ),
-        Group("how to read records", READING, description="what files but NetCDF may not say"),
+        Group("how to read records", (COLUMNS, READING)),
         Group("settings", SETTINGS),
         UNITS,
         Group("files", FORMAT),

@@ -43,9 +43,7 @@ class Description:
         return self.fmi_version.startswith("3")
 
     def variable(self, name: str) -> Any:
-        """Return FMPy's description of the variable with a name; raise ``InputError`` if
-        unknown.
-        """
+        """Return FMPy's description of a variable; raise ``InputError`` if it is unknown."""
         try:
             return self.variables[name]
         except KeyError:

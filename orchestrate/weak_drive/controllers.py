@@ -110,7 +110,6 @@ class SpeedControl(Controller):
     rise: float = math.inf
 
     def __post_init__(self) -> None:
-        """Check the settings of the controller."""
         check("speed", self.speed, "rad/s")
         check("gain", self.gain, "V.s/rad", low=0.0, exclusive=True)
         for name, unit in (("reset_time", "s"), ("rise", "rad/s2")):
@@ -118,7 +117,6 @@ class SpeedControl(Controller):
                 check(name, getattr(self, name), unit, low=0.0, exclusive=True)
 
     def begin(self, speed: float) -> ControllerState:
-        """Return the initial state: the first set speed and a zero integral."""
         return (self.speed if self.rise == math.inf else speed), 0.0
 
     def update(
@@ -179,13 +177,11 @@ class SpeedGradient(Controller):
     low: float = 0.0
 
     def __post_init__(self) -> None:
-        """Check the settings of the controller."""
         check("filter_time", self.filter_time, "s", low=0.0, exclusive=True)
         check("passed", self.passed, "rad/s", low=0.0, exclusive=True)
         check("low", self.low, "of the voltage", low=0.0, high=1.0)
 
     def begin(self, speed: float) -> ControllerState:
-        """Return the initial state: the running mean starts at the present speed."""
         return (speed,)
 
     def update(
