@@ -126,13 +126,12 @@ def sensor_notes(orders: RecordOrders, row: int, settings: Settings) -> Iterator
     frequency = orders.windows.frequency
     straight = LowResponse.fitted(frequency, response, settings)
     inverse = LowResponse.fitted(frequency, 1.0 / response, settings)
-    if (
-        inverse
-        and inverse.misfit < settings.misfit
-        and (straight is None or straight.misfit > settings.swapped * inverse.misfit)
-    ):
+    if straight is None:
+        return
+    limit = min(settings.misfit, straight.misfit / settings.swapped)
+    if inverse is not None and inverse.misfit < limit:
         yield swapped_note(name)
-    elif straight and straight.misfit < settings.misfit:
+    elif straight.misfit < settings.misfit:
         yield from straight.notes(name, settings)
 
 

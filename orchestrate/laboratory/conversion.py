@@ -71,7 +71,7 @@ def by_channel(name: str, argument: ByChannel, channels: Sequence[str]) -> dict[
     if argument is None:
         return {}
     if isinstance(argument, str) and "=" in argument:
-        argument = dict(part.split("=", 1) for part in argument.split(",") if "=" in part)
+        argument = dict(part.split("=", 1) for part in re.split(r",(?=[^,=]+=)", argument))
     if not isinstance(argument, Mapping):
         return dict.fromkeys(channels, argument)
     values = {}
@@ -85,15 +85,15 @@ def by_channel(name: str, argument: ByChannel, channels: Sequence[str]) -> dict[
 
 
 def number_by_channel(name: str, argument: ByChannel, channels: Sequence[str]) -> dict[str, float]:
-    """Return numbers by channel; raise for one that is no finite number, or 0."""
+    """Return numbers by channel; raise for one that is not finite."""
     numbers = {}
     for channel, value in by_channel(name, argument, channels).items():
         try:
             numbers[channel] = float(value)
         except (TypeError, ValueError):
             numbers[channel] = math.nan
-        if not math.isfinite(numbers[channel]) or numbers[channel] == 0.0:
-            raise InputError(f"{name} = {argument!r}: expected numbers other than 0")
+        if not math.isfinite(numbers[channel]):
+            raise InputError(f"{name} = {argument!r}: expected numbers, such as face1=-1")
     return numbers
 
 
