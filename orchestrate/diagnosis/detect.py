@@ -184,6 +184,7 @@ class DetectJob(SearchJob):
         if simulated is not None:
             findings = replace(findings, simulated_odds=simulated.odds_with_error()[0])
         every, coordinates = results.comparison()
+        wiring = "; ".join(note.text for note in wiring_notes(whole.channels))
         scalars = {
             "verdict": ((), findings.verdict(), {"long_name": "verdict"}),
             **odds_variables(findings, simulated, table["end_bootstrap"][0]),
@@ -201,12 +202,12 @@ class DetectJob(SearchJob):
             analysis="detect",
             title=f"Verdict: {findings.verdict()}",
             reason=findings.reason(),
-            settle=findings.next_measurement(),
+            settle="First mend the wiring. " * bool(wiring) + findings.next_measurement(),
             simulated=simulated.sentence() if simulated else "",
             seen_up_to=findings.seen_up_to(),
             assumed="; ".join(ASSUMED),
             direction=sweep_direction(whole.windows.frequency),
-            wiring="; ".join(note.text for note in wiring_notes(whole.channels)),
+            wiring=wiring,
         )
 
 

@@ -91,22 +91,23 @@ def wiring_notes(channels: Channels, settings: Settings = SETTINGS) -> list[Note
 def notes_without_sine(channels: Channels, settings: Settings) -> Iterator[Note]:
     """Yield notes on a record whose base has no sine: another column's may be the base's."""
     base = channels.names.index(BOX)
+    spread = channels.values.std(axis=1)
     for row, name in enumerate(channels.names):
+        face, values = SHORT_NAMES[name], channels.values.copy()
+        values[[base, row]] = values[[row, base]]
         if row == base:
             continue
-        values = channels.values.copy()
-        values[[base, row]] = values[[row, base]]
         try:
             exchanged = replace(channels, values=values)
             orders = assembled_orders(exchanged, *sine_windows(exchanged))
         except InputError:
-            continue
-        face = SHORT_NAMES[name]
-        size = np.median(np.abs(orders.amplitude[row, 0]) / orders.level)
-        if is_heard(orders, row, settings) and size > settings.dead:
-            yield swapped_note(face)
+            is_face = False
         else:
-            yield Note("dead", f"the base has no sine, {face} has one: is the base's cable dead?")
+            is_face = is_heard(orders, row, settings)
+        if spread[base] < settings.dead * spread[row]:
+            yield Note("dead", f"the base has no sine and {face} moves: is the base's cable dead?")
+        elif is_face:
+            yield swapped_note(face)
     yield from clipped_notes(channels)
 
 

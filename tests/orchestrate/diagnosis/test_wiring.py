@@ -1,4 +1,4 @@
-"""Wiring errors of a sound beam's record: each is named, with what mends it; none on a clean one."""
+"""Wiring errors of a sound beam's record: each is named with what mends it, none on a clean one."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import pytest
 
 from orchestrate import InputError, detect, read_record, record
 from orchestrate.diagnosis.orders import sensor_channels
+from orchestrate.diagnosis.sweeps import split_sweeps
 from orchestrate.diagnosis.undamaged import SoundStructure
 from orchestrate.diagnosis.wiring import wiring_notes
 from orchestrate.laboratory.analysis.channels import Channels
@@ -109,7 +110,9 @@ def test_what_a_note_says_mends_the_record(tmp_path):
     speed = np.cumsum(channels[FACE] - channels[FACE].mean()) / RATE
     volts = channels[BASE] / 9.80665 * 0.1
     rows = zip(np.arange(COUNT) / RATE, volts, -1e3 * late(speed, 0.0015), strict=True)
-    path.write_text("Time,Table,Laser tip\n" + "".join("%.5g,%.6g,%.6g\n" % row for row in rows))
+    path.write_text(
+        "Time,Table,Laser tip\n" + "".join(f"{t:.5g},{b:.6g},{v:.6g}\n" for t, b, v in rows)
+    )
     options = {}
     for said in ('"Table": no unit.*unit=', '"Table": in V, without a sens.*sensitivity="?'):
         with pytest.raises(InputError, match=said):
@@ -133,3 +136,21 @@ def test_what_a_note_says_mends_the_record(tmp_path):
 
 def notes_of(path, options):
     return wiring_notes(sensor_channels(read_record(path, **options)))
+
+
+def test_sweeps_at_several_levels_are_split_at_pauses_and_at_jumps_of_the_frequency():
+    one = sweep()
+    silence = {name: np.random.default_rng(9).normal(0.0, 0.01, 2048) for name in one}
+    parts = (one, {name: 0.3 * values for name, values in one.items()})
+    for pause in ((), (silence,)):
+        both = {
+            name: np.concatenate([part[name] for part in (parts[0], *pause, parts[1])])
+            for name in one
+        }
+        found = split_sweeps(record(sample_rate=RATE, **both))
+        assert [data.attrs["title"] for data in found] == ["Record, sweep 1", "Record, sweep 2"]
+        for data, part in zip(found, parts, strict=True):
+            assert float(np.abs(data.time[-1] - data.time[0])) == pytest.approx(20.0, abs=1.0)
+            assert float(data[BASE].std()) == pytest.approx(part[BASE].std(), rel=0.05)
+    alone = record(sample_rate=RATE, **one)
+    assert split_sweeps(alone) == [alone]

@@ -585,7 +585,7 @@ def test_repeated_extreme_values_are_those_of_a_saturated_channel():
         )
 
 
-# -- channels as they are ---------------------------------------------------------------------------
+# -- channels as they are -------------------------------------------------------------------------
 
 
 def swept(count=4000, rate=1000.0):
