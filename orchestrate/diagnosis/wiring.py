@@ -32,7 +32,7 @@ class Settings:
     misfit: float = 0.15  # of the response: a fit that misses more says nothing
     swapped: float = 4.0  # times better a fit describes the exchanged channels
     scale: float = 2.5  # factor of the base's motion beyond which a sensor's scale is wrong
-    gravity: float = 0.12  # relative distance of a factor from 9.80665 that names the unit
+    gravity: float = 0.25  # distance of a factor's logarithm from that of 9.80665 for a unit
     delay: float = 1e-3  # s
     clear: float = 7.5  # phase of a delay at the lowest frequency, over the misfit
     dead: float = 0.05  # of the base's motion: a sensor without a resonance that moves less

@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from orchestrate import InputError, detect, read_record, record
+from orchestrate import InputError, detect, read_record, record, signs
 from orchestrate.diagnosis.orders import sensor_channels
 from orchestrate.diagnosis.sweeps import split_sweeps
 from orchestrate.diagnosis.undamaged import SoundStructure
@@ -154,3 +154,32 @@ def test_sweeps_at_several_levels_are_split_at_pauses_and_at_jumps_of_the_freque
             assert float(data[BASE].std()) == pytest.approx(part[BASE].std(), rel=0.05)
     alone = record(sample_rate=RATE, **one)
     assert split_sweeps(alone) == [alone]
+
+
+def test_signs_need_no_base_and_a_verdict_without_one_is_refused(tmp_path):
+    """A shaker with a force cell whose own order 2 a sound beam passes on; then the cell is gone."""
+    time, rng = np.arange(COUNT) / RATE, np.random.default_rng(3)
+    phase = 2.0 * np.pi * (20.0 * time + 1.5 * time**2)
+    force = 10.0 * np.sin(phase) + 0.3 * np.sin(2.0 * phase)
+    made = Channels(time, RATE, (BASE,), force[None], "force")
+    face = 0.7 * (SoundStructure(45.0, 0.01).acceleration(made) - force)
+    rattling = face + 0.05 * np.abs(face) + rng.normal(0.0, 0.01 * face.std(), COUNT)
+    path = tmp_path / "shaker.csv"
+    rows = zip(time, 0.022 * force, face + rng.normal(0.0, 0.01 * face.std(), COUNT), strict=True)
+    lines = "".join(f"{t!r},{f!r},{a!r}\n" for t, f, a in rows)
+    path.write_text(f"t [s],force cell [V],tip [m/s2]\n{lines}")
+    excited = read_record(path, sensitivity="force=22 mV/N")
+    assert excited.force.attrs["units"] == "N" and np.allclose(excited.force, force)
+    sound = signs(excited, seeds=2).isel(channel=0)
+    assert abs(float(sound.sound_f) - 45.0) < 0.2 and sound.attrs["reference"] == "force"
+    assert not (sound.exceeds == 1).any() and sound.exceeds.sel(sign="order_2") == 0
+    opened = record(sample_rate=RATE, acceleration1=rattling, force=force)
+    assert signs(opened, seeds=2).exceeds.sel(sign="order_2").item() == 1
+    alone = signs(record(sample_rate=RATE, acceleration1=rattling), seeds=2).isel(channel=0)
+    own = alone.sel(sign="order_2")
+    assert float(own.value) > 5.0 * float(own.floor) and (alone.exceeds == -1).all()
+    guess = Structure.from_halves(m1=1.0, m2=1.0, f1=40.0, f2=50.0, zeta1=0.01)
+    with pytest.raises(InputError, match="excited by a force; a verdict needs it: measure a swept"):
+        detect(opened, guess)
+    with pytest.raises(InputError, match="what excites it is unknown; .*orchestrate.signs does"):
+        detect(opened.drop_vars("force"), guess)
