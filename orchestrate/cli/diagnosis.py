@@ -1,37 +1,44 @@
-"""Command ``diagnose``: decide from measured records whether beams are delaminated."""
+"""Commands ``diagnose``, whether beams are delaminated by their records, and ``plan``, a test."""
 
 from __future__ import annotations
 
 import argparse
 import hashlib
+import logging
+import math
 from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from ..constants import GRAVITY
 from ..errors import InputError
-from ..units import with_units
-from .options import read_structure_options
+from ..units import Units, range_text, text_of, with_readable_lengths, with_units
+from .grammar import parse_values, with_option_names
+from .options import read_structure_options, structure_group
 from .output import (
     READING,
     Files,
     digest,
     read_record_units,
     read_running_options,
+    read_units,
     result_groups,
+    result_name,
     unit_note,
 )
-from .table import Command, Group, values_of
+from .table import Command, Group, Question, values_of
+from .text import columns_of, parameter_column, table
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from ..model import Structure
 
+log = logging.getLogger(__name__)
 LINES = {  # attributes of a verdict that are printed below it, and what stands before them
     "wiring": "wiring",
     "reason": "decided by",
-    "simulated": "simulated records",
     "settle": "to settle it",
     "record_columns": "columns",
     "record_unit_note": "unit",
@@ -69,6 +76,7 @@ def run_diagnose(arguments: argparse.Namespace) -> None:
     others = [read_one_record(arguments, path) for path in arguments.other]
     if others and len(arguments.records) > 1:
         raise InputError("--other: of one beam; expected one record with it")
+    log.info("reading %s", ", ".join(path.name for path in arguments.records))
     records, refused = read_all_records(arguments)
     names = {one: file_stem(one, guess, arguments) for one in records}
     verdicts = compute_verdicts(arguments, records, names, guess) if records else {}
@@ -76,6 +84,7 @@ def run_diagnose(arguments: argparse.Namespace) -> None:
     for sweep, verdict in verdicts.items():
         for line in verdict_lines(sweep, with_units(verdict, units), arguments):
             print(line)
+        log.info("%s: signs, pictures and page", sweep.path.name)
         same = [data for one, data in records.items() if one.path == sweep.path and one != sweep]
         signs = orchestrate.signs(records[sweep], other=[*others, *same], structure=guess)
         write_files(arguments, names[sweep], {"": verdict, "_signs": signs})
@@ -228,7 +237,6 @@ def verdict_lines(
 ) -> Iterator[str]:
     """Yield a record's verdict in a few lines: what it is, its reason, what would settle it."""
     from ..show.verdict import make_verdict
-    from . import with_option_names
 
     shown = make_verdict(verdict)
     yield f"{sweep}: {shown.word} {shown.sentence}"
@@ -290,4 +298,93 @@ what it gives:
     run_diagnose,
 )
 
-COMMANDS = (DIAGNOSE,)
+
+def ask_plan(arguments: argparse.Namespace) -> tuple[Structure, Question]:
+    """Return structure and keywords of ``plan_test``."""
+    from .. import Sensor
+
+    structure = read_structure_options(arguments)
+    hz, g = (
+        getattr(arguments, name) and parse_values(f"--{name}", getattr(arguments, name))[0]
+        for name in ("hz", "g")
+    )
+    question: Question = {"frequencies": hz, "g": g, **arguments.row.keywords(arguments)}
+    if arguments.noise is not None or arguments.range is not None:
+        from ..diagnosis.plan_test import USUAL_NOISE
+
+        question["sensor"] = Sensor(
+            bandwidth=40.0 * (hz[-1] if hz else 1.2 * max(structure.f1, structure.f2)),
+            noise=USUAL_NOISE if arguments.noise is None else arguments.noise,
+            range=GRAVITY * (math.inf if arguments.range is None else arguments.range),
+        )
+    return structure, question
+
+
+def run_plan(arguments: argparse.Namespace) -> None:
+    """Run ``plan``: compute a plan; print it; write result and picture."""
+    import orchestrate
+
+    from ..running.store import write_netcdf
+
+    structure, question = ask_plan(arguments)
+    name = result_name("plan", arguments.structure, structure, question)
+    files = Files.from_options(arguments, name, fresh=True)
+    plan = orchestrate.plan_test(structure, **question, **read_running_options(arguments))
+    units = read_units(arguments).with_defaults(Units("Hz", acceleration="g"))
+    described = plan.assign_attrs(structure.parameters())
+    (shown,) = with_readable_lengths(with_units(described, units))
+    print(*plan_lines(shown), sep="\n")
+    write_netcdf(plan, files.result)
+    files.write(shown, partial(orchestrate.plot, shown))
+
+
+def plan_lines(data: xr.Dataset) -> Iterator[str]:
+    """Yield the recommended sweep, whether it tells, and what each level shows."""
+    level = text_of(data, data.recommended_level, "m/s2", ".3g")
+    ends = range_text(data, float(data.recommended_first), float(data.recommended_last), "Hz")
+    yield f"sweep {ends} at {level}, up and down, {float(data.recommended_duration):.0f} s each way"
+    if not data.counts:
+        yield "orders 2 and 3 do not count at any of these levels: raise --g, or lower the --noise"
+    opens = data.opening_level.values
+    if (opens > 0.0).any():
+        at = int(opens.argmin())
+        where = text_of(data, data.frequency[at], "Hz", ".4g")
+        lowest = text_of(data, opens[at], "m/s2", ".3g")
+        yield f"pressed together: it opens from {lowest}, at {where}"
+    elif not data.attrs["clearance"]:
+        yield "faces that touch open at every level; try pressed ones too: --set preload=20um"
+    best = data.distance_harmonics.max("frequency") / data.threshold
+    rows = parameter_column(data, "level", data.level.values, ".3g")
+    rows["orders 2 and 3 over what counts"] = [f"{value:.3g}" for value in best.values]
+    largest = data.opening.max("frequency", keep_attrs=True)
+    rows |= columns_of(largest.to_dataset().assign_attrs(data.attrs), "opening", form=".3g")
+    rows["sensor"] = ["overload" if flag else "" for flag in data.overload.values]
+    yield from table(rows)
+
+
+PLAN = Command(
+    "plan",
+    "plan a test: frequencies and levels of a sweep at which a delamination would show",
+    """  {program} plan --structure beam.toml
+  {program} plan --structure beam.toml --hz 30:60:0.5 --g 0.05,0.1,0.2,0.5 --noise 3e-4
+  {program} plan --structure beam.toml --set clearance=-20um --range 50""",
+    (
+        structure_group(),
+        Group(
+            "the test",
+            """
+            --hz VALUES  frequencies in Hz, FIRST:LAST:STEP (default: 0.8 times the lower to 1.2
+                times the higher natural frequency of the halves)
+            --g VALUES  levels, peak acceleration in g (default: nine from 0.01 to 1)
+            --noise X  density of the sensor's noise, (m/s2)/sqrt(Hz) (default: 1e-3)
+            --range X  of the sensor, g (default: none)
+            """,
+            declared="periods gain_error threshold",
+        ),
+        *result_groups(store=False),
+    ),
+    run_plan,
+    calls="plan_test",
+)
+
+COMMANDS = (DIAGNOSE, PLAN)

@@ -74,10 +74,13 @@ EXCITATION = """
 
 def ask_shake(arguments: argparse.Namespace) -> tuple[Structure, Question]:
     """Return structure and keywords of ``shake``."""
-    structure = read_structure_options(arguments)
+    from .. import Shaker
+
+    structure, shaker = read_structure_options(arguments), arguments.shaker
     return structure, {
         "excitation": read_excitation(arguments),
         **arguments.row.keywords(arguments),
+        "shaker": None if shaker is None else Shaker.from_file(shaker),
     }
 
 
@@ -157,7 +160,11 @@ def read_level(arguments: argparse.Namespace) -> Any:
 def shake_summary(data: xr.Dataset) -> Iterator[str]:
     """Yield the ranges of accelerations and gap, the impacts, and how long a transient lasts."""
     yield from extents(data, "box_acceleration a1_abs a2_abs x_rel")
-    yield f"a linear transient decays within {float(data.transient_time):.3g} s"
+    if "transient_time" in data:
+        yield f"a linear transient decays within {float(data.transient_time):.3g} s"
+    elif data.control_aborted.notnull():
+        end = float(data.control_aborted)
+        yield f"warning: the level could not be held; the control aborted at {end:.4g} s"
     yield from impact_lines(data)
 
 
@@ -168,11 +175,13 @@ SHAKE = Command(
   {program} shake --structure beam --swept-sine 5:50 --rate 1 --spacing log --g 5:0.01,50:0.05
   {program} shake --structure beam --stepped-sine 10:14:0.1 --settle-cycles 150 --g 0.02
   {program} shake --structure beam --random 5:0.1,100:0.1 --duration 30 --seed 1
+  {program} shake --structure beam --swept-sine 8:20 --duration 60 --g 0.02 --shaker shaker_1kN
   {program} shake --structure beam --shock half-sine --length 0.011 --g 5
   {program} shake --structure beam --record base.csv --unit g""",
     (
         structure_group(),
         Group("the box's acceleration", EXCITATION, description="one of the first five"),
+        Group("what moves it", "--shaker FILE  its electrodynamic shaker, level controlled"),
         Group(
             "the record",
             BESIDE,

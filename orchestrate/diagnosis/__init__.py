@@ -10,6 +10,7 @@ module                  idea
 :mod:`.undamaged`       the sound structure that a record is compared with: a linear oscillator
 :mod:`.opening`         the force that would open the faces of a sound structure, in closed form
 :mod:`.plan_test`       the frequencies and levels at which a delamination shows best
+:mod:`.settings`        every threshold and effort, in one place that a caller reaches
 :mod:`.orders`          orders of a record's channels in short windows, and the floor between them
 :mod:`.sweeps`          several sweeps in one record
 :mod:`.wiring`          whether channels are wired as stated: polarity, unit, delay, swapped, hum
@@ -25,9 +26,6 @@ module                  idea
 :mod:`.bursts`          whether something strikes: bursts at high frequencies once a period
 :mod:`.search_job`      all searches of a record as a job, in parallel
 :mod:`.fit`             the numbers of a structure from a record
-:mod:`.simulation`      simulated records of a fit, with noise and what real contacts miss
-:mod:`.refit`           fits to simulated records, linear around a few minima
-:mod:`.bootstrap`       odds of both kinds of structures by simulated records
 :mod:`.decision_rule`   the rule by which fits and signs become a verdict
 :mod:`.detect`          the verdict on a record
 :mod:`.detect_all`      verdicts on many records, in parallel

@@ -24,20 +24,13 @@ from ..laboratory.analysis.channels import BOX, Channels
 from ..laboratory.analysis.orders import EDGE, measured_phase
 from ..laboratory.pieces import Floats
 from .response_signs import default_band_edge
+from .settings import SETTINGS, Settings
 
-AVERAGING_TIME, MIN_INTERVALS = 2.0, 16  # s of each mean of the power; how many there are at least
-IN_PERIODS = (
-    1.0 / 3.0
-)  # of an interval's periods: bursts in fewer, as of lost samples, do not count
-QUIET = 0.2  # quantile of the means that is taken for the power of noise
-MAX_NOISE_RISE = 1.5  # power over that of noise from which bursts count as seen
-NOISE_DEVIATIONS = 6.0  # standard deviations of a mean by which noise may exceed its power
-# Power beyond noise of the even part over that of the odd one: below, both ends of the stroke burst
-ONE_SIDED = 0.4
+MIN_INTERVALS = 16  # means of the power at least
 FINER = 4  # samples of the finer grid on which a signal half a period later is read
 
 
-def burst_excess(channels: Channels, highest: float) -> float:
+def burst_excess(channels: Channels, highest: float, settings: Settings = SETTINGS) -> float:
     """Return the power of bursts once a period, over the threshold from which they count as
     seen.
     """
@@ -45,15 +38,19 @@ def burst_excess(channels: Channels, highest: float) -> float:
     phase = np.maximum.accumulate(measured_phase(channels))
     ends = phase[0] + 2.0 * math.pi * EDGE, phase[-1] - 2.0 * math.pi * EDGE
     first, last = np.searchsorted(phase, ends)
-    width = min(round(AVERAGING_TIME * channels.sample_rate), int(last - first) // MIN_INTERVALS)
+    width = min(
+        round(settings.burst_time * channels.sample_rate), int(last - first) // MIN_INTERVALS
+    )
     if math.isnan(edge) or width < MIN_INTERVALS:
         return math.nan
     share = 1.0 - 2.0 * edge / channels.sample_rate
     deviation = math.sqrt(2.0 / (0.5 * share * width))  # neighbours hang together by half a period
-    threshold = max(MAX_NOISE_RISE, 1.0 + NOISE_DEVIATIONS * deviation)
+    threshold = max(settings.burst_rise, 1.0 + settings.burst_deviations * deviation)
     rows = [row for row, name in enumerate(channels.names) if name != BOX]
     part = slice(int(first), int(last))
-    rises = [one_sided_rise(high_band(channels, row, edge), phase, part, width) for row in rows]
+    rises = [
+        one_sided_rise(high_band(channels, row, edge), phase, part, width, settings) for row in rows
+    ]
     return max(rises) / threshold
 
 
@@ -65,7 +62,9 @@ def high_band(channels: Channels, row: int, edge: float) -> Floats:
     return np.asarray(sosfiltfilt(sections, channels.values[row]))
 
 
-def one_sided_rise(signal: Floats, phase: Floats, part: slice, width: int) -> float:
+def one_sided_rise(
+    signal: Floats, phase: Floats, part: slice, width: int, settings: Settings
+) -> float:
     """Return how far bursts on one side of the stroke rise over noise, as a ratio of powers."""
     from scipy.signal import resample_poly
 
@@ -73,18 +72,21 @@ def one_sided_rise(signal: Floats, phase: Floats, part: slice, width: int) -> fl
     finer = np.asarray(resample_poly(signal, FINER, 1))
     opposite = np.interp(later, np.arange(len(finer)) / FINER, finer)
     turns = ((phase[part] - phase[part.start]) / TURN).astype(int)
-    even, odd = (mean_power(0.5 * (signal[part] + s * opposite), turns, width) for s in (1.0, -1.0))
-    noise = np.quantile(even, QUIET), np.quantile(odd, QUIET)
+    most = 1.0 - settings.burst_periods
+    even, odd = (
+        mean_power(0.5 * (signal[part] + s * opposite), turns, width, most) for s in (1.0, -1.0)
+    )
+    noise = [float(np.quantile(power, settings.quiet)) for power in (even, odd)]
     if not min(noise) > 0.0:
         return 0.0
-    one_sided = even - noise[0] >= ONE_SIDED * (odd - noise[1])
+    one_sided = even - noise[0] >= settings.one_sided * (odd - noise[1])
     return float(np.max(np.where(one_sided, even / noise[0], 0.0)))
 
 
-def mean_power(signal: Floats, turns: NDArray[np.intp], width: int) -> Floats:
+def mean_power(signal: Floats, turns: NDArray[np.intp], width: int, most: float) -> Floats:
     """Return the mean square of a signal in intervals of about ``width`` samples, half overlapping.
 
-    Powers of single periods above that of all but ``IN_PERIODS`` of them count no more than it.
+    Powers of single periods above their quantile ``most`` count no more than it.
     Arguments are shape (n,): the signal, and the number of the period of each sample.
     """
     count = np.maximum(np.bincount(turns), 1)
@@ -93,6 +95,6 @@ def mean_power(signal: Floats, turns: NDArray[np.intp], width: int) -> Floats:
     ends = turns[np.arange(width - 1, len(signal), max(width // 2, 1))] + 1
     means = []
     for begin, end in zip(begins, ends, strict=True):
-        limit = np.quantile(power[begin:end], 1.0 - IN_PERIODS, method="lower")
+        limit = np.quantile(power[begin:end], most, method="lower")
         means.append(np.average(np.minimum(power[begin:end], limit), weights=count[begin:end]))
     return np.array(means)

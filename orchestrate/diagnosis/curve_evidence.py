@@ -34,6 +34,7 @@ from .orders import (
     least_squares_matrix,
     referred_to_base,
 )
+from .settings import SETTINGS, Settings
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -66,10 +67,15 @@ class CurveData:
     relative: bool  # whether the amplitudes are those of the motion relative to the base
     damping: float  # damping ratio by which the motion settles
     participation: tuple[float | None, ...] = ()  # of each sensor; None, or (): to be fitted
+    settings: Settings = SETTINGS
 
     @classmethod
     def from_curve(
-        cls, curve: xr.Dataset, guess: Structure, participation: Participation = None
+        cls,
+        curve: xr.Dataset,
+        guess: Structure,
+        participation: Participation = None,
+        settings: Settings = SETTINGS,
     ) -> CurveData:
         """Check a resonance curve and take its numbers around the resonance."""
         check_curve(curve)
@@ -99,6 +105,7 @@ class CurveData:
             participation=checked_participation(
                 participation, tuple(str(name) for name in inside.channel.values)
             ),
+            settings=settings,
         )
 
     @property
@@ -212,6 +219,7 @@ def curve_evidence(data: CurveData, settle: int, samples_per_period: float) -> C
         orders,
         pieces,
         participation=data.participation,
+        settings=data.settings,
         with_phase=np.isfinite(phase),
         relative_motion=data.relative,
     )
@@ -249,8 +257,8 @@ class CurveEvidence(Evidence):
     @cached_property
     def error(self) -> Floats:
         """Standard deviations (model error and floor), shape (sensors, 3, windows), m/s2."""
-        floor = np.maximum(self.orders.floor[1:], 1e-9 * self.size.max())
-        model = np.array(self.relative)[:, None] * self.size[:, None, :]
+        floor = np.maximum(self.floor, 1e-9 * self.size.max())
+        model = self.settings.model_error * self.size[:, None, :].repeat(3, axis=1)
         return np.sqrt(floor[:, None, :] ** 2 + model**2)
 
     @cached_property
@@ -274,7 +282,7 @@ class CurveEvidence(Evidence):
 
     def first_order(self, row: int, computed: Complexes) -> Complexes:
         """Return the measured order 1 of a sensor, with the computed phase where it has none."""
-        size, known = self.measured[row, 0], self.with_phase[row]
+        size, known = self.measured[row, 0], self.with_phase[row][self.used_windows]
         return np.where(known, size, np.abs(size) * np.exp(1j * np.angle(computed)))
 
     def order_residuals(self, computed: Complexes) -> Floats:

@@ -8,22 +8,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..fmu import Player, finder
+from ..fmu import finder
 from ..laboratory.record_checks import clipped_share
 from ..model import Structure
-from ..response.labels import Variable, flags, variable
+from ..response.labels import Variable, variable
 from ..response.questions import checked_structure
 from ..running.job import Table
 from ..running.runner import answer
-from .bootstrap import Bootstrap, bootstrap
 from .bursts import burst_excess
 from .decision_rule import DELAMINATED, NOT_SEEN, Findings, resampled_share
 from .even_orders import smallest_openings, thresholds
-from .evidence import Evidence, Participation
-from .fit import Results, checked_data, checked_free, delaminated_guess, text_coordinate
+from .evidence import Participation
+from .fit import Results, checked_data, checked_free, delaminated_guess
 from .hypotheses import FREE
-from .search_job import SearchJob, cached_coarse_evidence, cached_orders
-from .simulation import SIMULATED, Fitted
+from .search_job import SearchJob, cached_orders
+from .settings import Changes, checked_settings
 from .wiring import wiring_notes
 
 if TYPE_CHECKING:
@@ -36,10 +35,9 @@ if TYPE_CHECKING:
     from ..running.options import Running
     from .orders import RecordOrders
 
-TRUTHS = ("sound", "delaminated")  # of simulated records
 ONE_DIRECTION = 0.5  # of the range of frequencies, from first to last: a sweep in one direction
-ODDS_FROM = {0: "blocks of the record", 1: "simulated records"}
 STATED = {  # numbers of the rule: their names there, units and long names
+    "odds": ("odds", "1", "odds that the ratio decides, in records put together of blocks"),
     "ratio": ("ratio", "1", "misfit of sound over that of delaminated"),
     "faces_apart": ("apart", "1", "difference of two sensors over its threshold"),
     "bursts": ("bursts", "1", "power of bursts once a period over its threshold"),
@@ -65,6 +63,7 @@ def detect(
     *,
     free: Sequence[str] = FREE,
     participation: Participation = None,
+    settings: Changes = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Decide whether a record is that of a delaminated structure.
@@ -82,6 +81,9 @@ def detect(
         What is fitted of the delaminated structure, as for :func:`fit`.
     participation : float or mapping of str to float, optional
         Participation factors of the sensors that are known, as for :func:`fit`.
+    settings : mapping of str to float, optional
+        Thresholds that differ from those of :class:`orchestrate.diagnosis.settings.Settings`, such
+        as ``{"ratio": 2.0}``.
     **running
         ``jobs``, ``progress``, ``store`` and others, see
         :class:`orchestrate.running.options.Running`.
@@ -90,12 +92,8 @@ def detect(
     -------
     xarray.Dataset
         ``verdict``: ``"delaminated"``, ``"no opening seen"``, ``"not described"`` or
-        ``"undecided"``; ``odds`` of delaminated against sound, with ``odds_error``, the standard
-        error of their logarithm, ``odds_decided``, 1 where records of both fits were simulated and
-        0 where blocks of the record were resampled, ``bootstrap_ratio`` over ``truth`` and
-        ``simulated`` (the ratio of misfits in these records; NaN where there are none) and
-        ``bootstrap_tail`` over ``truth``, the shares of sound records with a ratio as large as the
-        measured one and of delaminated ones with one as small; ``ratio`` (misfit of the best sound
+        ``"undecided"``; ``odds`` that the ratio of misfits decides for a delamination, by records
+        put together of blocks of this one; ``ratio`` (misfit of the best sound
         hypothesis over that of the delaminated one), ``faces_apart`` (difference of two sensors
         over the threshold from which it counts; 0 with one), ``bursts`` (power at high frequencies
         once a period, over the threshold from which impacts count as heard; NaN below some 11
@@ -109,8 +107,8 @@ def detect(
         ``participation_error`` over ``channel`` (NaN but of the hypotheses that the verdict is
         about and that describe the record), ``misfit_at`` and the ``fitted`` orders over
         ``window``, beside what is ``measured``. Attributes ``reason``, ``settle``,
-        ``simulated``, ``seen_up_to``, ``assumed``, ``direction`` of the sweep and ``wiring``, the
-        doubts about the channels (:func:`orchestrate.diagnosis.wiring.wiring_notes`).
+        ``seen_up_to``, ``assumed``, ``direction`` of the sweep and ``wiring``, the doubts about the
+        channels (:func:`orchestrate.diagnosis.wiring.wiring_notes`).
 
     Raises
     ------
@@ -125,15 +123,9 @@ def detect(
     Notes
     -----
     Sound hypotheses are one mass on a linear spring, on one that hardens or softens, with dry
-    friction, or with a stop on one side. The rule is that of
-    :meth:`orchestrate.diagnosis.decision_rule.Findings.verdict`: "delaminated" needs order 2 at
-    five times the noise and at half a hundredth of order 1 and a misfit 1.5 times smaller than that
-    of the best sound hypothesis, in nine of ten records put together of its blocks. 1.05 times is
-    enough where two faces are seen to move apart as well, and 5 times are needed where that is all:
-    a torsion mode of a sound beam does it too. What stopped a verdict is in ``reason``.
-    Where a number is near its border, records of the best sound and of the best delaminated fit are
-    simulated and both are fitted to each: the odds are the ratio of the densities of the ratio of
-    misfits, under both, at the measured one. Elsewhere they are the shares of resampled records.
+    friction, or with a stop on one side (a breathing crack, a clamp with play), and two linear
+    modes. The rule is that of :meth:`orchestrate.diagnosis.decision_rule.Findings.verdict`;
+    what stopped a verdict is in ``reason``.
     There is no verdict "intact": a structure that is pressed together moves as a bonded one below
     the level that opens it. See :doc:`/diagnosis`.
 
@@ -150,7 +142,7 @@ def detect(
     structure = delaminated_guess(guess)
     job = DetectJob(
         name=f"detect_{checked_structure(guess).label()}",
-        data=checked_data(record, structure, participation),
+        data=checked_data(record, structure, participation, checked_settings(settings)),
         guess=structure,
         free=checked_free(free),
     )
@@ -161,18 +153,6 @@ def detect(
 class DetectJob(SearchJob):
     """Fit all hypotheses to a record and decide which verdict they give."""
 
-    def finish(self, previous: Table, player: Player) -> Table:
-        """Refine the fits; where the verdict is close, simulate records and fit them too."""
-        table = super().finish(previous, player)
-        results = Results.from_table(self, table)
-        ratios = np.full((2, SIMULATED), np.nan)
-        if findings_from_results(results).is_close:
-            evidence, coarse, sound, delaminated = bootstrap_inputs(results)
-            if np.isfinite(delaminated.covariance).all():  # it was searched
-                made = bootstrap(evidence, coarse, sound, delaminated, player)
-                ratios = np.stack([made.sound, made.delaminated])
-        return {**table, "end_bootstrap": ratios[np.newaxis]}
-
     def dataset(self, table: Table) -> xr.Dataset:
         """Return the verdict, the quantities that it is based on, and all fits as a dataset."""
         import xarray as xr
@@ -180,14 +160,10 @@ class DetectJob(SearchJob):
         results = Results.from_table(self, table)
         findings, even = findings_from_results(results), results.even
         whole = cached_orders(self.data)
-        simulated = Bootstrap.from_row(findings.ratio, table["end_bootstrap"][0])
-        if simulated is not None:
-            findings = replace(findings, simulated_odds=simulated.odds_with_error()[0])
         every, coordinates = results.comparison()
         wiring = "; ".join(note.text for note in wiring_notes(whole.channels))
         scalars = {
             "verdict": ((), findings.verdict(), {"long_name": "verdict"}),
-            **odds_variables(findings, simulated, table["end_bootstrap"][0]),
             **{
                 name: variable((), getattr(findings, of), *at) for name, (of, *at) in STATED.items()
             },
@@ -197,13 +173,11 @@ class DetectJob(SearchJob):
         }
         numbers = results.parameters(stated_hypotheses(results, findings))
         del numbers["asked"]
-        coordinates["truth"] = text_coordinate("truth", TRUTHS, "what was simulated")
         return xr.Dataset({**scalars, **every, **numbers}, coordinates).assign_attrs(
             analysis="detect",
             title=f"Verdict: {findings.verdict()}",
             reason=findings.reason(),
             settle="First mend the wiring. " * bool(wiring) + findings.next_measurement(),
-            simulated=simulated.sentence() if simulated else "",
             seen_up_to=findings.seen_up_to(),
             assumed="; ".join(ASSUMED),
             direction=sweep_direction(whole.windows.frequency),
@@ -232,39 +206,6 @@ def sweep_direction(frequency: NDArray[np.float64]) -> str:
     return "up" if covered > 0.0 else "down"
 
 
-def odds_variables(
-    findings: Findings, simulated: Bootstrap | None, ratios: NDArray[np.float64]
-) -> dict[str, Variable]:
-    """Return the odds, how they were found, and the ratios of misfits in simulated records."""
-    odds, error, alike = findings.odds, math.nan, np.full(2, math.nan)
-    if simulated is not None:
-        odds, error = simulated.odds_with_error()
-        alike = np.array(simulated.lookalikes) / SIMULATED
-    shares = "share of sound records that look as delaminated, of delaminated ones as sound"
-    words = "ratio of misfits in simulated records"
-    return {
-        "odds": variable((), odds, "1", "odds of delaminated against sound"),
-        "odds_error": variable((), error, "1", "standard error of their logarithm"),
-        "odds_decided": flags((), simulated is not None, "what the odds were found by", ODDS_FROM),
-        "bootstrap_tail": variable("truth", alike, "1", shares),
-        "bootstrap_ratio": variable(("truth", "simulated"), ratios, "1", words),
-    }
-
-
-def bootstrap_inputs(results: Results) -> tuple[Evidence, Evidence, list[Fitted], Fitted]:
-    """Return the arguments of the bootstrap: evidence, all sound fits, best delaminated fit."""
-    job, evidence, made = results.job, results.job.evidence, []
-    for position, hypothesis in enumerate(job.hypotheses):
-        names = list(hypothesis.bounds(evidence))
-        values = results.values[position][: len(names)].tolist()
-        covariance = results.covariance[position][: len(names), : len(names)]
-        named = dict(zip(names, values, strict=True))
-        made.append(Fitted(hypothesis, named, float(results.misfit[position]), covariance))
-    count = len(job.sound)
-    other = min(made[count:], key=lambda one: one.misfit)
-    return evidence, cached_coarse_evidence(job.data), made[:count], other
-
-
 def stated_hypotheses(results: Results, findings: Findings) -> NDArray[np.bool_]:
     """Return of each hypothesis whether its numbers are stated: it describes a decided record.
 
@@ -285,14 +226,14 @@ def findings_from_results(results: Results) -> Findings:
     opening = smallest_openings(evidence, job.guess.m1, job.guess.m2)
     observed = evidence.frequency[np.isfinite(opening)]
     whole = cached_orders(job.data)
-    bursts = burst_excess(whole.channels, float(whole.windows.frequency.max()))
+    highest = float(whole.windows.frequency.max())
     response = (np.abs(evidence.measured[:, 0]) / evidence.level).max(axis=0)
     low, high = sorted((job.guess.f1, job.guess.f2))
     findings = Findings(
         excess=even.excess,
         order2=even.largest,
         apart=even.moved_apart,
-        bursts=bursts,
+        bursts=burst_excess(whole.channels, highest, evidence.settings),
         sound=job.hypotheses[sound].name,
         sound_misfit=float(results.misfit[sound]),
         delaminated=job.hypotheses[other].name,
@@ -309,6 +250,7 @@ def findings_from_results(results: Results) -> Findings:
         end_response=float(max(response[0], response[-1]) / response.max()),
         resonance=evidence.resonance,
         guessed=(low, high),
+        settings=evidence.settings,
     )
     residuals = results.residuals[sound], results.residuals[other]
     return replace(findings, share=resampled_share(*residuals, findings.deciding_ratio))

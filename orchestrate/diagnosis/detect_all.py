@@ -13,6 +13,7 @@ from .detect import DetectJob
 from .evidence import Participation
 from .fit import checked_data, checked_free, delaminated_guess
 from .hypotheses import FREE
+from .settings import Changes, Settings, checked_settings
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -27,6 +28,7 @@ def detect_all(
     *,
     free: Sequence[str] = FREE,
     participation: Participation = None,
+    settings: Changes = None,
     **running: Unpack[Running],
 ) -> dict[str, xr.Dataset]:
     """Decide for each of many records whether it is that of a delaminated structure.
@@ -40,7 +42,7 @@ def detect_all(
         Of all of them.
     free : sequence of str
         As for :func:`orchestrate.detect`.
-    participation : float or mapping of str to float, optional
+    participation, settings
         As for :func:`orchestrate.detect`.
     **running
         ``jobs``, ``cluster``, ``store`` and others, see
@@ -70,7 +72,7 @@ def detect_all(
         raise InputError("records: expected one record or more, by names")
     chosen, structure = checked_free(free), delaminated_guess(guess)
     jobs = [
-        checked_job(name, checked, structure, chosen, participation)
+        checked_job(name, checked, structure, chosen, participation, checked_settings(settings))
         for name, checked in records.items()
     ]
     return dict(zip(records, gather(jobs, running, finder(running)), strict=True))
@@ -82,10 +84,11 @@ def checked_job(
     guess: Structure,
     free: tuple[str, ...],
     participation: Participation,
+    settings: Settings,
 ) -> DetectJob:
     """Check one record and return the job that decides on it."""
     try:
-        data = checked_data(record, guess, participation)
+        data = checked_data(record, guess, participation, settings)
     except InputError as error:
         raise InputError(f"{name}: {error}") from None
     return DetectJob(name=name, data=data, guess=guess, free=free)

@@ -8,9 +8,9 @@ weights W of the soft loss. Three covariances of d are taken:
 * blocks: the residuals that are there, summed over blocks of neighbouring windows (a sandwich):
   what the model misses hangs together over neighbours and is no noise;
 * discrepancy: what a model misses beyond noise, it may also have hidden in its numbers, where no
-  residual shows it. Numbers at which the squares beyond noise are larger by ``HIDDEN_SHARE`` of
+  residual shows it. Numbers at which the squares beyond noise are larger by ``hidden_share`` of
   themselves are one standard deviation away; damping and restitution are in doubt by
-  ``RESTITUTION_DOUBT`` beside. Of records of the model itself nothing is left of it.
+  ``restitution_doubt`` beside. Of records of the model itself nothing is left of it.
 
 The first two are linear in what moves the numbers, and the misfit is rugged: impacts come and go,
 and a search ends in one of several minima that lie close. What that adds was measured, on 495
@@ -40,6 +40,7 @@ from .fitting import Search, difference_step
 from .linear import LinearModel
 from .misfit import misfit, soft_squares
 from .orders import ORDERS
+from .settings import SETTINGS, Settings
 
 if TYPE_CHECKING:
     from ..fmu import Player
@@ -51,17 +52,12 @@ CURVE_REPLICATES = 100  # of the simulated scatter of a curve's points
 MAX_INCREASE = 1.05  # misfit after the last step over that before: more is a step too far
 BLOCKS = 20  # of windows
 SEED = 20_241
-RESTITUTION_DOUBT = 0.12  # of a restitution; of damping ratios it is the mean of both halves'
-# Misfit beyond noise from which a contact is another than the model's for sure
-CONTACT_MISFIT = 0.3
-HIDDEN_SHARE = 0.1  # part of the squares beyond noise by which they may be larger at the truth
 # Of errors, measured; the halves are alike, so that a number of both has one factor. The errors of
 # both frequencies stay as they are: they hold the truth in 93 of 100 records
 CALIBRATION = {"log_zeta1": 2.9, "log_zeta2": 2.9, "e": 1.35}
 # The same of resonance curves: 40 points have little against which the linear model errs
 CURVE_CALIBRATION = {"common": 3.0, "split": 3.0, "log_zeta1": 5.8, "log_zeta2": 5.8, "e": 2.6}
 LEAST_SHARE = 0.4  # of the mean of both damping ratios, for derivatives of a resonance curve
-NOISE_FACTOR = 1.3  # squares over those that noise makes: less of them has no other cause
 
 
 @dataclass(frozen=True)
@@ -139,36 +135,42 @@ def estimate_with_covariances(
     sums = np.stack([part.sum(axis=0) for part in parts])
     small = len(sums) / max(len(sums) - count, 1)
     by_blocks = small * influence @ (sums.T @ sums) @ influence.T
-    beyond = squares_beyond_noise(residuals, changes)
+    settings = search.evidence.settings
+    beyond = squares_beyond_noise(residuals, changes, settings.noise_squares)
     known = CALIBRATION if search.evidence.has_floor else CURVE_CALIBRATION
     measured = np.diag([known.get(name, 1.0) for name in values])
     by_noise, by_blocks = (measured @ one @ measured for one in (by_noise, by_blocks))
-    hidden = contact_covariance(values, beyond / residuals.size) - HIDDEN_SHARE * beyond * influence
+    hidden = contact_covariance(values, beyond / residuals.size, settings)
+    hidden -= settings.hidden_share * beyond * influence
     noise, blocks, rest = (
         np.sqrt(np.maximum(np.diag(c), 0.0)) for c in (by_noise, by_blocks, hidden)
     )
     return Estimate(values, by_noise + by_blocks + hidden, noise, blocks, rest)
 
 
-def contact_covariance(values: Mapping[str, float], beyond: float) -> Floats:
+def contact_covariance(
+    values: Mapping[str, float], beyond: float, settings: Settings = SETTINGS
+) -> Floats:
     """Return the covariance of damping and restitution that is due to real contacts.
 
     A real contact loses energy in another way at each speed, and a fit shares that out between
     both halves and the impacts.
     """
-    size = min(1.0, math.sqrt(beyond) / CONTACT_MISFIT)
+    size = min(1.0, math.sqrt(beyond) / settings.contact_misfit)
     damping = {
         name: math.exp(values[name]) for name in ("log_zeta1", "log_zeta2") if name in values
     }
     doubt = {name: float(np.mean(list(damping.values()))) / zeta for name, zeta in damping.items()}
-    doubt["e"] = RESTITUTION_DOUBT
+    doubt["e"] = settings.restitution_doubt
     return np.diag([(size * doubt.get(name, 0.0)) ** 2 for name in values])
 
 
-def squares_beyond_noise(residuals: Floats, changes: list[Floats]) -> float:
+def squares_beyond_noise(
+    residuals: Floats, changes: list[Floats], factor: float = SETTINGS.noise_squares
+) -> float:
     """Return the sum of squared residuals (soft loss) beyond what noise explains."""
     by_noise = float(np.mean([soft_squares(change).sum() for change in changes]))
-    return max(float(soft_squares(residuals).sum()) - NOISE_FACTOR * by_noise, 0.0)
+    return max(float(soft_squares(residuals).sum()) - factor * by_noise, 0.0)
 
 
 def simulated_noise_changes(search: Search, values: Mapping[str, float]) -> list[Floats]:

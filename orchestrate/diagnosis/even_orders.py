@@ -12,12 +12,6 @@ from .evidence import Evidence
 from .orders import Complexes, moving_average
 
 AVERAGED_WINDOWS = 5  # neighbouring windows that are taken together
-MIN_RESPONSE = 0.1  # of the largest order 1: windows where less moves are not taken
-# Threshold over the noise, and over the floor between the orders, which impacts raise too
-NOISE_FACTOR, FLOOR_FACTOR = 5.0, 2.0
-MIN_RATIO = 0.005  # of order 1: sensors and bases that are not linear make less
-MIN_DIFFERENCE = 0.03  # of order 1: what two sensors on one body may differ by
-MIN_PART_OF_ORDER_2 = 0.2  # of order 2: the same there, where gains and delays are less certain
 # Order 2 of the distance between two faces over their largest distance: the least of 15 benches
 # that opened for a part of each period; they had 0.14 to 0.31
 ORDER_2_OF_OPENING = 0.14
@@ -76,11 +70,11 @@ def thresholds(evidence: Evidence) -> Floats:
 
     NaN where little moves.
     """
-    size, floor = size_of_order_1(evidence), evidence.floor
-    noise = NOISE_FACTOR * evidence.noise[:, np.newaxis] / size
-    between = FLOOR_FACTOR * np.sqrt(average_over_windows(floor**2)) / size
-    found = np.maximum(np.maximum(noise, between), MIN_RATIO)
-    quiet = size < MIN_RESPONSE * evidence.size.max(axis=1, keepdims=True)
+    size, floor, least = size_of_order_1(evidence), evidence.floor, evidence.settings
+    noise = least.order2_noise * evidence.noise[:, np.newaxis] / size
+    between = least.order2_floor * np.sqrt(average_over_windows(floor**2)) / size
+    found = np.maximum(np.maximum(noise, between), least.order2_ratio)
+    quiet = size < least.response * evidence.size.max(axis=1, keepdims=True)
     return np.asarray(np.where(quiet, np.nan, found))
 
 
@@ -114,7 +108,7 @@ def sensor_difference(evidence: Evidence, threshold: Floats) -> Floats:
     """
     if len(evidence.measured) < 2:
         return np.full(threshold.shape[1], np.nan)
-    one, other = evidence.measured
+    (one, other), least = evidence.measured, evidence.settings
     slope = -1j * TURN * evidence.frequency
     base = evidence.base[:2]
     basis = np.stack([other[0], slope * other[0], base[0]], axis=1)
@@ -131,7 +125,7 @@ def sensor_difference(evidence: Evidence, threshold: Floats) -> Floats:
     )
     return np.asarray(
         np.maximum(
-            first / np.maximum(seen, MIN_DIFFERENCE),
-            second / np.maximum(2.0**0.5 * seen, MIN_PART_OF_ORDER_2 * order2 / size),
+            first / np.maximum(seen, least.difference),
+            second / np.maximum(2.0**0.5 * seen, least.difference_order2 * order2 / size),
         )
     )

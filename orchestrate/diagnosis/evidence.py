@@ -27,26 +27,19 @@ from .orders import (
     decimated,
     record_orders,
 )
+from .settings import SETTINGS, Settings
 
 if TYPE_CHECKING:
     import xarray as xr
     from scipy.sparse import csr_array
 
 FITTED_ORDERS = (1.0, 2.0, 3.0)
-MODEL_ERROR = (0.03, 0.03, 0.03)  # errors of a model's orders 1, 2, 3 over the size of order 1
 NEIGHBOURS = 2  # windows on each side over which that size is the largest
-IRREGULAR = 1.5  # errors of orders over the amplitude between the orders
 FITTED_RANGE = (0.62, 1.55)  # of the resonance's frequency: what is fitted of a wide sweep
 COARSE_RANGE = (0.8, 1.28)  # of that of both sensors' resonances: what a coarse search goes by
 MAX_CUT_SHARE = 0.9  # of a record: more of it is not worth to be cut
 START_UP = 1.0  # s at the beginning where the start is not forgotten; at most a tenth of the record
-# Standard deviations of a sensor's gain and delay against the base's sensor, 1 and s, and of its
-# participation factor: a beam's first mode at the sensor over that of a mass on a spring
-GAIN_DEVIATION, DELAY_DEVIATION, PARTICIPATION_DEVIATION = 0.03, 2e-4, 0.5
-MAX_GAIN_ERROR, MAX_DELAY = 0.12, 1e-3
 PARTICIPATION_RANGE = (0.2, 1.7)  # 1.57 at the tip of a uniform cantilever, 0.34 at 0.4 of it
-# Weight of these deviations, over that of a record which misses as much as a good model may
-PRIOR_WEIGHT = 0.1
 UNBOUNDED_RESIDUAL = 30.0  # residual of a motion that has no bounds
 SENSORS = ("acceleration1", "acceleration2")
 Participation = float | Mapping[str, float] | None  # as an argument: of all, of some sensors
@@ -62,6 +55,11 @@ def checked_participation(given: Participation, sensors: Sequence[str]) -> tuple
         text = f"the record has {' and '.join(sensors)}"
         raise InputError(f"participation: {sorted(map(str, unknown))[0]!r} is no sensor; {text}")
     return tuple(PARTICIPATION.check(given[name]) if name in given else None for name in sensors)
+
+
+def clipped(value: float, most: float) -> float:
+    """Clip a number to a largest size."""
+    return float(np.clip(value, -most, most))
 
 
 def cut_to_resonance(orders: RecordOrders) -> tuple[Channels, float]:
@@ -88,9 +86,8 @@ class Evidence:
     has_floor: ClassVar[bool] = True
     orders: RecordOrders
     pieces: Pieces  # the base's acceleration, from the first sample on
-    # errors that a good model may have, see `MODEL_ERROR`
-    relative: tuple[float, ...] = MODEL_ERROR
     participation: tuple[float | None, ...] = ()  # of each sensor; None, or (): to be fitted
+    settings: Settings = SETTINGS
 
     @classmethod
     def from_record(cls, record: xr.Dataset) -> Evidence:
@@ -103,6 +100,7 @@ class Evidence:
         orders: RecordOrders,
         kept: float = SAMPLES_PER_PERIOD,
         participation: tuple[float | None, ...] = (),
+        settings: Settings = SETTINGS,
     ) -> Evidence:
         """Build the evidence from a whole record's orders: cut and decimate it where possible."""
         channels, highest = cut_to_resonance(orders)
@@ -111,7 +109,7 @@ class Evidence:
             orders = channel_orders(thin)
         rate = orders.channels.sample_rate
         pieces = Sampled(acceleration=tuple(orders.channels.box), sample_rate=rate).pieces()
-        return cls(orders, pieces, participation=participation)
+        return cls(orders, pieces, participation, settings)
 
     def near_resonance(self) -> Evidence:
         """Return the part of the evidence around both resonances, for a coarse search."""
@@ -139,6 +137,13 @@ class Evidence:
             self.orders.noise,
         )
         return replace(self, orders=orders, pieces=pieces)
+
+    def at_windows(self, chosen: NDArray[np.bool_]) -> Evidence:
+        """Return the evidence with only some of the fitted windows."""
+        made = replace(self)
+        made.__dict__["used_windows"] = self.used_windows[chosen]
+        made.__dict__["resonance"] = self.resonance
+        return made
 
     @property
     def rate(self) -> float:
@@ -204,8 +209,8 @@ class Evidence:
     @cached_property
     def error(self) -> Floats:
         """Standard deviations (model error and noise), shape (sensors, 3, windows), m/s2."""
-        floor = np.maximum(IRREGULAR * self.floor, self.noise[:, None])
-        model = np.array(self.relative)[:, None] * self.size[:, None, :]
+        floor = np.maximum(self.settings.irregular * self.floor, self.noise[:, None])
+        model = self.settings.model_error * self.size[:, None, :].repeat(3, axis=1)
         return np.sqrt(floor[:, None, :] ** 2 + model**2)
 
     @cached_property
@@ -280,18 +285,19 @@ class Evidence:
         """Fit a sensor's participation factor, gain and delay (s) to order 1, with a prior."""
         if not np.isfinite(computed).all():  # a motion without bounds
             return 1.0, 1.0, 0.0
-        target, base = self.first_order(row, computed), self.base[0]
+        target, base, allowed = self.first_order(row, computed), self.base[0], self.settings
         participation = self.given_participation(row)
         if participation is None:
             gain, _, more = self.sensor_solution(row, computed, target)
-            participation = 1.0 + PARTICIPATION_DEVIATION * more / (1.0 + GAIN_DEVIATION * gain)
+            more *= allowed.participation_deviation
+            participation = 1.0 + more / (1.0 + allowed.gain_deviation * gain)
             participation = float(np.clip(participation, *PARTICIPATION_RANGE))
         read = base + participation * (computed - base)
         gain, delay = self.sensor_solution(row, read, target, 2)
         return (
             participation,
-            1.0 + float(np.clip(GAIN_DEVIATION * gain, -MAX_GAIN_ERROR, MAX_GAIN_ERROR)),
-            float(np.clip(DELAY_DEVIATION * delay, -MAX_DELAY, MAX_DELAY)),
+            1.0 + clipped(allowed.gain_deviation * gain, allowed.gain_error),
+            clipped(allowed.delay_deviation * delay, allowed.delay),
         )
 
     def sensor_solution(
@@ -301,14 +307,17 @@ class Evidence:
         columns = self.sensor_columns(row, computed)[:count]
         missed = (target - computed) / self.error[row, 0]
         normal = (columns @ columns.conj().T).real
-        normal += np.eye(count) * PRIOR_WEIGHT**2 * len(missed)  # none without a reason
+        normal += (
+            np.eye(count) * self.settings.prior_weight**2 * len(missed)
+        )  # none without a reason
         return np.asarray(np.linalg.solve(normal, (columns.conj() @ missed).real))
 
     def sensor_columns(self, row: int, computed: Complexes) -> Complexes:
         """Return the changes of order 1 by one deviation of gain, delay and participation."""
-        free = 0.0 if self.given_participation(row) is not None else PARTICIPATION_DEVIATION
-        late = -1j * DELAY_DEVIATION * TURN * self.frequency * computed
-        changes = [GAIN_DEVIATION * computed, late, free * (computed - self.base[0])]
+        allowed, is_given = self.settings, self.given_participation(row) is not None
+        late = -1j * allowed.delay_deviation * TURN * self.frequency * computed
+        part = 0.0 if is_given else allowed.participation_deviation
+        changes = [allowed.gain_deviation * computed, late, part * (computed - self.base[0])]
         return np.stack(changes) / self.error[row, 0]
 
     @cached_property

@@ -21,12 +21,13 @@ from ..response.questions import checked_structure
 from ..running.job import Table
 from ..running.runner import answer
 from .curve_evidence import CurveData
-from .decision_rule import SETTINGS, factor_outside
+from .decision_rule import factor_outside
 from .even_orders import EvenOrders, even_orders
 from .evidence import FITTED_ORDERS, Evidence, Participation, checked_participation
 from .hypotheses import FREE, REPORTED, Hypothesis
 from .orders import channel_orders, checked_channels
 from .search_job import RecordData, SearchJob
+from .settings import SETTINGS, Changes, Settings, checked_settings
 from .wiring import wiring_notes
 
 if TYPE_CHECKING:
@@ -43,6 +44,7 @@ SHORT_NAMES = {  # names of the hypotheses as arguments
     "friction": 2,
     "stop": 3,
     "stop on the other side": 4,
+    "two modes": 5,
 }
 SAME_LEVEL = 0.1  # of the largest level: a tone whose level varies less has one
 FITTED_DIMENSIONS = ("hypothesis", "channel", "order", "window")
@@ -55,6 +57,7 @@ def fit(
     free: Sequence[str] = DEFAULT_FREE,
     hypothesis: str = DELAMINATED,
     participation: Participation = None,
+    settings: Changes = None,
     **running: Unpack[Running],
 ) -> xr.Dataset:
     """Fit a structure to a record of a swept or stepped sine, or to a resonance curve.
@@ -72,11 +75,15 @@ def fit(
         What is fitted: ``f1``, ``f2``, ``zeta1``, ``zeta2``, ``e``, ``clearance``.
     hypothesis : str
         ``"delaminated"``; or one mass, that is ``"bonded"``, ``"curved"`` (a spring that hardens or
-        softens), ``"friction"`` (dry), ``"stop"`` or ``"stop on the other side"``.
+        softens), ``"friction"`` (dry), ``"stop"`` or ``"stop on the other side"``; or ``"two
+        modes"``, linear ones.
     participation : float or mapping of str to float, optional
         Participation factor of the sensors, or by sensor (``acceleration1``, ``acceleration2``): a
         sensor on a beam reads ``base + participation (mass - base)``, by its place. Those that are
         not given are fitted, from 0.2 to 1.7; at a single frequency they are taken as 1.
+    settings : mapping of str to float, optional
+        Errors of a model and of sensors, and the effort of the search, that differ from those of
+        :class:`orchestrate.diagnosis.settings.Settings`.
     **running
         ``jobs``, ``progress``, ``store`` and others, see
         :class:`orchestrate.running.options.Running`.
@@ -135,11 +142,11 @@ def fit(
     """
     chosen = checked_free(free)
     kind = checked_word("hypothesis", hypothesis, (DELAMINATED, *SHORT_NAMES))
-    structure = delaminated_guess(guess)
+    structure, changed = delaminated_guess(guess), checked_settings(settings)
     data = (
-        CurveData.from_curve(record, structure, participation)
+        CurveData.from_curve(record, structure, participation, changed)
         if is_curve(record)
-        else checked_data(record, structure, participation)
+        else checked_data(record, structure, participation, changed)
     )
     job = FitJob(
         name=f"fit_{checked_structure(guess).label()}",
@@ -167,7 +174,10 @@ def checked_free(free: Sequence[str]) -> tuple[str, ...]:
 
 
 def checked_data(
-    record: xr.Dataset, guess: Structure | None = None, participation: Participation = None
+    record: xr.Dataset,
+    guess: Structure | None = None,
+    participation: Participation = None,
+    settings: Settings = SETTINGS,
 ) -> RecordData:
     """Check that a record's base moves as a sine, and return its channels for a job."""
     channels = checked_channels(record)
@@ -180,11 +190,11 @@ def checked_data(
     if guess is not None:
         low, high = sorted((guess.f1, guess.f2))
         factor = factor_outside(resonance, low, high)
-        if factor > SETTINGS.guess_factor:
+        if factor > settings.guess_factor:
             text = f"a factor of {factor:.3g} from the guess's {low:.3g} to {high:.3g} Hz"
             text = f"record: the response is largest at {resonance:.3g} Hz, {text}: are the times"
             warnings.warn(f"{text} in s, and is the guess one of this beam?", stacklevel=3)
-    return RecordData.from_channels(channels, factors)
+    return RecordData.from_channels(channels, factors, settings)
 
 
 def check_tones(job: FitJob) -> None:

@@ -21,10 +21,11 @@ STEPS = {  # of the differences that make derivatives; f and common: parts of th
     **{"common": 3e-4, "f": 1e-4, "split": 3e-3, "e": 0.02, "clearance": 0.01},
     **{"log_zeta": 0.02, "log_zeta1": 0.05, "log_zeta2": 0.05},
     **{"square": 0.01, "cube": 0.02, "friction": 0.01, "stop": 0.02, "position": 0.02},
+    "apart": 3e-3,
 }
-POLISH_ROUNDS = 7  # of polishing
-MIN_GAIN, MIN_CLOUD = 2e-3, 0.1  # least gain of a round; of the clouds' variance
+MIN_CLOUD = 0.1  # least size of the clouds' variance
 SAME_MISFIT = 0.03  # relative difference of misfits below which two minima count as one
+MIN_DISTANCES = {"split": 0.04, "clearance": 0.1}  # between two solutions that count as two
 
 
 @dataclass(frozen=True)
@@ -33,7 +34,7 @@ class Solution:
 
     name: str  # of the hypothesis
     values: Mapping[str, float]
-    # root mean square of the residuals, large ones by their size: 1 is as far as `MODEL_ERROR` and
+    # root mean square of the residuals, large ones by their size: 1 is as far as `model_error` and
     # the noise allow
     misfit: float
 
@@ -77,7 +78,13 @@ class Search:
             columns.append((there - here) / step)
         return np.stack(columns, axis=1)
 
-    def refine(self, start: Mapping[str, float], steps: int, tolerance: float) -> Solution:
+    def minima(self, starts: Sequence[Mapping[str, float]]) -> list[Solution]:
+        """Go downhill from the best starts that differ; return the minima, the best first."""
+        count = self.evidence.settings.starts
+        chosen = without_neighbours(self.rank_starts(starts))[:count]
+        return sorted((self.refine(one.values) for one in chosen), key=lambda one: one.misfit)
+
+    def refine(self, start: Mapping[str, float]) -> Solution:
         """Minimise the misfit of model and record from start parameters (SciPy's trf)."""
         from lmfit import Minimizer
 
@@ -91,15 +98,15 @@ class Search:
             loss="soft_l1",
             f_scale=SOFT_LIMIT,
             x_scale="jac",
-            max_nfev=steps,
-            ftol=tolerance,
-            xtol=tolerance,
+            max_nfev=self.evidence.settings.steps,
+            ftol=self.evidence.settings.tolerance,
+            xtol=self.evidence.settings.tolerance,
             Dfun=lambda parameters: self.derivatives(parameters.valuesdict(), bounds),
         )
         values = dict(result.params.valuesdict())
         return Solution(hypothesis.name, values, misfit(np.asarray(result.residual)))
 
-    def polish(self, start: Solution, rounds: int = POLISH_ROUNDS) -> Solution:
+    def polish(self, start: Solution) -> Solution:
         """Improve a minimum by linear regressions over clouds of points.
 
         Impacts that come or stay away make the misfit rugged: a trust region that shrinks after a
@@ -112,7 +119,7 @@ class Search:
             1.0,
         )
         bounds = self.hypothesis.bounds(self.evidence)
-        for number in range(rounds):
+        for number in range(self.evidence.settings.rounds):
             model = LinearModel.from_cloud(
                 self.residuals, bounds, here.values, size * shape, number
             )
@@ -120,7 +127,7 @@ class Search:
             if model.lowest < best.misfit:
                 best = Solution(best.name, model.best, model.lowest)
             shape = model.cloud_covariance()
-            if best.misfit < (1.0 - MIN_GAIN) * here.misfit:
+            if best.misfit < (1.0 - self.evidence.settings.gain) * here.misfit:
                 here, size = best, min(1.0, 1.5 * size)
             elif size > MIN_CLOUD:
                 size *= 0.2
@@ -138,23 +145,6 @@ class Search:
             found.append(Solution(self.hypothesis.name, values, size))
         return sorted(found, key=lambda solution: solution.misfit)
 
-    def best_minima(
-        self,
-        starts: Sequence[Mapping[str, float]],
-        keep: int = 3,
-        coarse: int = 9,
-        fine: int = 25,
-    ) -> list[Solution]:
-        """Minimise from the best starts, then refine the best; return the minima, the best
-        first.
-        """
-        chosen = self.rank_starts(starts)[:keep]
-        found = [self.refine(one.values, coarse, 3e-3) for one in chosen]
-        found.sort(key=lambda solution: solution.misfit)
-        if fine:
-            found[0] = self.refine(found[0].values, fine, 1e-5)
-        return found
-
 
 def difference_step(search: Search, name: str) -> float:
     """Return the step by which a number is changed for finite differences."""
@@ -168,3 +158,23 @@ def distinct_minima(solutions: Sequence[Solution]) -> list[Solution]:
         if not found or one.misfit > (1.0 + SAME_MISFIT) * found[-1].misfit:
             found.append(one)
     return found
+
+
+def without_neighbours(solutions: Sequence[Solution]) -> list[Solution]:
+    """Drop the solutions that have nearly the split and clearance of a better one.
+
+    Halves that change places are another solution, however near each other their frequencies are.
+    Solutions without these numbers all stay.
+    """
+    found: list[Solution] = []
+    for one in solutions:
+        if not any(is_neighbour(one.values, other.values) for other in found):
+            found.append(one)
+    return found
+
+
+def is_neighbour(one: Mapping[str, float], other: Mapping[str, float]) -> bool:
+    """Return whether two solutions have the same half below and nearly the same numbers."""
+    names = [name for name in MIN_DISTANCES if name in one]
+    near = all(abs(one[name] - other[name]) <= MIN_DISTANCES[name] for name in names)
+    return bool(names) and near and one.get("split", 0.0) * other.get("split", 0.0) >= 0.0

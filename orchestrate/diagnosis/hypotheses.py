@@ -13,6 +13,7 @@ import numpy as np
 from ..constants import TURN
 from ..laboratory.pieces import Floats
 from ..model import Structure
+from .opening import opening_force
 from .single_mass import SingleMass
 
 if TYPE_CHECKING:
@@ -35,6 +36,7 @@ REPORTED = {  # units and long names
     "friction": ("m/s2", "dry friction over the mass"),
     "stop": ("1", "stiffness of a stop over that of the spring"),
     "position": ("m", "displacement in the stop's direction from which it pushes"),
+    "apart": ("1", "logarithm of the second mode's frequency over the first one's"),
 }
 FREE = tuple(REPORTED)[:6]  # of a delaminated structure
 Values = Mapping[str, float]
@@ -42,7 +44,6 @@ DAMPING_RANGE = (3e-4, 0.2)  # damping ratios that are looked for
 MAX_SPLIT = 0.9  # largest |ln(f2/f1)|
 RESTITUTION_RANGE = (0.0, 0.95)
 STARTING_SPLITS = (0.08, -0.08, 0.18, -0.18, 0.3, -0.3, 0.45, -0.45)  # ln(f2/f1) of the scan
-SLOW_SHARE = 0.01  # of the largest speed: below it friction is viscous
 
 
 class Hypothesis(ABC):
@@ -50,10 +51,11 @@ class Hypothesis(ABC):
 
     name: ClassVar[str]  # in messages and results
     is_rugged: ClassVar[bool] = False  # whether single impacts make the misfit uneven
+    parts: ClassVar[int] = 1  # of the starts, each searched by itself
 
     @abstractmethod
-    def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
-        """Return the values at which the search starts."""
+    def starts(self, evidence: Evidence, part: int = 0) -> Sequence[dict[str, float]]:
+        """Return the values at which a part of the search starts."""
 
     @abstractmethod
     def bounds(self, evidence: Evidence) -> dict[str, tuple[float, float]]:
@@ -95,7 +97,7 @@ class Sound(Hypothesis):
         low, high = (math.log(zeta) for zeta in DAMPING_RANGE)
         return {"f": (0.5 * f, 2.0 * f), "log_zeta": (low, high), **self.extra}
 
-    def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
+    def starts(self, evidence: Evidence, part: int = 0) -> Sequence[dict[str, float]]:
         """Return starts around the resonance with several damping ratios."""
         f, rest = evidence.resonance, dict.fromkeys(self.extra, 0.0)
         return [
@@ -132,7 +134,7 @@ class NonlinearSpring(Sound):
     name = "bonded, hardening or softening"
     extra = {"square": (-1.0, 1.0), "cube": (-0.9, 20.0)}
 
-    def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
+    def starts(self, evidence: Evidence, part: int = 0) -> Sequence[dict[str, float]]:
         """Return starts with several cubic stiffnesses that keep the measured resonance."""
         found = []
         for cube in (-0.3, -0.1, 0.0, 0.1, 0.3, 0.7, 1.5):
@@ -156,7 +158,7 @@ class DryFriction(Sound):
     name = "bonded, with dry friction"
     extra = {"friction": (0.0, 5.0)}  # above 1 it locks
 
-    def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
+    def starts(self, evidence: Evidence, part: int = 0) -> Sequence[dict[str, float]]:
         """Return starts with little and much friction, and one that nearly locks the mass."""
         return [
             {**one, "friction": size} for one in super().starts(evidence) for size in (0.02, 0.2)
@@ -165,21 +167,21 @@ class DryFriction(Sound):
     def single_mass(self, values: Values, evidence: Evidence) -> SingleMass:
         """Build the single mass; its friction is relative to the base's median acceleration."""
         friction = values["friction"] * float(np.median(evidence.level))
-        slow = SLOW_SHARE * TURN * evidence.resonance * evidence.displacement
+        slow = evidence.settings.slow * TURN * evidence.resonance * evidence.displacement
         return replace(super().single_mass(values, evidence), friction=friction, slow=slow)
 
 
 class PositiveStop(Sound):
     """A bonded structure with a stop in the positive direction of the sensor.
 
-    Such as a clamp that rattles, or a cable that slackens.
+    Such as a clamp that rattles, a cable that slackens, or a crack that breathes.
     """
 
     name = "bonded, with a stop in the positive direction"
     extra = {"stop": (-0.8, 5.0), "position": (-1.0, 1.0)}
     side: ClassVar[float] = 1.0
 
-    def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
+    def starts(self, evidence: Evidence, part: int = 0) -> Sequence[dict[str, float]]:
         """Return starts with weak and stiff stops that the mass meets early or late."""
         found = []
         for stop in (-0.3, 0.1, 0.5):
@@ -203,7 +205,61 @@ class NegativeStop(PositiveStop):
     side = -1.0
 
 
+class TwoModes(Sound):
+    """A linear structure with a second mode in the sweep, such as torsion.
+
+    Each sensor reads a share of it beside the first mode, by its place: in closed form by order 1.
+    """
+
+    name = "bonded, with two modes"
+    extra = {"apart": (-0.35, 0.35)}
+
+    def starts(self, evidence: Evidence, part: int = 0) -> Sequence[dict[str, float]]:
+        """Return starts with a second mode above and below."""
+        every = super().starts(evidence)
+        return [{**one, "apart": apart} for one in every for apart in (-0.12, -0.05, 0.05, 0.12)]
+
+    def displacements(self, values: Values, evidence: Evidence, player: Player | None) -> Floats:
+        """Compute the sum of both modes at each sensor."""
+        second = {**values, "f": values["f"] * math.exp(values["apart"])}
+        first, other = (
+            super(TwoModes, self).displacements(one, evidence, player)[0]
+            for one in (values, second)
+        )
+        found = np.tile(first, (2, 1))
+        if not np.isfinite(first + other).all():
+            return np.full_like(found, np.nan)
+        for row, mass in enumerate(evidence.masses):
+            found[mass] += self.share(evidence, row, np.stack([first, other])) * other
+        return found
+
+    def share(self, evidence: Evidence, row: int, motions: Floats) -> float:
+        """Return the second mode's part over the first one's that is nearest to order 1."""
+        base = evidence.base[0]
+        modes = np.stack([evidence.orders_of_motion(one[np.newaxis])[row, 0] for one in motions])
+        measured = evidence.first_order(row, modes[0]) - base
+        columns = ((modes - base) / evidence.error[row, 0]).T
+        wanted = measured / evidence.error[row, 0]
+        both = np.concatenate([columns.real, columns.imag])
+        parts = np.linalg.lstsq(both, np.concatenate([wanted.real, wanted.imag]), rcond=None)[0]
+        return float(np.clip(parts[1] / parts[0], -1.0, 1.0)) if parts[0] else 0.0
+
+    def reported(self, values: Values, evidence: Evidence) -> dict[str, float]:
+        """Return frequency and damping ratio of the first mode, and the second's frequency."""
+        return {"f": values["f"], "zeta": math.exp(values["log_zeta"]), "apart": values["apart"]}
+
+
 # -- delaminated ----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Onset:
+    """Hold where a record's order 2 begins, and the bonded structure of what is silent."""
+
+    frequency: float  # Hz
+    level: float  # of the base, m/s2
+    common: float  # natural frequency, Hz
+    log_zeta: float
 
 
 @dataclass(frozen=True)
@@ -218,6 +274,7 @@ class Delaminated(Hypothesis):
     free: tuple[str, ...] = ("f1", "f2", "zeta1", "zeta2", "e")  # names of a structure's parameters
     name: ClassVar[str] = "delaminated"
     is_rugged: ClassVar[bool] = True
+    parts: ClassVar[int] = len(STARTING_SPLITS)
 
     def values_from_structure(self, structure: Structure, evidence: Evidence) -> dict[str, float]:
         """Convert a structure to the numbers that are fitted."""
@@ -265,15 +322,15 @@ class Delaminated(Hypothesis):
         }
         return {name: every[name] for name, of in names.items() if of & set(self.free)}
 
-    def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
-        """Return a grid of starts over split, common frequency and restitution."""
-        guess, found = self.values_from_structure(self.guess, evidence), []
-        for split in STARTING_SPLITS:
-            for shift in (0.96, 1.0, 1.04):
-                for e in (0.35, 0.7):
-                    common = shift * evidence.resonance * math.sqrt(1.0 + 0.25 * split**2)
-                    found.append({**guess, "common": common, "split": split, "e": e})
-        return found
+    def starts(self, evidence: Evidence, part: int = 0) -> Sequence[dict[str, float]]:
+        """Return starts of one split, over common frequency and restitution."""
+        guess, split = self.values_from_structure(self.guess, evidence), STARTING_SPLITS[part]
+        common = evidence.resonance * math.sqrt(1.0 + 0.25 * split**2)
+        return [
+            {**guess, "common": shift * common, "split": split, "e": e}
+            for shift in (0.96, 1.0, 1.04)
+            for e in (0.35, 0.7)
+        ]
 
     def reported(self, values: Values, evidence: Evidence) -> dict[str, float]:
         """Return the structure's parameters that are free, by name."""
@@ -288,32 +345,48 @@ class Delaminated(Hypothesis):
         return player.play(nodes, evidence.pieces.derivatives, nodes, ("x1", "x2")).rows.T
 
 
+@dataclass(frozen=True)
 class DelaminatedWithClearance(Delaminated):
     """Two masses with a gap between the faces at rest, or pressed together by a preload."""
 
     name: ClassVar[str] = "delaminated, with clearance"
+    onset: Onset | None = None  # where the faces begin to open
 
-    def starts(self, evidence: Evidence) -> Sequence[dict[str, float]]:
-        """Return starts with halves that strike each other, and with halves that move alone.
+    def starts(self, evidence: Evidence, part: int = 0) -> Sequence[dict[str, float]]:
+        """Return starts of one split: pressed faces, gaps, and halves that move alone up to one."""
+        guess, split = self.values_from_structure(self.guess, evidence), STARTING_SPLITS[part]
+        common, gaps = evidence.resonance * math.sqrt(1.0 + 0.25 * split**2), []
+        for gap in (0.05, 0.1, 0.2, 0.4, 0.7, 1.0, 1.4):
+            gaps.append({"common": common, "split": split, "clearance": gap})
+            gaps += [{**one, "clearance": gap} for one in self.moving_alone(evidence, split)]
+        pressed = self.pressed(evidence, {**guess, "split": split}) if self.onset else []
+        return [*({**guess, **one} for one in gaps), *pressed]
 
-        Those move alone up to a gap: then the resonance is that of the half with the sensor.
+    def moving_alone(self, evidence: Evidence, split: float) -> list[dict[str, float]]:
+        """Return starts at which a sensor's resonance is that of the half it is on."""
+        m1, m2, peaks = self.guess.m1, self.guess.m2, evidence.peaks
+        if len(peaks) == 2:
+            split = math.log(peaks[1] / peaks[0])
+        f1 = peaks[0] if evidence.masses[0] == 0 else peaks[0] * math.exp(-split)
+        common = f1 * math.sqrt((m1 + m2 * math.exp(2.0 * split)) / (m1 + m2))
+        return [{"common": part * common, "split": split} for part in (1.0, 0.96, 0.92)]
+
+    def pressed(self, evidence: Evidence, guess: Values) -> list[dict[str, float]]:
+        """Return starts whose preload, in closed form, opens where order 2 begins.
+
+        Before, the structure moves as a bonded one: its frequency and damping are known.
         """
-        guess, found = self.values_from_structure(self.guess, evidence), []
-        m1, m2 = self.guess.m1, self.guess.m2
-        for split in STARTING_SPLITS:
-            for gap in (0.05, 0.1, 0.2, 0.4, 0.7):
-                common = evidence.resonance * math.sqrt(1.0 + 0.25 * split**2)
-                found.append({**guess, "common": common, "split": split, "clearance": gap})
-        peaks = evidence.peaks
-        splits = [math.log(peaks[1] / peaks[0])] if len(peaks) == 2 else list(STARTING_SPLITS)
-        for split in splits:
-            f1 = peaks[0] if evidence.masses[0] == 0 else peaks[0] * math.exp(-split)
-            common = f1 * math.sqrt((m1 + m2 * math.exp(2.0 * split)) / (m1 + m2))
-            for share in (1.0, 0.96, 0.92):
-                for gap in (0.05, 0.1, 0.2, 0.4, 0.7, 1.0, 1.4):
-                    moved = {"common": share * common, "split": split, "clearance": gap}
-                    found.append({**guess, **moved})
-        return found
+        assert self.onset is not None
+        zeta = self.onset.log_zeta
+        alike = {"common": self.onset.common, "log_zeta1": zeta, "log_zeta2": zeta}
+        shut = self.structure_from_values({**guess, **alike}, evidence)
+        force = self.onset.level * float(opening_force(shut, self.onset.frequency))
+        closed = -force * (1.0 / shut.k1 + 1.0 / shut.k2) / evidence.displacement
+        return [
+            {**guess, **alike, "e": e, "clearance": part * closed}
+            for part in (1.0, 0.8, 0.6)
+            for e in (0.35, 0.7)
+        ]
 
 
-SOUND = (Bonded(), NonlinearSpring(), DryFriction(), PositiveStop(), NegativeStop())
+SOUND = (*(Bonded(), NonlinearSpring(), DryFriction(), PositiveStop(), NegativeStop(), TwoModes()),)

@@ -18,9 +18,9 @@ from ..laboratory.analysis.channels import BOX, Channels
 from ..laboratory.analysis.orders import EDGE, NYQUIST, Window, measured_phase, window
 from ..laboratory.pieces import Floats
 from ..laboratory.record import channel_label
+from ..lazy import xr
 
 if TYPE_CHECKING:
-    import xarray as xr
     from scipy.sparse import csr_array
 
 Complexes = NDArray[np.complex128]

@@ -17,32 +17,16 @@ from ..laboratory.pieces import Floats
 from ..model import Structure
 from ..running.job import Job, Table
 from .curve_evidence import CurveData
-from .decision_rule import SETTINGS
 from .errors import Estimate, estimate
 from .even_orders import even_orders
-from .evidence import MODEL_ERROR, Evidence
-from .fitting import POLISH_ROUNDS, Search, Solution, difference_step, distinct_minima
-from .hypotheses import SOUND, STARTING_SPLITS, Delaminated, DelaminatedWithClearance, Hypothesis
+from .evidence import Evidence
+from .fitting import Search, Solution, difference_step, distinct_minima, without_neighbours
+from .hypotheses import SOUND, Delaminated, DelaminatedWithClearance, Hypothesis, Onset
 from .misfit import misfit
-from .orders import RecordOrders, channel_orders
+from .orders import MIN_WINDOWS, SAMPLES_PER_PERIOD, RecordOrders, channel_orders
+from .settings import SETTINGS, Settings
 
-BONDED_STEPS = 15  # steps downhill from the bonded solution
-SCAN_STARTS = 1  # starts of each part of the scan from which to go downhill
-# Steps downhill from each start of the scan where a delamination is possible, and elsewhere
-COARSE_STEPS, SHORT_STEPS = 4, 2
-CLEARANCE_STARTS = 6  # starts with a clearance from which to go downhill
-# How many of the best starts go on, and for how many steps
-CONTINUED_STARTS, CONTINUED_STEPS = 3, 6
-# How many of the best are polished, and how close their misfits are
-POLISHED_STARTS, CLOSE_RATIO = 2, 1.3
-GOOD_MISFIT = 1.2  # misfit of a delaminated one from which no other kind of clearance is looked for
 COARSE_SAMPLES = 7.0  # samples in a period of the highest frequency for a coarse search
-GUESS_DEVIATION = 0.06  # standard deviation of a guessed frequency's logarithm
-# A misfit counts more by this part of the guess's squared deviations, and at most so many of them
-GUESS_WEIGHT, MAX_GUESS_SQUARES = 0.02, 20.0
-MIN_DISTANCES = {"split": 0.04, "clearance": 0.1}  # between two solutions that count as two
-FINAL_ROUNDS = 4  # rounds on the whole record after those near the resonance
-GAPS = (-0.3, -0.1, -0.03, 0.03, 0.1, 0.3)  # clearances over the largest displacement
 # Rows and columns of tables: solutions, values in each, misfits of minima
 MAX_SOLUTIONS, MAX_NUMBERS, MAX_MINIMA = 4, 6, 8
 
@@ -57,15 +41,19 @@ class RecordData:
     begin: float
     channels: tuple[tuple[float, ...], ...]  # m/s2
     participation: tuple[float | None, ...] = ()  # of each sensor; None, or (): to be fitted
+    settings: Settings = SETTINGS
 
     @classmethod
     def from_channels(
-        cls, channels: Channels, participation: tuple[float | None, ...] = ()
+        cls,
+        channels: Channels,
+        participation: tuple[float | None, ...] = (),
+        settings: Settings = SETTINGS,
     ) -> RecordData:
         """Copy the samples of checked channels."""
         values = tuple(tuple(row.tolist()) for row in channels.values)
         begin = float(channels.time[0])
-        return cls(channels.names, channels.sample_rate, begin, values, participation)
+        return cls(channels.names, channels.sample_rate, begin, values, participation, settings)
 
     def to_channels(self) -> Channels:
         """Return the record as channels, which were checked before."""
@@ -74,12 +62,13 @@ class RecordData:
 
     def evidence(self) -> Evidence:
         """Return the evidence of the record."""
-        return Evidence.from_orders(cached_orders(self), participation=self.participation)
+        orders, rest = cached_orders(self), (self.participation, self.settings)
+        return Evidence.from_orders(orders, SAMPLES_PER_PERIOD, *rest)
 
     def coarse_evidence(self) -> Evidence:
         """Return the evidence near the resonance with fewer samples, for a coarse search."""
-        orders = cached_orders(self)
-        return Evidence.from_orders(orders, COARSE_SAMPLES, self.participation).near_resonance()
+        orders, rest = cached_orders(self), (self.participation, self.settings)
+        return Evidence.from_orders(orders, COARSE_SAMPLES, *rest).near_resonance()
 
 
 @lru_cache(maxsize=2)
@@ -104,23 +93,34 @@ def cached_coarse_evidence(data: RecordData | CurveData) -> Evidence:
 def is_worth_a_search(data: RecordData | CurveData) -> bool:
     """Return whether the verdict may depend on the delaminated fit, by a short bonded fit.
 
-    Elsewhere the search is short.
-    """
-    evidence = cached_evidence(data)
-    search = Search(SOUND[0], evidence)
-    best = search.best_minima(search.hypothesis.starts(evidence), keep=2, coarse=8, fine=0)[0]
-    motion = search.hypothesis.displacements(best.values, evidence, None)
-    return may_be_delaminated(evidence, motion, best.misfit)
-
-
-def may_be_delaminated(evidence: Evidence, bonded_motion: Floats, sound_misfit: float) -> bool:
-    """Return whether the verdict may depend on the delaminated fit.
-
     It may where faces are seen to part or do not move as one, or where a sound structure does not
     describe the record.
     """
-    even = even_orders(evidence, evidence.fitted_orders(bonded_motion))
-    return even.is_opening_seen or sound_misfit > SETTINGS.sound
+    evidence = cached_evidence(data)
+    search = Search(SOUND[0], evidence)
+    best = search.minima(search.hypothesis.starts(evidence))[0]
+    motion = search.hypothesis.displacements(best.values, evidence, None)
+    even = even_orders(evidence, evidence.fitted_orders(motion))
+    return even.is_opening_seen or best.misfit > data.settings.sound
+
+
+@lru_cache(maxsize=2)
+def cached_onset(data: RecordData | CurveData) -> Onset | None:
+    """Return where order 2 begins and what moves before; None where nothing is silent or loud.
+
+    Before, in the windows that are silent, faces that are pressed together move as bonded ones.
+    """
+    evidence = cached_evidence(data)
+    even = even_orders(evidence, np.zeros_like(evidence.measured))
+    loud = even.ratio > even.threshold
+    silent = ~loud & np.isfinite(even.ratio)
+    if not loud.any() or silent.sum() < MIN_WINDOWS:
+        return None
+    first = int(np.argmax(loud))
+    search = Search(SOUND[0], evidence.at_windows(~loud))
+    best = search.minima(search.hypothesis.starts(evidence))[0].values
+    begin = float(evidence.frequency[first]), float(evidence.level[first])
+    return Onset(*begin, best["f"], best["log_zeta"])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -148,47 +148,39 @@ class SearchJob(Job):
             free = tuple(name for name in self.free if name != "clearance")
             found.append(Delaminated(self.guess, free))
             if "clearance" in self.free:
-                found.append(DelaminatedWithClearance(self.guess, (*free, "clearance")))
+                onset = cached_onset(self.data)
+                found.append(DelaminatedWithClearance(self.guess, (*free, "clearance"), onset))
         return tuple(found)
 
-    def items(self) -> Sequence[tuple[str, float]]:
-        """Return the independent searches (sound hypotheses, parts of the scan), then the end."""
-        sound = [("sound", float(position)) for position in range(len(self.sound))]
-        scan = [("scan", split) for split in STARTING_SPLITS] if self.delaminated else []
-        return [*scan, *sound, ("end", 0.0)]
+    def items(self) -> Sequence[tuple[int, int]]:
+        """Return the independent searches, (hypothesis, part of its starts), then the end."""
+        parts = [1] * len(self.sound)
+        if self.delaminated:
+            parts += [Delaminated.parts] * (1 + ("clearance" in self.free))
+        longest_first = reversed(list(enumerate(parts)))
+        return [*((h, part) for h, count in longest_first for part in range(count)), (-1, 0)]
 
     def work(
         self,
         fmus: Mapping[str, Path],
-        items: Sequence[tuple[str, float]],
+        items: Sequence[tuple[int, int]],
         previous: Table | None,
     ) -> Table:
         """Do one search; the last one refines the best of all others."""
-        kind, number = items[0]
-        if kind == "sound":
-            return self.search_sound(int(number))
+        position, part = items[0]
         with Player(fmus[OSCILLATOR]) as player:
-            if kind == "scan":
-                return self.search_split(number, player)
+            if position >= 0:
+                return self.search_part(position, part, player)
             assert previous is not None
             return self.finish(previous, player)
 
-    def search_sound(self, position: int) -> Table:
-        """Search for the minima of a sound hypothesis."""
-        search = Search(self.hypotheses[position], self.evidence)
-        starts = search.hypothesis.starts(self.evidence)
-        found = search.best_minima(starts, keep=3, coarse=10, fine=20)
-        if found[0].misfit > SETTINGS.sound:  # a jump of the response makes it rugged
-            found[0] = search.polish(found[0])
-        return solutions_table(position, found, search.evaluations)
-
-    def search_split(self, split: float, player: Player) -> Table:
-        """Search for the delaminated minima from the starts with one split of the halves."""
-        position = len(self.sound)
-        search = Search(self.hypotheses[position], cached_coarse_evidence(self.data), player)
-        starts = [s for s in search.hypothesis.starts(self.evidence) if s["split"] == split]
-        coarse = COARSE_STEPS if is_worth_a_search(self.data) else SHORT_STEPS
-        found = search.best_minima(starts, keep=SCAN_STARTS, coarse=coarse, fine=0)
+    def search_part(self, position: int, part: int, player: Player) -> Table:
+        """Search near the resonance for the minima of a hypothesis from a part of its starts."""
+        hypothesis = self.hypotheses[position]
+        search = Search(hypothesis, cached_coarse_evidence(self.data), player)
+        starts = hypothesis.starts(self.evidence, part)
+        worth = position < len(self.sound) or is_worth_a_search(self.data)
+        found = search.minima(starts) if worth else search.rank_starts(starts[:1])
         return solutions_table(position, found, search.evaluations)
 
     def solutions(self, table: Table, position: int) -> list[Solution]:
@@ -205,120 +197,91 @@ class SearchJob(Job):
     # -- the end of it ----------------------------------------------------------------------------
 
     def finish(self, previous: Table, player: Player) -> Table:
-        """Refine the best delaminated solutions, and compute all misfits and errors."""
-        sound = [self.minima(position, previous, player) for position in range(len(self.sound))]
-        bonded = sound[0][1][0]
-        sound = [(search, with_bonded_solution(bonded, search, found)) for search, found in sound]
-        best = int(np.argmin([found[0].misfit for _, found in sound]))
-        worth = self.is_worth_polishing(sound)
-        made = [
-            self.hypothesis_result(position, one, player, position in (0, best))
-            for position, one in enumerate(sound)
-        ]
-        if self.delaminated:
-            search, found = self.minima(len(made), previous, player)
-            found = (
-                self.refine_best(search, found) if worth else search.rank_starts([found[0].values])
+        """Refine the best solutions of each hypothesis, and compute all misfits and errors.
+
+        - What each search found is ranked, together with the best numbers of a hypothesis that is
+          contained in this one.
+        - The best, of two halves also the next one where it is close, is improved by regressions
+          over clouds near the resonance, and the better of them on the whole record.
+        - Errors follow for the bonded fit, the best sound one, and those of two halves.
+        """
+        worth = is_worth_a_search(self.data)
+        made: list[tuple[Search, list[Solution]]] = []
+        for position in range(len(self.hypotheses)):
+            search = Search(self.hypotheses[position], self.evidence, player)
+            starts = [one.values for one in self.solutions(previous, position)]
+            made.append((search, self.improved(search, starts, [one for _, one in made], worth)))
+        count = len(self.sound)
+        best = min(range(count), key=lambda position: made[position][1][0].misfit)
+        rows = [
+            self.hypothesis_result(
+                one, player, position in (0, best) or position >= count and worth
             )
-            plain = self.hypothesis_result(len(made), (search, found), player, worth)
-            made.append(plain)
-            if "clearance" in self.free:
-                made.append(self.search_with_clearance(plain, player, worth))
-        spent = previous["evaluations"]
-        for position, result in enumerate(made):
-            result["end_evaluations"] += spent[previous["place"] == position].sum()
-        return {name: np.stack([part[name] for part in made])[np.newaxis] for name in made[0]}
-
-    def minima(
-        self, position: int, previous: Table, player: Player
-    ) -> tuple[Search, list[Solution]]:
-        """Return a search for a hypothesis, and the minima that the independent searches found."""
-        search = Search(self.hypotheses[position], self.evidence, player)
-        return search, self.solutions(previous, position)
-
-    def is_worth_polishing(self, sound: Sequence[tuple[Search, list[Solution]]]) -> bool:
-        """Return whether the verdict may depend on the delaminated fit, by the sound fits."""
-        search, found = sound[0]
-        motion = search.hypothesis.displacements(found[0].values, self.evidence, None)
-        lowest = min(found[0].misfit for _, found in sound)
-        return may_be_delaminated(self.evidence, motion, lowest)
-
-    def refine_best(self, search: Search, starts: Sequence[Solution]) -> list[Solution]:
-        """Refine the best coarse solutions, first near the resonance, then on the whole record."""
-        coarse = Search(search.hypothesis, cached_coarse_evidence(self.data), search.player)
-        hypothesis = search.hypothesis
-        assert isinstance(hypothesis, Delaminated)
-        guessed = hypothesis.values_from_structure(self.guess, self.evidence)
-        both = [guessed, with_halves_exchanged(guessed)]
-        starts = [*starts, *coarse.rank_starts(both)]
-        chosen = without_neighbours(self.sort_by_misfit_and_guess(search, starts))[
-            :CONTINUED_STARTS
+            for position, one in enumerate(made)
         ]
-        found = self.sort_by_misfit_and_guess(
-            search, [coarse.refine(s.values, CONTINUED_STEPS, 3e-3) for s in chosen]
+        for position, result in enumerate(rows):
+            spent = previous["evaluations"][previous["place"] == position]
+            result["end_evaluations"] += spent.sum()
+        return {name: np.stack([part[name] for part in rows])[np.newaxis] for name in rows[0]}
+
+    def improved(
+        self,
+        search: Search,
+        starts: list[Mapping[str, float]],
+        others: Sequence[Sequence[Solution]],
+        worth: bool,
+    ) -> list[Solution]:
+        """Return a hypothesis's minima, the best first, from the ends of all its searches."""
+        hypothesis, contained = search.hypothesis, others[:1]
+        if isinstance(hypothesis, Delaminated):
+            guessed = hypothesis.values_from_structure(self.guess, self.evidence)
+            starts = [*starts, guessed, with_halves_exchanged(guessed)]
+            contained = others[len(self.sound) :]
+        zero = dict.fromkeys(hypothesis.bounds(self.evidence), 0.0)
+        starts = [*starts, *({**zero, **one[0].values} for one in contained)]
+        coarse = Search(hypothesis, cached_coarse_evidence(self.data), search.player)
+        best, *rest = without_neighbours(
+            self.sort_by_misfit_and_guess(search, coarse.rank_starts(starts))
         )
-        lowest = min(one.misfit for one in found)
-        close = [one for one in found[:POLISHED_STARTS] if one.misfit < CLOSE_RATIO * lowest]
-        polished = [coarse.polish(one).values for one in close]
-        rest = [one.values for one in found[len(close) :]]
-        best, *others = self.sort_by_misfit_and_guess(
-            search, search.rank_starts([*polished, *rest])
-        )
+        if hypothesis.is_rugged and not worth:
+            return search.rank_starts([best.values])
+        close = [one for one in rest[:1] if one.misfit < self.data.settings.close * best.misfit]
+        tried = [best, *close] if hypothesis.is_rugged else [best]
+        polished = [coarse.polish(one).values for one in tried]
         search.evaluations += coarse.evaluations
-        rounds = FINAL_ROUNDS if best.misfit < GOOD_MISFIT else POLISH_ROUNDS
-        return [search.polish(best, rounds), *others]
+        best, *rest = self.sort_by_misfit_and_guess(
+            search, search.rank_starts([*polished, *starts[len(starts) - len(contained) :]])
+        )
+        return [search.polish(best), *rest]
 
     def sort_by_misfit_and_guess(
         self, search: Search, solutions: Sequence[Solution]
     ) -> list[Solution]:
-        """Sort delaminated solutions by misfit, with a penalty for distance from the guess.
+        """Sort solutions by misfit, those of two halves with a penalty for distance from the guess.
 
         Of one sensor's record both halves may change places at nearly the same misfit; what is
         known of the halves before then decides, as far as a guess may be trusted.
         """
-        hypothesis = search.hypothesis
-        assert isinstance(hypothesis, Delaminated)
+        hypothesis, settings = search.hypothesis, self.data.settings
 
         def penalised_misfit(solution: Solution) -> float:
             """Return the misfit, raised by the distance of f1 and f2 from the guess."""
+            if not isinstance(hypothesis, Delaminated):
+                return solution.misfit
             made = hypothesis.structure_from_values(solution.values, self.evidence)
             off = (
-                math.log(made.get(f) / self.guess.get(f)) / GUESS_DEVIATION for f in ("f1", "f2")
+                math.log(made.get(f) / self.guess.get(f)) / settings.guess_deviation
+                for f in ("f1", "f2")
             )
             return solution.misfit * (
-                1.0 + GUESS_WEIGHT * min(sum(one**2 for one in off), MAX_GUESS_SQUARES)
+                1.0
+                + settings.guess_weight * min(sum(one**2 for one in off), settings.guess_squares)
             )
 
         return sorted(solutions, key=penalised_misfit)
 
-    def search_with_clearance(
-        self, plain: dict[str, Any], player: Player, worth: bool
-    ) -> dict[str, Any]:
-        """Search for gaps and preloads, from the best solution without them.
-
-        Where that does not describe the record already, the hypothesis's own starts are tried too.
-        """
-        search = Search(self.hypotheses[-1], self.evidence, player)
-        names = list(search.hypothesis.bounds(self.evidence))
-        best = dict(zip(names, plain["end_values"][: len(names) - 1].tolist(), strict=False))
-        starts = [{**best, "clearance": clearance} for clearance in (0.0, *GAPS)]
-        if not worth:
-            found = search.rank_starts(starts[:1])
-        elif plain["end_misfit"] < GOOD_MISFIT:
-            found = search.rank_starts(starts)
-            found[0] = search.polish(found[0], FINAL_ROUNDS)
-        else:
-            starts += search.hypothesis.starts(self.evidence)
-            coarse = Search(search.hypothesis, cached_coarse_evidence(self.data), player)
-            begun = without_neighbours(coarse.rank_starts(starts))[:CLEARANCE_STARTS]
-            found = [coarse.refine(one.values, COARSE_STEPS, 3e-3) for one in begun]
-            found = self.refine_best(search, found)
-            search.evaluations += coarse.evaluations
-        return self.hypothesis_result(len(self.hypotheses) - 1, (search, found), player, worth)
-
     def hypothesis_result(
         self,
-        position: int,
         minima: tuple[Search, list[Solution]],
         player: Player,
         with_errors: bool = True,
@@ -374,7 +337,9 @@ def participations_with_errors(
         )
         slopes.append((evidence.participations(there) - here) / step)
     slope = np.stack(slopes, axis=1)
-    variance = np.diag(slope @ known.covariance @ slope.T) + (MODEL_ERROR[0] * here) ** 2
+    variance = (
+        np.diag(slope @ known.covariance @ slope.T) + (evidence.settings.model_error * here) ** 2
+    )
     return np.stack([here, np.where(free, np.sqrt(variance), 0.0)])
 
 
@@ -382,24 +347,6 @@ def with_halves_exchanged(values: Mapping[str, float]) -> dict[str, float]:
     """Return the numbers of a delaminated structure whose halves have changed places."""
     zeta1, zeta2 = values["log_zeta1"], values["log_zeta2"]
     return {**values, "split": -values["split"], "log_zeta1": zeta2, "log_zeta2": zeta1}
-
-
-def without_neighbours(solutions: Sequence[Solution]) -> list[Solution]:
-    """Drop the solutions that have nearly the split and clearance of a better one.
-
-    Halves that change places are another solution, however near each other their frequencies are.
-    """
-    found: list[Solution] = []
-    for one in solutions:
-        if not any(is_neighbour(one.values, other.values) for other in found):
-            found.append(one)
-    return found
-
-
-def is_neighbour(one: Mapping[str, float], other: Mapping[str, float]) -> bool:
-    """Return whether two solutions have the same half below and nearly the same numbers."""
-    near = all(abs(one.get(n, 0.0) - other.get(n, 0.0)) <= s for n, s in MIN_DISTANCES.items())
-    return near and one.get("split", 0.0) * other.get("split", 0.0) >= 0.0
 
 
 def solutions_table(position: int, solutions: Sequence[Solution], evaluations: int) -> Table:
@@ -412,15 +359,3 @@ def solutions_table(position: int, solutions: Sequence[Solution], evaluations: i
         "solutions": rows,
         "evaluations": np.array([float(evaluations)]),
     }
-
-
-def with_bonded_solution(bonded: Solution, search: Search, found: list[Solution]) -> list[Solution]:
-    """Add the refined bonded solution to a sound hypothesis's minima where it is better.
-
-    Each of them contains the linear spring, so none may be further from the record.
-    """
-    names = search.hypothesis.bounds(search.evidence)
-    (contained,) = search.rank_starts([{name: bonded.values.get(name, 0.0) for name in names}])
-    if contained.misfit >= found[0].misfit:
-        return found
-    return [search.refine(contained.values, BONDED_STEPS, 1e-4), *found]

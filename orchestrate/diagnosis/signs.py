@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from ..errors import InputError
 from ..laboratory.analysis.channels import BOX, Channels, attributes, checked_number
 from ..laboratory.pieces import Floats
 from ..laboratory.record import FORCE
+from ..lazy import xr
 from ..model import Structure
 from ..model.arguments import checked_integer
 from ..response.labels import flags, variable
@@ -28,9 +29,6 @@ from .response_signs import (
     sensor_differences,
 )
 from .undamaged import SoundStructure
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 RESPONSE = "the response"  # reference of the phase where nothing else is known
 UNKNOWN = SoundStructure(math.nan, math.nan)
@@ -154,8 +152,6 @@ def signs(
 
 def other_records(other: xr.Dataset | Sequence[xr.Dataset] | None) -> list[xr.Dataset]:
     """Return the records beside the first one as a list."""
-    import xarray as xr
-
     if other is None:
         return []
     return [other] if isinstance(other, xr.Dataset) else list(other)
@@ -239,8 +235,6 @@ def signs_dataset(
     described: dict[str, Any],
 ) -> xr.Dataset:
     """Assemble the dataset of the signs."""
-    import xarray as xr
-
     over = ("sign", "channel")
     value, floor = np.stack(list(values.values())), np.stack(list(floors.values()))
     highest = np.fmax.reduce(shown)

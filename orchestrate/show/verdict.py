@@ -163,10 +163,7 @@ def decision_section(answer: xr.Dataset) -> Section:
     reason, settle = (str(answer.attrs.get(name, "")) for name in ("reason", "settle"))
     points = [f"What decided: {make_sentence(reason)}"] if reason else []
     odds = scalar(answer, "odds")
-    simulated = str(answer.attrs.get("simulated", ""))
-    if simulated:
-        points.append(f"{make_sentence(simulated)} Both models were fitted to each of them.")
-    elif math.isfinite(odds) and odds > 0.0:
+    if math.isfinite(odds) and odds > 0.0:
         points.append(
             "The odds of the delaminated against the best sound structure are "
             f"{format_odds(odds)}. They were counted in records put together of blocks of this "
@@ -193,6 +190,7 @@ def fits_section(answer: xr.Dataset) -> Section | None:
     if "measured" not in answer or "fitted" not in answer:
         return None
     picture = draw_detect(answer.assign_attrs(title=""))
+    picture.set_size_inches(max(9.0, picture.get_figwidth()), 5.6)  # wide, as the page is
     words = "What was measured, and what the best structures of each kind do, order by order."
     return Section("The measurement over the fits", picture=picture, caption=words, place="front")
 
@@ -225,7 +223,7 @@ def hypothesis_table(answer: xr.Dataset) -> Table:
         rows.append((str(one.hypothesis.values), misfit, minima, computed))
     parted = {"delaminated": True, "no opening seen": False}.get(str(answer.verdict.values))
     deciding = [i for i, row in enumerate(rows) if row[0].startswith(PARTED) == parted][:1]
-    columns = ("structure", "misfit", "minima found", "motions computed")
+    columns = ("structure", "misfit", "distinct fits", "motions computed")
     return Table(columns, rows, frozenset(deciding))
 
 

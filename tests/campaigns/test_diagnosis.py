@@ -13,16 +13,14 @@ import xarray as xr
 import orchestrate
 from orchestrate.errors import VibroimpactError
 from tools.benches.recipe import Case, Setup, Truth
+from tools.benches.verdicts import DELAMINATED, FAILED, NO_OPENING, REFUSED, verdict_problem
 from tools.draws import draw_beam
 
 from .findings import expect_none
 
-DELAMINATED, NO_OPENING = "delaminated", "no opening seen"
-REFUSED, FAILED = "refused", "failed"
 FAILURES = (ArithmeticError, ValueError, LookupError, RuntimeError)  # numpy's LinAlgError is one
 FITTED = ("f1", "f2", "zeta1", "zeta2", "e")  # of which the stated errors are judged
 WITHIN = 1.96  # standard errors: half of an interval of 95 %
-VISIBLE = 2e-5  # m: a gap that opens less may be overlooked
 
 
 def diagnose(case: Case, counts: Counter[str]) -> str:
@@ -52,25 +50,6 @@ def deviations(answer: xr.Dataset, truth: Truth) -> Iterator[tuple[str, float]]:
         deviation = (float(own.value) - true) / (float(own.standard_error) or math.nan)
         if math.isfinite(deviation):
             yield name, deviation
-
-
-def verdict_problem(verdict: str, truth: Truth, message: str = "", smallest: float = 0.0) -> str:
-    """Return what is wrong with a verdict; empty where nothing is.
-
-    Random excitation may be refused: the detector goes by orders. An opening may be overlooked that
-    is smaller than the one that the detector says that it would have seen.
-    """
-    if verdict == FAILED or (verdict == REFUSED and truth.setup.excitation != "random"):
-        return f"{verdict}: {message}"
-    if verdict == DELAMINATED and not truth.is_delaminated:
-        return "called delaminated, and is sound"
-    if verdict == DELAMINATED and not truth.opened:
-        return "called delaminated, and did not open"
-    visible = truth.opened and truth.touched and truth.largest_gap > max(VISIBLE, smallest)
-    if verdict == NO_OPENING and visible:
-        text = f"no opening seen, and it opened by {1e3 * truth.largest_gap:.3g} mm"
-        return f"{text}, where {1e3 * smallest:.3g} mm would have been seen"
-    return ""
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-"""``python -m tools.benches tutorial``: write the records of the manual's tutorial."""
+"""``python -m tools.benches``: records of the manual's tutorial, rates of verdicts by kind."""
 
 from __future__ import annotations
 
@@ -6,16 +6,27 @@ import argparse
 import hashlib
 from pathlib import Path
 
-from . import tutorial
+from . import tutorial, verdicts
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Run the command line: ``tutorial`` writes the records of the manual's tutorial."""
+    """Run the command line: ``tutorial`` writes records, ``verdicts`` prints a table of rates."""
     parser = argparse.ArgumentParser(prog="python -m tools.benches", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
     one = commands.add_parser("tutorial", help="write the CSV files of the manual's tutorial")
     one.add_argument("--folder", type=Path, default=tutorial.FOLDER)
-    for path in tutorial.write_records(parser.parse_args(arguments).folder):
+    two = commands.add_parser("verdicts", help="diagnose random beams and print their verdicts")
+    two.add_argument("--kinds", nargs="+", choices=verdicts.GROUPS, default=list(verdicts.GROUPS))
+    two.add_argument("--seed", type=int, default=0)
+    two.add_argument("--count", type=int, default=1, help="beams of each kind")
+    two.add_argument("--budget", type=float, default=600.0, help="processor time, s")
+    chosen = parser.parse_args(arguments)
+    if chosen.command == "verdicts":
+        rates = chosen.kinds, chosen.seed, chosen.count, chosen.budget
+        for line in verdicts.table_rows(*rates):
+            print(line, flush=True)
+        return
+    for path in tutorial.write_records(chosen.folder):
         data = path.read_bytes()
         print(f"{path}: {len(data):,} bytes, sha256 {hashlib.sha256(data).hexdigest()[:16]}")
 

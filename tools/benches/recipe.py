@@ -106,8 +106,14 @@ class Conditions:
     # one of `EXCITATIONS`, or `"any"`: one up in ten is log, stepped, random
     excitation: str = "up"
     sensors: int = 0  # 1 or 2, or 0 for either
-    # length of the delamination of a beam of finite elements
+    # length of the delamination of a beam of finite elements, parts of the beam's; whether it may
+    # end before the free end; place of the sensors, parts of the length (None: where mode 1 moves
+    # as a mass on a spring)
     size: tuple[float, float] = (0.1, 0.9)
+    anywhere: bool = False
+    sensor: tuple[float, float] | None = None
+    # force that presses the faces together, over the one that opens them at resonance
+    preload: tuple[float, float] = (0.1, 1.6)
     off: float = 0.1  # how far guesses may be off
     # of the sensor on face 1, over its largest signal: below 1 it saturates
     range: float = math.inf
@@ -167,13 +173,13 @@ def draw_with_gap(rng: np.random.Generator, level: float, conditions: Conditions
 
 
 def draw_preloaded(rng: np.random.Generator, level: float, conditions: Conditions) -> Specimen:
-    """Draw halves pressed together by 0.1 to 1.6 times the force that opens at resonance."""
+    """Draw halves pressed together by a part of the force that opens them at resonance."""
     own = draw_halves(rng)
     k1, k2 = own.m1 * (TURN * own.f1) ** 2, own.m2 * (TURN * own.f2) ** 2
     one = own.bonded_beam()
     peak = level / (2.0 * one.zeta)  # acceleration over the base
     force = own.m1 * peak * abs((own.f1 / one.f) ** 2 - 1.0)
-    clearance = -rng.uniform(0.1, 1.6) * force * (1.0 / k1 + 1.0 / k2)
+    clearance = -rng.uniform(*conditions.preload) * force * (1.0 / k1 + 1.0 / k2)
     return two_mass_specimen(own, draw_contact_law(rng, clearance))
 
 
@@ -238,18 +244,26 @@ def draw_with_torsion(rng: np.random.Generator, level: float, conditions: Condit
     return bonded_specimen(own, own.bonded_with_torsion(torsion))
 
 
+def draw_place(
+    rng: np.random.Generator, beam: DelaminatedBeam, conditions: Conditions
+) -> float | None:
+    """Draw the position of the sensors on a beam, m; None where the conditions have no range."""
+    return rng.uniform(*conditions.sensor) * beam.length if conditions.sensor else None
+
+
 def draw_finite_elements(
     rng: np.random.Generator, level: float, conditions: Conditions
 ) -> Specimen:
-    """Draw a finite-element cantilever, delaminated from its free end on."""
+    """Draw a finite-element cantilever, delaminated from its free end on, or anywhere."""
     size = rng.uniform(*conditions.size)
+    last = rng.uniform(size, 1.0) if conditions.anywhere and rng.random() < 0.5 else 1.0
     share = 0.5 + float(rng.choice([-1.0, 1.0])) * rng.uniform(0.03, 0.2)
     thickness = DelaminatedBeam.thickness * rng.uniform(0.9, 1.5)
-    beam = DelaminatedBeam(first=1.0 - size, thickness=thickness, share=share)
+    beam = DelaminatedBeam(first=last - size, last=last, thickness=thickness, share=share)
     touching = replace(draw_contact_law(rng), law="hunt-crossley", friction=0.0)
-    system = beam.system(touching, draw_log_uniform(rng, 0.005, 0.02), modes=12)
+    zeta = draw_log_uniform(rng, 0.005, 0.02)
+    system = beam.system(touching, zeta, modes=12, sensor=draw_place(rng, beam, conditions))
     f1, f2 = system.frequency[:2] / TURN
-    zeta = float(system.damping_ratio[0])
     return Specimen(system, share, 1.0 - share, float(f1), float(f2), zeta, zeta, size=size)
 
 
@@ -259,8 +273,9 @@ def draw_intact_finite_elements(
     """Draw a finite-element cantilever without a delamination."""
     thickness = DelaminatedBeam.thickness * rng.uniform(0.9, 1.5)
     beam = DelaminatedBeam(first=0.0, last=0.0, thickness=thickness)
-    system = beam.system(Faces(), draw_log_uniform(rng, 0.005, 0.02), modes=4)
-    f, zeta = float(system.frequency[0]) / TURN, float(system.damping_ratio[0])
+    zeta = draw_log_uniform(rng, 0.005, 0.02)
+    system = beam.system(Faces(), zeta, modes=4, sensor=draw_place(rng, beam, conditions))
+    f = float(system.frequency[0]) / TURN
     return Specimen(system, 0.5, 0.5, f, f, zeta, zeta, sound=True, size=0.0)
 
 

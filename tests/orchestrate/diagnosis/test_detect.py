@@ -8,9 +8,8 @@ import pytest
 import orchestrate
 from orchestrate.diagnosis.detect import DetectJob, sweep_direction
 from orchestrate.diagnosis.fit import checked_data
-from orchestrate.diagnosis.fitting import Search, Solution
-from orchestrate.diagnosis.hypotheses import FREE
-from orchestrate.diagnosis.search_job import without_neighbours
+from orchestrate.diagnosis.fitting import Search, Solution, without_neighbours
+from orchestrate.diagnosis.hypotheses import FREE, STARTING_SPLITS
 from tools.benches.bench import Bench
 from tools.benches.excitation import Swept
 from tools.benches.lumped import Faces, Halves, Torsion
@@ -138,10 +137,53 @@ def test_a_sound_beam_that_twists_between_two_sensors_is_not_delaminated():
     )
     twisted, _ = bench.measure(halves.bonded_with_torsion(torsion), seed=3)
     answer = orchestrate.detect(twisted, guess(f1=42.0, f2=50.0), **LIMIT)
-    assert float(answer.faces_apart) > 10.0 and float(answer.ratio) > 1.05
+    assert float(answer.faces_apart) > 10.0 and float(answer.misfit.min()) < 0.5
+    assert int(answer.misfit.argmin()) == list(answer.hypothesis).index("bonded, with two modes")
     assert str(answer.verdict.values) == "undecided"
     assert "two modes of a sound beam" in answer.attrs["reason"]
     assert answer.value.isnull().all() and answer.standard_error.isnull().all()
+    second = orchestrate.fit(twisted, guess(f1=42.0, f2=50.0), hypothesis="two modes", **LIMIT)
+    apart = float(second.value.sel(parameter="apart"))
+    assert abs(apart) == pytest.approx(np.log(1.08), abs=0.01)
+
+
+PRESSED = -2.5e-4  # m: a fifth of what opens at the resonance
+
+
+def test_the_search_for_pressed_faces_starts_at_the_preload_that_opens_where_order_2_begins():
+    pressed = record(BEAM.replace(clearance=PRESSED), noise=0.01)
+    job = DetectJob(name="x", data=checked_data(pressed), guess=guess(), free=FREE)
+    hypothesis = job.hypotheses[-1]
+    assert hypothesis.onset.common == pytest.approx(33.79, rel=0.01)
+    starts = hypothesis.starts(job.evidence, STARTING_SPLITS.index(0.3))
+    gaps = [s["clearance"] * job.evidence.displacement for s in starts]
+    assert min(abs(gap / PRESSED - 1.0) for gap in gaps) < 0.25
+    silent = DetectJob(
+        name="x", data=checked_data(record(BEAM.as_bonded())), guess=guess(), free=FREE
+    )
+    assert silent.hypotheses[-1].onset is None
+
+
+@pytest.mark.slow
+def test_pressed_faces_are_seen_when_they_open():
+    answer = orchestrate.detect(
+        record(BEAM.replace(clearance=PRESSED), noise=0.01), guess(), **LIMIT
+    )
+    assert str(answer.verdict.values) == "delaminated", answer.attrs["reason"]
+    pressed = answer.sel(hypothesis="delaminated, with clearance")
+    assert float(pressed.value.sel(parameter="clearance")) == pytest.approx(PRESSED, rel=0.15)
+    assert float(pressed.value.sel(parameter="f1")) == pytest.approx(30.0, rel=0.03)
+
+
+def test_settings_reach_the_fit_and_a_name_that_is_none_is_one_line():
+    usual, wide = (
+        orchestrate.fit(record(), guess(), hypothesis="bonded", settings=changed, **LIMIT)
+        for changed in (None, {"model_error": 0.06})
+    )
+    assert float(wide.misfit) < 0.8 * float(usual.misfit)
+    for wrong, text in (({"rate": 2.0}, "'rate' is none"), ({"ratio": -1.0}, "ratio.* = -1.0")):
+        with pytest.raises(orchestrate.InputError, match=text):
+            orchestrate.detect(record(), guess(), settings=wrong)
 
 
 QUIET_CASES = {  # of a bonded beam at 33.8 Hz: clip, end of the sweep in s, factor of the times
@@ -180,7 +222,7 @@ def test_halves_that_change_places_are_two_solutions():
 def test_of_halves_that_may_change_places_the_guess_decides():
     """One sensor, masses alike: both solutions miss about as much."""
     job = DetectJob(name="x", data=checked_data(record(both=False)), guess=guess(), free=FREE)
-    search = Search(job.hypotheses[5], job.evidence)
+    search = Search(job.hypotheses[-2], job.evidence)
     there = search.hypothesis.values_from_structure(guess(), job.evidence)
     mirrored = {**there, "split": -there["split"]}
     like, unlike = Solution("x", there, 1.05), Solution("x", mirrored, 1.0)

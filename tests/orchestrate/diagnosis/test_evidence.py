@@ -7,7 +7,7 @@ import orchestrate
 from orchestrate.diagnosis.errors import contact_covariance, estimate, squares_beyond_noise
 from orchestrate.diagnosis.evidence import Evidence
 from orchestrate.diagnosis.fitting import Search, misfit
-from orchestrate.diagnosis.hypotheses import Bonded, Delaminated, NonlinearSpring
+from orchestrate.diagnosis.hypotheses import Bonded, Delaminated, NonlinearSpring, TwoModes
 from orchestrate.fmu import OSCILLATOR, Player, find
 
 from .records import BEAM, record
@@ -130,3 +130,6 @@ def test_a_hypothesis_whose_motion_has_no_bounds_has_errors_too():
     for one in (values, gone):
         known = estimate(search, one)
         assert np.isfinite(known.covariance).all()
+    evidence.__dict__["displacement"] = 1e-12  # as of a sensor that hardly moves
+    unbound = TwoModes().displacements({"f": 34.0, "log_zeta": -8.0, "apart": 0.1}, evidence, None)
+    assert np.isnan(unbound).all() and unbound.shape == (2, evidence.samples)

@@ -1,16 +1,15 @@
 """What shakers do, what sensors read, random beams, and the records of the manual's tutorial."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 
 import numpy as np
 import pytest
+import xarray as xr
 from scipy.signal import butter, freqs, welch
 
 import orchestrate
-from tools.benches import recipe, tutorial
+from tools.benches import recipe, tutorial, verdicts
 from tools.benches.__main__ import main
 from tools.benches.bench import Bench
 from tools.benches.excitation import Random, Swept
@@ -136,3 +135,13 @@ def test_the_command_writes_them(tmp_path, monkeypatch, capsys):
         kept = (tutorial.FOLDER / f"{name}.csv").read_text("utf-8")
         assert written.splitlines()[:7] == kept.splitlines()[:7]
         assert orchestrate.read_record(tmp_path / f"{name}.csv").sizes["time"] == 1251
+
+
+def test_a_table_of_verdicts_counts_what_is_wrong_and_ends_with_its_budget(monkeypatch, short):
+    """Whatever the record, the answer is "delaminated"."""
+    numbers = {"verdict": "delaminated", "ratio": 2.0, "misfit": 1.0, "smallest_opening": 1e-5}
+    monkeypatch.setattr(verdicts.orchestrate, "detect", lambda *a, **k: xr.Dataset(numbers))
+    beam, head, row = verdicts.table_rows(["sound"], 1, 1, math.inf)
+    assert "is sound" in beam and head.split()[-1] == "wrong"
+    assert row.split() == ["sound", "0", "0", "0", "0", "1"]
+    assert [line.split()[-1] for line in verdicts.table_rows(["gap"], 1, 1, 0.0)] == ["wrong", "0"]
